@@ -1,0 +1,86 @@
+// Normal contact of two polygons by integrals along their edges: the hot kernel.
+//
+// With E = INT_{a AND b} (phi_a + phi_b) dA and stiffness 1, the divergence theorem turns the force
+// F_a = -dE/dx_a into (theory: Eqs. 7-8 without the overlap polygon, phi_b = 0 on b's own edges)
+//
+//   F_a = - SUM_{edges of a} n INT phi_b ds + SUM_{edges of b} n INT phi_a ds.
+//
+// Each half-sum is evaluated in the frame of the polygon that owns phi. Swapping a and b swaps the
+// halves, hence F_b = -F_a to the last bit; and only differences of positions enter, hence no digit
+// is lost far from the origin.
+#pragma once
+
+#include <vector>
+
+#include "geometry/potential.hpp"
+
+namespace apothem {
+
+/// A potential placed in the plane: SoA views relative to the polygon's reference point. x and y
+/// have size + 1 entries (the first vertex is repeated), gx and gy have `size`.
+struct PlacedPotential {
+  const double* x;
+  const double* y;
+  const double* gx;
+  const double* gy;
+  int size;
+  bool capped;
+};
+
+/// Integrals of a pair for unit stiffness. Multiply force, moments, weight and energy by k_n.
+/// Moments are about the two reference points; positions are relative to a's reference point.
+struct PairIntegral {
+  Vec2 force = Vec2::Zero();   ///< on a, m
+  double moment_a = 0;         ///< m^2
+  double moment_b = 0;         ///< m^2
+  double weight = 0;           ///< W = SUM INT phi ds, m: the scale of round-off
+  Vec2 centre = Vec2::Zero();  ///< weighted centre p0 = SUM INT phi x ds / W, m
+  double own_length_a = 0;     ///< boundary of a inside b, m
+  double own_length_b = 0;     ///< m
+  double largest_phi = 0;      ///< largest phi met along the edges
+  double penetration = 0;      ///< extent of the overlap along the force, m
+  double breadth = 0;          ///< extent of the overlap across the force, m
+
+  [[nodiscard]] bool touching() const { return !(weight <= 0); }  // NaN counts as touching
+};
+
+/// Memory the kernel works in; keep one per thread.
+struct EdgeWorkspace {
+  std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
+  std::vector<double> pieces;  ///< end points of the clipped edges
+};
+
+/// The pair kernel. `offset` is a's reference point minus b's. No allocation after the first calls
+/// with polygons of that size.
+PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace);
+
+/// Energy INT_{a AND b} (phi_a + phi_b) dA (m^2 for unit stiffness) and overlap area (m^2).
+struct PairVolume {
+  double energy = 0;
+  double overlap_area = 0;
+};
+
+/// The volume under the potentials, again without an overlap polygon: in the face of edge e,
+/// phi = div(A) with A = g/|g|^2 PHI(phi), PHI' = phi; A vanishes on the polygon's own boundary, so
+/// what remains are the other polygon's edges and the ridges. Ridges are in the frames of the two
+/// placed polygons. Not for the step loop: for ledgers and pictures.
+PairVolume pair_volume(const PlacedPotential& a, const std::vector<Ridge>& ridges_a,
+                       const PlacedPotential& b, const std::vector<Ridge>& ridges_b,
+                       const Vec2& offset, EdgeWorkspace& workspace);
+
+/// Loading point of the resultant: the weighted centre moved along the tangent onto the line of
+/// action of (force, moment_a), relative to a's reference point (theory: Sec. 3). Without a
+/// resultant it is the centre itself.
+Vec2 loading_point(const PairIntegral& pair);
+
+/// The pair kernel for two potentials where they stand, each relative to its own origin; moments
+/// about `reference_a` and `reference_b` (relative to those origins). For single evaluations.
+struct PairResult {
+  PairIntegral integral;
+  PairVolume volume;
+};
+PairResult edge_method(const Potential& a, const Vec2& origin_a, const Vec2& reference_a,
+                       const Potential& b, const Vec2& origin_b, const Vec2& reference_b);
+
+}  // namespace apothem

@@ -1,0 +1,65 @@
+// The contact potential of a convex polygon: one structure for the distance potential of the paper
+// (Eq. 6) and for Munjiza's area potential of triangles (Eq. 2).
+//
+//   phi(x) = min(1, min_i g_i . (x - p_i))   inside,   0 outside,
+//
+// with p_i a point of edge i and g_i its inward normal divided by a length: the edge list with one
+// inverse length per edge. Lines are kept in this difference form because its round-off follows the
+// size of the polygon, not its distance from the origin of the coordinates.
+#pragma once
+
+#include <vector>
+
+#include "geometry/polygon.hpp"
+
+namespace apothem {
+
+/// Ridge of the lower envelope, from `start` to `end`, where the envelope has the given values.
+/// `weight` is the length of the ridge times the jump of the normal component of (g/|g|^2) across
+/// it: with it the volume under phi becomes a sum of one-dimensional integrals (edge_integral.hpp).
+struct Ridge {
+  Vec2 start, end;
+  double start_value, end_value;
+  double weight;
+};
+
+struct Potential {
+  std::vector<Vec2> vertices;   ///< p_i, relative to an origin of the owner's choice, m
+  std::vector<Vec2> gradients;  ///< g_i, 1/m
+  std::vector<Ridge> ridges;    ///< straight skeleton of the (weighted) edges
+  double top = 0;               ///< maximum of the uncapped envelope
+  std::vector<Vec2> top_points; ///< where it is attained: one point, or the ends of a segment
+  double steepest = 0;          ///< largest |g_i|: the inverse of the smallest length, 1/m
+
+  [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
+  /// True when min(1, .) matters: the plateau phi = 1 is the paper's singular area.
+  [[nodiscard]] bool capped() const { return top > 1; }
+};
+
+/// Largest inscribed circle of a convex polygon.
+struct InscribedCircle {
+  double radius;              ///< m
+  std::vector<Vec2> centres;  ///< relative to the polygon's origin(); two when it is not unique
+};
+
+/// Throws InvalidPolygon if the polygon is not convex.
+InscribedCircle inscribed_circle(const Polygon& polygon);
+
+/// Which potential, and the length r that normalises the distance potential. For a convex polygon
+/// the roof height is the inradius, so `roof` and `inscribed_circle` agree.
+struct PotentialChoice {
+  enum class Kind { distance, area };
+  enum class Reference { roof, inscribed_circle, length };
+  Kind kind = Kind::distance;
+  Reference reference = Reference::roof;
+  double length = 0;  ///< m, for Reference::length
+};
+
+/// The potential of a polygon, with vertices relative to polygon.origin(). Throws InvalidPolygon if
+/// the polygon is not convex or, for the area potential (slope 3 / altitude), not a triangle.
+Potential make_potential(const Polygon& polygon, const PotentialChoice& choice = {});
+
+/// The potential seen from another origin: vertices and ridges minus `shift`.
+Potential translated(Potential potential, const Vec2& shift);
+
+}  // namespace apothem
