@@ -40,6 +40,9 @@ class Polygon {
   [[nodiscard]] std::optional<int> first_reflex_vertex() const;
   [[nodiscard]] bool is_convex() const { return !first_reflex_vertex(); }
 
+  /// Index of vertex i in the ring as it was given.
+  [[nodiscard]] int input_index(int i) const { return reversed_ && i > 0 ? size() - i : i; }
+
   /// Where the polygon's local coordinates start: vertex 0. Local coordinates are differences of
   /// input coordinates, so they do not lose digits far from the world's origin.
   [[nodiscard]] const Vec2& origin() const { return vertices_.front(); }
@@ -47,6 +50,7 @@ class Polygon {
 
  private:
   std::vector<Vec2> vertices_;
+  bool reversed_;
 };
 
 /// Area, centroid and second moment of a polygon of unit density.

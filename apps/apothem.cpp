@@ -1,0 +1,97 @@
+// The command line: options of every sub-command, and what each kind of failure turns into.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "commands.hpp"
+#include "output/files.hpp"
+#include "scene/error.hpp"
+#include "version.hpp"
+
+namespace {
+
+using namespace apothem;
+
+void add_run(CLI::App& app, RunOptions& o) {
+  CLI::App* sub = app.add_subcommand("run", "Run a scene");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
+  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)");
+  sub->add_option("--threads", o.threads, "Threads of the contact phase")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
+      ->check(CLI::PositiveNumber);
+  sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder");
+  sub->add_flag("--quiet", o.quiet, "No progress and no summary");
+  sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
+}
+
+void add_check(CLI::App& app, CheckOptions& o) {
+  CLI::App* sub = app.add_subcommand("check", "Validate a scene and print what a run would do");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
+}
+
+void add_contact(CLI::App& app, ContactOptions& o) {
+  CLI::App* sub = app.add_subcommand("contact", "Contact force of two polygons");
+  CLI::Option* a = sub->add_option("A", o.a, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}");
+  CLI::Option* b = sub->add_option("B", o.b, "The other polygon");
+  a->needs(b);
+  sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
+      ->excludes(a)
+      ->excludes(b);
+  sub->add_option("--potential", o.potential, "Contact potential")
+      ->check(CLI::IsMember({"distance", "area"}))
+      ->capture_default_str();
+  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
+      ->capture_default_str();
+  sub->add_option("--method", o.method, "Way to the numbers")
+      ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
+      ->capture_default_str();
+  sub->add_option("--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+int fail(int code, const char* what) {
+  fmt::print(stderr, "apothem: {}\n", what);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Apothem: distance-potential finite-discrete element method in 2-D", "apothem"};
+  app.set_version_flag("--version", std::string("apothem ") + kVersion);
+  app.require_subcommand(1);
+  RunOptions run_options;
+  CheckOptions check_options;
+  ContactOptions contact_options;
+  add_run(app, run_options);
+  add_check(app, check_options);
+  add_contact(app, contact_options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    fmt::print(stderr, "apothem: {}; see apothem --help\n", error.what());
+    return exit_code::bad_input;
+  }
+  if (app.got_subcommand("run")) return run_command(run_options);
+  if (app.got_subcommand("check")) return check_command(check_options);
+  return contact_command(contact_options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const apothem::SceneError& error) {
+    return fail(apothem::exit_code::bad_input, error.what());
+  } catch (const apothem::SystemFailure& error) {
+    return fail(apothem::exit_code::system_failed, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(apothem::exit_code::system_failed, "out of memory");
+  }
+}

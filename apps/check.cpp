@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "plan.hpp"
+
+namespace apothem {
+
+int check_command(const CheckOptions& options) {
+  const Scene scene = read_scene(options.scene);
+  const Simulation simulation = make_simulation(scene, 1);
+  const Model& model = scene.model;
+
+  int free = 0, fixed = 0, prescribed = 0, held = 0, vertices = 0;
+  for (const RigidBody& body : model.bodies) {
+    (body.motion == Motion::free ? free : body.motion == Motion::fixed ? fixed : prescribed)++;
+    held += body.held[0] || body.held[1] || body.held[2];
+    vertices += body.potential.size();
+  }
+  const bool contact = model.bodies.size() > 1 && fixed < static_cast<int>(model.bodies.size());
+  const double steps = std::ceil(scene.time.end / simulation.step_size());
+  const auto say = [](const char* what, const std::string& text) {
+    fmt::print("{:<12} {}\n", what, text);
+  };
+  const auto uses = [](const char* what, bool yes, const std::string& why) {
+    fmt::print("  {} {:<20} {}\n", yes ? "+" : "-", what, why);
+  };
+  fmt::print("{}: a valid scene\n", scene.file);
+  say("name", model.name);
+  say("bodies", fmt::format("{} rigid ({} free, {} fixed, {} prescribed), {} vertices",
+                            model.bodies.size(), free, fixed, prescribed, vertices));
+  say("elements", "0");
+  say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end, steps));
+  const StepLimit& limit = simulation.limit();
+  say("time step", fmt::format("{} s ({}); limited by: {} ({:.6g} s)", simulation.step_size(),
+                               scene.time.fixed_step ? "fixed"
+                                                     : fmt::format("auto, safety {:g}", scene.time.safety),
+                               limit.reason, limit.step));
+  say("output", fmt::format("{} frames, histories of {} bodies every {:g} s", scene.output.frames + 1,
+                            scene.output.track.size(),
+                            scene.output.history_interval.value_or(scene.time.end / 1000)));
+  say("expects", fmt::format("{} results", scene.expectations.size()));
+  say("at t = 0", fmt::format("{} touching pairs", simulation.counts().touching_now));
+  fmt::print("machinery\n");
+  uses("contact", contact,
+       contact ? fmt::format("{} potential, k_n = {:g} Pa",
+                             model.contact.potential.kind == PotentialChoice::Kind::area ? "area"
+                                                                                        : "distance",
+                             model.contact.normal_stiffness)
+               : "nothing can touch");
+  uses("pair search", contact, contact ? "hierarchical grid with a skin" : "");
+  uses("gravity", model.gravity != Vec2::Zero(),
+       fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));
+  uses("prescribed motion", prescribed > 0, "");
+  uses("held coordinates", held > 0, "");
+  uses("friction", false, "no tangential state is kept");
+  uses("finite elements", false, "all bodies are rigid");
+  uses("damping", false, "");
+  return exit_code::done;
+}
+
+}  // namespace apothem

@@ -1,0 +1,45 @@
+// The sub-commands of the program. Each returns an exit code of the public contract.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace apothem {
+
+namespace exit_code {
+inline constexpr int done = 0;
+inline constexpr int missed = 1;       ///< run --verify: an expectation of the scene was not met
+inline constexpr int bad_input = 2;
+inline constexpr int unstable = 3;
+inline constexpr int system_failed = 4;
+inline constexpr int interrupted = 130;
+}  // namespace exit_code
+
+struct RunOptions {
+  std::string scene;
+  std::string folder;  ///< empty: out/NAME
+  int threads = 1;
+  std::optional<double> until;  ///< s
+  bool overwrite = false;
+  bool quiet = false;
+  bool verify = false;
+};
+int run_command(const RunOptions& options);
+
+struct CheckOptions {
+  std::string scene;
+};
+int check_command(const CheckOptions& options);
+
+struct ContactOptions {
+  std::string a, b;
+  std::string batch;  ///< file of pairs instead of a and b
+  std::string potential = "distance";
+  std::string reference = "roof";
+  std::string method = "edge";
+  double stiffness = 1;
+  bool json = false;
+};
+int contact_command(const ContactOptions& options);
+
+}  // namespace apothem

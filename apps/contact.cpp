@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "commands.hpp"
+#include "contact/law.hpp"
+#include "geometry/exact_integral.hpp"
+#include "geometry/overlap.hpp"
+#include "scene/json.hpp"
+#include "scene/polygon_file.hpp"
+
+namespace apothem {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+PotentialChoice potential_choice(const ContactOptions& options) {
+  PotentialChoice choice;
+  for (const NamedPotential& p : kPotentials) {
+    if (options.potential == p.name) choice.kind = p.kind;
+  }
+  for (const NamedReference& r : kReferences) {
+    if (options.reference == r.name) {
+      choice.reference = r.reference;
+      return choice;
+    }
+  }
+  choice.reference = PotentialChoice::Reference::length;
+  char* end = nullptr;
+  choice.length = std::strtod(options.reference.c_str(), &end);
+  if (*end != '\0' || !(choice.length > 0) || !std::isfinite(choice.length)) {
+    throw SceneError("--reference", 0, "",
+                     fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"",
+                                 options.reference));
+  }
+  return choice;
+}
+
+PairResult evaluate(const std::string& method, const Polygon& a, const Polygon& b,
+                    const PotentialChoice& choice) {
+  if (method == "exact") return exact_method(a, b, choice);
+  const Potential potential_a = make_potential(a, choice);
+  const Potential potential_b = make_potential(b, choice);
+  if (method == "overlap") return overlap_method(a, potential_a, b, potential_b);
+  return edge_method(potential_a, a.origin(), area_moments(a).centroid, potential_b, b.origin(),
+                     area_moments(b).centroid);
+}
+
+Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) {
+  const PotentialChoice choice = potential_choice(options);
+  const double k = options.stiffness;
+  const std::vector<std::string> methods =
+      options.method == "all" ? std::vector<std::string>{"edge", "overlap", "exact"}
+                              : std::vector<std::string>{options.method};
+  Json list = Json::array();
+  for (const std::string& method : methods) {
+    const auto start = std::chrono::steady_clock::now();
+    const PairResult result = evaluate(method, a, b, choice);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const PairIntegral& pair = result.integral;
+    const Vec2 point = a.origin() + (area_moments(a).centroid + loading_point(pair));
+    list.push_back({{"method", method},
+                    {"force", {k * pair.force.x(), k * pair.force.y()}},
+                    {"moment_a", k * pair.moment_a},
+                    {"moment_b", k * pair.moment_b},
+                    {"loading_point", {point.x(), point.y()}},
+                    {"energy", k * result.volume.energy},
+                    {"overlap_area", result.volume.overlap_area},
+                    {"own_length_a", pair.own_length_a},
+                    {"own_length_b", pair.own_length_b},
+                    {"weight", k * pair.weight},
+                    {"penetration", pair.penetration},
+                    {"largest_phi", pair.largest_phi},
+                    {"seconds", seconds.count()}});
+  }
+  return list;
+}
+
+void print_table(const Json& list) {
+  for (const Json& r : list) {
+    fmt::print("{}\n", r["method"].get<std::string>());
+    for (const auto& [key, value] : r.items()) {
+      if (key != "method") fmt::print("  {:<15} {}\n", key, value.dump());
+    }
+  }
+}
+
+Polygon read_polygon(const std::string& file, const char* which) {
+  try {
+    return Polygon(read_polygon_file(file));
+  } catch (const InvalidPolygon& error) {
+    throw SceneError(file, 0, "", fmt::format("polygon {} is not usable: {}", which, error.what()));
+  }
+}
+
+// name n x y ... m x y ...
+std::vector<Vec2> read_ring(std::istringstream& line) {
+  int n = 0;
+  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
+  std::vector<Vec2> ring;
+  for (int i = 0; i < n; ++i) {
+    std::string x, y;  // not as double: streams do not read nan or inf
+    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
+    char* end_x = nullptr;
+    char* end_y = nullptr;
+    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
+    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
+  }
+  return ring;
+}
+
+int batch(const ContactOptions& options) {
+  potential_choice(options);  // a bad option is one error, not one per line
+  std::istringstream lines(read_text(options.batch));
+  int code = exit_code::done;
+  for (std::string text; std::getline(lines, text);) {
+    std::istringstream line(text);
+    std::string name;
+    if (!(line >> name)) continue;
+    Json object{{"name", name}};
+    const char* which = "a";
+    try {
+      const Polygon a(read_ring(line));
+      which = "b";
+      const Polygon b(read_ring(line));
+      which = "";
+      object["normal_stiffness"] = options.stiffness;
+      object["results"] = results(a, b, options);
+    } catch (const InvalidPolygon& error) {
+      object = {{"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
+      code = exit_code::bad_input;
+    }
+    fmt::print("{}\n", object.dump());
+  }
+  return code;
+}
+
+}  // namespace
+
+int contact_command(const ContactOptions& options) {
+  if (!options.batch.empty()) return batch(options);
+  if (options.b.empty()) throw SceneError("contact", 0, "", "give two polygon files, or --batch FILE");
+  const Polygon a = read_polygon(options.a, "A");
+  const Polygon b = read_polygon(options.b, "B");
+  Json list;
+  try {
+    list = results(a, b, options);
+  } catch (const InvalidPolygon& error) {
+    throw SceneError(options.a + ", " + options.b, 0, "", error.what());
+  }
+  if (options.json) {
+    fmt::print("{}\n", Json{{"normal_stiffness", options.stiffness}, {"results", list}}.dump(2));
+  } else {
+    print_table(list);
+  }
+  return exit_code::done;
+}
+
+}  // namespace apothem

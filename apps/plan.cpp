@@ -1,0 +1,14 @@
+#include "plan.hpp"
+
+namespace apothem {
+
+Simulation make_simulation(const Scene& scene, int threads) {
+  try {
+    return {scene.model, scene.time, scene.output.frames, threads};
+  } catch (const Unrunnable& error) {
+    const std::string index = error.body() >= 0 ? "/" + std::to_string(error.body()) : "";
+    throw scene.error_at("/" + error.key() + index, error.what());
+  }
+}
+
+}  // namespace apothem

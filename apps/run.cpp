@@ -1,0 +1,321 @@
+// apothem run: joins scene, simulation and output; the loop over the steps.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "output/files.hpp"
+#include "output/frames.hpp"
+#include "output/history.hpp"
+#include "plan.hpp"
+#include "version.hpp"
+
+namespace apothem {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// Ctrl-C asks the loop to finish its step; a file-size limit becomes an error of write().
+void install_signal_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { interrupted = 1; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, nullptr);
+}
+
+std::uint64_t fnv1a(const void* data, size_t size, std::uint64_t hash = 0xcbf29ce484222325U) {
+  const auto* bytes = static_cast<const unsigned char*>(data);
+  for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3U;
+  return hash;
+}
+
+// The bits of the final state: equal for any number of threads.
+std::string state_hash(const State& state) {
+  std::uint64_t hash = fnv1a(&state.time, sizeof state.time);
+  for (const std::vector<double>* v : {&state.position, &state.velocity, &state.force}) {
+    hash = fnv1a(v->data(), v->size() * sizeof(double), hash);
+  }
+  return fmt::format("fnv1a64:{:016x}", hash);
+}
+
+// A folder with results in it is never touched unless the user says so, and then only our files.
+void prepare_folder(const std::string& folder, bool overwrite) {
+  constexpr std::array ours{"run.json",   "frames.pvd",   "contacts.pvd", "frames",
+                            "history.csv", "energy.csv", "momentum.csv"};
+  for (const char* name : ours) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) continue;
+    if (!overwrite) {
+      throw SceneError(folder, 0, "",
+                       fmt::format("already holds results ({}); give --overwrite, or another folder "
+                                   "with -o",
+                                   name));
+    }
+    std::filesystem::remove_all(path, error);
+    if (error) throw SystemFailure(path.string(), error.value());
+  }
+  create_folder(folder);
+}
+
+// One line on a terminal, redrawn; a plain line every few seconds elsewhere.
+class Progress {
+ public:
+  Progress(bool on, double end)
+      : on_(on), terminal_(isatty(STDERR_FILENO) != 0), end_(end), start_(Clock::now()), last_(start_) {}
+
+  void update(const Simulation& simulation) {
+    if (!on_) return;
+    const Clock::time_point now = Clock::now();
+    if (now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) {
+      return;
+    }
+    last_ = now;
+    const State& state = simulation.state();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double share = std::min(state.time / end_, 1.0);
+    const std::string text = fmt::format(
+        "t = {:.4g} of {:.4g} s ({:3.0f} %), {:.3g} steps/s, {} contacts, {:.0f} s left", state.time,
+        end_, 100 * share, static_cast<double>(state.step) / seconds, simulation.counts().touching_now,
+        share > 0 ? seconds * (1 - share) / share : 0);
+    if (!terminal_) {
+      fmt::print(stderr, "{}\n", text);
+      return;
+    }
+    constexpr int kWidth = 24;
+    const int full = static_cast<int>(kWidth * share);
+    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}", "", full, "", kWidth - full, text);
+    std::fflush(stderr);
+    drawn_ = true;
+  }
+
+  void clear() const {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool on_;
+  bool terminal_;
+  bool drawn_ = false;
+  double end_;
+  Clock::time_point start_;
+  Clock::time_point last_;
+};
+
+// Says when the next record is due; a record falls on the first step at or after its time.
+class Schedule {
+ public:
+  explicit Schedule(double interval) : interval_(interval) {}
+  bool due(double time, double step) {
+    if (!(time >= static_cast<double>(next_) * interval_ - 1e-6 * step)) return false;
+    next_ = static_cast<std::int64_t>(std::floor(time / interval_ + 1e-6)) + 1;
+    return true;
+  }
+
+ private:
+  double interval_;
+  std::int64_t next_ = 1;
+};
+
+class Run {
+ public:
+  Run(const RunOptions& options, const Scene& scene)
+      : options_(options),
+        scene_(scene),
+        simulation_(make_simulation(scene, options.threads)),
+        end_(options.until.value_or(scene.time.end)),
+        folder_(options.folder.empty() ? "out/" + scene.model.name : options.folder) {}
+
+  int execute() {
+    prepare_folder(folder_, options_.overwrite);
+    start_ = Clock::now();
+    int code = exit_code::done;
+    try {
+      HistoryWriter history(folder_, scene_.model, scene_.output.track);
+      FrameWriter frames(folder_, scene_.model);
+      code = loop(history, frames);
+    } catch (const Unstable& error) {
+      code = exit_code::unstable;
+      status_ = "unstable";
+      message_ = error.what();
+    } catch (const SystemFailure& error) {
+      status_ = "failed";
+      message_ = error.what();
+      try {
+        write_summary();
+      } catch (const SystemFailure&) {
+        // The message below is about the first failure.
+      }
+      throw;
+    }
+    if (code == exit_code::done) judge();
+    write_summary();
+    if (!message_.empty()) fmt::print(stderr, "apothem: {}: {}\n", scene_.file, message_);
+    if (!options_.quiet) print_summary();
+    return code == exit_code::done && options_.verify && missed_ > 0 ? exit_code::missed : code;
+  }
+
+ private:
+  int loop(HistoryWriter& history, FrameWriter& frames) {
+    Progress progress(!options_.quiet, end_);
+    Schedule rows(scene_.output.history_interval.value_or(scene_.time.end / 1000));
+    Schedule pictures(scene_.time.end / std::max(scene_.output.frames, 1));
+    const auto record = [&](bool row, bool picture) {
+      if (!row && !picture) return;
+      const Clock::time_point before = Clock::now();
+      if (row) history.add(simulation_.state(), simulation_.energies(), simulation_.momenta());
+      if (picture) {
+        history.flush();
+        frames.write(simulation_.state(), simulation_.contacts());
+      }
+      output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
+    };
+    record(true, true);
+    try {
+      while (true) {
+        const double time = simulation_.state().time;
+        const double step = simulation_.step_size();
+        if (time >= end_ - 1e-6 * step) break;
+        if (interrupted) {
+          record(true, true);
+          status_ = "interrupted";
+          message_ = fmt::format("interrupted at t = {:.9g} s; all files are complete up to there", time);
+          progress.clear();
+          history.flush();
+          return exit_code::interrupted;
+        }
+        simulation_.step();
+        const State& state = simulation_.state();
+        const bool last = state.time >= end_ - 1e-6 * step;
+        record(rows.due(state.time, step) || last,
+               (pictures.due(state.time, step) && scene_.output.frames > 0) || last);
+        if (state.step % 64 == 0) progress.update(simulation_);
+      }
+    } catch (const Unstable&) {
+      progress.clear();
+      history.flush();
+      throw;
+    }
+    progress.clear();
+    history.flush();
+    status_ = "done";
+    return exit_code::done;
+  }
+
+  void judge() {
+    for (const Expectation& expectation : scene_.expectations) {
+      // A run that was cut short cannot be held to what lies behind its end.
+      if (end_ < scene_.time.end) break;
+      try {
+        outcomes_.push_back(evaluate(expectation, folder_));
+      } catch (const std::runtime_error& error) {
+        throw scene_.error_at(fmt::format("/expect/{}", outcomes_.size()), error.what());
+      }
+      missed_ += !outcomes_.back().met;
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> names(const Extremes::Peak& peak) const {
+    if (peak.a < 0) return {};
+    return {scene_.model.bodies[peak.a].name, scene_.model.bodies[peak.b].name};
+  }
+
+  void write_summary() {
+    const Counts& counts = simulation_.counts();
+    const Extremes& extremes = simulation_.extremes();
+    const State& state = simulation_.state();
+    const double steps = std::max(static_cast<double>(state.step), 1.0);
+    const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
+    Json parts;
+    const auto seconds = simulation_.phase_seconds();
+    for (size_t i = 0; i < seconds.size(); ++i) parts[kPhaseNames[i]] = seconds[i];
+    parts["output"] = output_seconds_;
+    parts["total"] = wall;
+    const auto peak = [&](const Extremes::Peak& p) {
+      return Json{{"time", p.time}, {"bodies", names(p)}};
+    };
+    Json json{{"name", scene_.model.name},
+              {"scene", scene_.file},
+              {"scene_hash", fmt::format("fnv1a64:{:016x}", fnv1a(scene_.text.data(), scene_.text.size()))},
+              {"version", kVersion},
+              {"status", status_},
+              {"threads", options_.threads},
+              {"time", state.time},
+              {"steps", state.step},
+              {"dt", simulation_.step_size()},
+              {"dt_limited_by", scene_.time.fixed_step ? "time.step of the scene" : simulation_.limit().reason},
+              {"stability_limit", simulation_.limit().step},
+              {"steps_per_second", static_cast<double>(state.step) / wall},
+              {"wall_time", parts},
+              {"pairs_per_step",
+               {{"candidates", static_cast<double>(counts.candidate_pairs) / steps},
+                {"touching", static_cast<double>(counts.touching_pairs) / steps}}},
+              {"searches", counts.searches},
+              {"largest_penetration", extremes.penetration.value},
+              {"largest_penetration_at", peak(extremes.penetration)},
+              {"largest_contact_force", extremes.force.value},
+              {"largest_contact_force_at", peak(extremes.force)},
+              {"largest_energy_error", extremes.energy_error},
+              {"final_state_hash", state_hash(state)}};
+    if (!message_.empty()) json["message"] = message_;
+    Json& list = json["expectations"] = Json::array();
+    for (size_t i = 0; i < outcomes_.size(); ++i) {
+      const Expectation& e = scene_.expectations[i];
+      list.push_back({{"quantity", e.quantity},
+                      {"expected", e.value},
+                      {"tolerance", e.tolerance},
+                      {"value", outcomes_[i].value},
+                      {"met", outcomes_[i].met}});
+    }
+    // JSON knows no infinity: where nothing limits the step, the limit is null.
+    write_file(folder_ + "/run.json", json.dump(2) + "\n");
+  }
+
+  void print_summary() const {
+    const State& state = simulation_.state();
+    const Extremes& extremes = simulation_.extremes();
+    fmt::print("{}: {} steps of {:.6g} s, t = {:.6g} s, results in {}\n", scene_.model.name, state.step,
+               simulation_.step_size(), state.time, folder_);
+    fmt::print("largest penetration {:.9g} m, contact force {:.9g} N, energy error {:.3g} J\n",
+               extremes.penetration.value, extremes.force.value, extremes.energy_error);
+    for (size_t i = 0; i < outcomes_.size(); ++i) {
+      const Expectation& e = scene_.expectations[i];
+      fmt::print("  {} {:<24} {:>18.10g}   expected {:.10g} +- {:.2g}\n",
+                 outcomes_[i].met ? "ok    " : "MISSED", e.quantity, outcomes_[i].value, e.value,
+                 e.tolerance);
+    }
+  }
+
+  const RunOptions& options_;
+  const Scene& scene_;
+  Simulation simulation_;
+  double end_;
+  std::string folder_;
+  Clock::time_point start_;
+  double output_seconds_ = 0;
+  std::string status_ = "running";
+  std::string message_;
+  std::vector<Outcome> outcomes_;
+  int missed_ = 0;
+};
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+  install_signal_handlers();
+  const Scene scene = read_scene(options.scene);
+  return Run(options, scene).execute();
+}
+
+}  // namespace apothem

@@ -1,0 +1,17 @@
+include(CMakePackageConfigHelpers)
+
+install(TARGETS apothem_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS apothem apothem_geometry EXPORT apothem
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY geometry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
+install(FILES docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/apothem)
+install(EXPORT apothem NAMESPACE apothem:: FILE apothem-targets.cmake DESTINATION ${package_folder})
+configure_package_config_file(cmake/apothem-config.cmake.in ${PROJECT_BINARY_DIR}/apothem-config.cmake
+                              INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/apothem-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/apothem-config.cmake ${PROJECT_BINARY_DIR}/apothem-config-version.cmake
+        DESTINATION ${package_folder})

@@ -1,0 +1,352 @@
+#include "geometry/edge_integral.hpp"
+
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+// phi is the minimum of the lines a_i + s (b_i - a_i) along an edge, s in [0, 1]; a_i and b_i are the
+// heights of its two ends over edge i of the other polygon (1 for the cap phi <= 1).
+struct Row {
+  const double* a;
+  const double* b;
+  int size;   // lines that bound the polygon
+  int lines;  // size, or size + 1 with the cap
+};
+
+// Interval of the edge inside the polygon: one sign per node, half-open, no tolerance. A NaN ends up
+// in the interval, never in "outside".
+bool clip(const Row& row, double& s0, double& s1) {
+  s0 = 0;
+  s1 = 1;
+  for (int i = 0; i < row.size; ++i) {
+    const double a = row.a[i];
+    const double b = row.b[i];
+    if (a >= 0) {
+      if (b >= 0) continue;
+      const double s = a / (a - b);
+      if (!(s >= s1)) s1 = s;
+    } else {
+      if (a < 0 && b < 0) return false;
+      const double s = a / (a - b);
+      if (!(s <= s0)) s0 = s;
+    }
+  }
+  return !(s0 >= s1);
+}
+
+// Calls piece(s, value, s_next, value_next, line) along the concave lower envelope from s0 to s1.
+template <class Piece>
+void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
+  const auto value = [&](int i, double s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
+  const auto slope = [&](int i) { return row.b[i] - row.a[i]; };
+  int line = 0;
+  double height = value(0, s0);
+  for (int i = 1; i < row.lines; ++i) {
+    const double h = value(i, s0);
+    if (!(h >= height) || (h == height && slope(i) < slope(line))) {
+      line = i;
+      height = h;
+    }
+  }
+  for (double s = s0;;) {
+    // The next line to take over falls faster and meets the present one first. Fractions gap/fall are
+    // compared by cross-multiplication: one division per piece instead of one per line.
+    int next = -1;
+    double gap = s1 - s;
+    double fall = 1;
+    for (int i = 0; i < row.lines; ++i) {
+      const double f = slope(line) - slope(i);
+      if (!(f > 0)) continue;
+      const double g = std::max(value(i, s) - height, 0.0);
+      const double left = g * fall;
+      const double right = gap * f;
+      if (left < right || (left == right && next >= 0 && slope(i) < slope(next))) {
+        next = i;
+        gap = g;
+        fall = f;
+      }
+    }
+    if (next < 0) {
+      piece(s, height, s1, value(line, s1), line);
+      return;
+    }
+    const double end = std::min(s + gap / fall, s1);
+    const double end_height = value(next, end);
+    if (end > s) piece(s, height, end, end_height, line);
+    s = end;
+    height = end_height;
+    line = next;
+    if (s >= s1) return;
+  }
+}
+
+// Heights of the points of x over the edges of y: rows of y.size (+ 1 for the cap) entries, one per
+// vertex, first row repeated at the end. True when one edge of y has all of x outside.
+bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy, double* rows) {
+  const int n = y.size;
+  const int width = n + (y.capped ? 1 : 0);
+  for (int v = 0; v < x.size; ++v) {
+    double* row = rows + v * width;
+    const double px = x.x[v] + dx;
+    const double py = x.y[v] + dy;
+    for (int i = 0; i < n; ++i) {
+      row[i] = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
+    }
+    if (y.capped) row[n] = 1;
+  }
+  for (int i = 0; i < width; ++i) rows[x.size * width + i] = rows[i];
+  for (int i = 0; i < n; ++i) {
+    int outside = 0;
+    for (int v = 0; v < x.size; ++v) outside += rows[v * width + i] < 0;
+    if (outside == x.size) return true;
+  }
+  return false;
+}
+
+// Integrals of phi_y along the edges of x, in the frame of y, without the sign of Eq. 7.
+struct Half {
+  double fx = 0, fy = 0;  // SUM n INT phi ds
+  double moment = 0;      // about y's reference point
+  double weight = 0, wx = 0, wy = 0;
+  double length = 0;
+  double largest = 0;
+};
+
+Half integrate(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+               const double* rows, double*& pieces) {
+  const int width = y.size + (y.capped ? 1 : 0);
+  Half half;
+  for (int e = 0; e < x.size; ++e) {
+    const Row row{rows + e * width, rows + (e + 1) * width, y.size, width};
+    double s0, s1;
+    if (!clip(row, s0, s1)) continue;
+    double sum = 0;    // INT phi du
+    double first = 0;  // INT phi u du
+    double largest = 0;
+    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2, int) {
+      const double h = u2 - u1;
+      sum += h * (v1 + v2) / 2;
+      first += h * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
+      largest = std::max(largest, std::max(v1, v2));
+    });
+    const double px = x.x[e] + dx;
+    const double py = x.y[e] + dy;
+    const double ex = x.x[e + 1] - x.x[e];
+    const double ey = x.y[e + 1] - x.y[e];
+    const double length = std::sqrt(ex * ex + ey * ey);
+    half.fx += ey * sum;
+    half.fy -= ex * sum;
+    half.moment -= (px * ex + py * ey) * sum + (ex * ex + ey * ey) * first;
+    half.weight += length * sum;
+    half.wx += length * (px * sum + ex * first);
+    half.wy += length * (py * sum + ey * first);
+    half.length += length * (s1 - s0);
+    half.largest = std::max(half.largest, largest);
+    *pieces++ = px + s0 * ex;
+    *pieces++ = py + s0 * ey;
+    *pieces++ = px + s1 * ex;
+    *pieces++ = py + s1 * ey;
+  }
+  return half;
+}
+
+struct Rows {
+  double* of_a;
+  double* of_b;
+  double* pieces;
+};
+
+Rows reserve(const PlacedPotential& a, const PlacedPotential& b, EdgeWorkspace& workspace) {
+  const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
+  const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
+  if (workspace.values.size() < rows_a + rows_b) workspace.values.resize(rows_a + rows_b);
+  const size_t pieces = 4 * static_cast<size_t>(a.size + b.size);
+  if (workspace.pieces.size() < pieces) workspace.pieces.resize(pieces);
+  return {workspace.values.data(), workspace.values.data() + rows_a, workspace.pieces.data()};
+}
+
+}  // namespace
+
+PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace) {
+  const Rows rows = reserve(a, b, workspace);
+  const double dx = offset.x();
+  const double dy = offset.y();
+  if (heights(a, b, dx, dy, rows.of_a) || heights(b, a, -dx, -dy, rows.of_b)) return {};
+
+  double* middle = rows.pieces;
+  const Half of_a = integrate(a, b, dx, dy, rows.of_a, middle);  // frame of b
+  double* end = middle;
+  const Half of_b = integrate(b, a, -dx, -dy, rows.of_b, end);  // frame of a
+
+  PairIntegral pair;
+  const double fx = of_b.fx - of_a.fx;
+  const double fy = of_b.fy - of_a.fy;
+  pair.force = {fx, fy};
+  // A moment about the owner's point, moved to the other's by the arm between them.
+  pair.moment_a = of_b.moment - (of_a.moment - (dx * of_a.fy - dy * of_a.fx));
+  pair.moment_b = of_a.moment - (of_b.moment + (dx * of_b.fy - dy * of_b.fx));
+  pair.weight = of_a.weight + of_b.weight;
+  if (pair.weight != 0) {
+    pair.centre = {(of_b.wx + (of_a.wx - dx * of_a.weight)) / pair.weight,
+                   (of_b.wy + (of_a.wy - dy * of_a.weight)) / pair.weight};
+  }
+  pair.own_length_a = of_a.length;
+  pair.own_length_b = of_b.length;
+  pair.largest_phi = std::max(of_a.largest, of_b.largest);
+
+  const double size = std::sqrt(fx * fx + fy * fy);
+  if (size > 0) {
+    const double nx = fx / size;
+    const double ny = fy / size;
+    double n0 = HUGE_VAL, n1 = -HUGE_VAL, t0 = HUGE_VAL, t1 = -HUGE_VAL;
+    const auto project = [&](const double* from, const double* to, double shift_n, double shift_t) {
+      for (; from != to; from += 2) {
+        const double n = nx * from[0] + ny * from[1] + shift_n;
+        const double t = nx * from[1] - ny * from[0] + shift_t;
+        n0 = std::min(n0, n), n1 = std::max(n1, n);
+        t0 = std::min(t0, t), t1 = std::max(t1, t);
+      }
+    };
+    project(rows.pieces, middle, 0, 0);
+    project(middle, end, nx * dx + ny * dy, nx * dy - ny * dx);
+    pair.penetration = n1 - n0;
+    pair.breadth = t1 - t0;
+  }
+  return pair;
+}
+
+namespace {
+
+// PHI(phi) = INT_0^phi min(1, p) dp, integrated over u in [0, 1] for phi linear from v1 to v2.
+double mean_of_antiderivative(double v1, double v2, bool capped) {
+  const auto below = [](double p, double q) { return (p * p + p * q + q * q) / 6; };
+  const auto above = [](double p, double q) { return (p + q - 1) / 2; };
+  if (!capped || (v1 <= 1 && v2 <= 1)) return below(v1, v2);
+  if (v1 >= 1 && v2 >= 1) return above(v1, v2);
+  if (v1 > v2) std::swap(v1, v2);
+  const double share = (1 - v1) / (v2 - v1);
+  return share * below(v1, 1) + (1 - share) * above(1, v2);
+}
+
+// INT phi_y dA over the overlap: edges of x and ridges of y, in the frame of y.
+double volume_under(const PlacedPotential& x, const PlacedPotential& y,
+                    const std::vector<Ridge>& ridges, double dx, double dy, const double* rows,
+                    std::vector<double>& scratch) {
+  const int width = y.size + (y.capped ? 1 : 0);
+  double volume = 0;
+  for (int e = 0; e < x.size; ++e) {
+    const Row row{rows + e * width, rows + (e + 1) * width, y.size, y.size};  // without the cap
+    double s0, s1;
+    if (!clip(row, s0, s1)) continue;
+    const double nx = x.y[e + 1] - x.y[e];
+    const double ny = x.x[e] - x.x[e + 1];
+    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2, int line) {
+      const double g2 = y.gx[line] * y.gx[line] + y.gy[line] * y.gy[line];
+      volume += (nx * y.gx[line] + ny * y.gy[line]) / g2 * (u2 - u1) *
+                mean_of_antiderivative(v1, v2, y.capped);
+    });
+  }
+  scratch.resize(2 * static_cast<size_t>(x.size));
+  double* const start = scratch.data();
+  double* const end = start + x.size;
+  for (const Ridge& ridge : ridges) {
+    for (int i = 0; i < x.size; ++i) {
+      start[i] = x.gx[i] * (ridge.start.x() - dx - x.x[i]) + x.gy[i] * (ridge.start.y() - dy - x.y[i]);
+      end[i] = x.gx[i] * (ridge.end.x() - dx - x.x[i]) + x.gy[i] * (ridge.end.y() - dy - x.y[i]);
+    }
+    double s0, s1;
+    if (!clip({start, end, x.size, x.size}, s0, s1)) continue;
+    const double rise = ridge.end_value - ridge.start_value;
+    volume += ridge.weight * (s1 - s0) *
+              mean_of_antiderivative(ridge.start_value + s0 * rise, ridge.start_value + s1 * rise,
+                                     y.capped);
+  }
+  return volume;
+}
+
+// Twice the area swept from `centre` along the clipped edges.
+double swept(const double* from, const double* to, double cx, double cy) {
+  double sum = 0;
+  for (; from != to; from += 4) {
+    sum += (from[0] - cx) * (from[3] - cy) - (from[1] - cy) * (from[2] - cx);
+  }
+  return sum;
+}
+
+}  // namespace
+
+PairVolume pair_volume(const PlacedPotential& a, const std::vector<Ridge>& ridges_a,
+                       const PlacedPotential& b, const std::vector<Ridge>& ridges_b,
+                       const Vec2& offset, EdgeWorkspace& workspace) {
+  const Rows rows = reserve(a, b, workspace);
+  const double dx = offset.x();
+  const double dy = offset.y();
+  if (heights(a, b, dx, dy, rows.of_a) || heights(b, a, -dx, -dy, rows.of_b)) return {};
+  double* middle = rows.pieces;
+  integrate(a, b, dx, dy, rows.of_a, middle);
+  double* end = middle;
+  integrate(b, a, -dx, -dy, rows.of_b, end);
+  if (end == rows.pieces) return {};
+
+  // Any point near the overlap keeps the round-off of the area small: an end of a clipped edge.
+  const bool in_frame_of_b = middle != rows.pieces;
+  const double cx = rows.pieces[0] + (in_frame_of_b ? 0 : dx);
+  const double cy = rows.pieces[1] + (in_frame_of_b ? 0 : dy);
+  PairVolume volume;
+  volume.overlap_area =
+      (swept(rows.pieces, middle, cx, cy) + swept(middle, end, cx - dx, cy - dy)) / 2;
+  std::vector<double> scratch;
+  volume.energy = volume_under(a, b, ridges_b, dx, dy, rows.of_a, scratch) +
+                  volume_under(b, a, ridges_a, -dx, -dy, rows.of_b, scratch);
+  return volume;
+}
+
+Vec2 loading_point(const PairIntegral& pair) {
+  const double size = pair.force.norm();
+  // Equal and opposite tractions have no line of action worth following.
+  if (!(size > 1e-12 * pair.weight)) return pair.centre;
+  const Vec2 tangent(-pair.force.y() / size, pair.force.x() / size);
+  return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
+}
+
+namespace {
+
+// Arrays behind a PlacedPotential, for a potential that does not move.
+struct Placement {
+  explicit Placement(const Potential& potential) {
+    for (int i = 0; i <= potential.size(); ++i) {
+      const Vec2& v = potential.vertices[i == potential.size() ? 0 : i];
+      x.push_back(v.x());
+      y.push_back(v.y());
+    }
+    for (const Vec2& g : potential.gradients) {
+      gx.push_back(g.x());
+      gy.push_back(g.y());
+    }
+    view = {x.data(), y.data(), gx.data(), gy.data(), potential.size(), potential.capped()};
+  }
+  std::vector<double> x, y, gx, gy;
+  PlacedPotential view;
+};
+
+}  // namespace
+
+PairResult edge_method(const Potential& a, const Vec2& origin_a, const Vec2& reference_a,
+                       const Potential& b, const Vec2& origin_b, const Vec2& reference_b) {
+  const Placement placed_a(a);
+  const Placement placed_b(b);
+  const Vec2 offset = origin_a - origin_b;
+  EdgeWorkspace workspace;
+  PairResult result;
+  PairIntegral& pair = result.integral;
+  pair = pair_integral(placed_a.view, placed_b.view, offset, workspace);
+  pair.moment_a -= cross(reference_a, pair.force);
+  pair.moment_b += cross(reference_b, pair.force);
+  pair.centre -= reference_a;
+  result.volume = pair_volume(placed_a.view, a.ridges, placed_b.view, b.ridges, offset, workspace);
+  return result;
+}
+
+}  // namespace apothem

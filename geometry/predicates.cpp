@@ -1,0 +1,34 @@
+#include "geometry/predicates.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+namespace apothem {
+namespace {
+
+using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
+
+Point cgal(const Vec2& p) { return {p.x(), p.y()}; }
+
+// For c on the line through a and b.
+bool between(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return std::min(a.x(), b.x()) <= c.x() && c.x() <= std::max(a.x(), b.x()) &&
+         std::min(a.y(), b.y()) <= c.y() && c.y() <= std::max(a.y(), b.y());
+}
+
+}  // namespace
+
+int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return static_cast<int>(CGAL::orientation(cgal(a), cgal(b), cgal(c)));
+}
+
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const int abc = orientation(a, b, c);
+  const int abd = orientation(a, b, d);
+  const int cda = orientation(c, d, a);
+  const int cdb = orientation(c, d, b);
+  if (abc * abd < 0 && cda * cdb < 0) return true;
+  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
+         (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+}
+
+}  // namespace apothem

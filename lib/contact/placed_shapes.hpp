@@ -1,0 +1,46 @@
+// The shapes of all bodies where they are now: contiguous arrays for the contact kernel.
+#pragma once
+
+#include <vector>
+
+#include "geometry/edge_integral.hpp"
+
+namespace apothem {
+
+class PlacedShapes {
+ public:
+  /// Adds a shape given in its body frame (reference point = mass centre) and returns its index. The
+  /// potential must outlive this object.
+  int add(const Potential& potential);
+
+  /// Moves shape i: reference point to (x, y), rotated by `angle`.
+  void place(int i, double x, double y, double angle);
+
+  [[nodiscard]] PlacedPotential view(int i) const {
+    const Shape& s = shapes_[i];
+    return {x_.data() + s.vertices, y_.data() + s.vertices, gx_.data() + s.edges,
+            gy_.data() + s.edges, s.size, s.capped};
+  }
+  /// Ridges of shape i's potential, rotated by `angle`.
+  [[nodiscard]] std::vector<Ridge> ridges(int i, double angle) const;
+  [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }
+  [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
+  /// Largest distance of a vertex from the reference point, m.
+  [[nodiscard]] double radius(int i) const { return shapes_[i].radius; }
+
+ private:
+  struct Shape {
+    size_t vertices;  // first of size + 1 entries of x_, y_
+    size_t edges;     // first of size entries of gx_, gy_
+    int size;
+    bool capped;
+    double radius;
+    const Potential* potential;
+  };
+  std::vector<Shape> shapes_;
+  std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
+  std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
+  std::vector<Box> boxes_;                            // in the coordinates of the model
+};
+
+}  // namespace apothem

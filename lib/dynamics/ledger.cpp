@@ -1,0 +1,108 @@
+#include "dynamics/ledger.hpp"
+
+namespace apothem {
+namespace {
+
+double total(const Energies& e) {
+  return e.kinetic + e.strain + e.contact + e.gravity + e.friction_loss + e.damping_loss -
+         e.external_work;
+}
+
+}  // namespace
+
+Ledger::Ledger(const Model& model, const State& state, double contact_energy) : model_(model) {
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    const RigidBody& body = model.bodies[i];
+    if (body.motion == Motion::free) {
+      free_.push_back(i);
+      free_mass_ += body.mass;
+      if (body.held[0] || body.held[1] || body.held[2]) held_.push_back(i);
+    } else {
+      not_free_.push_back(i);
+      if (body.motion == Motion::prescribed) driven_.push_back(i);
+    }
+  }
+  initial_energy_ = total(terms(state, contact_energy));
+  initial_ = momentum(state);
+}
+
+void Ledger::half_step(const State& state, double half_step, const std::vector<double>& moved) {
+  Impulse outer;  // force and moment about the model's origin on the free bodies from outside
+  const auto add = [&](const double* x, double fx, double fy, double moment) {
+    outer.x += fx;
+    outer.y += fy;
+    outer.angular += x[0] * fy - x[1] * fx + moment;
+  };
+  for (const int i : not_free_) {  // action and reaction
+    const size_t k = 3 * static_cast<size_t>(i);
+    add(&state.position[k], -state.force[k], -state.force[k + 1], -state.force[k + 2]);
+  }
+  const Vec2& g = model_.gravity;
+  if (g != Vec2::Zero()) {
+    for (const int i : free_) {
+      const double m = model_.bodies[i].mass;
+      add(&state.position[3 * static_cast<size_t>(i)], m * g.x(), m * g.y(), 0);
+    }
+  }
+  for (const int i : held_) {  // the support takes what would move a held coordinate
+    const RigidBody& body = model_.bodies[i];
+    const size_t k = 3 * static_cast<size_t>(i);
+    add(&state.position[k], body.held[0] ? -(state.force[k] + body.mass * g.x()) : 0,
+        body.held[1] ? -(state.force[k + 1] + body.mass * g.y()) : 0,
+        body.held[2] ? -state.force[k + 2] : 0);
+  }
+  impulse_.x += half_step * outer.x;
+  impulse_.y += half_step * outer.y;
+  impulse_.angular += half_step * outer.angular;
+  for (const int i : driven_) {
+    for (size_t k = 3 * static_cast<size_t>(i), end = k + 3; k < end; ++k) {
+      external_work_ -= state.force[k] * moved[k] / 2;
+    }
+  }
+}
+
+Energies Ledger::terms(const State& state, double contact_energy) const {
+  Energies e;
+  for (const int i : free_) {
+    const RigidBody& body = model_.bodies[i];
+    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
+    const double* x = &state.position[3 * static_cast<size_t>(i)];
+    e.kinetic += (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
+    e.gravity -= body.mass * (model_.gravity.x() * (x[0] - body.position.x()) +
+                              model_.gravity.y() * (x[1] - body.position.y()));
+  }
+  e.contact = contact_energy;
+  e.external_work = external_work_;
+  return e;
+}
+
+Energies Ledger::energies(const State& state, double contact_energy) const {
+  Energies e = terms(state, contact_energy);
+  e.total_error = total(e) - initial_energy_;
+  return e;
+}
+
+Ledger::Impulse Ledger::momentum(const State& state) const {
+  Impulse p;
+  for (const int i : free_) {
+    const RigidBody& body = model_.bodies[i];
+    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
+    const double* x = &state.position[3 * static_cast<size_t>(i)];
+    p.x += body.mass * v[0];
+    p.y += body.mass * v[1];
+    p.angular += body.mass * (x[0] * v[1] - x[1] * v[0]) + body.inertia * v[2];
+  }
+  return p;
+}
+
+Momenta Ledger::momenta(const State& state) const {
+  const Impulse p = momentum(state);
+  return {p.x,
+          p.y,
+          p.angular,
+          p.x - initial_.x - impulse_.x,
+          p.y - initial_.y - impulse_.y,
+          p.angular - initial_.angular - impulse_.angular};
+}
+
+}  // namespace apothem

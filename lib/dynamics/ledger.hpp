@@ -1,0 +1,36 @@
+// Energy and momentum ledgers: what the integrator cannot account for is an error, and is reported.
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+
+namespace apothem {
+
+class Ledger {
+ public:
+  Ledger(const Model& model, const State& state, double contact_energy);
+
+  /// Half a step's impulses on the free bodies, and the work of prescribed bodies over `moved` (their
+  /// displacement in this step), with the forces in `state`. Called before and after the forces change.
+  void half_step(const State& state, double half_step, const std::vector<double>& moved);
+
+  [[nodiscard]] Energies energies(const State& state, double contact_energy) const;
+  [[nodiscard]] Momenta momenta(const State& state) const;
+
+ private:
+  struct Impulse {
+    double x = 0, y = 0, angular = 0;
+  };
+  [[nodiscard]] Energies terms(const State& state, double contact_energy) const;
+  [[nodiscard]] Impulse momentum(const State& state) const;
+
+  const Model& model_;
+  std::vector<int> free_, held_, driven_, not_free_;
+  double free_mass_ = 0;
+  double initial_energy_ = 0;
+  Impulse initial_;
+  Impulse impulse_;
+  double external_work_ = 0;
+};
+
+}  // namespace apothem

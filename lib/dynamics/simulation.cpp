@@ -1,0 +1,329 @@
+#include "dynamics/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+constexpr double kSkin = 0.1;          // of the mean body size
+constexpr std::int64_t kTimedEvery = 64;
+constexpr double kDeepestPhi = 0.95;   // beyond it an edge is about to cross the other's centre
+constexpr double kLargestEnergyError = 0.1;  // of the energy in play
+
+std::vector<bool> movable(const Model& model) {
+  std::vector<bool> result;
+  for (const RigidBody& body : model.bodies) result.push_back(body.can_move());
+  return result;
+}
+
+double skin(const Model& model) {
+  double area = 0;
+  int count = 0;
+  for (const RigidBody& body : model.bodies) {
+    if (!body.can_move()) continue;
+    area += body.area;
+    ++count;
+  }
+  return count > 0 ? kSkin * std::sqrt(area / count) : 0;
+}
+
+// Adds the time since the last lap to a phase; costs nothing in steps that are not timed.
+class Stopwatch {
+ public:
+  Stopwatch(bool on, std::array<double, kPhaseNames.size()>& seconds) : on_(on), seconds_(seconds) {
+    if (on_) last_ = std::chrono::steady_clock::now();
+  }
+  void lap(Phase phase) {
+    if (!on_) return;
+    const auto now = std::chrono::steady_clock::now();
+    seconds_[static_cast<size_t>(phase)] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  bool on_;
+  std::array<double, kPhaseNames.size()>& seconds_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace
+
+Simulation::Simulation(const Model& model, const TimeSettings& time, int frames, int threads)
+    : model_(model), search_(movable(model), skin(model)), contact_(threads) {
+  double inradius = HUGE_VAL;
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    const RigidBody& body = model.bodies[i];
+    shapes_.add(body.potential);
+    inradius = std::min(inradius, body.inradius);
+    if (body.can_move()) moving_.push_back(i);
+    if (body.motion == Motion::prescribed) driven_.push_back(i);
+    const std::array<double, 3> start{body.position.x(), body.position.y(), body.angle};
+    std::array<double, 3> rate{body.velocity.x(), body.velocity.y(), body.spin};
+    if (body.motion == Motion::prescribed) rate = body.history.rate(0);
+    const bool falls = body.motion == Motion::free;
+    inverse_masses_.push_back(body.inverse_mass());
+    for (int k = 0; k < 3; ++k) {
+      state_.position.push_back(start[k]);
+      state_.velocity.push_back(rate[k]);
+      state_.force.push_back(0);
+      moved_.push_back(0);
+      inverse_mass_.push_back(inverse_masses_.back()[k]);
+      acceleration_.push_back(falls && k < 2 && !body.held[k] ? model.gravity[k] : 0);
+    }
+    shapes_.place(i, start[0], start[1], start[2]);
+  }
+  stiffness_.resize(model.bodies.size());
+  largest_stride_ = kLargestStride * inradius;
+  choose_step(time, frames);
+  try {
+    find_forces(false);
+  } catch (const Unstable& error) {
+    throw Unrunnable(error.what(), "bodies", worst_body_);
+  }
+  const double energy = contact_energy();
+  ledger_.emplace(model_, state_, energy);
+}
+
+void Simulation::choose_step(const TimeSettings& time, int frames) {
+  limit_ = contact_step_limit(model_);
+  automatic_ = !time.fixed_step;
+  safety_ = time.safety;
+  if (!automatic_) {
+    dt_ = *time.fixed_step;
+    if (dt_ > limit_.step) {
+      throw Unrunnable(fmt::format("{} s is above the stability limit of {:.6g} s ({}); give a smaller "
+                                   "step or \"auto\"",
+                                   dt_, limit_.step, limit_.reason),
+                       "time/step", -1);
+    }
+    return;
+  }
+  double target = safety_ * limit_.step;
+  const StepLimit motion = motion_step_limit(model_);
+  if (motion.step < target) {
+    limit_ = motion;
+    target = motion.step;
+  }
+  const double interval = time.end / std::max(frames, 1);
+  if (interval <= target) limit_.reason = "interval of the frames";
+  dt_ = interval / std::max(std::ceil(interval / target), 1.0);
+}
+
+void Simulation::step() {
+  const bool timed = state_.step % kTimedEvery == 0;
+  Stopwatch clock(timed, timed_seconds_);
+  kick(dt_ / 2);
+  drift();
+  clock.lap(Phase::integrate);
+  find_forces(timed);
+  Stopwatch again(timed, timed_seconds_);
+  kick(dt_ / 2);
+  for (const int i : driven_) {
+    const std::array<double, 3> rate = model_.bodies[i].history.rate(state_.time);
+    std::copy(rate.begin(), rate.end(), state_.velocity.begin() + 3 * i);
+  }
+  ledger_->half_step(state_, dt_ / 2, moved_);
+  tighten_step();
+  again.lap(Phase::integrate);
+  timed_steps_ += timed;
+}
+
+void Simulation::kick(double h) {
+  const size_t n = state_.velocity.size();
+  for (size_t k = 0; k < n; ++k) {
+    state_.velocity[k] += h * (inverse_mass_[k] * state_.force[k] + acceleration_[k]);
+  }
+}
+
+void Simulation::drift() {
+  ++state_.step;
+  state_.time = base_time_ + static_cast<double>(state_.step - base_step_) * dt_;
+  for (const int i : driven_) {
+    const RigidBody& body = model_.bodies[i];
+    const std::array<double, 3> u = body.history.displacement(state_.time);
+    const std::array<double, 3> goal{body.position.x() + u[0], body.position.y() + u[1],
+                                     body.angle + u[2]};
+    for (int k = 0; k < 3; ++k) moved_[3 * i + k] = goal[k] - state_.position[3 * i + k];
+  }
+  ledger_->half_step(state_, dt_ / 2, moved_);
+  double stride = 0;
+  int farthest = -1;
+  for (const int i : moving_) {
+    double* x = &state_.position[3 * static_cast<size_t>(i)];
+    const double* v = &state_.velocity[3 * static_cast<size_t>(i)];
+    if (inverse_masses_[i][0] + inverse_masses_[i][1] + inverse_masses_[i][2] > 0) {
+      x[0] += dt_ * v[0];
+      x[1] += dt_ * v[1];
+      x[2] += dt_ * v[2];
+    }
+    const double far = std::max(std::abs(v[0]), std::abs(v[1]));
+    if (far > stride) {
+      stride = far;
+      farthest = i;
+    }
+  }
+  for (const int i : driven_) {
+    for (int k = 0; k < 3; ++k) state_.position[3 * i + k] += moved_[3 * i + k];
+  }
+  if (stride * dt_ > largest_stride_ && shapes_.size() > 1) {
+    throw Unstable(fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
+                               "smallest inradius: contacts would be missed; reduce time.step or "
+                               "time.safety",
+                               name(farthest), stride * dt_, at_time()));
+  }
+}
+
+void Simulation::find_forces(bool timed) {
+  Stopwatch clock(timed, timed_seconds_);
+  for (const int i : moving_) {
+    const double* x = &state_.position[3 * static_cast<size_t>(i)];
+    shapes_.place(i, x[0], x[1], x[2]);
+  }
+  clock.lap(Phase::place);
+  search_if_stale();
+  clock.lap(Phase::search);
+  contact_.evaluate(shapes_, state_.position, search_.pairs());
+  clock.lap(Phase::contact);
+  gather();
+  clock.lap(Phase::gather);
+}
+
+void Simulation::search_if_stale() {
+  if (!search_.stale(shapes_, state_.position)) return;
+  for (size_t k = 0; k < state_.position.size(); ++k) {
+    if (std::isfinite(state_.position[k])) continue;
+    worst_body_ = static_cast<int>(k / 3);
+    throw Unstable(fmt::format("position of body \"{}\" is not finite {}: the run has become unstable; "
+                               "reduce time.step or time.safety",
+                               name(worst_body_), at_time()));
+  }
+  search_.search(shapes_, state_.position);
+  ++counts_.searches;
+}
+
+void Simulation::gather() {
+  std::fill(state_.force.begin(), state_.force.end(), 0.0);
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  const std::vector<BoxPair>& pairs = search_.pairs();
+  const std::vector<PairIntegral>& integrals = contact_.integrals();
+  const double k_n = model_.stiffness();
+  int touching = 0;
+  for (size_t p = 0; p < pairs.size(); ++p) {
+    const PairIntegral& pair = integrals[p];
+    if (!pair.touching()) continue;
+    ++touching;
+    const auto [a, b] = pairs[p];
+    double* fa = &state_.force[3 * static_cast<size_t>(a)];
+    double* fb = &state_.force[3 * static_cast<size_t>(b)];
+    const double fx = k_n * pair.force.x();
+    const double fy = k_n * pair.force.y();
+    fa[0] += fx;
+    fa[1] += fy;
+    fa[2] += k_n * pair.moment_a;
+    fb[0] -= fx;
+    fb[1] -= fy;
+    fb[2] += k_n * pair.moment_b;
+
+    if (!(pair.largest_phi <= kDeepestPhi)) {
+      worst_body_ = std::max(a, b);
+      throw Unstable(fmt::format(
+          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them (phi = {:.2f}) {}: the "
+          "contact is too soft for this load; raise contact.normal_stiffness, or move them apart",
+          name(a), name(b), pair.largest_phi, at_time()));
+    }
+    const double force = std::sqrt(fx * fx + fy * fy);
+    if (pair.penetration > extremes_.penetration.value) {
+      extremes_.penetration = {pair.penetration, state_.time, a, b};
+    }
+    if (force > extremes_.force.value) extremes_.force = {force, state_.time, a, b};
+    if (force > 0) {
+      const double k = k_n * (pair.own_length_a * model_.bodies[b].potential.steepest +
+                              pair.own_length_b * model_.bodies[a].potential.steepest);
+      const double both = inverse_mass_[3 * a] + inverse_mass_[3 * a + 2] > 0 &&
+                                  inverse_mass_[3 * b] + inverse_mass_[3 * b + 2] > 0
+                              ? 2
+                              : 1;
+      stiffness_[a] += both * k *
+                       strip_mobility(inverse_masses_[a],
+                                      std::abs(k_n * pair.moment_a) / force, pair.breadth);
+      stiffness_[b] += both * k *
+                       strip_mobility(inverse_masses_[b],
+                                      std::abs(k_n * pair.moment_b) / force, pair.breadth);
+    }
+  }
+  counts_.candidate_pairs += static_cast<std::int64_t>(pairs.size());
+  counts_.touching_pairs += touching;
+  counts_.touching_now = touching;
+  worst_stiffness_ = 0;
+  for (size_t i = 0; touching > 0 && i < stiffness_.size(); ++i) {
+    if (stiffness_[i] > worst_stiffness_) {
+      worst_stiffness_ = stiffness_[i];
+      worst_body_ = static_cast<int>(i);
+    }
+  }
+}
+
+// The limit known before the run holds for two bodies flat on each other; a body squeezed between
+// several is stiffer. An automatic step then shrinks by whole halves, once, and stays: a step that
+// follows the contact would make the energy drift.
+void Simulation::tighten_step() {
+  const double largest = automatic_ ? safety_ : 1;
+  if (!(dt_ * dt_ * worst_stiffness_ > 4 * largest * largest)) return;
+  const double limit = 2 / std::sqrt(worst_stiffness_);
+  if (!automatic_) {
+    throw Unstable(fmt::format("the step of {} s is above the stability limit of {:.6g} s of the "
+                               "contacts of body \"{}\" {}; give a smaller time.step or \"auto\"",
+                               dt_, limit, name(worst_body_), at_time()));
+  }
+  base_time_ = state_.time;
+  base_step_ = state_.step;
+  while (dt_ > safety_ * limit) dt_ /= 2;
+  limit_ = {limit, fmt::format("contacts of \"{}\" {}", name(worst_body_), at_time())};
+}
+
+double Simulation::contact_energy() const {
+  return model_.stiffness() * contact_.energy(shapes_, state_.position, search_.pairs());
+}
+
+Energies Simulation::energies() {
+  const Energies e = ledger_->energies(state_, contact_energy());
+  energy_in_play_ = std::max(energy_in_play_, e.kinetic + e.contact + std::abs(e.external_work));
+  extremes_.energy_error = std::max(extremes_.energy_error, std::abs(e.total_error));
+  if (!(std::abs(e.total_error) <= kLargestEnergyError * energy_in_play_ + 1e-300)) {
+    throw Unstable(fmt::format("{:.3g} J of the {:.3g} J in play are unaccounted for {}: the step is too "
+                               "long for this impact; reduce time.step or time.safety",
+                               e.total_error, energy_in_play_, at_time()));
+  }
+  return e;
+}
+
+std::vector<ContactRecord> Simulation::contacts() const {
+  std::vector<ContactRecord> records;
+  const std::vector<BoxPair>& pairs = search_.pairs();
+  for (size_t p = 0; p < pairs.size(); ++p) {
+    const PairIntegral& pair = contact_.integrals()[p];
+    if (!pair.touching()) continue;
+    const auto [a, b] = pairs[p];
+    const Vec2 reference(state_.position[3 * a], state_.position[3 * a + 1]);
+    records.push_back({a, b, reference + loading_point(pair), model_.stiffness() * pair.force,
+                       pair.penetration, pair.largest_phi});
+  }
+  return records;
+}
+
+std::array<double, kPhaseNames.size()> Simulation::phase_seconds() const {
+  auto seconds = timed_seconds_;
+  for (double& s : seconds) {
+    s *= timed_steps_ > 0 ? static_cast<double>(state_.step) / static_cast<double>(timed_steps_) : 0;
+  }
+  return seconds;
+}
+
+std::string Simulation::at_time() const {
+  return fmt::format("at t = {:.9g} s (step {})", state_.time, state_.step);
+}
+
+}  // namespace apothem

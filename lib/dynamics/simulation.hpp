@@ -1,0 +1,129 @@
+// The step loop of rigid bodies.
+//
+//   kick (Eq. 18) -> drift (Eq. 17) -> place shapes -> find pairs -> contact forces -> kick (Eq. 20)
+//
+// Velocity Verlet in kick-drift-kick form: symplectic, so energy oscillates with order dt^2 and does
+// not drift, and momenta are kept to round-off. Forces are summed pair by pair in ascending order:
+// the same scene gives the same bits for any number of threads and whenever the search runs.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <vector>
+
+#include "contact/normal.hpp"
+#include "contact/pair_search.hpp"
+#include "dynamics/ledger.hpp"
+#include "dynamics/time_step.hpp"
+#include "model/model.hpp"
+#include "model/settings.hpp"
+#include "model/state.hpp"
+
+namespace apothem {
+
+/// The scene cannot be run as it is; says which key of the scene is to blame, or which body (or -1).
+class Unrunnable : public std::runtime_error {
+ public:
+  Unrunnable(const std::string& what, std::string key, int body)
+      : std::runtime_error(what), key_(std::move(key)), body_(body) {}
+  [[nodiscard]] const std::string& key() const { return key_; }
+  [[nodiscard]] int body() const { return body_; }
+
+ private:
+  std::string key_;
+  int body_;
+};
+
+/// The run became unstable or left the range where the method is accurate: says when, where, why and
+/// what helps.
+class Unstable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Parts of the step, for the timings in run.json.
+enum class Phase { integrate, place, search, contact, gather };
+inline constexpr std::array kPhaseNames{"integrate", "place", "search", "contact", "gather"};
+
+/// Largest values over all steps so far.
+struct Extremes {
+  struct Peak {
+    double value = 0;
+    double time = 0;
+    int a = -1, b = -1;
+  };
+  Peak penetration;  ///< extent of the overlap of a pair along its force, m
+  Peak force;        ///< size of the contact force of a pair, N
+  double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
+};
+
+struct Counts {
+  std::int64_t searches = 0;
+  std::int64_t candidate_pairs = 0;  ///< summed over the steps
+  std::int64_t touching_pairs = 0;
+  int touching_now = 0;
+};
+
+class Simulation {
+ public:
+  /// Throws Unrunnable if a fixed step is above the stability limit or bodies overlap too deeply.
+  /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
+  Simulation(const Model& model, const TimeSettings& time, int frames, int threads);
+
+  /// One step. Throws Unstable; the state is then not to be trusted.
+  void step();
+
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] double step_size() const { return dt_; }
+  [[nodiscard]] const StepLimit& limit() const { return limit_; }
+  /// Energies now. Throws Unstable if more than a tenth of the energy in play is unaccounted for.
+  Energies energies();
+  [[nodiscard]] Momenta momenta() const { return ledger_->momenta(state_); }
+  [[nodiscard]] std::vector<ContactRecord> contacts() const;
+  [[nodiscard]] const Extremes& extremes() const { return extremes_; }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+  /// Seconds per phase over the whole run, extrapolated from the steps that were timed.
+  [[nodiscard]] std::array<double, kPhaseNames.size()> phase_seconds() const;
+
+ private:
+  void choose_step(const TimeSettings& time, int frames);
+  void kick(double h);
+  void drift();
+  void find_forces(bool timed);
+  void search_if_stale();
+  void gather();
+  void tighten_step();
+  [[nodiscard]] double contact_energy() const;
+  [[nodiscard]] std::string at_time() const;
+  [[nodiscard]] const std::string& name(int body) const { return model_.bodies[body].name; }
+
+  const Model& model_;
+  State state_;
+  std::vector<double> inverse_mass_, acceleration_;  // three entries per body
+  std::vector<std::array<double, 3>> inverse_masses_;
+  std::vector<int> moving_, driven_;
+  PlacedShapes shapes_;
+  PairSearch search_;
+  NormalContact contact_;
+  std::optional<Ledger> ledger_;
+  std::vector<double> moved_;
+
+  StepLimit limit_{0, ""};
+  bool automatic_ = true;
+  double safety_ = 0.1;
+  double dt_ = 0;
+  double base_time_ = 0;
+  std::int64_t base_step_ = 0;
+  double largest_stride_ = 0;
+  std::vector<double> stiffness_;  // lambda of each body's contacts, 1/s^2
+  double worst_stiffness_ = 0;
+  int worst_body_ = -1;
+
+  Extremes extremes_;
+  Counts counts_;
+  double energy_in_play_ = 0;
+  std::array<double, kPhaseNames.size()> timed_seconds_{};
+  std::int64_t timed_steps_ = 0;
+};
+
+}  // namespace apothem

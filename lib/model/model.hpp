@@ -1,0 +1,85 @@
+// The model: everything about a scene that stays fixed while it runs. SI units; coordinates are
+// relative to `origin`, so that a scene far from the world's zero loses no digit.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contact/law.hpp"
+#include "geometry/potential.hpp"
+
+namespace apothem {
+
+struct Material {
+  std::string name;
+  double density;  ///< kg/m^3
+};
+
+/// Prescribed motion: velocity and spin piecewise linear in time, constant before the first and after
+/// the last point.
+struct MotionHistory {
+  struct VelocityPoint {
+    double time;
+    Vec2 velocity;
+  };
+  struct SpinPoint {
+    double time;
+    double spin;
+  };
+  std::vector<VelocityPoint> velocity;  ///< may be empty: no translation
+  std::vector<SpinPoint> spin;          ///< may be empty: no rotation
+
+  /// Velocity (vx, vy, spin) at `time`.
+  [[nodiscard]] std::array<double, 3> rate(double time) const;
+  /// Displacement and rotation since time 0, integrated exactly.
+  [[nodiscard]] std::array<double, 3> displacement(double time) const;
+};
+
+enum class Motion { free, fixed, prescribed };
+
+/// A rigid body. Its shape is kept in the body frame: relative to the mass centre, at angle 0.
+struct RigidBody {
+  std::string name;
+  int material = 0;
+  Potential potential;          ///< body frame
+  double area = 0;              ///< m^2
+  double mass = 0;              ///< kg, with the model's thickness
+  double inertia = 0;           ///< about the mass centre, kg m^2
+  double inradius = 0;          ///< m
+  Motion motion = Motion::free;
+  std::array<bool, 3> held{};   ///< x, y, angle that a free body may not change
+  MotionHistory history;        ///< if prescribed
+  Vec2 position = Vec2::Zero(); ///< of the mass centre at time 0
+  double angle = 0;
+  Vec2 velocity = Vec2::Zero();
+  double spin = 0;
+
+  [[nodiscard]] bool can_move() const { return motion != Motion::fixed; }
+  /// 1/m, 1/m, 1/I for the degrees of freedom that forces can change, 0 for the others.
+  [[nodiscard]] std::array<double, 3> inverse_mass() const;
+};
+
+struct Model {
+  std::string name;
+  Vec2 origin = Vec2::Zero();   ///< world coordinates = model coordinates + origin
+  Vec2 gravity = Vec2::Zero();  ///< m/s^2
+  double thickness = 1;         ///< m
+  std::vector<Material> materials;
+  ContactLaw contact;
+  std::vector<RigidBody> bodies;
+
+  /// Contact stiffness of a slice of the model's thickness, N/m per m of boundary.
+  [[nodiscard]] double stiffness() const { return contact.normal_stiffness * thickness; }
+};
+
+/// Fills shape, mass, inertia and position of a body from a polygon in world coordinates.
+/// Throws InvalidPolygon if the contact law cannot take the polygon.
+void set_shape(RigidBody& body, const Polygon& polygon, const Model& model);
+
+/// An origin near the box, on so coarse a grid that subtracting it from a coordinate of the scene is
+/// exact; zero for a scene around zero.
+Vec2 local_origin(const Box& box);
+
+}  // namespace apothem

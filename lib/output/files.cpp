@@ -1,0 +1,66 @@
+#include "output/files.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace apothem {
+namespace {
+
+// Writes all bytes; returns 0 or the error number.
+int write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes.remove_prefix(static_cast<size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+SystemFailure::SystemFailure(const std::string& file, int error_number)
+    : std::runtime_error(file + ": cannot be written: " + std::strerror(error_number)) {}
+
+void create_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw SystemFailure(folder, error.value());
+  if (!std::filesystem::is_directory(folder)) throw SystemFailure(folder, ENOTDIR);
+}
+
+void write_file(const std::string& file, std::string_view content) {
+  const std::string partial = file + ".partial";
+  const int descriptor = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw SystemFailure(file, errno);
+  int error = write_all(descriptor, content);
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(partial.c_str(), file.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(partial.c_str());
+    throw SystemFailure(file, error);
+  }
+}
+
+AppendedFile::AppendedFile(std::string file)
+    : file_(std::move(file)),
+      descriptor_(::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) throw SystemFailure(file_, errno);
+}
+
+AppendedFile::~AppendedFile() { ::close(descriptor_); }
+
+void AppendedFile::append(std::string_view block) {
+  const off_t size = ::lseek(descriptor_, 0, SEEK_CUR);
+  const int error = write_all(descriptor_, block);
+  if (error == 0) return;
+  if (::ftruncate(descriptor_, size) == 0) ::lseek(descriptor_, size, SEEK_SET);
+  throw SystemFailure(file_, error);
+}
+
+}  // namespace apothem

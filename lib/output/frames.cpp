@@ -1,0 +1,172 @@
+#include "output/frames.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <array>
+#include <cmath>
+
+#include "output/files.hpp"
+
+namespace apothem {
+namespace {
+
+vtkNew<vtkDoubleArray> doubles(const char* name, int components) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  return array;
+}
+
+vtkNew<vtkIntArray> integers(const char* name) {
+  vtkNew<vtkIntArray> array;
+  array->SetName(name);
+  return array;
+}
+
+void add_time(vtkUnstructuredGrid* grid, double time) {
+  vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name VTK's readers know
+  value->InsertNextValue(time);
+  grid->GetFieldData()->AddArray(value);
+}
+
+void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<std::string>& names) {
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (const std::string& n : names) array->InsertNextValue(n);
+  grid->GetFieldData()->AddArray(array);
+}
+
+// XML as text: base64 and zlib, so that other readers than VTK's take it as well.
+std::string xml(vtkUnstructuredGrid* grid) {
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputData(grid);
+  writer->SetDataModeToBinary();
+  writer->SetCompressorTypeToZLib();
+  writer->WriteToOutputStringOn();
+  writer->Write();
+  return writer->GetOutputString();
+}
+
+vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> body_id = integers("body");
+  vtkNew<vtkIntArray> material = integers("material");
+  vtkNew<vtkDoubleArray> displacement = doubles("displacement", 3);
+  vtkNew<vtkDoubleArray> velocity = doubles("velocity", 3);
+  vtkNew<vtkDoubleArray> rotation = doubles("rotation", 1);
+  vtkNew<vtkDoubleArray> spin = doubles("spin", 1);
+  vtkNew<vtkDoubleArray> force = doubles("contact_force", 3);
+  std::vector<std::string> names;
+  for (size_t i = 0; i < model.bodies.size(); ++i) {
+    const RigidBody& body = model.bodies[i];
+    const double* x = &state.position[3 * i];
+    const double* v = &state.velocity[3 * i];
+    const Vec2 centre(x[0], x[1]);
+    const auto turned = [](const Vec2& p, double angle) -> Vec2 {
+      const double c = std::cos(angle);
+      const double s = std::sin(angle);
+      return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+    };
+    cells->InsertNextCell(body.potential.size());
+    for (const Vec2& vertex : body.potential.vertices) {
+      const Vec2 arm = turned(vertex, x[2]);
+      const Vec2 u = (centre - body.position) + (arm - turned(vertex, body.angle));
+      const Vec2 w = Vec2(v[0], v[1]) + cross(v[2], arm);
+      const Vec2 p = centre + arm + model.origin;
+      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+      displacement->InsertNextTuple3(u.x(), u.y(), 0);
+      velocity->InsertNextTuple3(w.x(), w.y(), 0);
+    }
+    body_id->InsertNextValue(static_cast<int>(i));
+    material->InsertNextValue(body.material);
+    rotation->InsertNextValue(x[2] - body.angle);
+    spin->InsertNextValue(v[2]);
+    force->InsertNextTuple3(state.force[3 * i], state.force[3 * i + 1], 0);
+    names.push_back(body.name);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLYGON, cells);
+  grid->GetPointData()->AddArray(displacement);
+  grid->GetPointData()->AddArray(velocity);
+  for (vtkDataArray* array :
+       std::initializer_list<vtkDataArray*>{body_id, material, rotation, spin, force}) {
+    grid->GetCellData()->AddArray(array);
+  }
+  add_time(grid, state.time);
+  add_names(grid, "body_names", names);
+  names.clear();
+  for (const Material& m : model.materials) names.push_back(m.name);
+  add_names(grid, "material_names", names);
+  return grid;
+}
+
+vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
+                                    const std::vector<ContactRecord>& contacts) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> a = integers("body_a");
+  vtkNew<vtkIntArray> b = integers("body_b");
+  vtkNew<vtkDoubleArray> force = doubles("force_on_a", 3);
+  vtkNew<vtkDoubleArray> penetration = doubles("penetration", 1);
+  vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
+  for (const ContactRecord& contact : contacts) {
+    const Vec2 p = contact.point + model.origin;
+    cells->InsertNextCell(1);
+    cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+    a->InsertNextValue(contact.a);
+    b->InsertNextValue(contact.b);
+    force->InsertNextTuple3(contact.force.x(), contact.force.y(), 0);
+    penetration->InsertNextValue(contact.penetration);
+    phi->InsertNextValue(contact.phi);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_VERTEX, cells);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, force, penetration, phi}) {
+    grid->GetPointData()->AddArray(array);
+  }
+  add_time(grid, time);
+  return grid;
+}
+
+std::string collection(const std::string& entries) {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
+         entries + "</Collection>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(std::string folder, const Model& model)
+    : folder_(std::move(folder)), model_(model) {
+  create_folder(folder_ + "/frames");
+}
+
+void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts) {
+  const auto add = [&](const char* series, vtkUnstructuredGrid* grid, std::string& entries) {
+    const std::string name = fmt::format("frames/{}_{:06}.vtu", series, frames_);
+    write_file(folder_ + "/" + name, xml(grid));
+    entries += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", state.time, name);
+  };
+  add("bodies", bodies(model_, state), bodies_collection_);
+  add("contacts", patches(model_, state.time, contacts), contacts_collection_);
+  write_file(folder_ + "/frames.pvd", collection(bodies_collection_));
+  write_file(folder_ + "/contacts.pvd", collection(contacts_collection_));
+  ++frames_;
+}
+
+}  // namespace apothem

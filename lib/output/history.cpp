@@ -1,0 +1,151 @@
+#include "output/history.hpp"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace apothem {
+namespace {
+
+constexpr size_t kLongEnough = 1 << 16;  // bytes of rows worth a system call
+
+template <class... Numbers>
+void add_row(std::string& rows, double time, const Numbers&... numbers) {
+  // {} is the shortest text that reads back to the same double.
+  fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), time);
+  (fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), numbers), ...);
+  rows += '\n';
+}
+
+template <class Names>
+std::string header(const Names& names) {
+  std::string row = "time";
+  for (const char* name : names) row += std::string(",") + name;
+  return row + '\n';
+}
+
+}  // namespace
+
+HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
+                             const std::vector<int>& track)
+    : model_(model),
+      track_(track),
+      history_{AppendedFile(folder + "/history.csv"), "time [s]"},
+      energy_{AppendedFile(folder + "/energy.csv"), header(kEnergyColumns)},
+      momentum_{AppendedFile(folder + "/momentum.csv"), header(kMomentumColumns)} {
+  for (const int i : track_) {
+    for (const Column& column : kBodyColumns) {
+      history_.rows += fmt::format(",{}.{} [{}]", model.bodies[i].name, column.name, column.unit);
+    }
+  }
+  history_.rows += '\n';
+  flush();
+}
+
+void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p) {
+  std::string& rows = history_.rows;
+  fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
+  for (const int i : track_) {
+    const double* x = &state.position[3 * static_cast<size_t>(i)];
+    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
+    const double* f = &state.force[3 * static_cast<size_t>(i)];
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
+                   x[0] + model_.origin.x(), x[1] + model_.origin.y(), x[2], v[0], v[1], v[2], f[0],
+                   f[1]);
+  }
+  rows += '\n';
+  add_row(energy_.rows, state.time, e.kinetic, e.strain, e.contact, e.gravity, e.friction_loss,
+          e.damping_loss, e.external_work, e.total_error);
+  add_row(momentum_.rows, state.time, p.x, p.y, p.angular, p.x_error, p.y_error, p.angular_error);
+  if (rows.size() > kLongEnough) flush();
+}
+
+void HistoryWriter::flush() {
+  for (Table* table : {&history_, &energy_, &momentum_}) {
+    std::string rows;
+    rows.swap(table->rows);
+    table->file.append(rows);
+  }
+}
+
+const std::vector<double>* HistoryTable::column(const std::string& name) const {
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return &columns[i];
+  }
+  return nullptr;
+}
+
+HistoryTable read_history(const std::string& file) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!std::getline(stream, line)) throw std::runtime_error(file + ": cannot be read");
+  HistoryTable table;
+  std::istringstream head(line);
+  for (std::string cell; std::getline(head, cell, ',');) {
+    table.names.push_back(cell.substr(0, cell.find(" [")));
+  }
+  table.columns.resize(table.names.size());
+  for (int number = 2; std::getline(stream, line); ++number) {
+    std::istringstream row(line);
+    std::string cell;
+    for (std::vector<double>& column : table.columns) {
+      char* end = nullptr;
+      if (std::getline(row, cell, ',')) column.push_back(std::strtod(cell.c_str(), &end));
+      if (end == nullptr || *end != '\0' || cell.empty()) {
+        throw std::runtime_error(fmt::format("{}:{}: is not a row of {} numbers", file, number,
+                                             table.columns.size()));
+      }
+    }
+  }
+  return table;
+}
+
+namespace {
+
+// Extreme value of the parabola through three rows around row i; the row itself at the borders.
+double refined(const std::vector<double>& t, const std::vector<double>& y, size_t i) {
+  if (i == 0 || i + 1 == y.size()) return y[i];
+  const double left = (y[i] - y[i - 1]) / (t[i] - t[i - 1]);
+  const double right = (y[i + 1] - y[i]) / (t[i + 1] - t[i]);
+  const double curvature = (right - left) / (t[i + 1] - t[i - 1]);
+  if (curvature == 0 || left * right > 0) return y[i];
+  const double slope = left + curvature * (t[i] - t[i - 1]);  // of the parabola at row i
+  return y[i] - slope * slope / (4 * curvature);
+}
+
+}  // namespace
+
+Outcome evaluate(const Expectation& expectation, const std::string& folder) {
+  for (const char* name : {"history.csv", "energy.csv", "momentum.csv"}) {
+    const HistoryTable table = read_history(folder + "/" + name);
+    const std::vector<double>* found = table.column(expectation.quantity);
+    if (!found) continue;
+    const std::vector<double>& t = table.columns.front();
+    const std::vector<double>& y = *found;
+    size_t from = 0;
+    size_t until = t.size();
+    while (expectation.from && from < until && t[from] < *expectation.from) ++from;
+    while (expectation.until && until > from && t[until - 1] > *expectation.until) --until;
+    if (from == until) throw std::runtime_error("no row of " + expectation.quantity + " in the window");
+    const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
+                                                   y.begin() + static_cast<std::ptrdiff_t>(until));
+    const double minimum = refined(t, y, static_cast<size_t>(least - y.begin()));
+    const double maximum = refined(t, y, static_cast<size_t>(most - y.begin()));
+    double value = 0;
+    switch (expectation.take) {
+      case Expectation::Take::first: value = y[from]; break;
+      case Expectation::Take::last: value = y[until - 1]; break;
+      case Expectation::Take::minimum: value = minimum; break;
+      case Expectation::Take::maximum: value = maximum; break;
+      case Expectation::Take::largest: value = std::max(-minimum, maximum); break;
+    }
+    return {value, std::abs(value - expectation.value) <= expectation.tolerance};
+  }
+  throw std::runtime_error("no history has a column " + expectation.quantity);
+}
+
+}  // namespace apothem

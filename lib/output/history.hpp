@@ -1,0 +1,56 @@
+// history.csv, energy.csv and momentum.csv: one row per interval, numbers that read back to the same
+// double.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "model/settings.hpp"
+#include "model/state.hpp"
+#include "output/files.hpp"
+
+namespace apothem {
+
+class HistoryWriter {
+ public:
+  /// Writes the headers. Throws SystemFailure.
+  HistoryWriter(const std::string& folder, const Model& model, const std::vector<int>& track);
+
+  /// Rows are kept in memory until there are enough of them, or flush().
+  void add(const State& state, const Energies& energies, const Momenta& momenta);
+  void flush();
+
+ private:
+  struct Table {
+    AppendedFile file;
+    std::string rows;
+  };
+
+  const Model& model_;
+  std::vector<int> track_;
+  Table history_, energy_, momentum_;
+};
+
+/// A history file read back: column names without units.
+struct HistoryTable {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  /// nullptr if there is no such column.
+  [[nodiscard]] const std::vector<double>* column(const std::string& name) const;
+};
+
+/// Throws std::runtime_error naming the file and line if it is not such a table.
+HistoryTable read_history(const std::string& file);
+
+/// An expectation held against what was recorded.
+struct Outcome {
+  double value;
+  bool met;
+};
+
+/// Minima and maxima are refined by the parabola through the neighbouring rows: exact in free flight.
+/// Throws std::runtime_error if no row lies in the window.
+Outcome evaluate(const Expectation& expectation, const std::string& folder);
+
+}  // namespace apothem

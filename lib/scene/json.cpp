@@ -1,0 +1,309 @@
+#include "scene/json.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace apothem {
+namespace {
+
+// Feeds the parser and counts what it has taken: that is the position of the token it reports.
+struct CountingIterator {
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+  const char* at;
+  size_t* taken;
+  reference operator*() const { return *at; }
+  CountingIterator& operator++() {
+    ++at;
+    ++*taken;
+    return *this;
+  }
+  bool operator==(const CountingIterator& other) const { return at == other.at; }
+  bool operator!=(const CountingIterator& other) const { return at != other.at; }
+};
+
+constexpr size_t kDeepest = 100;  // nesting: far beyond any scene, far below the stack's end
+
+std::string escaped(const std::string& key) {  // RFC 6901
+  std::string result;
+  for (const char c : key) {
+    if (c == '~') {
+      result += "~0";
+    } else if (c == '/') {
+      result += "~1";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+// SAX events -> JsonValue.
+class Builder {
+ public:
+  Builder(const std::string& text, const std::string& file, const size_t& taken)
+      : text_(text), file_(file), taken_(taken) {}
+
+  JsonValue root;
+
+  bool null() { return add(JsonValue::Type::null, 2), true; }
+  bool boolean(bool b) { return add(JsonValue::Type::boolean, 2).boolean = b, true; }
+  bool number_integer(std::int64_t n) { return number(static_cast<double>(n)); }
+  bool number_unsigned(std::uint64_t n) { return number(static_cast<double>(n)); }
+  bool number_float(double d, const std::string&) { return number(d); }
+  bool string(std::string& s) { return add(JsonValue::Type::string, 1).string = s, true; }
+  bool binary(std::vector<std::uint8_t>&) { return true; }
+  bool start_object(size_t) { return open(JsonValue::Type::object); }
+  bool end_object() { return stack_.pop_back(), true; }
+  bool start_array(size_t) { return open(JsonValue::Type::array); }
+  bool end_array() { return stack_.pop_back(), true; }
+  bool key(std::string& name) {
+    const JsonValue& object = *stack_.back();
+    if (const JsonValue* first = object.find(name)) {
+      throw SceneError(file_, line(1), object.pointer + "/" + escaped(name),
+                       fmt::format("duplicate key, first given in line {}; keep one", first->line));
+    }
+    stack_.back()->keys.push_back(name);
+    return true;
+  }
+  bool parse_error(size_t position, const std::string&, const nlohmann::json::exception& error) {
+    // "[json.exception...] parse error at line 3, column 5: syntax error ...": keep the last part.
+    std::string what = error.what();
+    if (const size_t colon = what.find(": "); colon != std::string::npos) what.erase(0, colon + 2);
+    if (error.id == 406) what = "number out of the range of double precision";
+    throw SceneError(file_, line_at(position), "", "not valid JSON: " + what);
+  }
+
+ private:
+  int line_at(size_t position) const {
+    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(position, text_.size()));
+    return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
+  }
+  // Line of the token that ends `back` characters before what the parser has taken: a number is known
+  // to end only when the character behind it has been read.
+  [[nodiscard]] int line(size_t back) {
+    const size_t position = taken_ > back ? taken_ - back : 0;
+    for (; counted_ < position; ++counted_) lines_ += text_[counted_] == '\n';
+    return lines_;
+  }
+
+  bool number(double d) {
+    add(JsonValue::Type::number, 2).number = d;
+    return true;
+  }
+  bool open(JsonValue::Type type) {
+    stack_.push_back(&add(type, 1));
+    if (stack_.size() > kDeepest) {
+      throw SceneError(file_, line(1), "", "not valid JSON: nested too deeply");
+    }
+    return true;
+  }
+  JsonValue& add(JsonValue::Type type, size_t back) {
+    JsonValue value;
+    value.type = type;
+    value.line = line(back);
+    if (stack_.empty()) return root = std::move(value);
+    JsonValue& parent = *stack_.back();
+    value.pointer = parent.pointer + "/" +
+                    (parent.type == JsonValue::Type::array ? std::to_string(parent.items.size())
+                                                           : escaped(parent.keys.back()));
+    return parent.items.emplace_back(std::move(value));
+  }
+
+  const std::string& text_;
+  const std::string& file_;
+  const size_t& taken_;
+  size_t counted_ = 0;
+  int lines_ = 1;
+  std::vector<JsonValue*> stack_;  // only the last item of each is ever added to: pointers stay valid
+};
+
+size_t edit_distance(std::string_view a, std::string_view b) {  // Levenshtein
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0]++;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({substitute, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+// The candidate that `word` was most likely meant to be.
+const std::string* nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string* best = nullptr;
+  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = &candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+const char* type_name(JsonValue::Type type) {
+  switch (type) {
+    case JsonValue::Type::null: return "null";
+    case JsonValue::Type::boolean: return "true/false";
+    case JsonValue::Type::number: return "a number";
+    case JsonValue::Type::string: return "a string";
+    case JsonValue::Type::array: return "an array";
+    case JsonValue::Type::object: return "an object";
+  }
+  return "?";
+}
+
+}  // namespace
+
+const JsonValue* JsonValue::find(std::string_view key) const {
+  // The last key may still wait for its value while the document is being parsed.
+  for (size_t i = 0; i < items.size() && type == Type::object; ++i) {
+    if (keys[i] == key) return &items[i];
+  }
+  return nullptr;
+}
+
+JsonValue parse_json(const std::string& text, const std::string& file) {
+  size_t taken = 0;
+  Builder builder(text, file, taken);
+  const CountingIterator begin{text.data(), &taken};
+  const CountingIterator end{text.data() + text.size(), &taken};
+  nlohmann::json::sax_parse(begin, end, &builder, nlohmann::json::input_format_t::json,
+                            /*strict=*/true, /*ignore_comments=*/true);
+  return std::move(builder.root);
+}
+
+std::string read_text(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw SceneError(file, 0, "", "is a directory; give a file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw SceneError(file, 0, "", "cannot be opened; check the name");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
+  return text;
+}
+
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string result = fmt::format("\"{}\"", word);
+  if (const std::string* best = nearest(word, candidates)) {
+    result += fmt::format("; did you mean \"{}\"?", *best);
+  }
+  return result;
+}
+
+double JsonReader::number(const JsonValue& value, const std::string& unit) const {
+  if (value.type != JsonValue::Type::number) {
+    fail(value, fmt::format("must be a number{}, not {}", unit.empty() ? "" : " in " + unit,
+                            type_name(value.type)));
+  }
+  return value.number;
+}
+
+double JsonReader::positive(const JsonValue& value, const std::string& unit) const {
+  const double x = number(value, unit);
+  if (!(x > 0)) fail(value, fmt::format("must be positive (in {}), not {}", unit, x));
+  return x;
+}
+
+int JsonReader::count(const JsonValue& value) const {
+  const double x = number(value, "");
+  if (!(x >= 0 && x <= 1e9) || x != std::floor(x)) {
+    fail(value, fmt::format("must be a whole number from 0 to 1e9, not {}", x));
+  }
+  return static_cast<int>(x);
+}
+
+const std::string& JsonReader::string(const JsonValue& value) const {
+  if (value.type != JsonValue::Type::string) {
+    fail(value, fmt::format("must be a string, not {}", type_name(value.type)));
+  }
+  return value.string;
+}
+
+const std::vector<JsonValue>& JsonReader::array(const JsonValue& value) const {
+  if (value.type != JsonValue::Type::array) {
+    fail(value, fmt::format("must be an array, not {}", type_name(value.type)));
+  }
+  return value.items;
+}
+
+std::vector<double> JsonReader::numbers(const JsonValue& value, size_t size,
+                                        const std::string& meaning) const {
+  if (value.type != JsonValue::Type::array || value.items.size() != size) {
+    fail(value, "must be " + meaning);
+  }
+  std::vector<double> result;
+  for (const JsonValue& item : value.items) result.push_back(number(item, ""));
+  return result;
+}
+
+Vec2 JsonReader::vec2(const JsonValue& value, const std::string& unit) const {
+  const std::vector<double> xy = numbers(value, 2, "[x, y] in " + unit);
+  return {xy[0], xy[1]};
+}
+
+std::vector<Vec2> JsonReader::ring(const JsonValue& value) const {
+  std::vector<Vec2> ring;
+  for (const JsonValue& point : array(value)) ring.push_back(vec2(point, "m"));
+  return ring;
+}
+
+int JsonReader::choice(const JsonValue& value, const std::vector<std::string>& names) const {
+  const std::string& word = string(value);
+  const auto found = std::find(names.begin(), names.end(), word);
+  if (found == names.end()) {
+    fail(value, fmt::format("unknown choice {} (known: {})", suggest(word, names),
+                            fmt::join(names, ", ")));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+JsonObject::JsonObject(const JsonReader& reader, const JsonValue& value)
+    : reader_(reader), value_(value) {
+  if (value.type != JsonValue::Type::object) {
+    reader.fail(value, fmt::format("must be an object {{...}}, not {}", type_name(value.type)));
+  }
+}
+
+const JsonValue* JsonObject::optional(const std::string& key) {
+  known_.push_back(key);
+  return value_.find(key);
+}
+
+const JsonValue& JsonObject::required(const std::string& key, const std::string& meaning) {
+  if (const JsonValue* found = optional(key)) return *found;
+  // A misspelt key is the likeliest reason.
+  if (const std::string* close = nearest(key, value_.keys);
+      close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
+    reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));
+  }
+  reader_.fail(value_, fmt::format("missing key \"{}\": {}", key, meaning));
+}
+
+void JsonObject::finish() const {
+  for (size_t i = 0; i < value_.keys.size(); ++i) {
+    const std::string& key = value_.keys[i];
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    reader_.fail(value_.items[i], fmt::format("unknown key {} (known here: {})",
+                                              suggest(key, known_), fmt::join(known_, ", ")));
+  }
+}
+
+}  // namespace apothem

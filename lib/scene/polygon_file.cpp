@@ -1,0 +1,45 @@
+#include "scene/polygon_file.hpp"
+
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
+
+#include "scene/json.hpp"
+
+namespace apothem {
+namespace {
+
+std::vector<Vec2> parse_wkt(const std::string& text, const std::string& file) {
+  using Point = boost::geometry::model::d2::point_xy<double>;
+  boost::geometry::model::polygon<Point> polygon;
+  try {
+    boost::geometry::read_wkt(text, polygon);
+  } catch (const std::exception& error) {  // read_wkt_exception, bad_lexical_cast
+    throw SceneError(file, 0, "", std::string("not a WKT polygon: ") + error.what());
+  }
+  if (!polygon.inners().empty()) {
+    throw SceneError(file, 0, "", "the polygon has a hole; give a simple polygon");
+  }
+  std::vector<Vec2> ring;
+  for (const Point& p : polygon.outer()) ring.emplace_back(p.x(), p.y());
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // WKT rings are closed
+  return ring;
+}
+
+}  // namespace
+
+std::vector<Vec2> read_polygon_file(const std::string& file) {
+  const std::string text = read_text(file);
+  const size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == std::string::npos) throw SceneError(file, 0, "", "is empty; give a polygon");
+  if (std::isalpha(static_cast<unsigned char>(text[start]))) return parse_wkt(text, file);
+  const JsonReader reader(file);
+  const JsonValue document = parse_json(text, file);
+  if (document.type == JsonValue::Type::array) return reader.ring(document);
+  JsonObject object(reader, document);
+  std::vector<Vec2> ring = reader.ring(object.required("polygon", "[[x,y],...] in m"));
+  object.finish();
+  return ring;
+}
+
+}  // namespace apothem

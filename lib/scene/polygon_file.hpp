@@ -1,0 +1,15 @@
+// Polygons in files of their own: [[x,y],...], {"polygon": [[x,y],...]} or WKT.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geometry/point.hpp"
+
+namespace apothem {
+
+/// The ring as it stands in the file, in world coordinates (a closing WKT vertex is dropped); not yet
+/// checked for being simple. Throws SceneError.
+std::vector<Vec2> read_polygon_file(const std::string& file);
+
+}  // namespace apothem

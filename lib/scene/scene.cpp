@@ -1,0 +1,409 @@
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "model/state.hpp"
+#include "scene/polygon_file.hpp"
+
+namespace apothem {
+namespace {
+
+// Reads one scene, top to bottom; every key of the format stands here once.
+class SceneReader {
+ public:
+  explicit SceneReader(Scene& scene) : scene_(scene), model_(scene.model), in_(scene.file) {}
+
+  void read() {
+    JsonObject top(in_, scene_.document);
+    model_.name = std::filesystem::path(scene_.file).stem().string();
+    if (const JsonValue* v = top.optional("name")) model_.name = scene_name(*v);
+    if (const JsonValue* v = top.optional("description")) in_.string(*v);
+    if (const JsonValue* v = top.optional("gravity")) model_.gravity = in_.vec2(*v, "m/s^2");
+    if (const JsonValue* v = top.optional("thickness")) model_.thickness = in_.positive(*v, "m");
+    materials(top.required("materials", "{\"NAME\": {\"density\": ...}, ...}"));
+    const JsonValue& list = top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
+    if (in_.array(list).empty()) in_.fail(list, "must hold at least one body");
+    if (const JsonValue* v = top.optional("contact")) {
+      contact(*v);
+    } else if (list.items.size() > 1) {
+      top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
+    }
+    bodies(list);
+    time(top.required("time", "{\"end\": ...} in s"));
+    const JsonValue* output_value = top.optional("output");
+    const JsonValue* expect_value = top.optional("expect");
+    top.finish();
+    track_by_default();
+    if (output_value) output(*output_value);
+    if (expect_value) expect(*expect_value);
+  }
+
+ private:
+  const std::string& scene_name(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    if (name.empty() || name.find_first_of("/\\\n") != std::string::npos || name[0] == '.') {
+      in_.fail(value, "must be usable as the name of a folder: not empty, without / or \\, not "
+                      "starting with a dot");
+    }
+    return name;
+  }
+
+  void materials(const JsonValue& value) {
+    JsonObject object(in_, value);
+    for (size_t i = 0; i < value.keys.size(); ++i) {
+      object.optional(value.keys[i]);
+      material(value.keys[i], value.items[i]);
+    }
+    if (model_.materials.empty()) in_.fail(value, "must hold at least one material");
+  }
+
+  void material(const std::string& name, const JsonValue& value) {
+    JsonObject object(in_, value);
+    Material material{name, in_.positive(object.required("density", "in kg/m^3"), "kg/m^3")};
+    // Elastic constants belong to deformable bodies; rigid ones only have them checked.
+    if (const JsonValue* v = object.optional("young")) in_.positive(*v, "Pa");
+    if (const JsonValue* v = object.optional("poisson")) {
+      const double nu = in_.number(*v, "");
+      if (!(nu > -1 && nu < 0.5)) in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", nu));
+    }
+    if (const JsonValue* v = object.optional("plane")) in_.choice(*v, {"stress", "strain"});
+    object.finish();
+    model_.materials.push_back(std::move(material));
+  }
+
+  void contact(const JsonValue& value) {
+    JsonObject object(in_, value);
+    ContactLaw& law = model_.contact;
+    if (const JsonValue* v = object.optional("potential")) {
+      std::vector<std::string> names;
+      for (const NamedPotential& p : kPotentials) names.emplace_back(p.name);
+      law.potential.kind = kPotentials[in_.choice(*v, names)].kind;
+    }
+    law.normal_stiffness =
+        in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
+    if (const JsonValue* v = object.optional("reference")) reference(*v);
+    object.finish();
+  }
+
+  void reference(const JsonValue& value) {
+    PotentialChoice& choice = model_.contact.potential;
+    if (choice.kind == PotentialChoice::Kind::area) {
+      in_.fail(value, "the area potential has no reference length; leave it out");
+    }
+    if (value.type == JsonValue::Type::number) {
+      choice.reference = PotentialChoice::Reference::length;
+      choice.length = in_.positive(value, "m");
+      return;
+    }
+    std::vector<std::string> names;
+    for (const NamedReference& r : kReferences) names.emplace_back(r.name);
+    choice.reference = kReferences[in_.choice(value, names)].reference;
+  }
+
+  void bodies(const JsonValue& list) {
+    // All rings first: the origin of the model's coordinates depends on where the scene is.
+    std::vector<Polygon> polygons;
+    Box box;
+    for (const JsonValue& value : list.items) {
+      polygons.push_back(polygon(value));
+      Box own = bounding_box(polygons.back());
+      if (const JsonValue* v = value.find("position")) {
+        const Vec2 p = in_.vec2(*v, "m");
+        own = Box{p.x(), p.y(), p.x(), p.y()}.grown(own.extent());
+      }
+      box.include(own.x0, own.y0);
+      box.include(own.x1, own.y1);
+    }
+    model_.origin = local_origin(box);
+    for (size_t i = 0; i < polygons.size(); ++i) body(list.items[i], polygons[i]);
+  }
+
+  Polygon polygon(const JsonValue& value) {
+    JsonObject object(in_, value);
+    const JsonValue& outline = object.required("polygon", "[[x,y],...] in m, or the name of a file");
+    std::string where;
+    std::vector<Vec2> ring;
+    if (outline.type == JsonValue::Type::string) {
+      const auto file = std::filesystem::path(scene_.file).parent_path() / outline.string;
+      try {
+        ring = read_polygon_file(file.string());
+      } catch (const SceneError& error) {
+        in_.fail(outline, error.what());
+      }
+      where = file.string() + ": ";
+    } else {
+      ring = in_.ring(outline);
+    }
+    try {
+      return Polygon(std::move(ring));
+    } catch (const InvalidPolygon& error) {
+      in_.fail(vertex_or(outline, error.vertex()), where + polygon_message(error));
+    }
+  }
+
+  static std::string polygon_message(const InvalidPolygon& error) {
+    return std::string("not a usable polygon: ") + error.what();
+  }
+
+  static const JsonValue& vertex_or(const JsonValue& outline, int vertex) {
+    const bool inside = outline.type == JsonValue::Type::array && vertex >= 0 &&
+                        vertex < static_cast<int>(outline.items.size());
+    return inside ? outline.items[vertex] : outline;
+  }
+
+  void body(const JsonValue& value, const Polygon& polygon) {
+    JsonObject object(in_, value);
+    RigidBody body;
+    const JsonValue& name = object.required("name", "a string, unique among the bodies");
+    body.name = body_name(name);
+    body.material = material_index(object.required("material", "the name of a material"));
+    const JsonValue& outline = object.required("polygon", "");
+    try {
+      set_shape(body, polygon, model_);
+    } catch (const InvalidPolygon& error) {
+      in_.fail(vertex_or(outline, error.vertex()), polygon_message(error));
+    }
+    if (const JsonValue* v = object.optional("position")) {
+      body.position = in_.vec2(*v, "m") - model_.origin;
+    }
+    if (const JsonValue* v = object.optional("angle")) body.angle = in_.number(*v, "rad");
+    if (const JsonValue* v = object.optional("motion")) motion(*v, body);
+    if (const JsonValue* v = object.optional("fix")) fix(*v, body);
+    if (const JsonValue* v = object.optional("velocity")) {
+      require_free(*v, body);
+      body.velocity = in_.vec2(*v, "m/s");
+      for (int k = 0; k < 2; ++k) {
+        if (body.held[k] && body.velocity[k] != 0) in_.fail(v->items[k], kHeldRate);
+      }
+    }
+    if (const JsonValue* v = object.optional("spin")) {
+      require_free(*v, body);
+      body.spin = in_.number(*v, "rad/s");
+      if (body.held[2] && body.spin != 0) in_.fail(*v, kHeldRate);
+    }
+    object.finish();
+    model_.bodies.push_back(std::move(body));
+  }
+
+  const std::string& body_name(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    if (name.empty() || name.find_first_of(",\"\n\r[]") != std::string::npos) {
+      in_.fail(value, "must not be empty nor hold , \" [ ] or line breaks: it heads CSV columns");
+    }
+    for (size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (model_.bodies[i].name == name) {
+        in_.fail(value, fmt::format("\"{}\" is already the name of body {}; give each body its own",
+                                    name, i));
+      }
+    }
+    return name;
+  }
+
+  int material_index(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    std::vector<std::string> names;
+    for (size_t i = 0; i < model_.materials.size(); ++i) {
+      if (model_.materials[i].name == name) return static_cast<int>(i);
+      names.push_back(model_.materials[i].name);
+    }
+    in_.fail(value, "unknown material " + suggest(name, names));
+  }
+
+  static constexpr const char* kHeldRate =
+      "must be 0 in a direction that \"fix\" holds; leave it out or take the direction from \"fix\"";
+
+  void require_free(const JsonValue& value, const RigidBody& body) {
+    if (body.motion == Motion::free) return;
+    in_.fail(value, body.motion == Motion::fixed
+                        ? "a fixed body has no initial velocity or spin; leave it out or make the "
+                          "motion \"free\""
+                        : "a body with prescribed motion takes its velocity from \"motion\"; leave it "
+                          "out");
+  }
+
+  void motion(const JsonValue& value, RigidBody& body) {
+    if (value.type == JsonValue::Type::string) {
+      body.motion = in_.choice(value, {"free", "fixed"}) == 0 ? Motion::free : Motion::fixed;
+      return;
+    }
+    body.motion = Motion::prescribed;
+    if (value.type != JsonValue::Type::object) {
+      in_.fail(value, "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
+                      "[[t,w],...]}");
+    }
+    JsonObject object(in_, value);
+    if (const JsonValue* v = object.optional("velocity")) {
+      for (const JsonValue& row : in_.array(*v)) {
+        const std::vector<double> p = in_.numbers(row, 3, "[t, vx, vy] in s and m/s");
+        if (!body.history.velocity.empty()) later(row, body.history.velocity.back().time, p[0]);
+        body.history.velocity.push_back({p[0], {p[1], p[2]}});
+      }
+    }
+    if (const JsonValue* v = object.optional("spin")) {
+      for (const JsonValue& row : in_.array(*v)) {
+        const std::vector<double> p = in_.numbers(row, 2, "[t, spin] in s and rad/s");
+        if (!body.history.spin.empty()) later(row, body.history.spin.back().time, p[0]);
+        body.history.spin.push_back({p[0], p[1]});
+      }
+    }
+    object.finish();
+    if (body.history.velocity.empty() && body.history.spin.empty()) {
+      in_.fail(value, "must give a velocity or a spin history with at least one row; for a body at "
+                      "rest use \"fixed\"");
+    }
+  }
+
+  void later(const JsonValue& row, double before, double time) {
+    if (!(time > before)) {
+      in_.fail(row, fmt::format("times must increase: {} s follows {} s", time, before));
+    }
+  }
+
+  void fix(const JsonValue& value, RigidBody& body) {
+    if (body.motion != Motion::free) in_.fail(value, "only a body of \"free\" motion takes \"fix\"");
+    for (const JsonValue& direction : in_.array(value)) {
+      body.held[in_.choice(direction, {"x", "y", "angle"})] = true;
+    }
+  }
+
+  void time(const JsonValue& value) {
+    JsonObject object(in_, value);
+    TimeSettings& time = scene_.time;
+    time.end = in_.positive(object.required("end", "in s"), "s");
+    if (const JsonValue* v = object.optional("step")) {
+      if (v->type == JsonValue::Type::string) {
+        in_.choice(*v, {"auto"});
+      } else {
+        time.fixed_step = in_.positive(*v, "s");
+        if (*time.fixed_step > time.end) in_.fail(*v, "is longer than the whole run");
+      }
+    }
+    if (const JsonValue* v = object.optional("safety")) {
+      time.safety = in_.positive(*v, "parts of the stability limit");
+      if (time.safety > 0.8) {
+        in_.fail(*v, fmt::format("must not exceed 0.8 of the stability limit, is {}", time.safety));
+      }
+      if (time.fixed_step) in_.fail(*v, "goes with an automatic step only; leave it out");
+    }
+    object.finish();
+  }
+
+  void track_by_default() {
+    constexpr size_t kMany = 20;
+    std::vector<int>& track = scene_.output.track;
+    for (size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (model_.bodies[i].can_move()) track.push_back(static_cast<int>(i));
+    }
+    if (track.size() > kMany) track.clear();
+  }
+
+  void output(const JsonValue& value) {
+    JsonObject object(in_, value);
+    OutputSettings& output = scene_.output;
+    if (const JsonValue* v = object.optional("frames")) output.frames = in_.count(*v);
+    if (const JsonValue* v = object.optional("history")) {
+      JsonObject history(in_, *v);
+      if (const JsonValue* i = history.optional("interval")) {
+        output.history_interval = in_.positive(*i, "s");
+      }
+      if (const JsonValue* list = history.optional("track")) {
+        output.track.clear();
+        for (const JsonValue& item : in_.array(*list)) {
+          JsonObject tracked(in_, item);
+          const int body = body_index(tracked.required("body", "the name of a body"));
+          tracked.finish();
+          if (std::find(output.track.begin(), output.track.end(), body) != output.track.end()) {
+            in_.fail(item, "is tracked already; leave it out");
+          }
+          output.track.push_back(body);
+        }
+      }
+      history.finish();
+    }
+    object.finish();
+  }
+
+  int body_index(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    std::vector<std::string> names;
+    for (size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (model_.bodies[i].name == name) return static_cast<int>(i);
+      names.push_back(model_.bodies[i].name);
+    }
+    in_.fail(value, "unknown body " + suggest(name, names));
+  }
+
+  void expect(const JsonValue& value) {
+    std::vector<std::string> columns;
+    for (const int i : scene_.output.track) {
+      for (const Column& c : kBodyColumns) columns.push_back(model_.bodies[i].name + "." + c.name);
+    }
+    columns.insert(columns.end(), kEnergyColumns.begin(), kEnergyColumns.end());
+    columns.insert(columns.end(), kMomentumColumns.begin(), kMomentumColumns.end());
+    for (const JsonValue& item : in_.array(value)) {
+      JsonObject object(in_, item);
+      Expectation e;
+      const JsonValue& quantity = object.required("quantity", "a column of a history");
+      e.quantity = in_.string(quantity);
+      if (std::find(columns.begin(), columns.end(), e.quantity) == columns.end()) {
+        in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
+      }
+      if (const JsonValue* v = object.optional("take")) {
+        e.take = static_cast<Expectation::Take>(in_.choice(*v, {"first", "last", "min", "max", "max_abs"}));
+      }
+      if (const JsonValue* v = object.optional("between")) {
+        const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
+        if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
+        e.from = t[0];
+        e.until = t[1];
+      }
+      e.value = in_.number(object.required("value", "the number to expect"), "");
+      const JsonValue* absolute = object.optional("tolerance");
+      const JsonValue* relative = object.optional("relative");
+      if (absolute) e.tolerance = in_.positive(*absolute, "the quantity's unit");
+      if (relative) e.tolerance = in_.positive(*relative, "parts of the value") * std::abs(e.value);
+      if (!absolute == !relative) {
+        in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
+      }
+      if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
+      if (const JsonValue* v = object.optional("source")) in_.string(*v);
+      object.finish();
+      scene_.expectations.push_back(std::move(e));
+    }
+  }
+
+  Scene& scene_;
+  Model& model_;
+  JsonReader in_;
+};
+
+}  // namespace
+
+SceneError Scene::error_at(const std::string& pointer, const std::string& what) const {
+  const JsonValue* at = &document;
+  size_t start = 1;
+  while (start < pointer.size()) {
+    const size_t slash = std::min(pointer.find('/', start), pointer.size());
+    const std::string part = pointer.substr(start, slash - start);
+    const JsonValue* next = at->find(part);
+    if (at->type == JsonValue::Type::array) next = &at->items.at(std::stoul(part));
+    if (!next) break;
+    at = next;
+    start = slash + 1;
+  }
+  return {file, at->line, at->pointer, what};
+}
+
+Scene read_scene(const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  scene.text = read_text(file);
+  scene.document = parse_json(scene.text, file);
+  SceneReader(scene).read();
+  return scene;
+}
+
+}  // namespace apothem
