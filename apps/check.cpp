@@ -31,22 +31,24 @@ int check_command(const CheckOptions& options) {
   say("elements", "0");
   say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end, steps));
   const StepLimit& limit = simulation.limit();
-  say("time step", fmt::format("{} s ({}); limited by: {} ({:.6g} s)", simulation.step_size(),
-                               scene.time.fixed_step ? "fixed"
-                                                     : fmt::format("auto, safety {:g}", scene.time.safety),
-                               limit.reason, limit.step));
-  say("output", fmt::format("{} frames, histories of {} bodies every {:g} s", scene.output.frames + 1,
-                            scene.output.track.size(),
+  say("time step",
+      fmt::format(
+          "{} s ({}); limited by: {} ({:.6g} s)", simulation.step_size(),
+          scene.time.fixed_step ? "fixed" : fmt::format("auto, safety {:g}", scene.time.safety),
+          limit.reason, limit.step));
+  say("output", fmt::format("{} frames, histories of {} bodies every {:g} s",
+                            scene.output.frames + 1, scene.output.track.size(),
                             scene.output.history_interval.value_or(scene.time.end / 1000)));
   say("expects", fmt::format("{} results", scene.expectations.size()));
   say("at t = 0", fmt::format("{} touching pairs", simulation.counts().touching_now));
   fmt::print("machinery\n");
   uses("contact", contact,
-       contact ? fmt::format("{} potential, k_n = {:g} Pa",
-                             model.contact.potential.kind == PotentialChoice::Kind::area ? "area"
-                                                                                        : "distance",
-                             model.contact.normal_stiffness)
-               : "nothing can touch");
+       contact
+           ? fmt::format(
+                 "{} potential, k_n = {:g} Pa",
+                 model.contact.potential.kind == PotentialChoice::Kind::area ? "area" : "distance",
+                 model.contact.normal_stiffness)
+           : "nothing can touch");
   uses("pair search", contact, contact ? "hierarchical grid with a skin" : "");
   uses("gravity", model.gravity != Vec2::Zero(),
        fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));

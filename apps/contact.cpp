@@ -31,9 +31,10 @@ PotentialChoice potential_choice(const ContactOptions& options) {
   char* end = nullptr;
   choice.length = std::strtod(options.reference.c_str(), &end);
   if (*end != '\0' || !(choice.length > 0) || !std::isfinite(choice.length)) {
-    throw SceneError("--reference", 0, "",
-                     fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"",
-                                 options.reference));
+    throw SceneError(
+        "--reference", 0, "",
+        fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"",
+                    options.reference));
   }
   return choice;
 }
@@ -129,7 +130,8 @@ int batch(const ContactOptions& options) {
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
     } catch (const InvalidPolygon& error) {
-      object = {{"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
+      object = {
+          {"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
       code = exit_code::bad_input;
     }
     fmt::print("{}\n", object.dump());
@@ -141,7 +143,8 @@ int batch(const ContactOptions& options) {
 
 int contact_command(const ContactOptions& options) {
   if (!options.batch.empty()) return batch(options);
-  if (options.b.empty()) throw SceneError("contact", 0, "", "give two polygon files, or --batch FILE");
+  if (options.b.empty())
+    throw SceneError("contact", 0, "", "give two polygon files, or --batch FILE");
   const Polygon a = read_polygon(options.a, "A");
   const Polygon b = read_polygon(options.b, "B");
   Json list;

@@ -51,17 +51,18 @@ std::string state_hash(const State& state) {
 
 // A folder with results in it is never touched unless the user says so, and then only our files.
 void prepare_folder(const std::string& folder, bool overwrite) {
-  constexpr std::array ours{"run.json",   "frames.pvd",   "contacts.pvd", "frames",
+  constexpr std::array ours{"run.json",    "frames.pvd", "contacts.pvd", "frames",
                             "history.csv", "energy.csv", "momentum.csv"};
   for (const char* name : ours) {
     const std::filesystem::path path = std::filesystem::path(folder) / name;
     std::error_code error;
     if (!std::filesystem::exists(path, error)) continue;
     if (!overwrite) {
-      throw SceneError(folder, 0, "",
-                       fmt::format("already holds results ({}); give --overwrite, or another folder "
-                                   "with -o",
-                                   name));
+      throw SceneError(
+          folder, 0, "",
+          fmt::format("already holds results ({}); give --overwrite, or another folder "
+                      "with -o",
+                      name));
     }
     std::filesystem::remove_all(path, error);
     if (error) throw SystemFailure(path.string(), error.value());
@@ -73,12 +74,17 @@ void prepare_folder(const std::string& folder, bool overwrite) {
 class Progress {
  public:
   Progress(bool on, double end)
-      : on_(on), terminal_(isatty(STDERR_FILENO) != 0), end_(end), start_(Clock::now()), last_(start_) {}
+      : on_(on),
+        terminal_(isatty(STDERR_FILENO) != 0),
+        end_(end),
+        start_(Clock::now()),
+        last_(start_) {}
 
   void update(const Simulation& simulation) {
     if (!on_) return;
     const Clock::time_point now = Clock::now();
-    if (now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) {
+    if (now - last_ <
+        (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) {
       return;
     }
     last_ = now;
@@ -86,9 +92,9 @@ class Progress {
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double share = std::min(state.time / end_, 1.0);
     const std::string text = fmt::format(
-        "t = {:.4g} of {:.4g} s ({:3.0f} %), {:.3g} steps/s, {} contacts, {:.0f} s left", state.time,
-        end_, 100 * share, static_cast<double>(state.step) / seconds, simulation.counts().touching_now,
-        share > 0 ? seconds * (1 - share) / share : 0);
+        "t = {:.4g} of {:.4g} s ({:3.0f} %), {:.3g} steps/s, {} contacts, {:.0f} s left",
+        state.time, end_, 100 * share, static_cast<double>(state.step) / seconds,
+        simulation.counts().touching_now, share > 0 ? seconds * (1 - share) / share : 0);
     if (!terminal_) {
       fmt::print(stderr, "{}\n", text);
       return;
@@ -190,7 +196,8 @@ class Run {
         if (interrupted) {
           record(true, true);
           status_ = "interrupted";
-          message_ = fmt::format("interrupted at t = {:.9g} s; all files are complete up to there", time);
+          message_ =
+              fmt::format("interrupted at t = {:.9g} s; all files are complete up to there", time);
           progress.clear();
           history.flush();
           return exit_code::interrupted;
@@ -247,14 +254,16 @@ class Run {
     };
     Json json{{"name", scene_.model.name},
               {"scene", scene_.file},
-              {"scene_hash", fmt::format("fnv1a64:{:016x}", fnv1a(scene_.text.data(), scene_.text.size()))},
+              {"scene_hash",
+               fmt::format("fnv1a64:{:016x}", fnv1a(scene_.text.data(), scene_.text.size()))},
               {"version", kVersion},
               {"status", status_},
               {"threads", options_.threads},
               {"time", state.time},
               {"steps", state.step},
               {"dt", simulation_.step_size()},
-              {"dt_limited_by", scene_.time.fixed_step ? "time.step of the scene" : simulation_.limit().reason},
+              {"dt_limited_by",
+               scene_.time.fixed_step ? "time.step of the scene" : simulation_.limit().reason},
               {"stability_limit", simulation_.limit().step},
               {"steps_per_second", static_cast<double>(state.step) / wall},
               {"wall_time", parts},
@@ -285,8 +294,8 @@ class Run {
   void print_summary() const {
     const State& state = simulation_.state();
     const Extremes& extremes = simulation_.extremes();
-    fmt::print("{}: {} steps of {:.6g} s, t = {:.6g} s, results in {}\n", scene_.model.name, state.step,
-               simulation_.step_size(), state.time, folder_);
+    fmt::print("{}: {} steps of {:.6g} s, t = {:.6g} s, results in {}\n", scene_.model.name,
+               state.step, simulation_.step_size(), state.time, folder_);
     fmt::print("largest penetration {:.9g} m, contact force {:.9g} N, energy error {:.3g} J\n",
                extremes.penetration.value, extremes.force.value, extremes.energy_error);
     for (size_t i = 0; i < outcomes_.size(); ++i) {

@@ -27,7 +27,8 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
   // Indices stay within 2^52 of zero: no level is finer than 2^-50 of the largest coordinate.
   double reach = 0;
   for (const Box& box : boxes) {
-    reach = std::max({reach, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
+    reach =
+        std::max({reach, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
   }
   const int finest = reach > 0 ? std::ilogb(reach) - 50 : 0;
 
@@ -58,7 +59,8 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
       const std::int64_t row1 = cell(box.y1 + half, level);
       for (std::int64_t column = cell(box.x0 - half, level); column <= column1; ++column) {
         for (std::int64_t row = cell(box.y0 - half, level); row <= row1; ++row) {
-          for (std::int32_t j = heads_[slot(column, row, level, mask)]; j >= 0; j = entries_[j].next) {
+          for (std::int32_t j = heads_[slot(column, row, level, mask)]; j >= 0;
+               j = entries_[j].next) {
             const Entry& other = entries_[j];
             if (other.level != level || other.column != column || other.row != row) continue;
             if (level == own && j >= i) continue;  // the other of the two reports the pair

@@ -15,10 +15,10 @@ struct BoxPair {
   auto operator<=>(const BoxPair&) const = default;
 };
 
-/// All pairs of overlapping (or touching) boxes, in ascending order: a hierarchical hash grid, linear
-/// in the number of boxes and pairs also when sizes differ by orders of magnitude. Each box lives at
-/// its centre in the level whose cells are just larger than the box; it looks for partners in its own
-/// and in all coarser levels. Empty boxes and boxes with NaN must not be passed.
+/// All pairs of overlapping (or touching) boxes, in ascending order: a hierarchical hash grid,
+/// linear in the number of boxes and pairs also when sizes differ by orders of magnitude. Each box
+/// lives at its centre in the level whose cells are just larger than the box; it looks for partners
+/// in its own and in all coarser levels. Empty boxes and boxes with NaN must not be passed.
 class BoxGrid {
  public:
   /// `pairs` is cleared and filled. Memory is kept between calls.

@@ -5,8 +5,8 @@
 namespace apothem {
 namespace {
 
-// phi is the minimum of the lines a_i + s (b_i - a_i) along an edge, s in [0, 1]; a_i and b_i are the
-// heights of its two ends over edge i of the other polygon (1 for the cap phi <= 1).
+// phi is the minimum of the lines a_i + s (b_i - a_i) along an edge, s in [0, 1]; a_i and b_i are
+// the heights of its two ends over edge i of the other polygon (1 for the cap phi <= 1).
 struct Row {
   const double* a;
   const double* b;
@@ -14,8 +14,8 @@ struct Row {
   int lines;  // size, or size + 1 with the cap
 };
 
-// Interval of the edge inside the polygon: one sign per node, half-open, no tolerance. A NaN ends up
-// in the interval, never in "outside".
+// Interval of the edge inside the polygon: one sign per node, half-open, no tolerance. A NaN ends
+// up in the interval, never in "outside".
 bool clip(const Row& row, double& s0, double& s1) {
   s0 = 0;
   s1 = 1;
@@ -50,8 +50,8 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
     }
   }
   for (double s = s0;;) {
-    // The next line to take over falls faster and meets the present one first. Fractions gap/fall are
-    // compared by cross-multiplication: one division per piece instead of one per line.
+    // The next line to take over falls faster and meets the present one first. Fractions gap/fall
+    // are compared by cross-multiplication: one division per piece instead of one per line.
     int next = -1;
     double gap = s1 - s;
     double fall = 1;
@@ -83,7 +83,8 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
 
 // Heights of the points of x over the edges of y: rows of y.size (+ 1 for the cap) entries, one per
 // vertex, first row repeated at the end. True when one edge of y has all of x outside.
-bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy, double* rows) {
+bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+             double* rows) {
   const int n = y.size;
   const int width = n + (y.capped ? 1 : 0);
   for (int v = 0; v < x.size; ++v) {
@@ -253,7 +254,8 @@ double volume_under(const PlacedPotential& x, const PlacedPotential& y,
   double* const end = start + x.size;
   for (const Ridge& ridge : ridges) {
     for (int i = 0; i < x.size; ++i) {
-      start[i] = x.gx[i] * (ridge.start.x() - dx - x.x[i]) + x.gy[i] * (ridge.start.y() - dy - x.y[i]);
+      start[i] =
+          x.gx[i] * (ridge.start.x() - dx - x.x[i]) + x.gy[i] * (ridge.start.y() - dy - x.y[i]);
       end[i] = x.gx[i] * (ridge.end.x() - dx - x.x[i]) + x.gy[i] * (ridge.end.y() - dy - x.y[i]);
     }
     double s0, s1;

@@ -28,11 +28,10 @@ struct OverlapPolygon {
 std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b, const Vec2& origin,
                                              Arithmetic arithmetic = Arithmetic::exact);
 
-/// Eq. 8 with every ridge crossing among the points p_j, in double precision on the overlap polygon.
-/// The potentials are those of make_potential (relative to the polygons' origins); moments about the
-/// polygons' centroids, positions relative to a's centroid.
+/// Eq. 8 with every ridge crossing among the points p_j, in double precision on the overlap
+/// polygon. The potentials are those of make_potential (relative to the polygons' origins); moments
+/// about the polygons' centroids, positions relative to a's centroid.
 PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
-                          const Potential& potential_b,
-                          Arithmetic arithmetic = Arithmetic::exact);
+                          const Potential& potential_b, Arithmetic arithmetic = Arithmetic::exact);
 
 }  // namespace apothem

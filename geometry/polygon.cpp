@@ -28,7 +28,8 @@ void require_usable_coordinates(const std::vector<Vec2>& ring) {
     }
     box.include(ring[i].x(), ring[i].y());
   }
-  if (box.extent() < kSmallest) throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
+  if (box.extent() < kSmallest)
+    throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
 }
 
 void require_distinct_vertices(const std::vector<Vec2>& ring) {
@@ -49,7 +50,8 @@ void require_distinct_vertices(const std::vector<Vec2>& ring) {
   }
   if (repeated == n) return;
   if (first == 0 && repeated == n - 1) {
-    throw InvalidPolygon(name(repeated) + " repeats vertex 0: leave out the closing vertex", repeated);
+    throw InvalidPolygon(name(repeated) + " repeats vertex 0: leave out the closing vertex",
+                         repeated);
   }
   throw InvalidPolygon(name(repeated) + " repeats " + name(first), repeated);
 }
@@ -61,8 +63,8 @@ void require_no_spike(const std::vector<Vec2>& ring) {
     const Vec2& b = ring[i];
     const Vec2& c = ring[(i + 1) % n];
     if (orientation(a, b, c) != 0) continue;
-    // Collinear: straight on if b lies between a and c, otherwise the boundary turns back on itself.
-    // The comparison of coordinates is exact, a dot product would not be.
+    // Collinear: straight on if b lies between a and c, otherwise the boundary turns back on
+    // itself. The comparison of coordinates is exact, a dot product would not be.
     const int axis = a.x() != b.x() ? 0 : 1;
     if ((a[axis] < b[axis]) != (b[axis] < c[axis])) {
       throw InvalidPolygon(name(i) + " is a spike: the boundary turns back on itself", i);
@@ -82,9 +84,8 @@ void require_simple(const std::vector<Vec2>& ring) {
   }
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    return std::pair(boxes[i].x0, i) < std::pair(boxes[j].x0, j);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::pair(boxes[i].x0, i) < std::pair(boxes[j].x0, j); });
   for (int k = 0; k < n; ++k) {
     const int i = order[k];
     for (int l = k + 1; l < n && boxes[order[l]].x0 <= boxes[i].x1; ++l) {
@@ -106,7 +107,8 @@ bool is_clockwise(const std::vector<Vec2>& ring) {
   const int n = static_cast<int>(ring.size());
   int lowest = 0;
   for (int i = 1; i < n; ++i) {
-    if (std::pair(ring[i].y(), ring[i].x()) < std::pair(ring[lowest].y(), ring[lowest].x())) lowest = i;
+    if (std::pair(ring[i].y(), ring[i].x()) < std::pair(ring[lowest].y(), ring[lowest].x()))
+      lowest = i;
   }
   return orientation(ring[(lowest + n - 1) % n], ring[lowest], ring[(lowest + 1) % n]) < 0;
 }

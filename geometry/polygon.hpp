@@ -55,9 +55,9 @@ class Polygon {
 
 /// Area, centroid and second moment of a polygon of unit density.
 struct AreaMoments {
-  double area;      ///< m^2
-  Vec2 centroid;    ///< m, relative to the polygon's origin()
-  double polar;     ///< integral of |x - centroid|^2 dA, m^4
+  double area;    ///< m^2
+  Vec2 centroid;  ///< m, relative to the polygon's origin()
+  double polar;   ///< integral of |x - centroid|^2 dA, m^4
 };
 AreaMoments area_moments(const Polygon& polygon);
 

@@ -5,8 +5,8 @@
 namespace apothem {
 namespace {
 
-// Two values of the envelope closer than this (relative) are one height: the centre of a rectangle's
-// incircle is a segment although round-off tells its ends apart.
+// Two values of the envelope closer than this (relative) are one height: the centre of a
+// rectangle's incircle is a segment although round-off tells its ends apart.
 constexpr double kSameHeight = 1e-14;
 constexpr double kSameDirection = 1e-15;
 
@@ -30,9 +30,10 @@ std::vector<Vec2> inward_normals(const Polygon& polygon) {
   return normals;
 }
 
-// Lower envelope of the lines L_i(x) = g_i . (x - p_i) of a convex polygon, by shrinking: edge j with
-// neighbours i and k vanishes at the height where the three lines agree. For a convex polygon this is
-// the straight skeleton (weighted, if the |g_i| differ). Simultaneous events give ridges of length 0.
+// Lower envelope of the lines L_i(x) = g_i . (x - p_i) of a convex polygon, by shrinking: edge j
+// with neighbours i and k vanishes at the height where the three lines agree. For a convex polygon
+// this is the straight skeleton (weighted, if the |g_i| differ). Simultaneous events give ridges of
+// length 0.
 class Envelope {
  public:
   Envelope(const std::vector<Vec2>& p, const std::vector<Vec2>& g) : p_(p), g_(g) {
@@ -61,13 +62,15 @@ class Envelope {
     double value;
   };
 
-  // True when the boundary goes straight on from edge e to edge f (or turns by less than round-off).
+  // True when the boundary goes straight on from edge e to edge f (or turns by less than
+  // round-off).
   [[nodiscard]] bool straight_on(int e, int f) const {
-    return g_[e].dot(g_[f]) > 0 && cross(g_[e], g_[f]) <= kSameDirection * g_[e].norm() * g_[f].norm();
+    return g_[e].dot(g_[f]) > 0 &&
+           cross(g_[e], g_[f]) <= kSameDirection * g_[e].norm() * g_[f].norm();
   }
 
-  // Circular list of the edges that are left; node_[j] is where edge j starts, collapse_[j] when and
-  // where it vanishes. Edges that go straight on share one face.
+  // Circular list of the edges that are left; node_[j] is where edge j starts, collapse_[j] when
+  // and where it vanishes. Edges that go straight on share one face.
   void link() {
     const int n = static_cast<int>(g_.size());
     next_.assign(n, -1);
@@ -93,8 +96,8 @@ class Envelope {
     for (const int j : kept) collapse_[j] = meeting_point(j);
   }
 
-  // Where L_i = L_j = L_k for the neighbours i and k of j. Heights are taken from a point of edge j,
-  // where they are all non-negative: the weighted mean has no cancellation.
+  // Where L_i = L_j = L_k for the neighbours i and k of j. Heights are taken from a point of edge
+  // j, where they are all non-negative: the weighted mean has no cancellation.
   [[nodiscard]] Node meeting_point(int j) const {
     const int i = previous_[j];
     const int k = next_[j];

@@ -24,12 +24,12 @@ struct Ridge {
 };
 
 struct Potential {
-  std::vector<Vec2> vertices;   ///< p_i, relative to an origin of the owner's choice, m
-  std::vector<Vec2> gradients;  ///< g_i, 1/m
-  std::vector<Ridge> ridges;    ///< straight skeleton of the (weighted) edges
-  double top = 0;               ///< maximum of the uncapped envelope
-  std::vector<Vec2> top_points; ///< where it is attained: one point, or the ends of a segment
-  double steepest = 0;          ///< largest |g_i|: the inverse of the smallest length, 1/m
+  std::vector<Vec2> vertices;    ///< p_i, relative to an origin of the owner's choice, m
+  std::vector<Vec2> gradients;   ///< g_i, 1/m
+  std::vector<Ridge> ridges;     ///< straight skeleton of the (weighted) edges
+  double top = 0;                ///< maximum of the uncapped envelope
+  std::vector<Vec2> top_points;  ///< where it is attained: one point, or the ends of a segment
+  double steepest = 0;           ///< largest |g_i|: the inverse of the smallest length, 1/m
 
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
   /// True when min(1, .) matters: the plateau phi = 1 is the paper's singular area.

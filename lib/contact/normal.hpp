@@ -12,8 +12,8 @@ class NormalContact {
  public:
   explicit NormalContact(int threads) : workspaces_(threads) {}
 
-  /// Evaluates all pairs (positions: x, y, angle per body). The result of a pair depends on that pair
-  /// alone, so it has the same bits for any number of threads.
+  /// Evaluates all pairs (positions: x, y, angle per body). The result of a pair depends on that
+  /// pair alone, so it has the same bits for any number of threads.
   void evaluate(const PlacedShapes& shapes, const std::vector<double>& position,
                 const std::vector<BoxPair>& pairs);
 

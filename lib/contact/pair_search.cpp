@@ -21,9 +21,8 @@ void PairSearch::search(const PlacedShapes& shapes, const std::vector<double>& p
   grown_.clear();
   for (const Box& box : shapes.boxes()) grown_.push_back(box.grown(skin_ / 2));
   grid_.find_pairs(grown_, pairs_);
-  std::erase_if(pairs_, [&](const BoxPair& pair) {
-    return !movable_[pair.first] && !movable_[pair.second];
-  });
+  std::erase_if(
+      pairs_, [&](const BoxPair& pair) { return !movable_[pair.first] && !movable_[pair.second]; });
 }
 
 }  // namespace apothem

@@ -1,5 +1,5 @@
-// Candidate pairs for the contact kernel, found on boxes grown by a skin and kept until some body has
-// moved through half of it.
+// Candidate pairs for the contact kernel, found on boxes grown by a skin and kept until some body
+// has moved through half of it.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,10 @@ namespace apothem {
 class PairSearch {
  public:
   /// `movable[i]`: pairs of two bodies that cannot move are never reported. `skin` in m.
-  PairSearch(std::vector<bool> movable, double skin)
-      : movable_(std::move(movable)), skin_(skin) {}
+  PairSearch(std::vector<bool> movable, double skin) : movable_(std::move(movable)), skin_(skin) {}
 
-  /// True when a body has moved (x, y, angle: three entries per body) farther than half the skin since
-  /// the last search. A NaN counts as moved.
+  /// True when a body has moved (x, y, angle: three entries per body) farther than half the skin
+  /// since the last search. A NaN counts as moved.
   [[nodiscard]] bool stale(const PlacedShapes& shapes, const std::vector<double>& position) const;
 
   /// Searches anew.

@@ -9,8 +9,8 @@ namespace apothem {
 
 class PlacedShapes {
  public:
-  /// Adds a shape given in its body frame (reference point = mass centre) and returns its index. The
-  /// potential must outlive this object.
+  /// Adds a shape given in its body frame (reference point = mass centre) and returns its index.
+  /// The potential must outlive this object.
   int add(const Potential& potential);
 
   /// Moves shape i: reference point to (x, y), rotated by `angle`.
@@ -18,8 +18,12 @@ class PlacedShapes {
 
   [[nodiscard]] PlacedPotential view(int i) const {
     const Shape& s = shapes_[i];
-    return {x_.data() + s.vertices, y_.data() + s.vertices, gx_.data() + s.edges,
-            gy_.data() + s.edges, s.size, s.capped};
+    return {x_.data() + s.vertices,
+            y_.data() + s.vertices,
+            gx_.data() + s.edges,
+            gy_.data() + s.edges,
+            s.size,
+            s.capped};
   }
   /// Ridges of shape i's potential, rotated by `angle`.
   [[nodiscard]] std::vector<Ridge> ridges(int i, double angle) const;

@@ -10,8 +10,9 @@ class Ledger {
  public:
   Ledger(const Model& model, const State& state, double contact_energy);
 
-  /// Half a step's impulses on the free bodies, and the work of prescribed bodies over `moved` (their
-  /// displacement in this step), with the forces in `state`. Called before and after the forces change.
+  /// Half a step's impulses on the free bodies, and the work of prescribed bodies over `moved`
+  /// (their displacement in this step), with the forces in `state`. Called before and after the
+  /// forces change.
   void half_step(const State& state, double half_step, const std::vector<double>& moved);
 
   [[nodiscard]] Energies energies(const State& state, double contact_energy) const;

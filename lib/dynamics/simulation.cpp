@@ -8,9 +8,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kSkin = 0.1;          // of the mean body size
+constexpr double kSkin = 0.1;  // of the mean body size
 constexpr std::int64_t kTimedEvery = 64;
-constexpr double kDeepestPhi = 0.95;   // beyond it an edge is about to cross the other's centre
+constexpr double kDeepestPhi = 0.95;  // beyond it an edge is about to cross the other's centre
 constexpr double kLargestEnergyError = 0.1;  // of the energy in play
 
 std::vector<bool> movable(const Model& model) {
@@ -67,6 +67,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     inverse_masses_.push_back(body.inverse_mass());
     for (int k = 0; k < 3; ++k) {
       state_.position.push_back(start[k]);
+      state_.remainder.push_back(0);
       state_.velocity.push_back(rate[k]);
       state_.force.push_back(0);
       moved_.push_back(0);
@@ -94,10 +95,11 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
   if (!automatic_) {
     dt_ = *time.fixed_step;
     if (dt_ > limit_.step) {
-      throw Unrunnable(fmt::format("{} s is above the stability limit of {:.6g} s ({}); give a smaller "
-                                   "step or \"auto\"",
-                                   dt_, limit_.step, limit_.reason),
-                       "time/step", -1);
+      throw Unrunnable(
+          fmt::format("{} s is above the stability limit of {:.6g} s ({}); give a smaller "
+                      "step or \"auto\"",
+                      dt_, limit_.step, limit_.reason),
+          "time/step", -1);
     }
     return;
   }
@@ -155,9 +157,15 @@ void Simulation::drift() {
     double* x = &state_.position[3 * static_cast<size_t>(i)];
     const double* v = &state_.velocity[3 * static_cast<size_t>(i)];
     if (inverse_masses_[i][0] + inverse_masses_[i][1] + inverse_masses_[i][2] > 0) {
-      x[0] += dt_ * v[0];
-      x[1] += dt_ * v[1];
-      x[2] += dt_ * v[2];
+      // Compensated sum (Kahan): at constant velocity every step rounds the same way, and the
+      // angular momentum of a million steps would show it.
+      double* r = &state_.remainder[3 * static_cast<size_t>(i)];
+      for (int k = 0; k < 3; ++k) {
+        const double dx = dt_ * v[k] + r[k];
+        const double sum = x[k] + dx;
+        r[k] = dx - (sum - x[k]);
+        x[k] = sum;
+      }
     }
     const double far = std::max(std::abs(v[0]), std::abs(v[1]));
     if (far > stride) {
@@ -169,10 +177,11 @@ void Simulation::drift() {
     for (int k = 0; k < 3; ++k) state_.position[3 * i + k] += moved_[3 * i + k];
   }
   if (stride * dt_ > largest_stride_ && shapes_.size() > 1) {
-    throw Unstable(fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
-                               "smallest inradius: contacts would be missed; reduce time.step or "
-                               "time.safety",
-                               name(farthest), stride * dt_, at_time()));
+    throw Unstable(
+        fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
+                    "smallest inradius: contacts would be missed; reduce time.step or "
+                    "time.safety",
+                    name(farthest), stride * dt_, at_time()));
   }
 }
 
@@ -196,9 +205,10 @@ void Simulation::search_if_stale() {
   for (size_t k = 0; k < state_.position.size(); ++k) {
     if (std::isfinite(state_.position[k])) continue;
     worst_body_ = static_cast<int>(k / 3);
-    throw Unstable(fmt::format("position of body \"{}\" is not finite {}: the run has become unstable; "
-                               "reduce time.step or time.safety",
-                               name(worst_body_), at_time()));
+    throw Unstable(
+        fmt::format("position of body \"{}\" is not finite {}: the run has become unstable; "
+                    "reduce time.step or time.safety",
+                    name(worst_body_), at_time()));
   }
   search_.search(shapes_, state_.position);
   ++counts_.searches;
@@ -230,7 +240,8 @@ void Simulation::gather() {
     if (!(pair.largest_phi <= kDeepestPhi)) {
       worst_body_ = std::max(a, b);
       throw Unstable(fmt::format(
-          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them (phi = {:.2f}) {}: the "
+          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them (phi = {:.2f}) "
+          "{}: the "
           "contact is too soft for this load; raise contact.normal_stiffness, or move them apart",
           name(a), name(b), pair.largest_phi, at_time()));
     }
@@ -246,12 +257,12 @@ void Simulation::gather() {
                                   inverse_mass_[3 * b] + inverse_mass_[3 * b + 2] > 0
                               ? 2
                               : 1;
-      stiffness_[a] += both * k *
-                       strip_mobility(inverse_masses_[a],
-                                      std::abs(k_n * pair.moment_a) / force, pair.breadth);
-      stiffness_[b] += both * k *
-                       strip_mobility(inverse_masses_[b],
-                                      std::abs(k_n * pair.moment_b) / force, pair.breadth);
+      stiffness_[a] +=
+          both * k *
+          strip_mobility(inverse_masses_[a], std::abs(k_n * pair.moment_a) / force, pair.breadth);
+      stiffness_[b] +=
+          both * k *
+          strip_mobility(inverse_masses_[b], std::abs(k_n * pair.moment_b) / force, pair.breadth);
     }
   }
   counts_.candidate_pairs += static_cast<std::int64_t>(pairs.size());
@@ -274,9 +285,10 @@ void Simulation::tighten_step() {
   if (!(dt_ * dt_ * worst_stiffness_ > 4 * largest * largest)) return;
   const double limit = 2 / std::sqrt(worst_stiffness_);
   if (!automatic_) {
-    throw Unstable(fmt::format("the step of {} s is above the stability limit of {:.6g} s of the "
-                               "contacts of body \"{}\" {}; give a smaller time.step or \"auto\"",
-                               dt_, limit, name(worst_body_), at_time()));
+    throw Unstable(
+        fmt::format("the step of {} s is above the stability limit of {:.6g} s of the "
+                    "contacts of body \"{}\" {}; give a smaller time.step or \"auto\"",
+                    dt_, limit, name(worst_body_), at_time()));
   }
   base_time_ = state_.time;
   base_step_ = state_.step;
@@ -293,9 +305,10 @@ Energies Simulation::energies() {
   energy_in_play_ = std::max(energy_in_play_, e.kinetic + e.contact + std::abs(e.external_work));
   extremes_.energy_error = std::max(extremes_.energy_error, std::abs(e.total_error));
   if (!(std::abs(e.total_error) <= kLargestEnergyError * energy_in_play_ + 1e-300)) {
-    throw Unstable(fmt::format("{:.3g} J of the {:.3g} J in play are unaccounted for {}: the step is too "
-                               "long for this impact; reduce time.step or time.safety",
-                               e.total_error, energy_in_play_, at_time()));
+    throw Unstable(
+        fmt::format("{:.3g} J of the {:.3g} J in play are unaccounted for {}: the step is too "
+                    "long for this impact; reduce time.step or time.safety",
+                    e.total_error, energy_in_play_, at_time()));
   }
   return e;
 }
@@ -317,7 +330,8 @@ std::vector<ContactRecord> Simulation::contacts() const {
 std::array<double, kPhaseNames.size()> Simulation::phase_seconds() const {
   auto seconds = timed_seconds_;
   for (double& s : seconds) {
-    s *= timed_steps_ > 0 ? static_cast<double>(state_.step) / static_cast<double>(timed_steps_) : 0;
+    s *=
+        timed_steps_ > 0 ? static_cast<double>(state_.step) / static_cast<double>(timed_steps_) : 0;
   }
   return seconds;
 }

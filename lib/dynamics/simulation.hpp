@@ -1,10 +1,11 @@
 // The step loop of rigid bodies.
 //
-//   kick (Eq. 18) -> drift (Eq. 17) -> place shapes -> find pairs -> contact forces -> kick (Eq. 20)
+//   kick (Eq. 18) -> drift (Eq. 17) -> place shapes -> find pairs -> contact forces -> kick (Eq.
+//   20)
 //
-// Velocity Verlet in kick-drift-kick form: symplectic, so energy oscillates with order dt^2 and does
-// not drift, and momenta are kept to round-off. Forces are summed pair by pair in ascending order:
-// the same scene gives the same bits for any number of threads and whenever the search runs.
+// Velocity Verlet in kick-drift-kick form: symplectic, so energy oscillates with order dt^2 and
+// does not drift, and momenta are kept to round-off. Forces are summed pair by pair in ascending
+// order: the same scene gives the same bits for any number of threads and whenever the search runs.
 #pragma once
 
 #include <array>
@@ -21,7 +22,8 @@
 
 namespace apothem {
 
-/// The scene cannot be run as it is; says which key of the scene is to blame, or which body (or -1).
+/// The scene cannot be run as it is; says which key of the scene is to blame, or which body (or
+/// -1).
 class Unrunnable : public std::runtime_error {
  public:
   Unrunnable(const std::string& what, std::string key, int body)
@@ -34,8 +36,8 @@ class Unrunnable : public std::runtime_error {
   int body_;
 };
 
-/// The run became unstable or left the range where the method is accurate: says when, where, why and
-/// what helps.
+/// The run became unstable or left the range where the method is accurate: says when, where, why
+/// and what helps.
 class Unstable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -52,8 +54,8 @@ struct Extremes {
     double time = 0;
     int a = -1, b = -1;
   };
-  Peak penetration;  ///< extent of the overlap of a pair along its force, m
-  Peak force;        ///< size of the contact force of a pair, N
+  Peak penetration;         ///< extent of the overlap of a pair along its force, m
+  Peak force;               ///< size of the contact force of a pair, N
   double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
 };
 

@@ -112,7 +112,8 @@ StepLimit motion_step_limit(const Model& model) {
   for (const RigidBody& body : model.bodies) {
     double speed = body.velocity.norm();
     if (body.motion == Motion::prescribed) {
-      for (const auto& point : body.history.velocity) speed = std::max(speed, point.velocity.norm());
+      for (const auto& point : body.history.velocity)
+        speed = std::max(speed, point.velocity.norm());
     } else if (body.motion == Motion::free) {
       speed = std::sqrt(speed * speed + 2 * model.gravity.norm() * scene.extent());
     }

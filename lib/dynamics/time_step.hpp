@@ -1,9 +1,9 @@
 // Stability limit of the explicit step for rigid bodies in contact.
 //
 // Velocity Verlet is stable below 2/sqrt(lambda). A contact of two bodies has the stiffness
-// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (theory: Sec. 2), spread over
-// a strip across the line of action. On a body with inverse masses 1/m, 1/I the strip of breadth w at
-// the lever arm e has
+// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (theory: Sec. 2), spread
+// over a strip across the line of action. On a body with inverse masses 1/m, 1/I the strip of
+// breadth w at the lever arm e has
 //   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
 #pragma once
 
@@ -32,8 +32,8 @@ StepLimit contact_step_limit(const Model& model);
 /// contact.
 inline constexpr double kLargestStride = 0.25;
 
-/// Limit so that no body moves farther than that in one step, at the speeds the scene starts with or
-/// gains by falling through its own height.
+/// Limit so that no body moves farther than that in one step, at the speeds the scene starts with
+/// or gains by falling through its own height.
 StepLimit motion_step_limit(const Model& model);
 
 }  // namespace apothem

@@ -17,8 +17,8 @@ struct Material {
   double density;  ///< kg/m^3
 };
 
-/// Prescribed motion: velocity and spin piecewise linear in time, constant before the first and after
-/// the last point.
+/// Prescribed motion: velocity and spin piecewise linear in time, constant before the first and
+/// after the last point.
 struct MotionHistory {
   struct VelocityPoint {
     double time;
@@ -43,15 +43,15 @@ enum class Motion { free, fixed, prescribed };
 struct RigidBody {
   std::string name;
   int material = 0;
-  Potential potential;          ///< body frame
-  double area = 0;              ///< m^2
-  double mass = 0;              ///< kg, with the model's thickness
-  double inertia = 0;           ///< about the mass centre, kg m^2
-  double inradius = 0;          ///< m
+  Potential potential;  ///< body frame
+  double area = 0;      ///< m^2
+  double mass = 0;      ///< kg, with the model's thickness
+  double inertia = 0;   ///< about the mass centre, kg m^2
+  double inradius = 0;  ///< m
   Motion motion = Motion::free;
-  std::array<bool, 3> held{};   ///< x, y, angle that a free body may not change
-  MotionHistory history;        ///< if prescribed
-  Vec2 position = Vec2::Zero(); ///< of the mass centre at time 0
+  std::array<bool, 3> held{};    ///< x, y, angle that a free body may not change
+  MotionHistory history;         ///< if prescribed
+  Vec2 position = Vec2::Zero();  ///< of the mass centre at time 0
   double angle = 0;
   Vec2 velocity = Vec2::Zero();
   double spin = 0;
@@ -78,8 +78,8 @@ struct Model {
 /// Throws InvalidPolygon if the contact law cannot take the polygon.
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model);
 
-/// An origin near the box, on so coarse a grid that subtracting it from a coordinate of the scene is
-/// exact; zero for a scene around zero.
+/// An origin near the box, on so coarse a grid that subtracting it from a coordinate of the scene
+/// is exact; zero for a scene around zero.
 Vec2 local_origin(const Box& box);
 
 }  // namespace apothem

@@ -14,19 +14,19 @@ struct TimeSettings {
 };
 
 struct OutputSettings {
-  int frames = 100;                          ///< besides the one at time 0
-  std::optional<double> history_interval;    ///< s; empty: end / 1000
-  std::vector<int> track;                    ///< bodies in history.csv
+  int frames = 100;                        ///< besides the one at time 0
+  std::optional<double> history_interval;  ///< s; empty: end / 1000
+  std::vector<int> track;                  ///< bodies in history.csv
 };
 
 /// A result the scene promises: a column of a history, reduced to one number.
 struct Expectation {
   enum class Take { first, last, minimum, maximum, largest };  ///< largest: of the absolute value
-  std::string quantity;              ///< column of history.csv, energy.csv or momentum.csv, no unit
+  std::string quantity;  ///< column of history.csv, energy.csv or momentum.csv, no unit
   Take take = Take::last;
-  std::optional<double> from, until; ///< time window, s
+  std::optional<double> from, until;  ///< time window, s
   double value = 0;
-  double tolerance = 0;              ///< absolute, in the quantity's unit
+  double tolerance = 0;  ///< absolute, in the quantity's unit
 };
 
 }  // namespace apothem

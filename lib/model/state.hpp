@@ -11,11 +11,12 @@ namespace apothem {
 
 /// Generalised coordinates, three entries per body: x, y, angle of the mass centre.
 struct State {
-  double time = 0;            ///< s
+  double time = 0;  ///< s
   std::int64_t step = 0;
-  std::vector<double> position;  ///< m, m, rad; relative to the model's origin
-  std::vector<double> velocity;  ///< m/s, m/s, rad/s
-  std::vector<double> force;     ///< contact force and moment about the mass centre: N, N, N m
+  std::vector<double> position;   ///< m, m, rad; relative to the model's origin
+  std::vector<double> remainder;  ///< what rounding has kept out of `position` so far
+  std::vector<double> velocity;   ///< m/s, m/s, rad/s
+  std::vector<double> force;      ///< contact force and moment about the mass centre: N, N, N m
 };
 
 /// The energy ledger of the moving bodies and the contacts between them and all others, in J.
@@ -32,8 +33,8 @@ struct Energies {
   double total_error = 0;
 };
 
-/// Momentum of the free bodies (angular about the model's origin) and how far it is from its value at
-/// time 0 plus the impulses of gravity and of the bodies that are not free.
+/// Momentum of the free bodies (angular about the model's origin) and how far it is from its value
+/// at time 0 plus the impulses of gravity and of the bodies that are not free.
 struct Momenta {
   double x = 0, y = 0, angular = 0;
   double x_error = 0, y_error = 0, angular_error = 0;
@@ -54,11 +55,11 @@ struct Column {
   const char* unit;
 };
 inline constexpr std::array kBodyColumns{
-    Column{"x", "m"},        Column{"y", "m"},     Column{"angle", "rad"}, Column{"vx", "m/s"},
-    Column{"vy", "m/s"},     Column{"spin", "rad/s"}, Column{"fx", "N"},   Column{"fy", "N"}};
-inline constexpr std::array kEnergyColumns{
-    "kinetic",       "strain",       "contact",       "gravity",
-    "friction_loss", "damping_loss", "external_work", "total_error"};
+    Column{"x", "m"},    Column{"y", "m"},        Column{"angle", "rad"}, Column{"vx", "m/s"},
+    Column{"vy", "m/s"}, Column{"spin", "rad/s"}, Column{"fx", "N"},      Column{"fy", "N"}};
+inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
+                                           "gravity",       "friction_loss", "damping_loss",
+                                           "external_work", "total_error"};
 inline constexpr std::array kMomentumColumns{"px",       "py",       "angular",
                                              "px_error", "py_error", "angular_error"};
 

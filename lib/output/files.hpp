@@ -1,5 +1,5 @@
-// Files that are either complete or not there: what stands on disk stays valid when the disk fills up
-// or the run is killed.
+// Files that are either complete or not there: what stands on disk stays valid when the disk fills
+// up or the run is killed.
 #pragma once
 
 #include <stdexcept>
@@ -17,10 +17,12 @@ class SystemFailure : public std::runtime_error {
 /// Creates a folder and its parents. Throws SystemFailure.
 void create_folder(const std::string& folder);
 
-/// Writes beside the target, then renames over it. Throws SystemFailure; the old file is then intact.
+/// Writes beside the target, then renames over it. Throws SystemFailure; the old file is then
+/// intact.
 void write_file(const std::string& file, std::string_view content);
 
-/// A file that grows by whole blocks: a block that does not fit is taken back. Throws SystemFailure.
+/// A file that grows by whole blocks: a block that does not fit is taken back. Throws
+/// SystemFailure.
 class AppendedFile {
  public:
   explicit AppendedFile(std::string file);  ///< starts empty

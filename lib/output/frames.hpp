@@ -1,5 +1,5 @@
-// The VTK time series: frames.pvd with one .vtu per frame for the bodies, contacts.pvd for the contact
-// patches. Opens in ParaView.
+// The VTK time series: frames.pvd with one .vtu per frame for the bodies, contacts.pvd for the
+// contact patches. Opens in ParaView.
 #pragma once
 
 #include <string>

@@ -96,8 +96,8 @@ HistoryTable read_history(const std::string& file) {
       char* end = nullptr;
       if (std::getline(row, cell, ',')) column.push_back(std::strtod(cell.c_str(), &end));
       if (end == nullptr || *end != '\0' || cell.empty()) {
-        throw std::runtime_error(fmt::format("{}:{}: is not a row of {} numbers", file, number,
-                                             table.columns.size()));
+        throw std::runtime_error(
+            fmt::format("{}:{}: is not a row of {} numbers", file, number, table.columns.size()));
       }
     }
   }
@@ -130,18 +130,29 @@ Outcome evaluate(const Expectation& expectation, const std::string& folder) {
     size_t until = t.size();
     while (expectation.from && from < until && t[from] < *expectation.from) ++from;
     while (expectation.until && until > from && t[until - 1] > *expectation.until) --until;
-    if (from == until) throw std::runtime_error("no row of " + expectation.quantity + " in the window");
+    if (from == until)
+      throw std::runtime_error("no row of " + expectation.quantity + " in the window");
     const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
                                                    y.begin() + static_cast<std::ptrdiff_t>(until));
     const double minimum = refined(t, y, static_cast<size_t>(least - y.begin()));
     const double maximum = refined(t, y, static_cast<size_t>(most - y.begin()));
     double value = 0;
     switch (expectation.take) {
-      case Expectation::Take::first: value = y[from]; break;
-      case Expectation::Take::last: value = y[until - 1]; break;
-      case Expectation::Take::minimum: value = minimum; break;
-      case Expectation::Take::maximum: value = maximum; break;
-      case Expectation::Take::largest: value = std::max(-minimum, maximum); break;
+      case Expectation::Take::first:
+        value = y[from];
+        break;
+      case Expectation::Take::last:
+        value = y[until - 1];
+        break;
+      case Expectation::Take::minimum:
+        value = minimum;
+        break;
+      case Expectation::Take::maximum:
+        value = maximum;
+        break;
+      case Expectation::Take::largest:
+        value = std::max(-minimum, maximum);
+        break;
     }
     return {value, std::abs(value - expectation.value) <= expectation.tolerance};
   }

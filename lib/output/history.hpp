@@ -1,5 +1,5 @@
-// history.csv, energy.csv and momentum.csv: one row per interval, numbers that read back to the same
-// double.
+// history.csv, energy.csv and momentum.csv: one row per interval, numbers that read back to the
+// same double.
 #pragma once
 
 #include <string>
@@ -49,8 +49,8 @@ struct Outcome {
   bool met;
 };
 
-/// Minima and maxima are refined by the parabola through the neighbouring rows: exact in free flight.
-/// Throws std::runtime_error if no row lies in the window.
+/// Minima and maxima are refined by the parabola through the neighbouring rows: exact in free
+/// flight. Throws std::runtime_error if no row lies in the window.
 Outcome evaluate(const Expectation& expectation, const std::string& folder);
 
 }  // namespace apothem

@@ -1,4 +1,5 @@
-// The one error a user sees for bad input: file, line, JSON pointer, what is wrong, what would be right.
+// The one error a user sees for bad input: file, line, JSON pointer, what is wrong, what would be
+// right.
 #pragma once
 
 #include <stdexcept>

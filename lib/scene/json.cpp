@@ -89,8 +89,8 @@ class Builder {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(position, text_.size()));
     return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
   }
-  // Line of the token that ends `back` characters before what the parser has taken: a number is known
-  // to end only when the character behind it has been read.
+  // Line of the token that ends `back` characters before what the parser has taken: a number is
+  // known to end only when the character behind it has been read.
   [[nodiscard]] int line(size_t back) {
     const size_t position = taken_ > back ? taken_ - back : 0;
     for (; counted_ < position; ++counted_) lines_ += text_[counted_] == '\n';
@@ -125,7 +125,8 @@ class Builder {
   const size_t& taken_;
   size_t counted_ = 0;
   int lines_ = 1;
-  std::vector<JsonValue*> stack_;  // only the last item of each is ever added to: pointers stay valid
+  std::vector<JsonValue*>
+      stack_;  // only the last item of each is ever added to: pointers stay valid
 };
 
 size_t edit_distance(std::string_view a, std::string_view b) {  // Levenshtein
@@ -158,12 +159,18 @@ const std::string* nearest(std::string_view word, const std::vector<std::string>
 
 const char* type_name(JsonValue::Type type) {
   switch (type) {
-    case JsonValue::Type::null: return "null";
-    case JsonValue::Type::boolean: return "true/false";
-    case JsonValue::Type::number: return "a number";
-    case JsonValue::Type::string: return "a string";
-    case JsonValue::Type::array: return "an array";
-    case JsonValue::Type::object: return "an object";
+    case JsonValue::Type::null:
+      return "null";
+    case JsonValue::Type::boolean:
+      return "true/false";
+    case JsonValue::Type::number:
+      return "a number";
+    case JsonValue::Type::string:
+      return "a string";
+    case JsonValue::Type::array:
+      return "an array";
+    case JsonValue::Type::object:
+      return "an object";
   }
   return "?";
 }

@@ -1,5 +1,6 @@
-// JSON that remembers where every value stood and refuses duplicate keys (nlohmann-json, which parses
-// here, does neither), and typed access to it that turns every mistake into one clear SceneError.
+// JSON that remembers where every value stood and refuses duplicate keys (nlohmann-json, which
+// parses here, does neither), and typed access to it that turns every mistake into one clear
+// SceneError.
 #pragma once
 
 #include <optional>

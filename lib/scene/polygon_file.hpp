@@ -8,8 +8,8 @@
 
 namespace apothem {
 
-/// The ring as it stands in the file, in world coordinates (a closing WKT vertex is dropped); not yet
-/// checked for being simple. Throws SceneError.
+/// The ring as it stands in the file, in world coordinates (a closing WKT vertex is dropped); not
+/// yet checked for being simple. Throws SceneError.
 std::vector<Vec2> read_polygon_file(const std::string& file);
 
 }  // namespace apothem

@@ -45,8 +45,9 @@ class SceneReader {
   const std::string& scene_name(const JsonValue& value) {
     const std::string& name = in_.string(value);
     if (name.empty() || name.find_first_of("/\\\n") != std::string::npos || name[0] == '.') {
-      in_.fail(value, "must be usable as the name of a folder: not empty, without / or \\, not "
-                      "starting with a dot");
+      in_.fail(value,
+               "must be usable as the name of a folder: not empty, without / or \\, not "
+               "starting with a dot");
     }
     return name;
   }
@@ -67,7 +68,8 @@ class SceneReader {
     if (const JsonValue* v = object.optional("young")) in_.positive(*v, "Pa");
     if (const JsonValue* v = object.optional("poisson")) {
       const double nu = in_.number(*v, "");
-      if (!(nu > -1 && nu < 0.5)) in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", nu));
+      if (!(nu > -1 && nu < 0.5))
+        in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", nu));
     }
     if (const JsonValue* v = object.optional("plane")) in_.choice(*v, {"stress", "strain"});
     object.finish();
@@ -123,7 +125,8 @@ class SceneReader {
 
   Polygon polygon(const JsonValue& value) {
     JsonObject object(in_, value);
-    const JsonValue& outline = object.required("polygon", "[[x,y],...] in m, or the name of a file");
+    const JsonValue& outline =
+        object.required("polygon", "[[x,y],...] in m, or the name of a file");
     std::string where;
     std::vector<Vec2> ring;
     if (outline.type == JsonValue::Type::string) {
@@ -213,15 +216,17 @@ class SceneReader {
   }
 
   static constexpr const char* kHeldRate =
-      "must be 0 in a direction that \"fix\" holds; leave it out or take the direction from \"fix\"";
+      "must be 0 in a direction that \"fix\" holds; leave it out or take the direction from "
+      "\"fix\"";
 
   void require_free(const JsonValue& value, const RigidBody& body) {
     if (body.motion == Motion::free) return;
-    in_.fail(value, body.motion == Motion::fixed
-                        ? "a fixed body has no initial velocity or spin; leave it out or make the "
-                          "motion \"free\""
-                        : "a body with prescribed motion takes its velocity from \"motion\"; leave it "
-                          "out");
+    in_.fail(value,
+             body.motion == Motion::fixed
+                 ? "a fixed body has no initial velocity or spin; leave it out or make the "
+                   "motion \"free\""
+                 : "a body with prescribed motion takes its velocity from \"motion\"; leave it "
+                   "out");
   }
 
   void motion(const JsonValue& value, RigidBody& body) {
@@ -231,8 +236,9 @@ class SceneReader {
     }
     body.motion = Motion::prescribed;
     if (value.type != JsonValue::Type::object) {
-      in_.fail(value, "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
-                      "[[t,w],...]}");
+      in_.fail(value,
+               "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
+               "[[t,w],...]}");
     }
     JsonObject object(in_, value);
     if (const JsonValue* v = object.optional("velocity")) {
@@ -251,8 +257,9 @@ class SceneReader {
     }
     object.finish();
     if (body.history.velocity.empty() && body.history.spin.empty()) {
-      in_.fail(value, "must give a velocity or a spin history with at least one row; for a body at "
-                      "rest use \"fixed\"");
+      in_.fail(value,
+               "must give a velocity or a spin history with at least one row; for a body at "
+               "rest use \"fixed\"");
     }
   }
 
@@ -263,7 +270,8 @@ class SceneReader {
   }
 
   void fix(const JsonValue& value, RigidBody& body) {
-    if (body.motion != Motion::free) in_.fail(value, "only a body of \"free\" motion takes \"fix\"");
+    if (body.motion != Motion::free)
+      in_.fail(value, "only a body of \"free\" motion takes \"fix\"");
     for (const JsonValue& direction : in_.array(value)) {
       body.held[in_.choice(direction, {"x", "y", "angle"})] = true;
     }
@@ -352,7 +360,8 @@ class SceneReader {
         in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
       }
       if (const JsonValue* v = object.optional("take")) {
-        e.take = static_cast<Expectation::Take>(in_.choice(*v, {"first", "last", "min", "max", "max_abs"}));
+        e.take = static_cast<Expectation::Take>(
+            in_.choice(*v, {"first", "last", "min", "max", "max_abs"}));
       }
       if (const JsonValue* v = object.optional("between")) {
         const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
@@ -368,7 +377,8 @@ class SceneReader {
       if (!absolute == !relative) {
         in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
       }
-      if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
+      if (!(e.tolerance > 0))
+        in_.fail(*relative, "a relative tolerance needs a value other than 0");
       if (const JsonValue* v = object.optional("source")) in_.string(*v);
       object.finish();
       scene_.expectations.push_back(std::move(e));
