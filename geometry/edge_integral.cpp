@@ -268,13 +268,29 @@ double volume_under(const PlacedPotential& x, const PlacedPotential& y,
   return volume;
 }
 
-// Twice the area swept from `centre` along the clipped edges.
-double swept(const double* from, const double* to, double cx, double cy) {
-  double sum = 0;
-  for (; from != to; from += 4) {
-    sum += (from[0] - cx) * (from[3] - cy) - (from[1] - cy) * (from[2] - cx);
+// Area of the part of x inside y: x cut by the lines of y (Sutherland-Hodgman). Unlike the area swept
+// by the clipped edges it is continuous where edges of x and y coincide.
+double overlap_area(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
+  std::vector<Vec2> ring, kept;
+  for (int v = 0; v < x.size; ++v) ring.emplace_back(x.x[v] + dx, x.y[v] + dy);
+  for (int i = 0; i < y.size; ++i) {
+    const auto height = [&](const Vec2& p) {
+      return y.gx[i] * (p.x() - y.x[i]) + y.gy[i] * (p.y() - y.y[i]);
+    };
+    kept.clear();
+    for (size_t v = 0; v < ring.size(); ++v) {
+      const Vec2& p = ring[v];
+      const Vec2& q = ring[v + 1 == ring.size() ? 0 : v + 1];
+      const double hp = height(p);
+      const double hq = height(q);
+      if (hp >= 0) kept.push_back(p);
+      if ((hp >= 0) != (hq >= 0)) kept.push_back(p + hp / (hp - hq) * (q - p));
+    }
+    ring.swap(kept);
   }
-  return sum;
+  double twice = 0;
+  for (size_t v = 1; v + 1 < ring.size(); ++v) twice += cross(ring[v] - ring[0], ring[v + 1] - ring[0]);
+  return twice / 2;
 }
 
 }  // namespace
@@ -286,19 +302,8 @@ PairVolume pair_volume(const PlacedPotential& a, const std::vector<Ridge>& ridge
   const double dx = offset.x();
   const double dy = offset.y();
   if (heights(a, b, dx, dy, rows.of_a) || heights(b, a, -dx, -dy, rows.of_b)) return {};
-  double* middle = rows.pieces;
-  integrate(a, b, dx, dy, rows.of_a, middle);
-  double* end = middle;
-  integrate(b, a, -dx, -dy, rows.of_b, end);
-  if (end == rows.pieces) return {};
-
-  // Any point near the overlap keeps the round-off of the area small: an end of a clipped edge.
-  const bool in_frame_of_b = middle != rows.pieces;
-  const double cx = rows.pieces[0] + (in_frame_of_b ? 0 : dx);
-  const double cy = rows.pieces[1] + (in_frame_of_b ? 0 : dy);
   PairVolume volume;
-  volume.overlap_area =
-      (swept(rows.pieces, middle, cx, cy) + swept(middle, end, cx - dx, cy - dy)) / 2;
+  volume.overlap_area = overlap_area(a, b, dx, dy);
   std::vector<double> scratch;
   volume.energy = volume_under(a, b, ridges_b, dx, dy, rows.of_a, scratch) +
                   volume_under(b, a, ridges_a, -dx, -dy, rows.of_b, scratch);

@@ -1,243 +1,241 @@
-// Private to overlap.cpp and exact_integral.cpp: the overlap polygon before it is rounded, and Eq.
-// 8 on it for any number type.
+// Private to overlap.cpp and exact_integral.cpp: Eq. 8 on an overlap polygon for any number type.
+// All coordinates of one call are relative to one origin, best inside the overlap.
 #pragma once
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/Polygon_2.h>
-
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "geometry/overlap.hpp"
 
-namespace apothem::detail {
+namespace apothem::overlap_detail {
 
-using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using ExactPolygon = CGAL::Polygon_2<ExactKernel>;
+template <class Real>
+using Vec = Eigen::Matrix<Real, 2, 1>;
 
-struct ExactOverlap {
-  ExactPolygon polygon;
-  std::vector<OverlapEdge> edges;
-};
-std::vector<ExactOverlap> exact_overlaps(const Polygon& a, const Polygon& b);
-
-template <class T>
-struct Point {
-  T x, y;
-  Point operator+(const Point& o) const { return {x + o.x, y + o.y}; }
-  Point operator-(const Point& o) const { return {x - o.x, y - o.y}; }
-  Point operator*(const T& s) const { return {x * s, y * s}; }
-};
-template <class T>
-T dot(const Point<T>& a, const Point<T>& b) {
-  return a.x * b.x + a.y * b.y;
-}
-template <class T>
-T cross(const Point<T>& a, const Point<T>& b) {
-  return a.x * b.y - a.y * b.x;
+template <class Real>
+Real cross(const Vec<Real>& a, const Vec<Real>& b) {
+  return a.x() * b.y() - a.y() * b.x();
 }
 
-/// phi = min(1, min_i g_i . (x - p_i)), all in one frame.
-template <class T>
-struct Lines {
-  std::vector<Point<T>> p, g;
+template <class Real>
+struct Region {
+  std::vector<Vec<Real>> vertices;
+  std::vector<OverlapEdge> edges;  // owners, or empty when they are not known
+};
+
+/// overlap_polygons with exact constructions, rounded to Real; for double and cpp_bin_float_100.
+template <class Real>
+std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
+
+template <class Real>
+struct Line {
+  Vec<Real> gradient;
+  Real height;  // at the origin
+  Real operator()(const Vec<Real>& x) const { return gradient.dot(x) + height; }
+};
+
+/// phi = min(1 if capped, min_i lines_i), and the point that moments refer to.
+template <class Real>
+struct Envelope {
+  std::vector<Line<Real>> lines;
   bool capped;
-
-  [[nodiscard]] T value(size_t i, const Point<T>& x) const { return dot(g[i], x - p[i]); }
-  [[nodiscard]] T phi(const Point<T>& x) const {
-    T least = value(0, x);
-    for (size_t i = 1; i < p.size(); ++i) least = std::min<T>(least, value(i, x));
-    if (capped) least = std::min<T>(least, T(1));
-    return std::max<T>(least, T(0));
-  }
+  Vec<Real> reference;
 };
 
-template <class T>
-struct Ring {
-  std::vector<Point<T>> vertices;
-  std::vector<OverlapEdge> edges;  // empty: owners unknown
+/// phi along one edge, u in [0, 1].
+template <class Real>
+struct EdgeIntegral {
+  Real sum = 0;    // INT phi du
+  Real first = 0;  // INT phi u du
+  Real largest = 0;
 };
 
-/// A body of the pair, in the common frame.
-template <class T>
-struct Side {
-  Lines<T> lines;
-  Point<T> centroid;
-};
-
-template <class T>
-class Eq8 {
+/// Envelope along a segment as a polyline, cut by one line after the other; keeps its memory.
+template <class Real>
+class EdgeTrace {
  public:
-  Eq8(const Side<T>& a, const Side<T>& b, const std::vector<Ring<T>>& rings) : a_(a), b_(b) {
-    for (const Ring<T>& ring : rings) {
-      for (size_t i = 0; i < ring.vertices.size(); ++i) {
-        const Point<T>& start = ring.vertices[i];
-        const Point<T>& end = ring.vertices[i + 1 == ring.vertices.size() ? 0 : i + 1];
-        const bool known = !ring.edges.empty();
-        // On a's own boundary phi_a is zero, and what is left is phi_b.
-        const bool on_a = known && ring.edges[i].edge_of_a >= 0;
-        const bool on_b = known && ring.edges[i].edge_of_b >= 0;
-        if (!on_a) add(a_.lines, start, end, T(1));
-        if (!on_b) add(b_.lines, start, end, T(-1));
-        using std::sqrt;
-        const T length = sqrt(dot(end - start, end - start));
-        if (on_a) own_a_ += length;
-        if (on_b) own_b_ += length;
-        area_ += cross(start - ring.vertices[0], end - ring.vertices[0]) / 2;
-      }
-      energy_ += volume(a_.lines, ring.vertices) + volume(b_.lines, ring.vertices);
-    }
-    project(rings);
-  }
-
-  [[nodiscard]] PairResult result() const {
-    const auto d = [](const T& x) { return static_cast<double>(x); };
-    PairResult result;
-    PairIntegral& pair = result.integral;
-    pair.force = {d(force_.x), d(force_.y)};
-    // Moments were taken about the frame's origin.
-    pair.moment_a = d(moment_ - cross(a_.centroid, force_));
-    pair.moment_b = d(cross(b_.centroid, force_) - moment_);
-    pair.weight = d(weight_);
-    if (weight_ != T(0)) {
-      pair.centre = {d(first_.x / weight_ - a_.centroid.x), d(first_.y / weight_ - a_.centroid.y)};
-    }
-    pair.own_length_a = d(own_a_);
-    pair.own_length_b = d(own_b_);
-    pair.largest_phi = d(largest_);
-    pair.penetration = d(penetration_);
-    pair.breadth = d(breadth_);
-    result.volume = {d(energy_), d(area_)};
+  EdgeIntegral<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p, const Vec<Real>& q) {
+    knots_.assign({{0, phi.lines[0](p)}, {1, phi.lines[0](q)}});
+    for (size_t i = 1; i < phi.lines.size(); ++i) cut(phi.lines[i](p), phi.lines[i](q));
+    if (phi.capped) cut(1, 1);
+    EdgeIntegral<Real> result;
+    for (size_t i = 1; i < knots_.size(); ++i) add_positive_part(knots_[i - 1], knots_[i], result);
     return result;
   }
 
  private:
-  // sign * n INT phi ds with the trapezoid rule between all points where phi may have a kink.
-  void add(const Lines<T>& lines, const Point<T>& start, const Point<T>& end, const T& sign) {
-    const size_t n = lines.p.size();
-    std::vector<T> from(n), rise(n), kinks{T(0), T(1)};
-    for (size_t i = 0; i < n; ++i) {
-      from[i] = lines.value(i, start);
-      rise[i] = lines.value(i, end) - from[i];
-    }
-    const auto crossing = [&](const T& numerator, const T& denominator) {
-      if (denominator == T(0)) return;
-      const T s = numerator / denominator;
-      if (s > T(0) && s < T(1)) kinks.push_back(s);
-    };
-    for (size_t i = 0; i < n; ++i) {
-      for (size_t j = 0; j < i; ++j) crossing(from[i] - from[j], rise[j] - rise[i]);
-      crossing(from[i], -rise[i]);
-      if (lines.capped) crossing(T(1) - from[i], rise[i]);
-    }
-    std::sort(kinks.begin(), kinks.end());
-    const Point<T> edge = end - start;
-    const auto phi = [&](const T& s) { return lines.phi(start + edge * s); };
-    T sum(0), first(0);  // INT phi ds, INT phi s ds over s in [0, 1]
-    T u1 = kinks[0];
-    T v1 = phi(u1);
-    for (size_t k = 1; k < kinks.size(); ++k) {
-      const T u2 = kinks[k];
-      const T v2 = phi(u2);
-      sum += (u2 - u1) * (v1 + v2) / 2;
-      first += (u2 - u1) * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
-      largest_ = std::max<T>(largest_, v1);
-      u1 = u2;
-      v1 = v2;
-    }
-    largest_ = std::max<T>(largest_, v1);
-    using std::sqrt;
-    const T length = sqrt(dot(edge, edge));
-    const Point<T> normal{edge.y, -edge.x};  // outward, times the length
-    force_ = force_ + normal * (sign * sum);
-    moment_ -= sign * (dot(start, edge) * sum + dot(edge, edge) * first);
-    weight_ += length * sum;
-    first_ = first_ + (start * sum + edge * first) * length;
+  struct Knot {
+    Real u, value;
+  };
+
+  static Knot between(const Knot& k, const Knot& l, const Real& share) {
+    return {k.u + share * (l.u - k.u), k.value + share * (l.value - k.value)};
   }
 
-  // INT phi dA over a ring: the ring cut by every face {L_e <= L_k for all k}.
-  static T volume(const Lines<T>& lines, const std::vector<Point<T>>& ring) {
-    T sum(0);
-    for (size_t e = 0; e < lines.p.size(); ++e) {
-      std::vector<Point<T>> face = ring;
-      bool repeated = false;
-      for (size_t k = 0; k < lines.p.size() && !repeated; ++k) {
-        if (k == e) continue;
-        // Edges on one line share one face: the first of them has it.
-        const Point<T> jump = lines.g[k] - lines.g[e];
-        if (dot(jump, jump) <= T(1e-28) * dot(lines.g[e], lines.g[e])) {
-          repeated = k < e;
-          continue;
-        }
-        face =
-            cut(face, [&](const Point<T>& x) { return T(lines.value(k, x) - lines.value(e, x)); });
+  void cut(const Real& start, const Real& end) {
+    cut_.clear();
+    Real previous = 0;
+    for (size_t i = 0; i < knots_.size(); ++i) {
+      const Knot& knot = knots_[i];
+      const Real line = start + knot.u * (end - start);
+      const Real gap = line - knot.value;
+      if (i > 0 && (gap < 0) != (previous < 0)) {
+        cut_.push_back(between(knots_[i - 1], knot, previous / (previous - gap)));
       }
-      if (repeated) continue;
-      const auto height = [&](const Point<T>& x) { return T(lines.value(e, x)); };
-      if (!lines.capped) {
-        sum += integral(face, height);
-        continue;
+      if (!(gap < 0)) {
+        cut_.push_back(knot);
+      } else if (i == 0 || i + 1 == knots_.size()) {
+        cut_.push_back({knot.u, line});
       }
-      sum += integral(cut(face, [&](const Point<T>& x) { return T(1 - height(x)); }), height);
-      sum += integral(cut(face, [&](const Point<T>& x) { return T(height(x) - 1); }),
-                      [](const Point<T>&) { return T(1); });
+      previous = gap;
     }
-    return sum;
+    std::swap(knots_, cut_);
   }
 
-  // Part of a polygon where a linear function is not negative (Sutherland-Hodgman: for a polygon
-  // that is not convex the pieces hang together by edges that cancel in every integral).
-  template <class Function>
-  static std::vector<Point<T>> cut(const std::vector<Point<T>>& ring, const Function& f) {
-    std::vector<Point<T>> kept;
-    for (size_t i = 0; i < ring.size(); ++i) {
-      const Point<T>& p = ring[i];
-      const Point<T>& q = ring[i + 1 == ring.size() ? 0 : i + 1];
-      const T fp = f(p);
-      const T fq = f(q);
-      if (fp >= T(0)) kept.push_back(p);
-      if ((fp >= T(0)) != (fq >= T(0))) kept.push_back(p + (q - p) * T(fp / (fp - fq)));
-    }
-    return kept;
+  // Negative values inside the overlap are round-off.
+  static void add_positive_part(Knot k, Knot l, EdgeIntegral<Real>& result) {
+    if (k.value < 0 && l.value < 0) return;
+    if (k.value < 0) k = {between(k, l, k.value / (k.value - l.value)).u, 0};
+    if (l.value < 0) l = {between(k, l, k.value / (k.value - l.value)).u, 0};
+    const Real du = l.u - k.u;
+    result.sum += du * (k.value + l.value) / 2;
+    result.first += du * (k.value * (2 * k.u + l.u) + l.value * (k.u + 2 * l.u)) / 6;
+    result.largest = std::max(result.largest, std::max(k.value, l.value));
   }
 
-  template <class Function>
-  static T integral(const std::vector<Point<T>>& ring, const Function& f) {
-    T sum(0);
-    for (size_t i = 1; i + 1 < ring.size(); ++i) {
-      sum += cross(ring[i] - ring[0], ring[i + 1] - ring[0]) *
-             (f(ring[0]) + f(ring[i]) + f(ring[i + 1])) / 6;
-    }
-    return sum;
-  }
-
-  void project(const std::vector<Ring<T>>& rings) {
-    using std::sqrt;
-    const T size = sqrt(dot(force_, force_));
-    if (!(size > T(0))) return;
-    const Point<T> n = force_ * T(1 / size);
-    bool any = false;
-    T n0(0), n1(0), t0(0), t1(0);
-    for (const Ring<T>& ring : rings) {
-      for (const Point<T>& v : ring.vertices) {
-        const T along = dot(n, v);
-        const T across = cross(n, v);
-        n0 = any ? std::min<T>(n0, along) : along;
-        n1 = any ? std::max<T>(n1, along) : along;
-        t0 = any ? std::min<T>(t0, across) : across;
-        t1 = any ? std::max<T>(t1, across) : across;
-        any = true;
-      }
-    }
-    penetration_ = n1 - n0;
-    breadth_ = t1 - t0;
-  }
-
-  const Side<T>& a_;
-  const Side<T>& b_;
-  Point<T> force_{T(0), T(0)}, first_{T(0), T(0)};
-  T moment_{0}, weight_{0}, own_a_{0}, own_b_{0}, largest_{0}, area_{0}, energy_{0};
-  T penetration_{0}, breadth_{0};
+  std::vector<Knot> knots_, cut_;
 };
 
-}  // namespace apothem::detail
+/// Part of the polygon where side >= 0 (> 0 unless `closed`).
+template <class Real>
+std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
+                            bool closed) {
+  std::vector<Vec<Real>> inside;
+  if (polygon.empty()) return inside;
+  inside.reserve(polygon.size() + 2);
+  const auto keep = [&](const Real& d) { return d > 0 || (closed && d == 0); };
+  const Vec<Real>* p = &polygon.back();
+  Real dp = side(*p);
+  for (const Vec<Real>& q : polygon) {
+    const Real dq = side(q);
+    if (keep(dp) != keep(dq)) inside.push_back(*p + (q - *p) * (dp / (dp - dq)));
+    if (keep(dq)) inside.push_back(q);
+    p = &q;
+    dp = dq;
+  }
+  return inside;
+}
+
+/// Part of the polygon where line e is the lowest of all. Two faces share the bit pattern of the
+/// bisector between them, and of two equal lines the first one has the face: nothing counts twice.
+template <class Real>
+std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
+                            size_t e) {
+  for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
+    const size_t k = (e + j) % lines.size();
+    polygon = clip(polygon,
+                   {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
+  }
+  return polygon;
+}
+
+/// INT f dA for a linear f, by a fan of triangles.
+template <class Real>
+Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
+  Real sum = 0;
+  for (size_t i = 2; i < polygon.size(); ++i) {
+    const Vec<Real>&p = polygon[0], &q = polygon[i - 1], &r = polygon[i];
+    sum += cross<Real>(q - p, r - p) * (f(p) + f(q) + f(r)) / 6;
+  }
+  return sum;
+}
+
+template <class Real>
+Real volume_under(const Envelope<Real>& phi, const std::vector<Vec<Real>>& polygon) {
+  const Line<Real> one{Vec<Real>(0, 0), 1};
+  Real volume = 0;
+  for (size_t e = 0; e < phi.lines.size(); ++e) {
+    const Line<Real>& line = phi.lines[e];
+    const std::vector<Vec<Real>> region = face(polygon, phi.lines, e);
+    if (phi.capped) {
+      volume += area_integral(clip(region, {-line.gradient, 1 - line.height}, true), line) +
+                area_integral(clip(region, {line.gradient, line.height - 1}, false), one);
+    } else {
+      volume += area_integral(region, line);
+    }
+  }
+  return volume;
+}
+
+/// Eq. 8 and the energy.
+template <class Real>
+PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
+                     const Envelope<Real>& b) {
+  using std::sqrt;
+  const Line<Real> one{Vec<Real>(0, 0), 1};
+  Vec<Real> force(0, 0), centre(0, 0);
+  Real moment = 0, weight = 0, own_a = 0, own_b = 0, largest = 0, area = 0, energy = 0;
+  EdgeTrace<Real> trace;
+  for (const Region<Real>& region : overlap) {
+    const std::vector<Vec<Real>>& v = region.vertices;
+    for (size_t i = 0; i < v.size(); ++i) {
+      const Vec<Real>& p = v[i];
+      const Vec<Real> d = v[i + 1 == v.size() ? 0 : i + 1] - p;
+      const Vec<Real> normal(d.y(), -d.x());
+      const Real length = sqrt(d.squaredNorm());
+      // phi vanishes on its own polygon's edges.
+      const bool known = !region.edges.empty();
+      const bool skip_a = known && region.edges[i].edge_of_a >= 0;
+      const bool skip_b = known && region.edges[i].edge_of_b >= 0;
+      const auto phi_a = skip_a ? EdgeIntegral<Real>{} : trace.integrate(a, p, p + d);
+      const auto phi_b = skip_b ? EdgeIntegral<Real>{} : trace.integrate(b, p, p + d);
+      if (known ? skip_a : phi_a.sum <= phi_b.sum) own_a += length;
+      if (known ? skip_b : phi_b.sum <= phi_a.sum) own_b += length;
+      const Real difference = phi_a.sum - phi_b.sum;
+      force += normal * difference;
+      moment += cross<Real>(p, normal) * difference - d.squaredNorm() * (phi_a.first - phi_b.first);
+      const Real sum = phi_a.sum + phi_b.sum;
+      weight += length * sum;
+      centre += length * (p * sum + d * (phi_a.first + phi_b.first));
+      largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
+    }
+    area += area_integral(v, one);
+    energy += volume_under(a, v) + volume_under(b, v);
+  }
+
+  const auto rounded = [](const Real& x) { return static_cast<double>(x); };
+  const auto rounded_vec = [&](const Vec<Real>& x) { return Vec2(rounded(x.x()), rounded(x.y())); };
+  PairResult result;
+  PairIntegral& pair = result.integral;
+  pair.force = rounded_vec(force);
+  pair.moment_a = rounded(moment - cross(a.reference, force));
+  pair.moment_b = rounded(cross(b.reference, force) - moment);
+  pair.weight = rounded(weight);
+  if (weight != 0) pair.centre = rounded_vec(centre / weight - a.reference);
+  pair.own_length_a = rounded(own_a);
+  pair.own_length_b = rounded(own_b);
+  pair.largest_phi = rounded(largest);
+  if (const Real size = sqrt(force.squaredNorm()); size > 0) {
+    const Vec<Real> along = force / size;
+    const Vec<Real> across(-along.y(), along.x());
+    const auto extent = [&](const Vec<Real>& direction) {
+      Real low = direction.dot(overlap[0].vertices[0]);
+      Real high = low;
+      for (const Region<Real>& region : overlap) {
+        for (const Vec<Real>& v : region.vertices) {
+          const Real x = direction.dot(v);
+          low = std::min(low, x);
+          high = std::max(high, x);
+        }
+      }
+      return rounded(high - low);
+    };
+    pair.penetration = extent(along);
+    pair.breadth = extent(across);
+  }
+  result.volume = {rounded(energy), rounded(area)};
+  return result;
+}
+
+}  // namespace apothem::overlap_detail

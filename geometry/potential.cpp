@@ -39,17 +39,11 @@ class Envelope {
   Envelope(const std::vector<Vec2>& p, const std::vector<Vec2>& g) : p_(p), g_(g) {
     link();
     while (count_ > 2) collapse(lowest());
-    // Two edges are left: their last ridge joins the two nodes between them.
+    // Two edges are left: their last ridge joins the two nodes between them, the higher one last.
     const int i = first_;
-    add_ridge(i, next_[i], node_[i], node_[next_[i]]);
-    const Node& one = node_[i];
-    const Node& two = node_[next_[i]];
-    top = std::max(one.value, two.value);
-    if (one.value >= top * (1 - kSameHeight)) top_points.push_back(one.point);
-    if (two.value >= top * (1 - kSameHeight) &&
-        (top_points.empty() || (two.point - one.point).norm() * top_slope() > kSameHeight * top)) {
-      top_points.push_back(two.point);
-    }
+    const bool rises = node_[i].value <= node_[next_[i]].value;
+    add_ridge(i, next_[i], node_[rises ? i : next_[i]], node_[rises ? next_[i] : i]);
+    find_top();
   }
 
   std::vector<Ridge> ridges;
@@ -151,7 +145,28 @@ class Envelope {
         {start.point, end.point, start.value, end.value, length * difference.dot(jump) / size});
   }
 
-  [[nodiscard]] double top_slope() const { return g_[first_].norm(); }
+  // The maximum is attained at a point, or along one ridge between two parallel edges.
+  void find_top() {
+    const Ridge* highest = &ridges.front();
+    for (const Ridge& r : ridges) {
+      if (r.end_value > highest->end_value) highest = &r;
+    }
+    top = highest->end_value;
+    const auto length = [](const Ridge& r) { return (r.end - r.start).norm(); };
+    const Ridge* level = nullptr;
+    for (const Ridge& r : ridges) {
+      const bool is_level = std::min(r.start_value, r.end_value) >= top * (1 - kSameHeight);
+      if (is_level && length(r) * g_[first_].norm() > kSameHeight * top &&
+          (!level || length(r) > length(*level))) {
+        level = &r;
+      }
+    }
+    if (level) {
+      top_points = {level->start, level->end};
+    } else {
+      top_points = {highest->end};
+    }
+  }
 
   const std::vector<Vec2>& p_;
   const std::vector<Vec2>& g_;

@@ -153,12 +153,11 @@ TEST_CASE("work along closed paths", "[edge]") {
     double worst = 0;
     for (int loop = 0; loop < test::scaled(20); ++loop) {
       double c[6];
-      for (double& x : c) x = random.uniform(-.25, .25);
-      const double phase = random.uniform(0, 6);
+      for (double& x : c) x = random.uniform(0, 1);
       const auto pose = [&](double s, double& x, double& y, double& angle) {
-        x = .5 + c[0] * std::cos(s) + c[1] * std::sin(2 * s);
-        y = .4 + c[2] * std::sin(s) + c[3] * std::cos(2 * s);
-        angle = phase + 4 * c[4] * std::cos(s) + 4 * c[5] * std::sin(s);
+        x = .45 + (.05 + .1 * c[0]) * std::cos(s + 6 * c[1]);
+        y = .40 + (.05 + .1 * c[2]) * std::sin(s);
+        angle = 6 * c[3] + .3 * c[4] * std::sin(s + 6 * c[5]);
       };
       double work = 0, path = 0;
       for (int i = 0; i < steps; ++i) {

@@ -41,7 +41,7 @@ TEST_CASE("a bad ring is refused and the vertex is named", "[polygon]") {
   CHECK(bad_vertex({{0, 0}, {2, 0}, {1, 0}, {1, 1}}) == 1);          // spike
   CHECK(bad_vertex({{0, 0}, {1, 0}, {2, 0}}) >= 0);                  // no area
   CHECK(bad_vertex({{0, 0}, {1, 1}, {1, 0}, {0, 1}}) == 2);          // bow tie: edges 0 and 2
-  CHECK(bad_vertex({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}) == 2);  // vertex 3 on edge 0
+  CHECK(bad_vertex({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}) == 3);  // vertex 3 on edge 0
   CHECK(bad_vertex({{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}}) == 4);  // pinch
   CHECK(bad_vertex({{5, 5}, {5, 5}, {5, 5}}) >= 0);
 }
