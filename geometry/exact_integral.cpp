@@ -43,8 +43,8 @@ Envelope<Wide> envelope(const Polygon& polygon, const Vec2& origin, const Potent
   const bool distance = choice.kind == PotentialChoice::Kind::distance;
   if (const auto reflex = polygon.first_reflex_vertex(); reflex && distance) {
     const int i = polygon.input_index(*reflex);
-    throw InvalidPolygon("vertex " + std::to_string(i) + " is reflex: contact needs convex polygons",
-                         i);
+    throw InvalidPolygon(
+        "vertex " + std::to_string(i) + " is reflex: contact needs convex polygons", i);
   }
   if (!distance && polygon.size() != 3) {
     throw InvalidPolygon("has " + std::to_string(polygon.size()) +

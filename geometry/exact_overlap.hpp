@@ -134,8 +134,8 @@ std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Li
                             size_t e) {
   for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
     const size_t k = (e + j) % lines.size();
-    polygon = clip(polygon,
-                   {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
+    polygon = clip(
+        polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
   }
   return polygon;
 }
@@ -173,6 +173,7 @@ template <class Real>
 PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
                      const Envelope<Real>& b) {
   using std::sqrt;
+  if (overlap.empty()) return {};
   const Line<Real> one{Vec<Real>(0, 0), 1};
   Vec<Real> force(0, 0), centre(0, 0);
   Real moment = 0, weight = 0, own_a = 0, own_b = 0, largest = 0, area = 0, energy = 0;

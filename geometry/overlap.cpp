@@ -7,6 +7,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <iterator>
+#include <limits>
 
 #include "geometry/exact_overlap.hpp"
 
@@ -25,8 +26,8 @@ CGAL::Polygon_2<Kernel> cgal(const Polygon& polygon) {
   return result;
 }
 
-// Outer boundaries of the overlap. Two simple polygons enclose no hole between them; CGAL's result is
-// regularised: common points and common edges without area are not in it.
+// Outer boundaries of the overlap. Two simple polygons enclose no hole between them; CGAL's result
+// is regularised: common points and common edges without area are not in it.
 template <class Kernel>
 std::vector<CGAL::Polygon_2<Kernel>> intersection(const CGAL::Polygon_2<Kernel>& a,
                                                   const CGAL::Polygon_2<Kernel>& b) {
@@ -52,7 +53,8 @@ class Owner {
       Box box;
       box.include(polygon_[i].x(), polygon_[i].y());
       box.include(polygon_.after(i).x(), polygon_.after(i).y());
-      if (meets(box, p_box) && meets(box, q_box) && perhaps_on_line(i, p) && perhaps_on_line(i, q)) {
+      if (meets(box, p_box) && meets(box, q_box) && perhaps_on_line(i, p) &&
+          perhaps_on_line(i, q)) {
         candidates_.push_back(i);
       }
     }
@@ -125,10 +127,10 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
 // A rational number as a sum of doubles, each one the remainder that those before it leave.
 template <class Real>
 Real rounded(Rational x) {
-  constexpr int kTerms = std::numeric_limits<Real>::digits / 52 + 1;
+  constexpr int kTerms = (std::numeric_limits<Real>::digits + 52) / 53;
   Real sum = CGAL::to_double(x);
   double last = static_cast<double>(sum);
-  for (int i = 1; i < kTerms && last != 0; ++i) {
+  for (int term = 1; term < kTerms && last != 0; ++term) {
     x -= Rational(last);
     last = CGAL::to_double(x);
     sum += last;
@@ -153,7 +155,8 @@ std::vector<Region<Real>> rounded(std::vector<ExactRegion> exact, const Vec2& or
 }
 
 // As written by anyone in a hurry: world coordinates, and no defence but this one.
-std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b, const Vec2& origin) {
+std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
+                                            const Vec2& origin) {
   std::vector<Region<double>> regions;
   try {
     for (const auto& outline : intersection(cgal<Inexact>(a), cgal<Inexact>(b))) {

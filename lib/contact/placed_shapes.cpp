@@ -42,16 +42,30 @@ void PlacedShapes::place(int i, double x, double y, double angle) {
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
-std::vector<Ridge> PlacedShapes::ridges(int i, double angle) const {
+namespace {
+
+Vec2 turned(const Vec2& p, double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  const auto rotated = [&](const Vec2& p) -> Vec2 {
-    return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-  };
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+}
+
+}  // namespace
+
+bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
+  const Vec2 top = offset + turned(shapes_[i].potential->top_points.front(), angle);
+  const PlacedPotential other = view(j);
+  for (int k = 0; k < other.size; ++k) {
+    if (other.gx[k] * (top.x() - other.x[k]) + other.gy[k] * (top.y() - other.y[k]) < 0) return false;
+  }
+  return true;
+}
+
+std::vector<Ridge> PlacedShapes::ridges(int i, double angle) const {
   std::vector<Ridge> ridges = shapes_[i].potential->ridges;
   for (Ridge& ridge : ridges) {
-    ridge.start = rotated(ridge.start);
-    ridge.end = rotated(ridge.end);
+    ridge.start = turned(ridge.start, angle);
+    ridge.end = turned(ridge.end, angle);
   }
   return ridges;
 }

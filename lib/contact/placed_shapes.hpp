@@ -25,6 +25,9 @@ class PlacedShapes {
             s.size,
             s.capped};
   }
+  /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
+  /// `offset` is i's reference point minus j's, `angle` that of i.
+  [[nodiscard]] bool top_inside(int i, double angle, int j, const Vec2& offset) const;
   /// Ridges of shape i's potential, rotated by `angle`.
   [[nodiscard]] std::vector<Ridge> ridges(int i, double angle) const;
   [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }

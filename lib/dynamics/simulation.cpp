@@ -58,6 +58,8 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     const RigidBody& body = model.bodies[i];
     shapes_.add(body.potential);
     inradius = std::min(inradius, body.inradius);
+    inradius_.push_back(body.inradius);
+    slope_.push_back(body.potential.steepest);
     if (body.can_move()) moving_.push_back(i);
     if (body.motion == Motion::prescribed) driven_.push_back(i);
     const std::array<double, 3> start{body.position.x(), body.position.y(), body.angle};
@@ -214,6 +216,16 @@ void Simulation::search_if_stale() {
   ++counts_.searches;
 }
 
+// Beyond this depth the potential falls again and the bodies would pass through each other.
+bool Simulation::too_deep(int a, int b, const PairIntegral& pair) const {
+  if (!(pair.largest_phi <= kDeepestPhi)) return true;
+  if (pair.own_length_a + pair.own_length_b < std::min(inradius_[a], inradius_[b])) return false;
+  const double* xa = &state_.position[3 * static_cast<size_t>(a)];
+  const double* xb = &state_.position[3 * static_cast<size_t>(b)];
+  const Vec2 offset(xa[0] - xb[0], xa[1] - xb[1]);
+  return shapes_.top_inside(a, xa[2], b, offset) || shapes_.top_inside(b, xb[2], a, -offset);
+}
+
 void Simulation::gather() {
   std::fill(state_.force.begin(), state_.force.end(), 0.0);
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
@@ -237,13 +249,12 @@ void Simulation::gather() {
     fb[1] -= fy;
     fb[2] += k_n * pair.moment_b;
 
-    if (!(pair.largest_phi <= kDeepestPhi)) {
+    if (too_deep(a, b, pair)) {
       worst_body_ = std::max(a, b);
       throw Unstable(fmt::format(
-          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them (phi = {:.2f}) "
-          "{}: the "
-          "contact is too soft for this load; raise contact.normal_stiffness, or move them apart",
-          name(a), name(b), pair.largest_phi, at_time()));
+          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them {}: the contact is "
+          "too soft for this load; raise contact.normal_stiffness, or move them apart",
+          name(a), name(b), at_time()));
     }
     const double force = std::sqrt(fx * fx + fy * fy);
     if (pair.penetration > extremes_.penetration.value) {
@@ -251,8 +262,7 @@ void Simulation::gather() {
     }
     if (force > extremes_.force.value) extremes_.force = {force, state_.time, a, b};
     if (force > 0) {
-      const double k = k_n * (pair.own_length_a * model_.bodies[b].potential.steepest +
-                              pair.own_length_b * model_.bodies[a].potential.steepest);
+      const double k = k_n * (pair.own_length_a * slope_[b] + pair.own_length_b * slope_[a]);
       const double both = inverse_mass_[3 * a] + inverse_mass_[3 * a + 2] > 0 &&
                                   inverse_mass_[3 * b] + inverse_mass_[3 * b + 2] > 0
                               ? 2

@@ -93,6 +93,7 @@ class Simulation {
   void drift();
   void find_forces(bool timed);
   void search_if_stale();
+  [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void gather();
   void tighten_step();
   [[nodiscard]] double contact_energy() const;
@@ -103,6 +104,7 @@ class Simulation {
   State state_;
   std::vector<double> inverse_mass_, acceleration_;  // three entries per body
   std::vector<std::array<double, 3>> inverse_masses_;
+  std::vector<double> inradius_, slope_;  // m, 1/m
   std::vector<int> moving_, driven_;
   PlacedShapes shapes_;
   PairSearch search_;

@@ -9,7 +9,7 @@ namespace apothem {
 
 struct TimeSettings {
   double end = 0;                    ///< s
-  std::optional<double> fixed_step;  ///< s; empty: automatic
+  std::optional<double> fixed_step = {};  ///< s; empty: automatic
   double safety = 0.1;               ///< automatic step = safety x stability limit
 };
 
