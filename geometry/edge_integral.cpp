@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geometry/lower_envelope.hpp"
+
 namespace apothem {
 namespace {
 
@@ -35,7 +37,7 @@ bool clip(const Row& row, double& s0, double& s1) {
   return !(s0 >= s1);
 }
 
-// Calls piece(s, value, s_next, value_next, line) along the concave lower envelope from s0 to s1.
+// Calls piece(s, value, s_next, value_next) along the concave lower envelope from s0 to s1.
 template <class Piece>
 void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
   const auto value = [&](int i, double s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
@@ -68,12 +70,12 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
       }
     }
     if (next < 0) {
-      piece(s, height, s1, value(line, s1), line);
+      piece(s, height, s1, value(line, s1));
       return;
     }
     const double end = std::min(s + gap / fall, s1);
     const double end_height = value(next, end);
-    if (end > s) piece(s, height, end, end_height, line);
+    if (end > s) piece(s, height, end, end_height);
     s = end;
     height = end_height;
     line = next;
@@ -125,7 +127,7 @@ Half integrate(const PlacedPotential& x, const PlacedPotential& y, double dx, do
     double sum = 0;    // INT phi du
     double first = 0;  // INT phi u du
     double largest = 0;
-    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2, int) {
+    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
       const double h = u2 - u1;
       sum += h * (v1 + v2) / 2;
       first += h * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
@@ -220,93 +222,27 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
 
 namespace {
 
-// PHI(phi) = INT_0^phi min(1, p) dp, integrated over u in [0, 1] for phi linear from v1 to v2.
-double mean_of_antiderivative(double v1, double v2, bool capped) {
-  const auto below = [](double p, double q) { return (p * p + p * q + q * q) / 6; };
-  const auto above = [](double p, double q) { return (p + q - 1) / 2; };
-  if (!capped || (v1 <= 1 && v2 <= 1)) return below(v1, v2);
-  if (v1 >= 1 && v2 >= 1) return above(v1, v2);
-  if (v1 > v2) std::swap(v1, v2);
-  const double share = (1 - v1) / (v2 - v1);
-  return share * below(v1, 1) + (1 - share) * above(1, v2);
-}
-
-// INT phi_y dA over the overlap: edges of x and ridges of y, in the frame of y.
-double volume_under(const PlacedPotential& x, const PlacedPotential& y,
-                    const std::vector<Ridge>& ridges, double dx, double dy, const double* rows,
-                    std::vector<double>& scratch) {
-  const int width = y.size + (y.capped ? 1 : 0);
-  double volume = 0;
-  for (int e = 0; e < x.size; ++e) {
-    const Row row{rows + e * width, rows + (e + 1) * width, y.size, y.size};  // without the cap
-    double s0, s1;
-    if (!clip(row, s0, s1)) continue;
-    const double nx = x.y[e + 1] - x.y[e];
-    const double ny = x.x[e] - x.x[e + 1];
-    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2, int line) {
-      const double g2 = y.gx[line] * y.gx[line] + y.gy[line] * y.gy[line];
-      volume += (nx * y.gx[line] + ny * y.gy[line]) / g2 * (u2 - u1) *
-                mean_of_antiderivative(v1, v2, y.capped);
-    });
+std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const Vec2& shift) {
+  std::vector<lower_envelope::Line<double>> result;
+  for (int i = 0; i < p.size; ++i) {
+    const Vec2 g(p.gx[i], p.gy[i]);
+    result.push_back({g, -g.dot(Vec2(p.x[i], p.y[i]) + shift)});
   }
-  scratch.resize(2 * static_cast<size_t>(x.size));
-  double* const start = scratch.data();
-  double* const end = start + x.size;
-  for (const Ridge& ridge : ridges) {
-    for (int i = 0; i < x.size; ++i) {
-      start[i] =
-          x.gx[i] * (ridge.start.x() - dx - x.x[i]) + x.gy[i] * (ridge.start.y() - dy - x.y[i]);
-      end[i] = x.gx[i] * (ridge.end.x() - dx - x.x[i]) + x.gy[i] * (ridge.end.y() - dy - x.y[i]);
-    }
-    double s0, s1;
-    if (!clip({start, end, x.size, x.size}, s0, s1)) continue;
-    const double rise = ridge.end_value - ridge.start_value;
-    volume += ridge.weight * (s1 - s0) *
-              mean_of_antiderivative(ridge.start_value + s0 * rise, ridge.start_value + s1 * rise,
-                                     y.capped);
-  }
-  return volume;
-}
-
-// Area of the part of x inside y: x cut by the lines of y (Sutherland-Hodgman). Unlike the area swept
-// by the clipped edges it is continuous where edges of x and y coincide.
-double overlap_area(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
-  std::vector<Vec2> ring, kept;
-  for (int v = 0; v < x.size; ++v) ring.emplace_back(x.x[v] + dx, x.y[v] + dy);
-  for (int i = 0; i < y.size; ++i) {
-    const auto height = [&](const Vec2& p) {
-      return y.gx[i] * (p.x() - y.x[i]) + y.gy[i] * (p.y() - y.y[i]);
-    };
-    kept.clear();
-    for (size_t v = 0; v < ring.size(); ++v) {
-      const Vec2& p = ring[v];
-      const Vec2& q = ring[v + 1 == ring.size() ? 0 : v + 1];
-      const double hp = height(p);
-      const double hq = height(q);
-      if (hp >= 0) kept.push_back(p);
-      if ((hp >= 0) != (hq >= 0)) kept.push_back(p + hp / (hp - hq) * (q - p));
-    }
-    ring.swap(kept);
-  }
-  double twice = 0;
-  for (size_t v = 1; v + 1 < ring.size(); ++v) twice += cross(ring[v] - ring[0], ring[v + 1] - ring[0]);
-  return twice / 2;
+  return result;
 }
 
 }  // namespace
 
-PairVolume pair_volume(const PlacedPotential& a, const std::vector<Ridge>& ridges_a,
-                       const PlacedPotential& b, const std::vector<Ridge>& ridges_b,
-                       const Vec2& offset, EdgeWorkspace& workspace) {
-  const Rows rows = reserve(a, b, workspace);
-  const double dx = offset.x();
-  const double dy = offset.y();
-  if (heights(a, b, dx, dy, rows.of_a) || heights(b, a, -dx, -dy, rows.of_b)) return {};
+PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+  const auto lines_a = lines(a, offset);
+  const auto lines_b = lines(b, Vec2::Zero());
+  std::vector<Vec2> overlap;
+  for (int v = 0; v < a.size; ++v) overlap.push_back(Vec2(a.x[v], a.y[v]) + offset);
+  for (const auto& line : lines_b) overlap = lower_envelope::clip(overlap, line, true);
   PairVolume volume;
-  volume.overlap_area = overlap_area(a, b, dx, dy);
-  std::vector<double> scratch;
-  volume.energy = volume_under(a, b, ridges_b, dx, dy, rows.of_a, scratch) +
-                  volume_under(b, a, ridges_a, -dx, -dy, rows.of_b, scratch);
+  volume.overlap_area = lower_envelope::area_integral(overlap, {Vec2::Zero(), 1});
+  volume.energy = lower_envelope::volume_under(lines_a, a.capped, overlap) +
+                  lower_envelope::volume_under(lines_b, b.capped, overlap);
   return volume;
 }
 
@@ -352,7 +288,7 @@ PairResult edge_method(const Potential& a, const Vec2& origin_a, const Vec2& ref
   pair.moment_a -= cross(reference_a, pair.force);
   pair.moment_b += cross(reference_b, pair.force);
   pair.centre -= reference_a;
-  result.volume = pair_volume(placed_a.view, a.ridges, placed_b.view, b.ridges, offset, workspace);
+  result.volume = pair_volume(placed_a.view, placed_b.view, offset);
   return result;
 }
 

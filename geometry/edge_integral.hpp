@@ -61,13 +61,9 @@ struct PairVolume {
   double overlap_area = 0;
 };
 
-/// The volume under the potentials, again without an overlap polygon: in the face of edge e,
-/// phi = div(A) with A = g/|g|^2 PHI(phi), PHI' = phi; A vanishes on the polygon's own boundary, so
-/// what remains are the other polygon's edges and the ridges. Ridges are in the frames of the two
-/// placed polygons. Not for the step loop: for ledgers and pictures.
-PairVolume pair_volume(const PlacedPotential& a, const std::vector<Ridge>& ridges_a,
-                       const PlacedPotential& b, const std::vector<Ridge>& ridges_b,
-                       const Vec2& offset, EdgeWorkspace& workspace);
+/// The volume under the potentials: the overlap polygon by clipping, cut by the faces of both. Not
+/// for the step loop: for ledgers and pictures.
+PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
 
 /// Loading point of the resultant: the weighted centre moved along the tangent onto the line of
 /// action of (force, moment_a), relative to a's reference point (theory: Sec. 3). Without a

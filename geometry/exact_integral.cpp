@@ -30,15 +30,6 @@ Moments moments(const std::vector<WideVec>& v) {
   return {twice_area / 2, v[0] + first / (3 * twice_area)};
 }
 
-// Highest point of the envelope: one of the corners of its faces.
-Wide highest(const std::vector<Line<Wide>>& lines, const std::vector<WideVec>& polygon) {
-  Wide top = 0;
-  for (size_t e = 0; e < lines.size(); ++e) {
-    for (const WideVec& corner : face(polygon, lines, e)) top = std::max(top, lines[e](corner));
-  }
-  return top;
-}
-
 Envelope<Wide> envelope(const Polygon& polygon, const Vec2& origin, const PotentialChoice& choice) {
   const bool distance = choice.kind == PotentialChoice::Kind::distance;
   if (const auto reflex = polygon.first_reflex_vertex(); reflex && distance) {
@@ -64,7 +55,10 @@ Envelope<Wide> envelope(const Polygon& polygon, const Vec2& origin, const Potent
     phi.lines.push_back({gradient, -gradient.dot(v[i])});
   }
   if (distance) {
-    const Wide inradius = highest(phi.lines, v);
+    Wide inradius = 0;
+    for (const Corner<Wide>& corner : corners(phi.lines, v)) {
+      inradius = std::max(inradius, corner.height);
+    }
     const bool given = choice.reference == PotentialChoice::Reference::length;
     const Wide reference = given ? Wide(choice.length) : inradius;
     for (Line<Wide>& line : phi.lines) {

@@ -6,17 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/lower_envelope.hpp"
 #include "geometry/overlap.hpp"
 
 namespace apothem::overlap_detail {
 
-template <class Real>
-using Vec = Eigen::Matrix<Real, 2, 1>;
-
-template <class Real>
-Real cross(const Vec<Real>& a, const Vec<Real>& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+using namespace lower_envelope;
 
 template <class Real>
 struct Region {
@@ -27,13 +22,6 @@ struct Region {
 /// overlap_polygons with exact constructions, rounded to Real; for double and cpp_bin_float_100.
 template <class Real>
 std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
-
-template <class Real>
-struct Line {
-  Vec<Real> gradient;
-  Real height;  // at the origin
-  Real operator()(const Vec<Real>& x) const { return gradient.dot(x) + height; }
-};
 
 /// phi = min(1 if capped, min_i lines_i), and the point that moments refer to.
 template <class Real>
@@ -107,67 +95,6 @@ class EdgeTrace {
   std::vector<Knot> knots_, cut_;
 };
 
-/// Part of the polygon where side >= 0 (> 0 unless `closed`).
-template <class Real>
-std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
-                            bool closed) {
-  std::vector<Vec<Real>> inside;
-  if (polygon.empty()) return inside;
-  inside.reserve(polygon.size() + 2);
-  const auto keep = [&](const Real& d) { return d > 0 || (closed && d == 0); };
-  const Vec<Real>* p = &polygon.back();
-  Real dp = side(*p);
-  for (const Vec<Real>& q : polygon) {
-    const Real dq = side(q);
-    if (keep(dp) != keep(dq)) inside.push_back(*p + (q - *p) * (dp / (dp - dq)));
-    if (keep(dq)) inside.push_back(q);
-    p = &q;
-    dp = dq;
-  }
-  return inside;
-}
-
-/// Part of the polygon where line e is the lowest of all. Two faces share the bit pattern of the
-/// bisector between them, and of two equal lines the first one has the face: nothing counts twice.
-template <class Real>
-std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
-                            size_t e) {
-  for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
-    const size_t k = (e + j) % lines.size();
-    polygon = clip(
-        polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
-  }
-  return polygon;
-}
-
-/// INT f dA for a linear f, by a fan of triangles.
-template <class Real>
-Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
-  Real sum = 0;
-  for (size_t i = 2; i < polygon.size(); ++i) {
-    const Vec<Real>&p = polygon[0], &q = polygon[i - 1], &r = polygon[i];
-    sum += cross<Real>(q - p, r - p) * (f(p) + f(q) + f(r)) / 6;
-  }
-  return sum;
-}
-
-template <class Real>
-Real volume_under(const Envelope<Real>& phi, const std::vector<Vec<Real>>& polygon) {
-  const Line<Real> one{Vec<Real>(0, 0), 1};
-  Real volume = 0;
-  for (size_t e = 0; e < phi.lines.size(); ++e) {
-    const Line<Real>& line = phi.lines[e];
-    const std::vector<Vec<Real>> region = face(polygon, phi.lines, e);
-    if (phi.capped) {
-      volume += area_integral(clip(region, {-line.gradient, 1 - line.height}, true), line) +
-                area_integral(clip(region, {line.gradient, line.height - 1}, false), one);
-    } else {
-      volume += area_integral(region, line);
-    }
-  }
-  return volume;
-}
-
 /// Eq. 8 and the energy.
 template <class Real>
 PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
@@ -202,7 +129,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
     }
     area += area_integral(v, one);
-    energy += volume_under(a, v) + volume_under(b, v);
+    energy += volume_under(a.lines, a.capped, v) + volume_under(b.lines, b.capped, v);
   }
 
   const auto rounded = [](const Real& x) { return static_cast<double>(x); };

@@ -14,19 +14,9 @@
 
 namespace apothem {
 
-/// Ridge of the lower envelope, from `start` to `end`, where the envelope has the given values.
-/// `weight` is the length of the ridge times the jump of the normal component of (g/|g|^2) across
-/// it: with it the volume under phi becomes a sum of one-dimensional integrals (edge_integral.hpp).
-struct Ridge {
-  Vec2 start, end;
-  double start_value, end_value;
-  double weight;
-};
-
 struct Potential {
   std::vector<Vec2> vertices;    ///< p_i, relative to an origin of the owner's choice, m
   std::vector<Vec2> gradients;   ///< g_i, 1/m
-  std::vector<Ridge> ridges;     ///< straight skeleton of the (weighted) edges
   double top = 0;                ///< maximum of the uncapped envelope
   std::vector<Vec2> top_points;  ///< where it is attained: one point, or the ends of a segment
   double steepest = 0;           ///< largest |g_i|: the inverse of the smallest length, 1/m
@@ -59,7 +49,7 @@ struct PotentialChoice {
 /// the polygon is not convex or, for the area potential (slope 3 / altitude), not a triangle.
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice = {});
 
-/// The potential seen from another origin: vertices and ridges minus `shift`.
+/// The potential seen from another origin: all points minus `shift`.
 Potential translated(Potential potential, const Vec2& shift);
 
 }  // namespace apothem

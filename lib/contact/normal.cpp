@@ -40,16 +40,11 @@ void NormalContact::evaluate(const PlacedShapes& shapes, const std::vector<doubl
 
 double NormalContact::energy(const PlacedShapes& shapes, const std::vector<double>& position,
                              const std::vector<BoxPair>& pairs) const {
-  EdgeWorkspace workspace;
   double energy = 0;
   for (size_t p = 0; p < pairs.size(); ++p) {
     if (!integrals_[p].touching()) continue;
     const auto [a, b] = pairs[p];
-    energy +=
-        pair_volume(shapes.view(a), shapes.ridges(a, position[3 * static_cast<size_t>(a) + 2]),
-                    shapes.view(b), shapes.ridges(b, position[3 * static_cast<size_t>(b) + 2]),
-                    between(position, pairs[p]), workspace)
-            .energy;
+    energy += pair_volume(shapes.view(a), shapes.view(b), between(position, pairs[p])).energy;
   }
   return energy;
 }

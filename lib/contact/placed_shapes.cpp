@@ -5,7 +5,8 @@
 namespace apothem {
 
 int PlacedShapes::add(const Potential& potential) {
-  Shape shape{x_.size(), gx_.size(), potential.size(), potential.capped(), 0, &potential};
+  Shape shape{x_.size(),          gx_.size(), potential.size(),
+              potential.capped(), 0,          potential.top_points.front()};
   for (const Vec2& v : potential.vertices) shape.radius = std::max(shape.radius, v.norm());
   shapes_.push_back(shape);
   body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
@@ -42,32 +43,17 @@ void PlacedShapes::place(int i, double x, double y, double angle) {
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
-namespace {
-
-Vec2 turned(const Vec2& p, double angle) {
+bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-}
-
-}  // namespace
-
-bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
-  const Vec2 top = offset + turned(shapes_[i].potential->top_points.front(), angle);
+  const Vec2& body = shapes_[i].top;
+  const Vec2 top = offset + Vec2(c * body.x() - s * body.y(), s * body.x() + c * body.y());
   const PlacedPotential other = view(j);
   for (int k = 0; k < other.size; ++k) {
-    if (other.gx[k] * (top.x() - other.x[k]) + other.gy[k] * (top.y() - other.y[k]) < 0) return false;
+    if (other.gx[k] * (top.x() - other.x[k]) + other.gy[k] * (top.y() - other.y[k]) < 0)
+      return false;
   }
   return true;
-}
-
-std::vector<Ridge> PlacedShapes::ridges(int i, double angle) const {
-  std::vector<Ridge> ridges = shapes_[i].potential->ridges;
-  for (Ridge& ridge : ridges) {
-    ridge.start = turned(ridge.start, angle);
-    ridge.end = turned(ridge.end, angle);
-  }
-  return ridges;
 }
 
 }  // namespace apothem

@@ -28,8 +28,6 @@ class PlacedShapes {
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's, `angle` that of i.
   [[nodiscard]] bool top_inside(int i, double angle, int j, const Vec2& offset) const;
-  /// Ridges of shape i's potential, rotated by `angle`.
-  [[nodiscard]] std::vector<Ridge> ridges(int i, double angle) const;
   [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   /// Largest distance of a vertex from the reference point, m.
@@ -42,7 +40,7 @@ class PlacedShapes {
     int size;
     bool capped;
     double radius;
-    const Potential* potential;
+    Vec2 top;  // of the potential, body frame
   };
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`

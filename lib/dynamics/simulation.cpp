@@ -251,10 +251,11 @@ void Simulation::gather() {
 
     if (too_deep(a, b, pair)) {
       worst_body_ = std::max(a, b);
-      throw Unstable(fmt::format(
-          "bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them {}: the contact is "
-          "too soft for this load; raise contact.normal_stiffness, or move them apart",
-          name(a), name(b), at_time()));
+      throw Unstable(
+          fmt::format("bodies \"{}\" and \"{}\" overlap as deep as the centre of one of them {}: "
+                      "the contact is "
+                      "too soft for this load; raise contact.normal_stiffness, or move them apart",
+                      name(a), name(b), at_time()));
     }
     const double force = std::sqrt(fx * fx + fy * fy);
     if (pair.penetration > extremes_.penetration.value) {

@@ -8,9 +8,9 @@
 namespace apothem {
 
 struct TimeSettings {
-  double end = 0;                    ///< s
+  double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
-  double safety = 0.1;               ///< automatic step = safety x stability limit
+  double safety = 0.1;                    ///< automatic step = safety x stability limit
 };
 
 struct OutputSettings {

@@ -32,7 +32,9 @@ std::vector<Vec2> read_polygon_file(const std::string& file) {
   const std::string text = read_text(file);
   const size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string::npos) throw SceneError(file, 0, "", "is empty; give a polygon");
-  if (std::isalpha(static_cast<unsigned char>(text[start]))) return parse_wkt(text, file);
+  if (std::isalpha(static_cast<unsigned char>(text[start]))) {
+    return parse_wkt(text.substr(start, text.find_last_not_of(" \t\r\n") + 1 - start), file);
+  }
   const JsonReader reader(file);
   const JsonValue document = parse_json(text, file);
   if (document.type == JsonValue::Type::array) return reader.ring(document);

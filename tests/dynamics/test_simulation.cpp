@@ -28,8 +28,10 @@ Model make_model(double stiffness = 20e9) {
 Model bouncing_triangle() {
   const double c = std::sqrt(.75);
   Model model = make_model();
-  model.bodies.push_back(make_body(model, "target", Polygon({{-.5, -c}, {.5, -c}, {0, 0}}), Motion::fixed));
-  model.bodies.push_back(make_body(model, "falling", Polygon({{0, .1}, {.5, .1 + c}, {-.5, .1 + c}})));
+  model.bodies.push_back(
+      make_body(model, "target", Polygon({{-.5, -c}, {.5, -c}, {0, 0}}), Motion::fixed));
+  model.bodies.push_back(
+      make_body(model, "falling", Polygon({{0, .1}, {.5, .1 + c}, {-.5, .1 + c}})));
   model.bodies[1].held = {true, false, true};
   return model;
 }
@@ -42,15 +44,16 @@ Model heap(int columns, int rows) {
   Model model = make_model(1e8);
   const double w = columns * 2.2, h = rows * 2.2 + 5;
   const auto wall = [&](const char* name, double x0, double y0, double x1, double y1) {
-    model.bodies.push_back(make_body(model, name, Polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}), Motion::fixed));
+    model.bodies.push_back(
+        make_body(model, name, Polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}), Motion::fixed));
   };
   wall("floor", -2, -2, w + 2, 0);
   wall("left", -2, 0, 0, h);
   wall("right", w, 0, w + 2, h);
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
-      const Polygon p = test::posed(random.convex(random.integer(3, 8)),
-                                    {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
+      const Polygon p =
+          test::posed(random.convex(random.integer(3, 8)), {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
       model.bodies.push_back(make_body(model, std::to_string(i) + "-" + std::to_string(j), p));
       model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-6, 0)};
       model.bodies.back().spin = random.uniform(-1, 1);
@@ -65,7 +68,8 @@ TEST_CASE("energy is second order in the step inside a contact", "[dynamics]") {
   const Model model = bouncing_triangle();
   double previous = 0;
   // Independent prototype: largest error while the first contact lasts, over m g h0.
-  for (const auto& [dt, prototype] : {std::pair(1e-4, 1.72e-4), std::pair(3e-5, 1.55e-5), std::pair(1e-5, 1.73e-6)}) {
+  for (const auto& [dt, prototype] :
+       {std::pair(1e-4, 1.72e-4), std::pair(3e-5, 1.55e-5), std::pair(1e-5, 1.73e-6)}) {
     Simulation simulation(model, {.end = .2, .fixed_step = dt}, 1, 1);
     double worst = 0;
     while (simulation.state().time < .2) {
@@ -76,16 +80,23 @@ TEST_CASE("energy is second order in the step inside a contact", "[dynamics]") {
     }
     INFO("step " << dt << ", error " << worst);
     CHECK(worst == Approx(prototype).epsilon(.15));
-    if (previous > 0) CHECK(std::log(previous / worst) / std::log(dt > 2e-5 ? 1e-4 / 3e-5 : 3.0) == Approx(2).margin(.15));
+    if (previous > 0)
+      CHECK(std::log(previous / worst) / std::log(dt > 2e-5 ? 1e-4 / 3e-5 : 3.0) ==
+            Approx(2).margin(.15));
     previous = worst;
   }
 }
 
 TEST_CASE("energy does not grow over many bounces", "[dynamics]") {
   const Model model = bouncing_triangle();
-  struct Row { double dt; int bounces; double limit; };
+  struct Row {
+    double dt;
+    int bounces;
+    double limit;
+  };
   // Benchmark table: energy error over m g h0 after so many bounces.
-  for (const Row& row : {Row{1e-4, 1, 2e-7}, Row{1e-4, 100, 7e-6}, Row{3e-5, 1, 1e-9}, Row{3e-5, 10, 3e-8}}) {
+  for (const Row& row :
+       {Row{1e-4, 1, 2e-7}, Row{1e-4, 100, 7e-6}, Row{3e-5, 1, 1e-9}, Row{3e-5, 10, 3e-8}}) {
     const double period = 2 * std::sqrt(2 * .1 / 9.81) + .0101;  // about; the end is in free flight
     Simulation simulation(model, {.end = 1000, .fixed_step = row.dt}, 1, 1);
     double worst = 0;
@@ -94,8 +105,8 @@ TEST_CASE("energy does not grow over many bounces", "[dynamics]") {
       simulation.step();
       if (simulation.state().step % 500 == 0 && simulation.counts().touching_now == 0) {
         const double error = std::abs(simulation.energies().total_error) / drop_energy(model);
-        (simulation.state().time < row.bounces * period / 2 ? worst : worst_late) =
-            std::max(simulation.state().time < row.bounces * period / 2 ? worst : worst_late, error);
+        (simulation.state().time < row.bounces * period / 2 ? worst : worst_late) = std::max(
+            simulation.state().time < row.bounces * period / 2 ? worst : worst_late, error);
       }
     }
     INFO("step " << row.dt << ", " << row.bounces << " bounces: " << worst << ", " << worst_late);
@@ -120,8 +131,10 @@ TEST_CASE("the automatic step keeps the energy of 100 bounces", "[dynamics]") {
 
 TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]") {
   Model model = make_model();
-  model.bodies.push_back(make_body(model, "flat", Polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}}), Motion::fixed));
-  model.bodies.push_back(make_body(model, "square", Polygon({{-.5, 0}, {.5, 0}, {.5, 1}, {-.5, 1}})));
+  model.bodies.push_back(
+      make_body(model, "flat", Polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}}), Motion::fixed));
+  model.bodies.push_back(
+      make_body(model, "square", Polygon({{-.5, 0}, {.5, 0}, {.5, 1}, {-.5, 1}})));
   const double limit = contact_step_limit(model).step;
   CHECK(limit == Approx(3.1623e-4).epsilon(1e-4));
   CHECK_THROWS_WITH(Simulation(model, {.end = 1, .fixed_step = 1.01 * limit}, 1, 1),
@@ -161,7 +174,8 @@ TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
   test::Random random(21);
   for (int i = 0; i < 6; ++i) {
     const double angle = i * M_PI / 3;
-    const Polygon p = test::posed(random.convex(random.integer(3, 7)), 2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
+    const Polygon p = test::posed(random.convex(random.integer(3, 7)),
+                                  2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
     model.bodies.push_back(make_body(model, std::to_string(i), p));
     model.bodies.back().velocity = -3 * Vec2(std::cos(angle + .1), std::sin(angle + .1));
     model.bodies.back().spin = random.uniform(-2, 2);
@@ -185,7 +199,8 @@ TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
 
 TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamics]") {
   Model model = heap(3, 3);
-  model.bodies.push_back(make_body(model, "ram", Polygon({{2, 8}, {4, 8}, {4, 9}, {2, 9}}), Motion::prescribed));
+  model.bodies.push_back(
+      make_body(model, "ram", Polygon({{2, 8}, {4, 8}, {4, 9}, {2, 9}}), Motion::prescribed));
   model.bodies.back().history.velocity = {{0, {0, -4}}, {.5, {0, -8}}, {1.2, {1, 0}}};
   model.bodies.back().history.spin = {{0, .5}};
   model.bodies[5].held = {true, false, false};
@@ -203,7 +218,8 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
   CHECK(std::abs(p.angular_error) < 1e-5);
   CHECK(simulation.state().position[3 * 5] == model.bodies[5].position.x());
   CHECK(simulation.state().velocity[3 * 8 + 2] == 0);
-  // The prescribed path, integrated by hand: 0.5 s at -6, 0.7 s at -4 with x 0 -> 1, 0.8 s at (1, 0).
+  // The prescribed path, integrated by hand: 0.5 s at -6, 0.7 s at -4 with x 0 -> 1, 0.8 s at (1,
+  // 0).
   const size_t ram = 3 * (model.bodies.size() - 1);
   CHECK(simulation.state().position[ram] == Approx(3 + .35 + .8).epsilon(1e-12));
   CHECK(simulation.state().position[ram + 1] == Approx(8.5 - 3 - 2.8).epsilon(1e-12));
@@ -215,7 +231,8 @@ TEST_CASE("the same bits for any number of threads", "[dynamics]") {
   test::Random random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads
     const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-    model.bodies.push_back(make_body(model, std::to_string(i), test::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
+    model.bodies.push_back(make_body(model, std::to_string(i),
+                                     test::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
     model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-3, 3)};
     model.bodies.back().spin = random.uniform(-1, 1);
   }
@@ -288,7 +305,8 @@ TEST_CASE("a run that leaves the method's range stops and says where", "[dynamic
         [&] {
           while (true) simulation.step();
         }(),
-        Catch::Contains("\"target\"") && Catch::Contains("falling") && Catch::Contains("t = ") && Catch::Contains("normal_stiffness"));
+        Catch::Contains("\"target\"") && Catch::Contains("falling") && Catch::Contains("t = ") &&
+            Catch::Contains("normal_stiffness"));
   }
   {
     Model model = bouncing_triangle();  // too fast for its step

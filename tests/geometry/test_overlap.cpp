@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <optional>
 
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
@@ -45,7 +46,8 @@ TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
     worst_conditioned = std::max(worst_conditioned, error * depth / kEpsilon);
     // Below a depth of 1e-3 the input itself, rounded to double, carries more than 1e-12.
     if (depth > 1e-3) worst = std::max(worst, error);
-    REQUIRE(std::abs(e.integral.moment_a - o.integral.moment_a) < 1e-12 * std::max(1.0, 1e-3 / depth) * weight);
+    REQUIRE(std::abs(e.integral.moment_a - o.integral.moment_a) <
+            1e-12 * std::max(1.0, 1e-3 / depth) * weight);
     REQUIRE(std::abs(e.volume.energy - o.volume.energy) < 1e-13 * std::max(weight, 1e-2));
     REQUIRE(std::abs(e.volume.overlap_area - o.volume.overlap_area) < 1e-14);
     REQUIRE(std::abs(e.integral.own_length_a - o.integral.own_length_a) < 1e-10);
@@ -70,7 +72,8 @@ TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
       const PairResult x = exact_method(a, b, choice);
       for (const PairResult& r : {test::edge(a, b, choice), overlap(a, b, choice)}) {
         const double tolerance =
-            std::max(1e-13, 4 * kEpsilon / std::max(x.integral.penetration, 1e-9)) * x.integral.weight;
+            std::max(1e-13, 4 * kEpsilon / std::max(x.integral.penetration, 1e-9)) *
+            x.integral.weight;
         REQUIRE((r.integral.force - x.integral.force).norm() <= tolerance);
         REQUIRE(std::abs(r.integral.moment_a - x.integral.moment_a) <= 2 * tolerance);
         REQUIRE(std::abs(r.integral.moment_b - x.integral.moment_b) <= 2 * tolerance);
@@ -104,9 +107,63 @@ TEST_CASE("the same force far from the origin", "[overlap]") {
   }
 }
 
+TEST_CASE("degenerate pairs on a lattice", "[overlap]") {
+  // Shared vertices and edges, ridges on edges, coincident polygons: all in plenty.
+  test::Random random(14);
+  int pairs = 0;
+  while (pairs < test::scaled(2000)) {
+    const auto lattice = [&]() -> std::optional<Polygon> {
+      std::vector<Vec2> ring;
+      for (int i = random.integer(3, 6); i > 0; --i)
+        ring.emplace_back(random.integer(0, 4), random.integer(0, 4));
+      try {
+        Polygon polygon(ring);
+        if (polygon.is_convex()) return polygon;
+      } catch (const InvalidPolygon&) {
+      }
+      return std::nullopt;
+    };
+    std::optional<Polygon> a = lattice(), b = lattice();
+    if (!a || !b) continue;
+    if (pairs % 2) {  // turned: the degeneracies then hold up to one rounding
+      const double angle = random.uniform(0, 6);
+      const auto turned = [&](const Polygon& p) {
+        std::vector<Vec2> ring;
+        for (const Vec2& v : p.vertices()) {
+          ring.emplace_back(std::cos(angle) * v.x() - std::sin(angle) * v.y(),
+                            std::sin(angle) * v.x() + std::cos(angle) * v.y());
+        }
+        return Polygon(ring);
+      };
+      a = turned(*a);
+      b = turned(*b);
+      if (!a->is_convex() || !b->is_convex()) continue;
+    }
+    ++pairs;
+    const PairResult x = exact_method(*a, *b, {});
+    for (const PairResult& r : {test::edge(*a, *b), overlap(*a, *b)}) {
+      REQUIRE((r.integral.force - x.integral.force).norm() < 1e-13);
+      REQUIRE(std::abs(r.integral.moment_a - x.integral.moment_a) < 1e-13);
+      REQUIRE(std::abs(r.volume.energy - x.volume.energy) < 2e-14);
+      REQUIRE(std::abs(r.volume.overlap_area - x.volume.overlap_area) < 2e-14);
+    }
+  }
+}
+
 TEST_CASE("overlap polygons of simple polygons", "[overlap]") {
   // A comb on a bar: three components.
-  const Polygon comb({{0, 0}, {5, 0}, {5, 3}, {4, 3}, {4, 1}, {3, 1}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}});
+  const Polygon comb({{0, 0},
+                      {5, 0},
+                      {5, 3},
+                      {4, 3},
+                      {4, 1},
+                      {3, 1},
+                      {3, 3},
+                      {2, 3},
+                      {2, 1},
+                      {1, 1},
+                      {1, 3},
+                      {0, 3}});
   const Polygon bar({{-1, 2}, {6, 2}, {6, 2.5}, {-1, 2.5}});
   const auto three = overlap_polygons(comb, bar, Vec2::Zero());
   CHECK(three.size() == 3);
@@ -128,15 +185,15 @@ TEST_CASE("degenerate contacts are ordinary input", "[overlap]") {
       CHECK(std::abs(r.volume.overlap_area - overlap_area) < 1e-14);
     }
   };
-  check(test::shifted(square, {1, 0}), 0);                              // shared edge
-  check(test::shifted(square, {1, 1}), 0);                              // shared vertex
-  check(test::shifted(square, {1, .5}), 0);                             // part of an edge
-  check(test::shifted(square, {1.5, .5}), 0);                           // apart
-  check(square, 1);                                                     // coincident
-  check(test::shifted(square, {.5, 0}), .5);                            // two collinear edges
+  check(test::shifted(square, {1, 0}), 0);                                // shared edge
+  check(test::shifted(square, {1, 1}), 0);                                // shared vertex
+  check(test::shifted(square, {1, .5}), 0);                               // part of an edge
+  check(test::shifted(square, {1.5, .5}), 0);                             // apart
+  check(square, 1);                                                       // coincident
+  check(test::shifted(square, {.5, 0}), .5);                              // two collinear edges
   check(Polygon({{.25, .25}, {.75, .25}, {.75, .75}, {.25, .75}}), .25);  // one inside the other
-  check(Polygon({{.25, 0}, {.75, 0}, {.75, .5}, {.25, .5}}), .25);      // inside, on an edge
-  check(Polygon({{.5, 1}, {0, 2}, {-.5, 1}}), 0);                       // vertex on edge, edge on edge
+  check(Polygon({{.25, 0}, {.75, 0}, {.75, .5}, {.25, .5}}), .25);        // inside, on an edge
+  check(Polygon({{.5, 1}, {0, 2}, {-.5, 1}}), 0);  // vertex on edge, edge on edge
   check(Polygon({{1, 1}, {2, 1}, {2, 2}}), 0);
   check(test::shifted(square, {std::nextafter(1.0, 0.0), 0}), 1 - std::nextafter(1.0, 0.0));
 }

@@ -44,6 +44,23 @@ TEST_CASE("inscribed circles with known radius", "[potential]") {
     const Polygon p({{0, 0}, {.3, y}, {.7, y}, {1, 0}, {1, 1}, {.5, 1}, {0, 1}});
     CHECK(inscribed_circle(p).radius == Approx(.5).epsilon(1e-13));
   }
+  // Nearly straight vertices, at every angle of the bevel and turned by any angle.
+  test::Random random(1);
+  for (double h = 1e-3; h > 1e-18; h /= 10) {
+    const Polygon p({{-.5, -.4},
+                     {-.1, -.4 - h},
+                     {.2, -.4 - .9 * h},
+                     {.5, -.4},
+                     {.5 + h, .1},
+                     {.45, .5},
+                     {-.5, .5}});
+    for (int k = 0; k < 50; ++k) {
+      const Polygon turned = test::posed(p, {0, 0}, random.uniform(0, 6));
+      if (!turned.is_convex()) continue;
+      INFO("bevel " << h);
+      REQUIRE(std::abs(inscribed_circle(turned).radius - .45) < h + 1e-15);
+    }
+  }
   // A sliver: radius = area / half perimeter for a triangle.
   const Polygon sliver({{0, 0}, {1e6, 0}, {5e5, 1}});
   CHECK(inscribed_circle(sliver).radius == Approx(5e5 / (1e6 + 1e-6)).epsilon(1e-9));

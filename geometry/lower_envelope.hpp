@@ -1,0 +1,107 @@
+// Lower envelope of lines over a polygon, for any number type: its faces, its highest points, the
+// volume under it. By clipping alone: each face on its own, without a topology that round-off could
+// get wrong, and continuous in the lines.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace apothem::lower_envelope {
+
+template <class Real>
+using Vec = Eigen::Matrix<Real, 2, 1>;
+
+template <class Real>
+Real cross(const Vec<Real>& a, const Vec<Real>& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+template <class Real>
+struct Line {
+  Vec<Real> gradient;
+  Real height;  // at the origin
+  Real operator()(const Vec<Real>& x) const { return gradient.dot(x) + height; }
+};
+
+/// Part of the polygon where side >= 0 (> 0 unless `closed`).
+template <class Real>
+std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
+                            bool closed) {
+  std::vector<Vec<Real>> inside;
+  if (polygon.empty()) return inside;
+  inside.reserve(polygon.size() + 2);
+  const auto keep = [&](const Real& d) { return d > 0 || (closed && d == 0); };
+  const Vec<Real>* p = &polygon.back();
+  Real dp = side(*p);
+  for (const Vec<Real>& q : polygon) {
+    const Real dq = side(q);
+    if (keep(dp) != keep(dq)) inside.push_back(*p + (q - *p) * (dp / (dp - dq)));
+    if (keep(dq)) inside.push_back(q);
+    p = &q;
+    dp = dq;
+  }
+  return inside;
+}
+
+/// Part of the polygon where line e is the lowest of all. Two faces share the bit pattern of the
+/// bisector between them, and of two equal lines the first one has the face: nothing counts twice.
+template <class Real>
+std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
+                            size_t e) {
+  for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
+    const size_t k = (e + j) % lines.size();
+    polygon = clip(
+        polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
+  }
+  return polygon;
+}
+
+/// INT f dA for a linear f, by a fan of triangles.
+template <class Real>
+Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
+  Real sum = 0;
+  for (size_t i = 2; i < polygon.size(); ++i) {
+    const Vec<Real>&p = polygon[0], &q = polygon[i - 1], &r = polygon[i];
+    sum += cross<Real>(q - p, r - p) * (f(p) + f(q) + f(r)) / 6;
+  }
+  return sum;
+}
+
+/// INT min(1 if capped, min_i lines_i) dA over a polygon.
+template <class Real>
+Real volume_under(const std::vector<Line<Real>>& lines, bool capped,
+                  const std::vector<Vec<Real>>& polygon) {
+  const Line<Real> one{Vec<Real>(0, 0), 1};
+  Real volume = 0;
+  for (size_t e = 0; e < lines.size(); ++e) {
+    const Line<Real>& line = lines[e];
+    const std::vector<Vec<Real>> region = face(polygon, lines, e);
+    if (capped) {
+      volume += area_integral(clip(region, {-line.gradient, 1 - line.height}, true), line) +
+                area_integral(clip(region, {line.gradient, line.height - 1}, false), one);
+    } else {
+      volume += area_integral(region, line);
+    }
+  }
+  return volume;
+}
+
+/// The corners of all faces with the height of the envelope there: its maximum is at one of them.
+template <class Real>
+struct Corner {
+  Vec<Real> point;
+  Real height;
+};
+template <class Real>
+std::vector<Corner<Real>> corners(const std::vector<Line<Real>>& lines,
+                                  const std::vector<Vec<Real>>& polygon) {
+  std::vector<Corner<Real>> result;
+  for (size_t e = 0; e < lines.size(); ++e) {
+    for (const Vec<Real>& point : face(polygon, lines, e)) {
+      result.push_back({point, lines[e](point)});
+    }
+  }
+  return result;
+}
+
+}  // namespace apothem::lower_envelope

@@ -1,0 +1,297 @@
+// The program as its users meet it: arguments, exit codes, messages, files.
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "output/history.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+using Json = nlohmann::json;
+
+namespace {
+
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("apothem-program-" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return *this / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string content(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+struct Result {
+  int code;
+  std::string out, err;
+};
+
+struct Limits {
+  rlim_t file_size = RLIM_INFINITY;
+  double interrupt_after = 0;  // s
+};
+
+Result run(std::vector<std::string> arguments, const Folder& folder, const Limits& limits = {}) {
+  arguments.insert(arguments.begin(), test::kProgram);
+  const std::string out = folder / "stdout", err = folder / "stderr";
+  const pid_t child = fork();
+  if (child == 0) {
+    if (limits.file_size != RLIM_INFINITY) {
+      const rlimit limit{limits.file_size, limits.file_size};
+      setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
+    dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  if (limits.interrupt_after > 0) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(limits.interrupt_after));
+    kill(child, SIGINT);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out), content(err)};
+}
+
+int lines(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+const std::string kScene = test::kSource + "/data/scenes/impact-asymmetric.json";
+
+std::string scene(const std::string& time, const std::string& bodies_extra = "") {
+  return R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -9.81],
+  "contact": { "normal_stiffness": 20e9 },
+  "bodies": [ { "name": "flat", "material": "rock", "motion": "fixed", "polygon": [[-2,-1],[2,-1],[2,0],[-2,0]] },
+              { "name": "square", "material": "rock", "polygon": [[-0.5,0.1],[0.5,0.1],[0.5,1.1],[-0.5,1.1]] })" +
+         bodies_extra + R"( ],
+  "time": )" +
+         time + " }";
+}
+
+}  // namespace
+
+TEST_CASE("help and usage", "[program]") {
+  const Folder folder;
+  CHECK(run({"--help"}, folder).code == 0);
+  CHECK(run({"--version"}, folder).out.starts_with("apothem "));
+  for (const char* sub : {"run", "check", "contact"}) CHECK(run({sub, "--help"}, folder).code == 0);
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
+                                                {"fly"},
+                                                {"run"},
+                                                {"run", kScene, "--threads", "0"},
+                                                {"run", kScene, "--until", "-1"},
+                                                {"contact", "a"},
+                                                {"contact"},
+                                                {"contact", "a", "b", "--method", "guess"},
+                                                {"contact", "a", "b", "--reference", "x"}}) {
+    const Result r = run(wrong, folder);
+    INFO(r.err);
+    CHECK(r.code == 2);
+    CHECK(lines(r.err) == 1);
+  }
+}
+
+TEST_CASE("a run writes what the interface promises", "[program]") {
+  const Folder folder;
+  const std::string out = folder / "out";
+  const Result r = run({"run", kScene, "-o", out, "--until", "0.01", "--quiet"}, folder);
+  REQUIRE(r.code == 0);
+  CHECK(r.out.empty());
+  CHECK(r.err.empty());
+  const Json json = Json::parse(content(out + "/run.json"));
+  for (const char* key :
+       {"scene_hash", "version", "threads", "steps", "dt", "dt_limited_by", "wall_time",
+        "pairs_per_step", "largest_penetration", "largest_energy_error"}) {
+    INFO(key);
+    CHECK(json.contains(key));
+  }
+  CHECK(json["status"] == "done");
+  CHECK(json["steps"] == 5000);
+  CHECK(std::filesystem::exists(out + "/frames.pvd"));
+  CHECK(std::filesystem::exists(out + "/contacts.pvd"));
+  CHECK(read_history(out + "/history.csv").columns[0].back() == .01);
+  // Results are not overwritten unless asked.
+  const Result again = run({"run", kScene, "-o", out, "--until", "0.01"}, folder);
+  CHECK(again.code == 2);
+  CHECK(again.err.find("--overwrite") != std::string::npos);
+  std::ofstream(out + "/mine.txt") << "keep";
+  CHECK(run({"run", kScene, "-o", out, "--until", "0.005", "--overwrite"}, folder).code == 0);
+  CHECK(content(out + "/mine.txt") == "keep");
+  CHECK(read_history(out + "/history.csv").columns[0].back() == .005);
+}
+
+TEST_CASE("bad scenes end with exit code 2 and nothing on disk", "[program]") {
+  const Folder folder;
+  for (
+      const std::string& text :
+      {std::string("{"), scene(R"({ "end": 1, "step": 1e-3 })"), scene(R"({ "end": 1 })", ", {}"),
+       scene(
+           R"({ "end": 1 })",
+           R"(, { "name": "deep", "material": "rock", "polygon": [[-0.5,0.11],[0.5,0.1],[0.5,1.1],[-0.5,1.1]] })")}) {
+    const std::string file = folder.write("bad.json", text);
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"run", file, "-o", folder / "bad"}, {"check", file}}) {
+      const Result r = run(arguments, folder);
+      INFO(r.err);
+      CHECK(r.code == 2);
+      CHECK(lines(r.err) == 1);
+      CHECK(r.err.find(file) != std::string::npos);
+      CHECK_FALSE(std::filesystem::exists(folder / "bad"));
+    }
+  }
+  const Result limit =
+      run({"check", folder.write("bad.json", scene(R"({ "end": 1, "step": 1e-3 })"))}, folder);
+  CHECK(limit.err.find("stability limit of 0.000316") != std::string::npos);
+  CHECK(limit.err.find("/time/step") != std::string::npos);
+  CHECK(run({"run", "no-such-file.json"}, folder).code == 2);
+}
+
+TEST_CASE("check prints the plan", "[program]") {
+  const Folder folder;
+  const Result r = run({"check", kScene}, folder);
+  CHECK(r.code == 0);
+  for (const char* word :
+       {"bodies", "time step", "limited by", "contact", "friction", "finite elements"})
+    CHECK(r.out.find(word) != std::string::npos);
+}
+
+TEST_CASE("an unstable run keeps its last good frame", "[program]") {
+  const Folder folder;
+  const std::string soft = folder.write(
+      "soft.json", R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -9.81],
+    "contact": { "normal_stiffness": 1e4 },
+    "bodies": [ { "name": "flat", "material": "rock", "motion": "fixed", "polygon": [[-2,-1],[2,-1],[2,0],[-2,0]] },
+                { "name": "square", "material": "rock", "polygon": [[-0.5,0.1],[0.5,0.1],[0.5,1.1],[-0.5,1.1]] } ],
+    "time": { "end": 2 }, "output": { "frames": 20, "history": { "interval": 0.01 } } })");
+  const Result r = run({"run", soft, "-o", folder / "soft"}, folder);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("\"square\"") != std::string::npos);
+  CHECK(r.err.find("t = ") != std::string::npos);
+  CHECK(Json::parse(content(folder / "soft/run.json"))["status"] == "unstable");
+  CHECK(content(folder / "soft/frames.pvd").find("bodies_000002.vtu") != std::string::npos);
+  CHECK(read_history(folder / "soft/history.csv").columns[0].size() > 10);
+}
+
+TEST_CASE("Ctrl-C finishes the step and closes the files", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("long.json", scene(R"({ "end": 10000 })"));
+  const Result r = run({"run", file, "-o", folder / "long"}, folder, {.interrupt_after = 0.5});
+  CHECK(r.code == 130);
+  const Json json = Json::parse(content(folder / "long/run.json"));
+  CHECK(json["status"] == "interrupted");
+  CHECK(json["steps"] > 0);
+  CHECK(read_history(folder / "long/history.csv").columns[0].back() == json["time"]);
+  CHECK(content(folder / "long/frames.pvd").ends_with("</VTKFile>\n"));
+}
+
+TEST_CASE("a system that fails gives exit code 4 and keeps what was complete", "[program]") {
+  const Folder folder;
+  CHECK(run({"run", kScene, "-o", "/dev/null/out"}, folder).code == 4);
+  CHECK(run({"run", kScene, "-o", "/proc/out"}, folder).code == 4);
+  // Files may not grow beyond 24 kB: the histories hit that after some frames.
+  const Result r = run({"run", kScene, "-o", folder / "full"}, folder, {.file_size = 24 << 10});
+  INFO(r.err);
+  CHECK(r.code == 4);
+  CHECK(r.err.find("cannot be written") != std::string::npos);
+  const HistoryTable history = read_history(folder / "full/history.csv");
+  CHECK(history.columns[0].size() > 10);
+  const std::string pvd = content(folder / "full/frames.pvd");
+  CHECK(pvd.ends_with("</VTKFile>\n"));
+  for (size_t at = 0; (at = pvd.find("file=\"", at)) != std::string::npos;) {
+    at += 6;
+    const std::string frame = folder / ("full/" + pvd.substr(at, pvd.find('"', at) - at));
+    CHECK(content(frame).ends_with("</VTKFile>\n"));
+  }
+}
+
+TEST_CASE("the same scene gives the same bits", "[program]") {
+  const Folder folder;
+  std::vector<Json> results;
+  for (const char* threads : {"1", "1", "2"}) {
+    REQUIRE(run({"run", test::kSource + "/data/scenes/two-body-collision.json", "-o",
+                 folder / "bits", "--overwrite", "--until", "0.3", "--threads", threads},
+                folder)
+                .code == 0);
+    results.push_back(Json::parse(content(folder / "bits/run.json"))["final_state_hash"]);
+  }
+  CHECK(results[0] == results[1]);
+  CHECK(results[0] == results[2]);
+}
+
+TEST_CASE("contact of two polygon files", "[program]") {
+  const Folder folder;
+  const std::string c = folder.write("c.wkt", "POLYGON((0 0.25, 0.5 1, -0.5 1, 0 0.25))");
+  const std::string t = folder.write("t.json", R"({"polygon": [[-2,-1],[2,-1],[2,0.5],[-2,0.5]]})");
+  const Result r =
+      run({"contact", c, t, "--method", "all", "--stiffness", "2e9", "--json"}, folder);
+  REQUIRE(r.code == 0);
+  const Json json = Json::parse(r.out);
+  CHECK(json["normal_stiffness"] == 2e9);
+  REQUIRE(json["results"].size() == 3);
+  // Apex on flat: depth d = 1/4, tan a = 2/3.
+  const double d = .25, tan_a = 2.0 / 3, sin_a = 2 / std::sqrt(13.0);
+  const double rc = .75 / (1 + 2 * std::sqrt(.25 + .5625)), rt = .75;
+  const double force = 2e9 * d * d * tan_a * (1 / rt + sin_a / rc);
+  for (const Json& result : json["results"]) {
+    INFO(result["method"]);
+    CHECK(result["force"][1].get<double>() == Approx(force).epsilon(1e-13));
+    CHECK(result["energy"].get<double>() == Approx(force * d / 3).epsilon(1e-13));
+    CHECK(result["overlap_area"].get<double>() == Approx(d * d * tan_a).epsilon(1e-14));
+    CHECK(result["loading_point"][0].get<double>() == Approx(0).margin(1e-15));
+    for (const char* key : {"moment_a", "moment_b", "own_length_a", "own_length_b", "seconds"})
+      CHECK(result.contains(key));
+  }
+  const Result bad =
+      run({"contact", c, folder.write("bad.json", "[[0,0],[1,1],[1,0],[0,1]]")}, folder);
+  CHECK(bad.code == 2);
+  CHECK(bad.err.find("bad.json") != std::string::npos);
+}
+
+TEST_CASE("contact of many pairs goes on after a refusal", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("pairs.txt",
+                                        "good#1 3 0 0 1 0 0 1 3 0.2 0.2 1 1 0 1\n"
+                                        "bow#2 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n"
+                                        "short#3 3 0 0 1 0\n"
+                                        "nan#4 3 0 0 1 0 0 nan 3 0 0 1 0 0 1\n"
+                                        "good#5 3 0 0 1 0 0 1 3 5 5 6 5 5 6\n");
+  const Result r = run({"contact", "--batch", file, "--method", "all"}, folder);
+  CHECK(r.code == 2);
+  std::istringstream text(r.out);
+  std::vector<Json> objects;
+  for (std::string line; std::getline(text, line);) objects.push_back(Json::parse(line));
+  REQUIRE(objects.size() == 5);
+  CHECK(objects[0]["results"].size() == 3);
+  CHECK(objects[1]["error"].get<std::string>().find("cross") != std::string::npos);
+  CHECK(objects[1]["vertex"] == 2);
+  CHECK(objects[2].contains("error"));
+  CHECK(objects[3]["vertex"] == 2);
+  CHECK(objects[4]["results"][0]["force"][0] == 0);
+}

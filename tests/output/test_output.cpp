@@ -1,0 +1,234 @@
+#include <sys/resource.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "output/files.hpp"
+#include "output/frames.hpp"
+#include "output/history.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+
+namespace {
+
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("apothem-output-" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  [[nodiscard]] std::string path() const { return path_.string(); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string content(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Model two_bodies() {
+  Model model;
+  model.origin = {1024, -512};
+  model.materials = {{"rock", 2000}, {"ice", 900}};
+  for (const char* name : {"one", "two"}) {
+    RigidBody body;
+    body.name = name;
+    body.material = body.name == "two";
+    set_shape(body, test::shifted(test::quad_q(), model.origin + Vec2(body.material * 3, 0)),
+              model);
+    model.bodies.push_back(body);
+  }
+  return model;
+}
+
+State state_of(const Model& model) {
+  State state;
+  for (const RigidBody& body : model.bodies) {
+    state.position.insert(state.position.end(), {body.position.x(), body.position.y(), body.angle});
+    state.velocity.insert(state.velocity.end(), {0, 0, 0});
+    state.force.insert(state.force.end(), {0, 0, 0});
+  }
+  return state;
+}
+
+// (time, file) of every entry of a collection.
+std::vector<std::pair<double, std::string>> entries(const std::string& file) {
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_xml(file, tree);
+  std::vector<std::pair<double, std::string>> result;
+  for (const auto& [name, node] : tree.get_child("VTKFile.Collection")) {
+    if (name == "DataSet")
+      result.emplace_back(node.get<double>("<xmlattr>.timestep"),
+                          node.get<std::string>("<xmlattr>.file"));
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
+  const Folder folder;
+  const Model model = two_bodies();
+  State state = state_of(model);
+  FrameWriter frames(folder.path(), model);
+  frames.write(state, {});
+  state.time = 0.1 + 0.2;  // not representable in few digits
+  state.position[3] += 0.25;
+  state.position[5] = M_PI / 2;
+  state.velocity = {1, 2, 0, 0, 0, 3};
+  state.force = {5, 6, 7, 0, 0, 0};
+  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, 1e-3, 0.01}});
+
+  const auto list = entries(folder / "frames.pvd");
+  REQUIRE(list.size() == 2);
+  CHECK(list[0].first == 0);
+  CHECK(list[1].first == 0.1 + 0.2);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / list[1].second).c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  REQUIRE(grid->GetNumberOfCells() == 2);
+  REQUIRE(grid->GetNumberOfPoints() == 8);
+  CHECK(grid->GetCellType(0) == VTK_POLYGON);
+  CHECK(grid->GetFieldData()->GetArray("TimeValue")->GetTuple1(0) == 0.1 + 0.2);
+  auto* names = vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray("body_names"));
+  REQUIRE(names);
+  CHECK(names->GetValue(1) == "two");
+  CHECK(grid->GetCellData()->GetArray("body")->GetTuple1(1) == 1);
+  CHECK(grid->GetCellData()->GetArray("material")->GetTuple1(1) == 1);
+  CHECK(grid->GetCellData()->GetArray("contact_force")->GetComponent(0, 1) == 6);
+  CHECK(grid->GetPointData()->GetArray("velocity")->GetComponent(0, 1) == 2);
+  // Body two: quarter turn about its centre, then 0.25 to the right; world coordinates.
+  const Vec2 centre = model.bodies[1].position + model.origin + Vec2(.25, 0);
+  for (int i = 0; i < 4; ++i) {
+    const Vec2 arm = model.bodies[1].potential.vertices[i];
+    double p[3];
+    grid->GetPoint(4 + i, p);
+    CHECK(p[0] == Approx(centre.x() - arm.y()).epsilon(1e-15));
+    CHECK(p[1] == Approx(centre.y() + arm.x()).epsilon(1e-15));
+    CHECK(grid->GetPointData()->GetArray("displacement")->GetComponent(4 + i, 0) ==
+          Approx(.25 - arm.y() - arm.x()).margin(1e-15));
+    CHECK(grid->GetPointData()->GetArray("velocity")->GetComponent(4 + i, 0) ==
+          Approx(-3 * arm.x()).margin(1e-14));
+  }
+
+  const auto contacts = entries(folder / "contacts.pvd");
+  REQUIRE(contacts.size() == 2);
+  reader->SetFileName((folder / contacts[1].second).c_str());
+  reader->Update();
+  REQUIRE(grid->GetNumberOfPoints() == 1);
+  CHECK(grid->GetPoint(0)[0] == 1024.5);
+  CHECK(grid->GetPointData()->GetArray("force_on_a")->GetComponent(0, 1) == 20);
+  CHECK(grid->GetPointData()->GetArray("penetration")->GetTuple1(0) == 1e-3);
+  CHECK(grid->GetPointData()->GetArray("phi")->GetTuple1(0) == 0.01);
+}
+
+TEST_CASE("histories read back to the same doubles", "[output]") {
+  const Folder folder;
+  const Model model = two_bodies();
+  State state = state_of(model);
+  test::Random random(30);
+  std::vector<std::vector<double>> rows;
+  {
+    HistoryWriter writer(folder.path(), model, {1});
+    for (int i = 0; i < 500; ++i) {
+      const auto any = [&] { return std::ldexp(random.uniform(-1, 1), random.integer(-300, 300)); };
+      state.time = i / 3.0;
+      for (double& v : state.velocity) v = any();
+      for (double& f : state.force) f = any();
+      const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
+      const Momenta p{any(), any(), any(), any(), any(), any()};
+      writer.add(state, e, p);
+      rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
+                      p.angular_error});
+    }
+    writer.flush();
+  }
+  const HistoryTable history = read_history(folder / "history.csv");
+  const HistoryTable energy = read_history(folder / "energy.csv");
+  const HistoryTable momentum = read_history(folder / "momentum.csv");
+  CHECK(content(folder / "history.csv")
+            .starts_with("time [s],two.x [m],two.y [m],two.angle [rad],two.vx [m/s],"));
+  CHECK(content(folder / "energy.csv")
+            .starts_with("time,kinetic,strain,contact,gravity,friction_loss,damping_loss,external_"
+                         "work,total_error\n"));
+  REQUIRE(history.columns[0].size() == rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    REQUIRE(history.columns[0][i] == rows[i][0]);
+    REQUIRE((*history.column("two.vx"))[i] == rows[i][1]);
+    REQUIRE((*history.column("two.fy"))[i] == rows[i][2]);
+    REQUIRE((*energy.column("contact"))[i] == rows[i][3]);
+    REQUIRE((*energy.column("total_error"))[i] == rows[i][4]);
+    REQUIRE((*momentum.column("angular_error"))[i] == rows[i][5]);
+  }
+}
+
+TEST_CASE("expectations are judged by what was recorded", "[output]") {
+  const Folder folder;
+  const Model model = two_bodies();
+  State state = state_of(model);
+  HistoryWriter writer(folder.path(), model, {0});
+  for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
+    state.time = i * .1;
+    state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
+    writer.add(state, {}, {});
+  }
+  writer.flush();
+  const double top = 3 + model.origin.y();
+  using Take = Expectation::Take;
+  CHECK(evaluate({"one.y", Take::maximum, {}, {}, top, 1e-12}, folder.path()).met);
+  CHECK_FALSE(evaluate({"one.y", Take::maximum, {}, {}, top + 1e-3, 1e-4}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::first, {}, {}, top - 1.03 * 1.03, 1e-12}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::last, {}, {}, top - .97 * .97, 1e-12}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::maximum, {}, 0.55, top - .53 * .53, 1e-12}, folder.path()).met);
+  CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, 0, 1}, folder.path()));
+}
+
+TEST_CASE("a full disk costs the block, not the file", "[output]") {
+  // A file-size limit stands in for the full disk: write() fails in the same way.
+  const Folder folder;
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  write_file(folder / "old", "old content");
+  AppendedFile log(folder / "log");
+  log.append("first block\n");
+  const rlimit small{4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string block(10000, 'x');
+  std::string error;
+  try {
+    log.append(block);
+  } catch (const SystemFailure& failure) {
+    error = failure.what();
+  }
+  CHECK_THROWS_AS(write_file(folder / "old", block), SystemFailure);
+  CHECK_THROWS_AS(write_file(folder / "new", block), SystemFailure);
+  setrlimit(RLIMIT_FSIZE, &before);
+  CHECK(error.find("log: cannot be written") != std::string::npos);
+  CHECK(content(folder / "log") == "first block\n");
+  CHECK(content(folder / "old") == "old content");
+  CHECK_FALSE(std::filesystem::exists(folder / "new"));
+  log.append("next\n");
+  CHECK(content(folder / "log") == "first block\nnext\n");
+  CHECK_THROWS_AS(create_folder("/dev/null/out"), SystemFailure);
+}

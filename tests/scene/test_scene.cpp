@@ -1,0 +1,296 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "scene/polygon_file.hpp"
+#include "scene/scene.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+using Json = nlohmann::json;
+
+namespace {
+
+// Scenes in a folder of their own, gone at the end.
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("apothem-scene-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const char* const kGood = R"({
+  "name": "good", // a comment
+  "gravity": [0, -9.81],
+  "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2, "plane": "stress" } },
+  "contact": { "potential": "distance", "normal_stiffness": 20e9, "reference": "roof" },
+  "bodies": [
+    { "name": "target", "material": "rock", "motion": "fixed",
+      "polygon": [[-1, -1], [1, -1], [1, 0], [-1, 0]] },
+    { "name": "falling", "material": "rock", "velocity": [0, -1], "spin": 0.5,
+      "polygon": [[0, 0.1], [0.5, 0.9], [-0.5, 0.9]] }
+  ],
+  "time": { "end": 1.0, "step": "auto", "safety": 0.1 },
+  "output": { "frames": 10, "history": { "interval": 1e-3, "track": [ { "body": "falling" } ] } },
+  "expect": [ { "quantity": "falling.y", "take": "max", "between": [0, 1], "value": 1, "tolerance": 1 } ]
+})";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+std::string error_of(const std::string& file) {
+  try {
+    read_scene(file);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Broken {
+  const char* what;     // in the good scene
+  const char* by;       // instead
+  const char* place;    // line:pointer that the message must name
+  const char* message;  // and what it must say
+  bool schema = true;   // whether the JSON Schema refuses it as well
+};
+
+const std::vector<Broken> kBroken{
+    {"\"gravity\"", "\"gravty\"", ":3: /gravty", "did you mean \"gravity\""},
+    {"\"density\"", "\"densty\"", ":4: /materials/rock/densty", "did you mean \"density\""},
+    {"\"potential\"", "\"friction\"", ":5: /contact/friction", "unknown key"},
+    {"\"motion\"", "\"moton\"", ":7: /bodies/0/moton", "did you mean \"motion\""},
+    {"\"safety\"", "\"safty\"", ":12: /time/safty", "did you mean \"safety\""},
+    {"\"frames\"", "\"frame\"", ":13: /output/frame", "did you mean \"frames\""},
+    {"\"interval\"", "\"intervall\"", ":13: /output/history/intervall",
+     "did you mean \"interval\""},
+    {"\"take\"", "\"takes\"", ":14: /expect/0/takes", "did you mean \"take\""},
+    {"2000", "-2000", ":4: /materials/rock/density", "must be positive (in kg/m^3), not -2000"},
+    {"2000", "0", ":4: /materials/rock/density", "must be positive"},
+    {"2000", "NaN", ":4: ", "not valid JSON"},
+    {"2000", "1e999", ":4: ", "out of the range", false},
+    {"2000", "\"2000 kg/m3\"", ":4: /materials/rock/density",
+     "must be a number in kg/m^3, not a string"},
+    {"\"density\": 2000, ", "", ":4: /materials/rock", "missing key \"density\""},
+    {"20e9, \"poisson\"", "-1, \"poisson\"", ":4: /materials/rock/young", "must be positive"},
+    {"0.2, \"plane\"", "0.5, \"plane\"", ":4: /materials/rock/poisson", "between -1 and 0.5"},
+    {"\"stress\"", "\"stres\"", ":4: /materials/rock/plane", "did you mean \"stress\""},
+    {"[0, -9.81]", "-9.81", ":3: /gravity", "must be [x, y] in m/s^2"},
+    {"[0, -9.81]", "[0, -9.81, 0]", ":3: /gravity", "must be [x, y]"},
+    {"[0, -9.81]", "[0, null]", ":3: /gravity/1", "must be a number, not null"},
+    {"\"good\"", "\"../good\"", ":2: /name", "name of a folder"},
+    {"\"distance\"", "\"distanse\"", ":5: /contact/potential", "did you mean \"distance\""},
+    {"\"normal_stiffness\": 20e9, ", "", ":5: /contact", "missing key \"normal_stiffness\""},
+    {"\"normal_stiffness\": 20e9", "\"normal_stiffness\": -1", ":5: /contact/normal_stiffness",
+     "must be positive (in Pa)"},
+    {"\"roof\"", "\"floor\"", ":5: /contact/reference",
+     "unknown choice \"floor\" (known: roof, inscribed_circle)"},
+    {"\"roof\"", "-0.1", ":5: /contact/reference", "must be positive (in m)"},
+    {"\"distance\"", "\"area\"", ":5: /contact/reference", "no reference length", false},
+    {"\"potential\": \"distance\", \"normal_stiffness\": 20e9, \"reference\": \"roof\"",
+     "\"potential\": \"area\", \"normal_stiffness\": 1", ":8: /bodies/0/polygon/3",
+     "triangles only", false},
+    {"\"name\": \"falling\"", "\"name\": \"target\"", ":9: /bodies/1/name",
+     "already the name of body 0", false},
+    {"\"name\": \"falling\"", "\"name\": \"fall,ing\"", ":9: /bodies/1/name", "must not be empty"},
+    {"\"name\": \"falling\", ", "", ":9: /bodies/1", "missing key \"name\""},
+    {"\"material\": \"rock\", \"velocity\"", "\"material\": \"rok\", \"velocity\"",
+     ":9: /bodies/1/material", "did you mean \"rock\"", false},
+    {"[0.5, 0.9], [-0.5, 0.9]]", "[0.5, 0.9]]", ":10: /bodies/1/polygon/1", "needs at least 3"},
+    {"[1, -1], [1, 0], [-1, 0]]", "[1, 0], [1, -1], [-1, 0]]", ":8: /bodies/0/polygon/2",
+     "edge 0 and edge 2 cross or touch", false},
+    {"[1, -1], [1, 0], [-1, 0]]", "[1, -1], [1, -1], [-1, 0]]", ":8: /bodies/0/polygon/2",
+     "vertex 2 repeats vertex 1", false},
+    {"[1, -1], [1, 0], [-1, 0]]", "[1, -1], [0, -1], [-1, 0]]", ":8: /bodies/0/polygon/1", "spike",
+     false},
+    {"[1, 0], [-1, 0]]", "[1, 0], [0, -0.5], [-1, 0]]", ":8: /bodies/0/polygon/3", "reflex", false},
+    {"[1, 0], [-1, 0]]", "[1, 0], [-1]]", ":8: /bodies/0/polygon/3", "must be [x, y] in m"},
+    {"[1, 0], [-1, 0]]", "[1, 0], [-1, 1e300]]", ":8: /bodies/0/polygon/3", "beyond 1e60", false},
+    {"\"polygon\": [[-1, -1], [1, -1], [1, 0], [-1, 0]]", "\"polygon\": \"missing.wkt\"",
+     ":8: /bodies/0/polygon", "cannot be opened", false},
+    {"\"polygon\": [[-1, -1], [1, -1], [1, 0], [-1, 0]]", "\"polygon\": { }",
+     ":8: /bodies/0/polygon", "must be an array"},
+    {"\"motion\": \"fixed\"", "\"motion\": \"fixed\", \"velocity\": [1, 0]",
+     ":7: /bodies/0/velocity", "a fixed body has no initial velocity", false},
+    {"\"motion\": \"fixed\"", "\"motion\": \"fixed\", \"spin\": 1", ":7: /bodies/0/spin",
+     "a fixed body has no initial velocity", false},
+    {"\"motion\": \"fixed\"", "\"motion\": \"fix\"", ":7: /bodies/0/motion", "unknown choice"},
+    {"\"motion\": \"fixed\"", "\"motion\": { \"velocity\": [] }", ":7: /bodies/0/motion",
+     "at least one row", false},
+    {"\"motion\": \"fixed\"", "\"motion\": { \"velocity\": [[1, 0, 0], [0, 0, 0]] }",
+     ":7: /bodies/0/motion/velocity/1", "times must increase", false},
+    {"\"motion\": \"fixed\"", "\"fix\": [\"z\"]", ":7: /bodies/0/fix/0", "unknown choice"},
+    {"\"velocity\": [0, -1]", "\"fix\": [\"y\"], \"velocity\": [0, -1]", ":9: /bodies/1/velocity/1",
+     "must be 0", false},
+    {"\"end\": 1.0", "\"end\": 0", ":12: /time/end", "must be positive"},
+    {"\"end\": 1.0, ", "", ":12: /time", "missing key \"end\""},
+    {"\"auto\"", "\"automatic\"", ":12: /time/step", "unknown choice"},
+    {"\"auto\"", "-1e-5", ":12: /time/step", "must be positive"},
+    {"\"auto\"", "1e-5", ":12: /time/safety", "automatic step only", false},
+    {"\"auto\", \"safety\": 0.1", "2", ":12: /time/step", "longer than the whole run", false},
+    {"\"safety\": 0.1", "\"safety\": 1.5", ":12: /time/safety", "must not exceed 0.8"},
+    {"\"frames\": 10", "\"frames\": -1", ":13: /output/frames", "whole number"},
+    {"\"frames\": 10", "\"frames\": 1.5", ":13: /output/frames", "whole number"},
+    {"{ \"body\": \"falling\" }", "{ \"body\": \"fallin\" }", ":13: /output/history/track/0/body",
+     "did you mean \"falling\"", false},
+    {"{ \"body\": \"falling\" }", "\"falling\"", ":13: /output/history/track/0",
+     "must be an object"},
+    {"\"falling.y\"", "\"falling.z\"", ":14: /expect/0/quantity", "no history has a column", false},
+    {"\"tolerance\": 1 ", "\"tolerance\": 1, \"relative\": 1 ", ":14: /expect/0", "either"},
+    {"[0, 1], \"value\"", "[1, 0], \"value\"", ":14: /expect/0/between", "before it starts", false},
+    {"\"gravity\": [0, -9.81],", "\"gravity\": [0, -9.81], \"gravity\": [0, 0],", ":3: /gravity",
+     "duplicate key, first given in line 3", false},
+    {"\"gravity\": [0, -9.81],", "\"gravity\": [0, -9.81]", ":4: ", "not valid JSON"},
+    {"\"expect\"", "\"bodies\"", ":14: /bodies", "duplicate key, first given in line 6", false},
+};
+
+void read_schema(valijson::Schema& schema) {
+  const Json text = Json::parse(std::ifstream(test::kSource + "/docs/scene.schema.json"));
+  valijson::SchemaParser parser;
+  parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema);
+}
+
+bool valid(const valijson::Schema& schema, const std::string& text) {
+  const Json json =
+      Json::parse(text, nullptr, /*allow_exceptions=*/false, /*ignore_comments=*/true);
+  if (json.is_discarded()) return false;
+  valijson::Validator validator;
+  return validator.validate(schema, valijson::adapters::NlohmannJsonAdapter(json), nullptr);
+}
+
+}  // namespace
+
+TEST_CASE("a good scene becomes a model", "[scene]") {
+  const Folder folder;
+  const Scene scene = read_scene(folder.write("good.json", kGood));
+  CHECK(scene.model.name == "good");
+  REQUIRE(scene.model.bodies.size() == 2);
+  const RigidBody& falling = scene.model.bodies[1];
+  CHECK(falling.mass == Approx(2000 * .4));
+  CHECK(falling.position.y() + scene.model.origin.y() == Approx(.1 + .8 * 2 / 3));
+  CHECK(falling.velocity.y() == -1);
+  CHECK(scene.model.bodies[0].motion == Motion::fixed);
+  CHECK(scene.output.track == std::vector<int>{1});
+  CHECK_FALSE(scene.time.fixed_step);
+}
+
+TEST_CASE("every kind of broken scene gives one line that names the place", "[scene]") {
+  REQUIRE(kBroken.size() >= 40);
+  const Folder folder;
+  for (const Broken& broken : kBroken) {
+    const std::string file = folder.write("broken.json", replaced(kGood, broken.what, broken.by));
+    const std::string error = error_of(file);
+    INFO(broken.what << " -> " << broken.by << "\n" << error);
+    CHECK(error.find(file + broken.place) == 0);
+    CHECK(error.find(broken.message) != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK(error_of(folder.write("empty.json", "")).find("not valid JSON") != std::string::npos);
+  CHECK(error_of(folder.write("array.json", "[]")).find("must be an object") != std::string::npos);
+  CHECK(error_of(folder.write("deep.json", std::string(100000, '['))).find("nested too deeply") !=
+        std::string::npos);
+  CHECK(error_of("/nowhere/scene.json").find("cannot be opened") != std::string::npos);
+  CHECK(error_of("/tmp").find("is a directory") != std::string::npos);
+}
+
+TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
+  valijson::Schema schema;
+  read_schema(schema);
+  CHECK(valid(schema, kGood));
+  for (const Broken& broken : kBroken) {
+    INFO(broken.what << " -> " << broken.by);
+    if (broken.schema) CHECK_FALSE(valid(schema, replaced(kGood, broken.what, broken.by)));
+  }
+  int shipped = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::kSource + "/data/scenes")) {
+    INFO(entry.path());
+    CHECK(valid(schema, read_text(entry.path().string())));
+    CHECK_NOTHROW(read_scene(entry.path().string()));
+    ++shipped;
+  }
+  CHECK(shipped >= 7);
+}
+
+TEST_CASE("the JSON Schema lists exactly the keys that the reader knows", "[scene]") {
+  // The reader lists its keys when it meets one it does not know.
+  const Json schema = Json::parse(std::ifstream(test::kSource + "/docs/scene.schema.json"));
+  const Json& top = schema["properties"];
+  const Json& definitions = schema["definitions"];
+  struct Case {
+    const char* at;
+    const Json* properties;
+  };
+  const Case cases[]{
+      {"\"gravity\"", &top},
+      {"\"density\"", &top["materials"]["additionalProperties"]["properties"]},
+      {"\"normal_stiffness\"", &top["contact"]["properties"]},
+      {"\"name\": \"target\"", &definitions["body"]["properties"]},
+      {"\"end\"", &top["time"]["properties"]},
+      {"\"frames\"", &top["output"]["properties"]},
+      {"\"interval\"", &top["output"]["properties"]["history"]["properties"]},
+      {"\"quantity\"", &definitions["expectation"]["properties"]},
+  };
+  const Folder folder;
+  for (const Case& c : cases) {
+    const std::string error = error_of(
+        folder.write("keys.json", replaced(kGood, c.at, std::string("\"qqqqqqqq\": 1, ") + c.at)));
+    INFO(error);
+    const size_t start = error.find("(known here: ");
+    REQUIRE(start != std::string::npos);
+    std::istringstream list(error.substr(start + 13, error.size() - start - 14));
+    std::vector<std::string> known, published;
+    for (std::string key; std::getline(list, key, ',');)
+      known.push_back(key.substr(key.find_first_not_of(' ')));
+    for (const auto& [key, value] : c.properties->items()) published.push_back(key);
+    std::sort(known.begin(), known.end());
+    CHECK(known == published);
+  }
+}
+
+TEST_CASE("polygon files: JSON, object and WKT", "[scene]") {
+  const Folder folder;
+  const std::vector<Vec2> expected{{0, 0}, {1.5, 0}, {0.25, 1e-3}};
+  CHECK(read_polygon_file(folder.write("a.json", "[[0,0],[1.5,0],[0.25,1e-3]]")) == expected);
+  CHECK(read_polygon_file(folder.write("b.json", "{\"polygon\": [[0,0],[1.5,0],[0.25,1e-3]]}")) ==
+        expected);
+  CHECK(read_polygon_file(folder.write("c.wkt", "POLYGON((0 0, 1.5 0, 0.25 1e-3, 0 0))\n")) ==
+        expected);
+  CHECK_THROWS_AS(read_polygon_file(
+                      folder.write("d.wkt", "POLYGON((0 0, 4 0, 4 4, 0 0), (3 1, 3 2, 2 1, 3 1))")),
+                  SceneError);
+  CHECK_THROWS_AS(read_polygon_file(folder.write("e.wkt", "POINT(0 0)")), SceneError);
+  CHECK_THROWS_AS(read_polygon_file(folder.write("f.wkt", "POLYGON((0 zero))")), SceneError);
+  CHECK_THROWS_AS(read_polygon_file(folder.write("g.json", "  ")), SceneError);
+  const std::string scene = replaced(kGood, "[[0, 0.1], [0.5, 0.9], [-0.5, 0.9]]", "\"c.wkt\"");
+  CHECK(read_scene(folder.write("file.json", scene)).model.bodies[1].area ==
+        Approx(1.5 * 1e-3 / 2));
+}
+
+TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {
+  const Folder folder;
+  const std::string scene =
+      replaced(kGood, "\"velocity\": [0, -1]", "\"position\": [1e9, 5], \"angle\": 0.5");
+  const Scene far = read_scene(folder.write("placed.json", scene));
+  const RigidBody& body = far.model.bodies[1];
+  CHECK(body.position.x() + far.model.origin.x() == 1e9);
+  CHECK(body.position.y() + far.model.origin.y() == 5);
+  CHECK(body.angle == 0.5);
+}
