@@ -23,7 +23,10 @@ void add_run(CLI::App& app, RunOptions& o) {
       ->capture_default_str();
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
       ->check(CLI::PositiveNumber);
-  sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder");
+  CLI::Option* resume =
+      sub->add_flag("--resume", o.resume, "Continue from the checkpoint in the output folder");
+  sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
+      ->excludes(resume);
   sub->add_flag("--quiet", o.quiet, "No progress and no summary");
   sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
 }

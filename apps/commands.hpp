@@ -20,6 +20,7 @@ struct RunOptions {
   std::string folder;  ///< empty: out/NAME
   int threads = 1;
   std::optional<double> until;  ///< s
+  bool resume = false;          ///< from the folder's checkpoint
   bool overwrite = false;
   bool quiet = false;
   bool verify = false;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "checkpoint.hpp"
 #include "commands.hpp"
 #include "output/files.hpp"
 #include "output/frames.hpp"
@@ -52,7 +53,7 @@ std::string state_hash(const State& state) {
 // A folder with results in it is never touched unless the user says so, and then only our files.
 void prepare_folder(const std::string& folder, bool overwrite) {
   constexpr std::array ours{"run.json",    "frames.pvd", "contacts.pvd", "frames",
-                            "history.csv", "energy.csv", "momentum.csv"};
+                            "history.csv", "energy.csv", "momentum.csv", "checkpoint.json"};
   for (const char* name : ours) {
     const std::filesystem::path path = std::filesystem::path(folder) / name;
     std::error_code error;
@@ -122,7 +123,8 @@ class Progress {
 // Says when the next record is due; a record falls on the first step at or after its time.
 class Schedule {
  public:
-  explicit Schedule(double interval) : interval_(interval) {}
+  Schedule(double interval, std::int64_t next) : interval_(interval), next_(next) {}
+  [[nodiscard]] std::int64_t next() const { return next_; }
   bool due(double time, double step) {
     if (!(time >= static_cast<double>(next_) * interval_ - 1e-6 * step)) return false;
     next_ = static_cast<std::int64_t>(std::floor(time / interval_ + 1e-6)) + 1;
@@ -131,7 +133,7 @@ class Schedule {
 
  private:
   double interval_;
-  std::int64_t next_ = 1;
+  std::int64_t next_;
 };
 
 class Run {
@@ -141,16 +143,23 @@ class Run {
         scene_(scene),
         simulation_(make_simulation(scene, options.threads)),
         end_(options.until.value_or(scene.time.end)),
-        folder_(options.folder.empty() ? "out/" + scene.model.name : options.folder) {}
+        folder_(options.folder.empty() ? "out/" + scene.model.name : options.folder),
+        scene_hash_(fmt::format("fnv1a64:{:016x}", fnv1a(scene.text.data(), scene.text.size()))) {}
 
   int execute() {
-    prepare_folder(folder_, options_.overwrite);
+    Checkpoint from;
+    if (options_.resume) {
+      from = read_checkpoint(folder_, scene_hash_);
+      simulation_.restore(from.snapshot);
+    } else {
+      prepare_folder(folder_, options_.overwrite);
+    }
     start_ = Clock::now();
     int code = exit_code::done;
     try {
-      HistoryWriter history(folder_, scene_.model, scene_.output.track);
-      FrameWriter frames(folder_, scene_.model);
-      code = loop(history, frames);
+      HistoryWriter history(folder_, scene_.model, scene_.output.track, from.history_sizes);
+      FrameWriter frames(folder_, scene_.model, from.frame_times);
+      code = loop(history, frames, from);
     } catch (const Unstable& error) {
       code = exit_code::unstable;
       status_ = "unstable";
@@ -173,10 +182,10 @@ class Run {
   }
 
  private:
-  int loop(HistoryWriter& history, FrameWriter& frames) {
+  int loop(HistoryWriter& history, FrameWriter& frames, const Checkpoint& from) {
     Progress progress(!options_.quiet, end_);
-    Schedule rows(scene_.output.history_interval.value_or(scene_.time.end / 1000));
-    Schedule pictures(scene_.time.end / std::max(scene_.output.frames, 1));
+    Schedule rows(scene_.output.history_interval.value_or(scene_.time.end / 1000), from.next_row);
+    Schedule pictures(scene_.time.end / std::max(scene_.output.frames, 1), from.next_frame);
     const auto record = [&](bool row, bool picture) {
       if (!row && !picture) return;
       const Clock::time_point before = Clock::now();
@@ -187,37 +196,55 @@ class Run {
       }
       output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
     };
-    record(true, true);
+    const auto checkpoint = [&] {
+      history.flush();
+      write_checkpoint(folder_, {scene_hash_, simulation_.snapshot(), history.sizes(),
+                                 frames.times(), rows.next(), pictures.next()});
+    };
+    const auto reached = [&](double time) {
+      return simulation_.state().time >= time - 1e-6 * simulation_.step_size();
+    };
+    Clock::time_point last_checkpoint = Clock::now();
+    if (!options_.resume) record(true, true);
     try {
-      while (true) {
-        const double time = simulation_.state().time;
-        const double step = simulation_.step_size();
-        if (time >= end_ - 1e-6 * step) break;
-        if (interrupted) {
-          record(true, true);
-          status_ = "interrupted";
-          message_ =
-              fmt::format("interrupted at t = {:.9g} s; all files are complete up to there", time);
-          progress.clear();
-          history.flush();
-          return exit_code::interrupted;
-        }
+      while (!reached(end_) && !interrupted) {
         simulation_.step();
         const State& state = simulation_.state();
-        const bool last = state.time >= end_ - 1e-6 * step;
+        const double step = simulation_.step_size();
+        const bool last = reached(scene_.time.end);
         record(rows.due(state.time, step) || last,
                (pictures.due(state.time, step) && scene_.output.frames > 0) || last);
-        if (state.step % 64 == 0) progress.update(simulation_);
+        if (state.step % 64 != 0) continue;
+        progress.update(simulation_);
+        const std::optional<double>& interval = scene_.output.checkpoint_interval;
+        if (interval && Clock::now() - last_checkpoint > std::chrono::duration<double>(*interval)) {
+          checkpoint();
+          last_checkpoint = Clock::now();
+        }
+      }
+      progress.clear();
+      history.flush();
+      if (reached(scene_.time.end)) {
+        remove_checkpoint(folder_);
+      } else {
+        checkpoint();
+        record(true, true);  // shows where the run stopped; a resumed run takes it back
+        history.flush();
       }
     } catch (const Unstable&) {
       progress.clear();
       history.flush();
       throw;
     }
-    progress.clear();
-    history.flush();
-    status_ = "done";
-    return exit_code::done;
+    if (reached(end_)) {
+      status_ = "done";
+      return exit_code::done;
+    }
+    status_ = "interrupted";
+    message_ =
+        fmt::format("interrupted at t = {:.9g} s; all files are complete, --resume continues",
+                    simulation_.state().time);
+    return exit_code::interrupted;
   }
 
   void judge() {
@@ -233,7 +260,7 @@ class Run {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> names(const Extremes::Peak& peak) const {
+  [[nodiscard]] std::vector<std::string> names(const Peak& peak) const {
     if (peak.a < 0) return {};
     return {scene_.model.bodies[peak.a].name, scene_.model.bodies[peak.b].name};
   }
@@ -249,13 +276,10 @@ class Run {
     for (size_t i = 0; i < seconds.size(); ++i) parts[kPhaseNames[i]] = seconds[i];
     parts["output"] = output_seconds_;
     parts["total"] = wall;
-    const auto peak = [&](const Extremes::Peak& p) {
-      return Json{{"time", p.time}, {"bodies", names(p)}};
-    };
+    const auto peak = [&](const Peak& p) { return Json{{"time", p.time}, {"bodies", names(p)}}; };
     Json json{{"name", scene_.model.name},
               {"scene", scene_.file},
-              {"scene_hash",
-               fmt::format("fnv1a64:{:016x}", fnv1a(scene_.text.data(), scene_.text.size()))},
+              {"scene_hash", scene_hash_},
               {"version", kVersion},
               {"status", status_},
               {"threads", options_.threads},
@@ -311,6 +335,7 @@ class Run {
   Simulation simulation_;
   double end_;
   std::string folder_;
+  std::string scene_hash_;
   Clock::time_point start_;
   double output_seconds_ = 0;
   std::string status_ = "running";

@@ -22,8 +22,8 @@ Ledger::Ledger(const Model& model, const State& state, double contact_energy) : 
       if (body.motion == Motion::prescribed) driven_.push_back(i);
     }
   }
-  initial_energy_ = total(terms(state, contact_energy));
-  initial_ = momentum(state);
+  balance_.initial_energy = total(terms(state, contact_energy));
+  balance_.initial = momentum(state);
 }
 
 void Ledger::half_step(const State& state, double half_step, const std::vector<double>& moved) {
@@ -51,12 +51,12 @@ void Ledger::half_step(const State& state, double half_step, const std::vector<d
         body.held[1] ? -(state.force[k + 1] + body.mass * g.y()) : 0,
         body.held[2] ? -state.force[k + 2] : 0);
   }
-  impulse_.x += half_step * outer.x;
-  impulse_.y += half_step * outer.y;
-  impulse_.angular += half_step * outer.angular;
+  balance_.impulse.x += half_step * outer.x;
+  balance_.impulse.y += half_step * outer.y;
+  balance_.impulse.angular += half_step * outer.angular;
   for (const int i : driven_) {
     for (size_t k = 3 * static_cast<size_t>(i), end = k + 3; k < end; ++k) {
-      external_work_ -= state.force[k] * moved[k] / 2;
+      balance_.external_work -= state.force[k] * moved[k] / 2;
     }
   }
 }
@@ -72,17 +72,17 @@ Energies Ledger::terms(const State& state, double contact_energy) const {
                               model_.gravity.y() * (x[1] - body.position.y()));
   }
   e.contact = contact_energy;
-  e.external_work = external_work_;
+  e.external_work = balance_.external_work;
   return e;
 }
 
 Energies Ledger::energies(const State& state, double contact_energy) const {
   Energies e = terms(state, contact_energy);
-  e.total_error = total(e) - initial_energy_;
+  e.total_error = total(e) - balance_.initial_energy;
   return e;
 }
 
-Ledger::Impulse Ledger::momentum(const State& state) const {
+Impulse Ledger::momentum(const State& state) const {
   Impulse p;
   for (const int i : free_) {
     const RigidBody& body = model_.bodies[i];
@@ -100,9 +100,9 @@ Momenta Ledger::momenta(const State& state) const {
   return {p.x,
           p.y,
           p.angular,
-          p.x - initial_.x - impulse_.x,
-          p.y - initial_.y - impulse_.y,
-          p.angular - initial_.angular - impulse_.angular};
+          p.x - balance_.initial.x - balance_.impulse.x,
+          p.y - balance_.initial.y - balance_.impulse.y,
+          p.angular - balance_.initial.angular - balance_.impulse.angular};
 }
 
 }  // namespace apothem

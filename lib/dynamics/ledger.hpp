@@ -6,6 +6,19 @@
 
 namespace apothem {
 
+/// Momentum, or the time integral of a force.
+struct Impulse {
+  double x = 0, y = 0, angular = 0;
+};
+
+/// What a checkpoint needs to continue the ledger.
+struct Balance {
+  double initial_energy = 0;
+  Impulse initial;  ///< momentum at time 0
+  Impulse impulse;  ///< from outside since then
+  double external_work = 0;
+};
+
 class Ledger {
  public:
   Ledger(const Model& model, const State& state, double contact_energy);
@@ -18,20 +31,17 @@ class Ledger {
   [[nodiscard]] Energies energies(const State& state, double contact_energy) const;
   [[nodiscard]] Momenta momenta(const State& state) const;
 
+  [[nodiscard]] const Balance& balance() const { return balance_; }
+  void restore(const Balance& balance) { balance_ = balance; }
+
  private:
-  struct Impulse {
-    double x = 0, y = 0, angular = 0;
-  };
   [[nodiscard]] Energies terms(const State& state, double contact_energy) const;
   [[nodiscard]] Impulse momentum(const State& state) const;
 
   const Model& model_;
   std::vector<int> free_, held_, driven_, not_free_;
   double free_mass_ = 0;
-  double initial_energy_ = 0;
-  Impulse initial_;
-  Impulse impulse_;
-  double external_work_ = 0;
+  Balance balance_;
 };
 
 }  // namespace apothem

@@ -116,6 +116,27 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
   dt_ = interval / std::max(std::ceil(interval / target), 1.0);
 }
 
+Snapshot Simulation::snapshot() const {
+  return {state_,  ledger_->balance(), limit_, dt_, base_time_, base_step_, extremes_,
+          counts_, energy_in_play_};
+}
+
+void Simulation::restore(const Snapshot& s) {
+  state_ = s.state;
+  ledger_->restore(s.balance);
+  limit_ = s.limit;
+  dt_ = s.step_size;
+  base_time_ = s.base_time;
+  base_step_ = s.base_step;
+  extremes_ = s.extremes;
+  counts_ = s.counts;
+  energy_in_play_ = s.energy_in_play;
+  for (int i = 0; i < shapes_.size(); ++i) {
+    const double* x = &state_.position[3 * static_cast<size_t>(i)];
+    shapes_.place(i, x[0], x[1], x[2]);
+  }
+}
+
 void Simulation::step() {
   const bool timed = state_.step % kTimedEvery == 0;
   Stopwatch clock(timed, timed_seconds_);

@@ -47,13 +47,14 @@ class Unstable : public std::runtime_error {
 enum class Phase { integrate, place, search, contact, gather };
 inline constexpr std::array kPhaseNames{"integrate", "place", "search", "contact", "gather"};
 
+struct Peak {
+  double value = 0;
+  double time = 0;
+  int a = -1, b = -1;
+};
+
 /// Largest values over all steps so far.
 struct Extremes {
-  struct Peak {
-    double value = 0;
-    double time = 0;
-    int a = -1, b = -1;
-  };
   Peak penetration;         ///< extent of the overlap of a pair along its force, m
   Peak force;               ///< size of the contact force of a pair, N
   double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
@@ -66,6 +67,19 @@ struct Counts {
   int touching_now = 0;
 };
 
+/// All that changes while a simulation runs: enough to continue it bit for bit.
+struct Snapshot {
+  State state;
+  Balance balance;
+  StepLimit limit{0, ""};
+  double step_size = 0;
+  double base_time = 0;  ///< time = base_time + (step - base_step) step_size
+  std::int64_t base_step = 0;
+  Extremes extremes;
+  Counts counts;
+  double energy_in_play = 0;
+};
+
 class Simulation {
  public:
   /// Throws Unrunnable if a fixed step is above the stability limit or bodies overlap too deeply.
@@ -74,6 +88,10 @@ class Simulation {
 
   /// One step. Throws Unstable; the state is then not to be trusted.
   void step();
+
+  [[nodiscard]] Snapshot snapshot() const;
+  /// Continues from a snapshot of the same model and settings.
+  void restore(const Snapshot& snapshot);
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] double step_size() const { return dt_; }

@@ -14,9 +14,10 @@ struct TimeSettings {
 };
 
 struct OutputSettings {
-  int frames = 100;                        ///< besides the one at time 0
-  std::optional<double> history_interval;  ///< s; empty: end / 1000
-  std::vector<int> track;                  ///< bodies in history.csv
+  int frames = 100;                           ///< besides the one at time 0
+  std::optional<double> history_interval;     ///< s; empty: end / 1000
+  std::vector<int> track;                     ///< bodies in history.csv
+  std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
 };
 
 /// A result the scene promises: a column of a history, reduced to one number.

@@ -47,20 +47,24 @@ void write_file(const std::string& file, std::string_view content) {
   }
 }
 
-AppendedFile::AppendedFile(std::string file)
+AppendedFile::AppendedFile(std::string file, std::int64_t size)
     : file_(std::move(file)),
-      descriptor_(::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) throw SystemFailure(file_, errno);
+      descriptor_(::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)),
+      size_(size) {
+  if (descriptor_ < 0 || ::ftruncate(descriptor_, size_) != 0 ||
+      ::lseek(descriptor_, size_, SEEK_SET) < 0) {
+    throw SystemFailure(file_, errno);
+  }
 }
 
 AppendedFile::~AppendedFile() { ::close(descriptor_); }
 
 void AppendedFile::append(std::string_view block) {
-  const off_t size = ::lseek(descriptor_, 0, SEEK_CUR);
-  const int error = write_all(descriptor_, block);
-  if (error == 0) return;
-  if (::ftruncate(descriptor_, size) == 0) ::lseek(descriptor_, size, SEEK_SET);
-  throw SystemFailure(file_, error);
+  if (const int error = write_all(descriptor_, block); error != 0) {
+    if (::ftruncate(descriptor_, size_) == 0) ::lseek(descriptor_, size_, SEEK_SET);
+    throw SystemFailure(file_, error);
+  }
+  size_ += static_cast<std::int64_t>(block.size());
 }
 
 }  // namespace apothem

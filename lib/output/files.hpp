@@ -2,6 +2,7 @@
 // up or the run is killed.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,15 +26,18 @@ void write_file(const std::string& file, std::string_view content);
 /// SystemFailure.
 class AppendedFile {
  public:
-  explicit AppendedFile(std::string file);  ///< starts empty
+  /// Starts empty, or keeps the first `size` bytes of an existing file.
+  explicit AppendedFile(std::string file, std::int64_t size = 0);
   ~AppendedFile();
   AppendedFile(const AppendedFile&) = delete;
   AppendedFile& operator=(const AppendedFile&) = delete;
   void append(std::string_view block);
+  [[nodiscard]] std::int64_t size() const { return size_; }
 
  private:
   std::string file_;
   int descriptor_;
+  std::int64_t size_;
 };
 
 }  // namespace apothem

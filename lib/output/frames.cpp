@@ -144,29 +144,35 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   return grid;
 }
 
-std::string collection(const std::string& entries) {
-  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
-         entries + "</Collection>\n</VTKFile>\n";
+std::string file_name(const char* series, size_t frame) {
+  return fmt::format("frames/{}_{:06}.vtu", series, frame);
+}
+
+std::string collection(const char* series, const std::vector<double>& times) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+  for (size_t i = 0; i < times.size(); ++i) {
+    text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times[i],
+                        file_name(series, i));
+  }
+  return text + "</Collection>\n</VTKFile>\n";
 }
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::string folder, const Model& model)
-    : folder_(std::move(folder)), model_(model) {
+FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
+    : folder_(std::move(folder)), model_(model), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
 }
 
 void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts) {
-  const auto add = [&](const char* series, vtkUnstructuredGrid* grid, std::string& entries) {
-    const std::string name = fmt::format("frames/{}_{:06}.vtu", series, frames_);
-    write_file(folder_ + "/" + name, xml(grid));
-    entries += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", state.time, name);
-  };
-  add("bodies", bodies(model_, state), bodies_collection_);
-  add("contacts", patches(model_, state.time, contacts), contacts_collection_);
-  write_file(folder_ + "/frames.pvd", collection(bodies_collection_));
-  write_file(folder_ + "/contacts.pvd", collection(contacts_collection_));
-  ++frames_;
+  const size_t frame = times_.size();
+  write_file(folder_ + "/" + file_name("bodies", frame), xml(bodies(model_, state)));
+  write_file(folder_ + "/" + file_name("contacts", frame),
+             xml(patches(model_, state.time, contacts)));
+  times_.push_back(state.time);
+  write_file(folder_ + "/frames.pvd", collection("bodies", times_));
+  write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
 }
 
 }  // namespace apothem

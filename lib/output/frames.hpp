@@ -12,20 +12,19 @@ namespace apothem {
 
 class FrameWriter {
  public:
-  /// Creates the folder. Throws SystemFailure.
-  FrameWriter(std::string folder, const Model& model);
+  /// Creates the folder; frames at `times` are there already. Throws SystemFailure.
+  FrameWriter(std::string folder, const Model& model, std::vector<double> times = {});
 
   /// Writes the next frame, then both collections: whatever they list is complete on disk.
   /// Throws SystemFailure; the earlier frames are then intact.
   void write(const State& state, const std::vector<ContactRecord>& contacts);
 
-  [[nodiscard]] int frames() const { return frames_; }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
  private:
   std::string folder_;
   const Model& model_;
-  int frames_ = 0;
-  std::string bodies_collection_, contacts_collection_;
+  std::vector<double> times_;
 };
 
 }  // namespace apothem

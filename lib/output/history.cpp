@@ -31,12 +31,16 @@ std::string header(const Names& names) {
 }  // namespace
 
 HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
-                             const std::vector<int>& track)
+                             const std::vector<int>& track, const Sizes& sizes)
     : model_(model),
       track_(track),
-      history_{AppendedFile(folder + "/history.csv"), "time [s]"},
-      energy_{AppendedFile(folder + "/energy.csv"), header(kEnergyColumns)},
-      momentum_{AppendedFile(folder + "/momentum.csv"), header(kMomentumColumns)} {
+      history_{AppendedFile(folder + "/history.csv", sizes[0]), ""},
+      energy_{AppendedFile(folder + "/energy.csv", sizes[1]), ""},
+      momentum_{AppendedFile(folder + "/momentum.csv", sizes[2]), ""} {
+  if (sizes[0] > 0) return;
+  energy_.rows = header(kEnergyColumns);
+  momentum_.rows = header(kMomentumColumns);
+  history_.rows = "time [s]";
   for (const int i : track_) {
     for (const Column& column : kBodyColumns) {
       history_.rows += fmt::format(",{}.{} [{}]", model.bodies[i].name, column.name, column.unit);

@@ -2,6 +2,7 @@
 // same double.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,21 @@ namespace apothem {
 
 class HistoryWriter {
  public:
-  /// Writes the headers. Throws SystemFailure.
-  HistoryWriter(const std::string& folder, const Model& model, const std::vector<int>& track);
+  /// Sizes of the three files, to continue them later.
+  using Sizes = std::array<std::int64_t, 3>;
+
+  /// Writes the headers, or continues files of the given sizes. Throws SystemFailure.
+  HistoryWriter(const std::string& folder, const Model& model, const std::vector<int>& track,
+                const Sizes& sizes = {});
 
   /// Rows are kept in memory until there are enough of them, or flush().
   void add(const State& state, const Energies& energies, const Momenta& momenta);
   void flush();
+
+  /// After flush().
+  [[nodiscard]] Sizes sizes() const {
+    return {history_.file.size(), energy_.file.size(), momentum_.file.size()};
+  }
 
  private:
   struct Table {

@@ -331,6 +331,12 @@ class SceneReader {
       }
       history.finish();
     }
+    if (const JsonValue* v = object.optional("checkpoint")) {
+      JsonObject checkpoint(in_, *v);
+      output.checkpoint_interval = in_.positive(
+          checkpoint.required("wall_clock", "s of real time between checkpoints"), "s");
+      checkpoint.finish();
+    }
     object.finish();
   }
 

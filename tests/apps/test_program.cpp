@@ -207,8 +207,38 @@ TEST_CASE("Ctrl-C finishes the step and closes the files", "[program]") {
   const Json json = Json::parse(content(folder / "long/run.json"));
   CHECK(json["status"] == "interrupted");
   CHECK(json["steps"] > 0);
+  CHECK(std::filesystem::exists(folder / "long/checkpoint.json"));
   CHECK(read_history(folder / "long/history.csv").columns[0].back() == json["time"]);
   CHECK(content(folder / "long/frames.pvd").ends_with("</VTKFile>\n"));
+}
+
+TEST_CASE("a resumed run continues bit for bit", "[program]") {
+  const Folder folder;
+  const std::string file = test::kSource + "/data/scenes/two-body-collision.json";
+  REQUIRE(run({"run", file, "-o", folder / "whole"}, folder).code == 0);
+  // Stopped in the middle of the contact by --until, then by Ctrl-C if there is time for it.
+  REQUIRE(run({"run", file, "-o", folder / "parts", "--until", "0.2501"}, folder).code == 0);
+  CHECK(read_history(folder / "parts/history.csv").columns[0].back() == Approx(.2501));
+  const Result second =
+      run({"run", file, "-o", folder / "parts", "--resume"}, folder, {.interrupt_after = 0.1});
+  if (second.code != 0) {
+    REQUIRE(second.code == 130);
+    REQUIRE(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 0);
+  }
+  for (const char* name : {"history.csv", "energy.csv", "momentum.csv", "frames.pvd",
+                           "frames/bodies_000050.vtu", "frames/contacts_000013.vtu"}) {
+    INFO(name);
+    CHECK((content(folder / (std::string("whole/") + name)) ==
+           content(folder / (std::string("parts/") + name))));
+  }
+  CHECK(Json::parse(content(folder / "whole/run.json"))["final_state_hash"] ==
+        Json::parse(content(folder / "parts/run.json"))["final_state_hash"]);
+  // Nothing to resume any more; and never from another scene's checkpoint.
+  CHECK(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 2);
+  REQUIRE(run({"run", file, "-o", folder / "other", "--until", "0.01"}, folder).code == 0);
+  CHECK(
+      run({"run", kScene, "-o", folder / "other", "--resume"}, folder).err.find("another scene") !=
+      std::string::npos);
 }
 
 TEST_CASE("a system that fails gives exit code 4 and keeps what was complete", "[program]") {

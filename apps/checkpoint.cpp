@@ -1,0 +1,85 @@
+#include "checkpoint.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "output/files.hpp"
+#include "scene/json.hpp"
+
+namespace apothem {
+
+// nlohmann's macro lists each member once for both directions; numbers read back to the same
+// double.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, velocity, force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Balance, initial_energy, initial, impulse, external_work)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Peak, value, time, a, b)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Extremes, penetration, force, energy_error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Counts, searches, candidate_pairs, touching_pairs, touching_now)
+
+namespace {
+
+std::string file(const std::string& folder) { return folder + "/checkpoint.json"; }
+
+}  // namespace
+
+void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
+  const Snapshot& s = checkpoint.snapshot;
+  nlohmann::json json{{"scene_hash", checkpoint.scene_hash},
+                      {"history_sizes", checkpoint.history_sizes},
+                      {"frame_times", checkpoint.frame_times},
+                      {"next_row", checkpoint.next_row},
+                      {"next_frame", checkpoint.next_frame},
+                      {"limited_by", s.limit.reason},
+                      {"step_size", s.step_size},
+                      {"base_time", s.base_time},
+                      {"base_step", s.base_step},
+                      {"energy_in_play", s.energy_in_play},
+                      {"state", s.state},
+                      {"balance", s.balance},
+                      {"extremes", s.extremes},
+                      {"counts", s.counts}};
+  if (std::isfinite(s.limit.step)) json["limit"] = s.limit.step;  // JSON knows no infinity
+  write_file(file(folder), json.dump() + "\n");
+}
+
+Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash) {
+  const std::string name = file(folder);
+  if (!std::filesystem::exists(name)) {
+    throw SceneError(name, 0, "", "there is no checkpoint to resume from; run without --resume");
+  }
+  Checkpoint c;
+  try {
+    const nlohmann::json json = nlohmann::json::parse(read_text(name));
+    json.at("scene_hash").get_to(c.scene_hash);
+    json.at("history_sizes").get_to(c.history_sizes);
+    json.at("frame_times").get_to(c.frame_times);
+    json.at("next_row").get_to(c.next_row);
+    json.at("next_frame").get_to(c.next_frame);
+    Snapshot& s = c.snapshot;
+    s.limit = {json.value("limit", HUGE_VAL), json.at("limited_by")};
+    json.at("step_size").get_to(s.step_size);
+    json.at("base_time").get_to(s.base_time);
+    json.at("base_step").get_to(s.base_step);
+    json.at("energy_in_play").get_to(s.energy_in_play);
+    json.at("state").get_to(s.state);
+    json.at("balance").get_to(s.balance);
+    json.at("extremes").get_to(s.extremes);
+    json.at("counts").get_to(s.counts);
+  } catch (const nlohmann::json::exception& error) {
+    throw SceneError(name, 0, "", std::string("is not a checkpoint: ") + error.what());
+  }
+  if (c.scene_hash != scene_hash) {
+    throw SceneError(name, 0, "",
+                     "belongs to another scene, or the scene has been changed; run it anew");
+  }
+  return c;
+}
+
+void remove_checkpoint(const std::string& folder) {
+  std::error_code ignored;  // a checkpoint left behind does no harm
+  std::filesystem::remove(file(folder), ignored);
+}
+
+}  // namespace apothem
