@@ -45,8 +45,7 @@ PairResult evaluate(const std::string& method, const Polygon& a, const Polygon& 
   const Potential potential_a = make_potential(a, choice);
   const Potential potential_b = make_potential(b, choice);
   if (method == "overlap") return overlap_method(a, potential_a, b, potential_b);
-  return edge_method(potential_a, a.origin(), area_moments(a).centroid, potential_b, b.origin(),
-                     area_moments(b).centroid);
+  return edge_method(a, potential_a, b, potential_b);
 }
 
 Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) {

@@ -135,15 +135,17 @@ Half integrate(const PlacedPotential& x, const PlacedPotential& y, double dx, do
     });
     const double px = x.x[e] + dx;
     const double py = x.y[e] + dy;
+    const double qx = px - y.reference.x();
+    const double qy = py - y.reference.y();
     const double ex = x.x[e + 1] - x.x[e];
     const double ey = x.y[e + 1] - x.y[e];
     const double length = std::sqrt(ex * ex + ey * ey);
     half.fx += ey * sum;
     half.fy -= ex * sum;
-    half.moment -= (px * ex + py * ey) * sum + (ex * ex + ey * ey) * first;
+    half.moment -= (qx * ex + qy * ey) * sum + (ex * ex + ey * ey) * first;
     half.weight += length * sum;
-    half.wx += length * (px * sum + ex * first);
-    half.wy += length * (py * sum + ey * first);
+    half.wx += length * (qx * sum + ex * first);
+    half.wy += length * (qy * sum + ey * first);
     half.length += length * (s1 - s0);
     half.largest = std::max(half.largest, largest);
     *pieces++ = px + s0 * ex;
@@ -187,13 +189,15 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   const double fx = of_b.fx - of_a.fx;
   const double fy = of_b.fy - of_a.fy;
   pair.force = {fx, fy};
-  // A moment about the owner's point, moved to the other's by the arm between them.
-  pair.moment_a = of_b.moment - (of_a.moment - (dx * of_a.fy - dy * of_a.fx));
-  pair.moment_b = of_a.moment - (of_b.moment + (dx * of_b.fy - dy * of_b.fx));
+  // A moment about the owner's reference, moved to the other's by the arm between them.
+  const double rx = (a.reference.x() - b.reference.x()) + dx;
+  const double ry = (a.reference.y() - b.reference.y()) + dy;
+  pair.moment_a = of_b.moment - (of_a.moment - (rx * of_a.fy - ry * of_a.fx));
+  pair.moment_b = of_a.moment - (of_b.moment + (rx * of_b.fy - ry * of_b.fx));
   pair.weight = of_a.weight + of_b.weight;
   if (pair.weight != 0) {
-    pair.centre = {(of_b.wx + (of_a.wx - dx * of_a.weight)) / pair.weight,
-                   (of_b.wy + (of_a.wy - dy * of_a.weight)) / pair.weight};
+    pair.centre = {(of_b.wx + (of_a.wx - rx * of_a.weight)) / pair.weight,
+                   (of_b.wy + (of_a.wy - ry * of_a.weight)) / pair.weight};
   }
   pair.own_length_a = of_a.length;
   pair.own_length_b = of_b.length;
@@ -256,11 +260,12 @@ Vec2 loading_point(const PairIntegral& pair) {
 
 namespace {
 
-// Arrays behind a PlacedPotential, for a potential that does not move.
+// Arrays behind a PlacedPotential, for a polygon that does not move: relative to `origin`, moments
+// about vertex 0.
 struct Placement {
-  explicit Placement(const Potential& potential) {
-    for (int i = 0; i <= potential.size(); ++i) {
-      const Vec2& v = potential.vertices[i == potential.size() ? 0 : i];
+  Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
+    for (int i = 0; i <= polygon.size(); ++i) {
+      const Vec2 v = polygon[i == polygon.size() ? 0 : i] - origin;
       x.push_back(v.x());
       y.push_back(v.y());
     }
@@ -268,7 +273,8 @@ struct Placement {
       gx.push_back(g.x());
       gy.push_back(g.y());
     }
-    view = {x.data(), y.data(), gx.data(), gy.data(), potential.size(), potential.capped()};
+    view = {x.data(),       y.data(),           gx.data(),       gy.data(),
+            polygon.size(), potential.capped(), Vec2(x[0], y[0])};
   }
   std::vector<double> x, y, gx, gy;
   PlacedPotential view;
@@ -276,19 +282,25 @@ struct Placement {
 
 }  // namespace
 
-PairResult edge_method(const Potential& a, const Vec2& origin_a, const Vec2& reference_a,
-                       const Potential& b, const Vec2& origin_b, const Vec2& reference_b) {
-  const Placement placed_a(a);
-  const Placement placed_b(b);
-  const Vec2 offset = origin_a - origin_b;
+PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                       const Potential& potential_b) {
+  Box box = bounding_box(a);
+  const Box box_b = bounding_box(b);
+  box.include(box_b.x0, box_b.y0);
+  box.include(box_b.x1, box_b.y1);
+  const Vec2 origin = local_origin(box);
+  const Placement placed_a(a, potential_a, origin);
+  const Placement placed_b(b, potential_b, origin);
   EdgeWorkspace workspace;
   PairResult result;
   PairIntegral& pair = result.integral;
-  pair = pair_integral(placed_a.view, placed_b.view, offset, workspace);
-  pair.moment_a -= cross(reference_a, pair.force);
-  pair.moment_b += cross(reference_b, pair.force);
-  pair.centre -= reference_a;
-  result.volume = pair_volume(placed_a.view, placed_b.view, offset);
+  pair = pair_integral(placed_a.view, placed_b.view, Vec2::Zero(), workspace);
+  const Vec2 centroid_a = area_moments(a).centroid;  // relative to vertex 0
+  const Vec2 centroid_b = area_moments(b).centroid;
+  pair.moment_a -= cross(centroid_a, pair.force);
+  pair.moment_b += cross(centroid_b, pair.force);
+  pair.centre -= centroid_a;
+  result.volume = pair_volume(placed_a.view, placed_b.view, Vec2::Zero());
   return result;
 }
 

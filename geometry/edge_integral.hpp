@@ -16,8 +16,8 @@
 
 namespace apothem {
 
-/// A potential placed in the plane: SoA views relative to the polygon's reference point. x and y
-/// have size + 1 entries (the first vertex is repeated), gx and gy have `size`.
+/// A potential placed in the plane: SoA views relative to some frame. x and y have size + 1 entries
+/// (the first vertex is repeated), gx and gy have `size`.
 struct PlacedPotential {
   const double* x;
   const double* y;
@@ -25,6 +25,7 @@ struct PlacedPotential {
   const double* gy;
   int size;
   bool capped;
+  Vec2 reference = Vec2::Zero();  ///< in the frame; what the pair's moments are about
 };
 
 /// Integrals of a pair for unit stiffness. Multiply force, moments, weight and energy by k_n.
@@ -50,8 +51,8 @@ struct EdgeWorkspace {
   std::vector<double> pieces;  ///< end points of the clipped edges
 };
 
-/// The pair kernel. `offset` is a's reference point minus b's. No allocation after the first calls
-/// with polygons of that size.
+/// The pair kernel. `offset` is the origin of a's frame minus that of b's. No allocation after the
+/// first calls with polygons of that size.
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace);
 
@@ -70,13 +71,14 @@ PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const
 /// resultant it is the centre itself.
 Vec2 loading_point(const PairIntegral& pair);
 
-/// The pair kernel for two potentials where they stand, each relative to its own origin; moments
-/// about `reference_a` and `reference_b` (relative to those origins). For single evaluations.
+/// The pair kernel for two polygons where they stand, with the potentials of make_potential;
+/// moments about the polygons' centroids, positions relative to a's. For single evaluations:
+/// vertices enter exactly as given, so the round-off is as small as the kernel allows.
 struct PairResult {
   PairIntegral integral;
   PairVolume volume;
 };
-PairResult edge_method(const Potential& a, const Vec2& origin_a, const Vec2& reference_a,
-                       const Potential& b, const Vec2& origin_b, const Vec2& reference_b);
+PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                       const Potential& potential_b);
 
 }  // namespace apothem

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace apothem {
@@ -37,6 +38,16 @@ struct Box {
 /// True when the boxes are apart; written so that NaN never says "apart".
 inline bool apart(const Box& a, const Box& b) {
   return a.x1 < b.x0 || b.x1 < a.x0 || a.y1 < b.y0 || b.y1 < a.y0;
+}
+
+/// An origin near the box, on so coarse a grid that subtracting it from a coordinate inside the box
+/// is exact; zero for a box around zero.
+inline Vec2 local_origin(const Box& box) {
+  const double extent = box.extent();
+  if (!(extent > 0)) return Vec2::Zero();
+  const double grid = std::ldexp(1.0, std::ilogb(extent) + 3);  // 4 to 8 times the scene
+  return {grid * std::round((box.x0 + box.x1) / 2 / grid),
+          grid * std::round((box.y0 + box.y1) / 2 / grid)};
 }
 
 }  // namespace apothem

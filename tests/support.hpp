@@ -74,8 +74,7 @@ inline Polygon shifted(const Polygon& polygon, const Vec2& by) {
 inline Vec2 world_centroid(const Polygon& p) { return p.origin() + area_moments(p).centroid; }
 
 inline PairResult edge(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
-  return edge_method(make_potential(a, choice), a.origin(), area_moments(a).centroid,
-                     make_potential(b, choice), b.origin(), area_moments(b).centroid);
+  return edge_method(a, make_potential(a, choice), b, make_potential(b, choice));
 }
 
 inline PotentialChoice area_choice() { return {.kind = PotentialChoice::Kind::area}; }

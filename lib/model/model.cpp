@@ -73,12 +73,4 @@ void set_shape(RigidBody& body, const Polygon& polygon, const Model& model) {
   body.position = (polygon.origin() - model.origin) + moments.centroid;
 }
 
-Vec2 local_origin(const Box& box) {
-  const double extent = box.extent();
-  if (!(extent > 0)) return Vec2::Zero();
-  const double grid = std::ldexp(1.0, std::ilogb(extent) + 3);  // 4 to 8 times the scene
-  return {grid * std::round((box.x0 + box.x1) / 2 / grid),
-          grid * std::round((box.y0 + box.y1) / 2 / grid)};
-}
-
 }  // namespace apothem

@@ -78,8 +78,4 @@ struct Model {
 /// Throws InvalidPolygon if the contact law cannot take the polygon.
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model);
 
-/// An origin near the box, on so coarse a grid that subtracting it from a coordinate of the scene
-/// is exact; zero for a scene around zero.
-Vec2 local_origin(const Box& box);
-
 }  // namespace apothem

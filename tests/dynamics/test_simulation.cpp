@@ -140,12 +140,11 @@ TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]
   CHECK_THROWS_WITH(Simulation(model, {.end = 1, .fixed_step = 1.01 * limit}, 1, 1),
                     Catch::Contains("stability limit of 0.000316"));
   // Our own Verlet loop on the kernel, at and beyond the limit: it is the real one.
-  const Potential& square = model.bodies[1].potential;
-  const Potential& flat = model.bodies[0].potential;
+  const Polygon flat({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}});
   const double mass = model.bodies[1].mass;
   const double rest = mass * 9.81 / (20e9 * (2 + 2));  // static penetration, to first order
   const auto acceleration = [&](double y) {
-    const PairResult r = edge_method(square, {0, .5 + y}, {0, 0}, flat, {0, -.5}, {0, 0});
+    const PairResult r = test::edge(Polygon({{-.5, y}, {.5, y}, {.5, 1 + y}, {-.5, 1 + y}}), flat);
     return 20e9 * r.integral.force.y() / mass - 9.81;
   };
   const auto growth = [&](double dt) {

@@ -1,0 +1,211 @@
+// Speed, side by side in one run. Machines are noisy: quote ratios.
+//
+//   apothem_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only
+//
+// Pairs of convex quadrilaterals that overlap; `error` is the worst |dF|/W of the method against
+// the exact oracle on these pairs, `failures` how many of them it failed on or got wrong by more
+// than 1 %.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+
+#include "contact/placed_shapes.hpp"
+#include "dynamics/simulation.hpp"
+#include "geometry/exact_integral.hpp"
+#include "geometry/overlap.hpp"
+#include "scene/scene.hpp"
+
+namespace {
+
+using namespace apothem;
+
+struct Pair {
+  Polygon a, b;
+  Potential potential_a, potential_b;
+  PairResult exact;
+};
+
+Polygon random_quad(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+  std::uniform_real_distribution<double> jitter(-.4, .4);
+  const double start = turn(random);
+  std::vector<Vec2> ring;
+  for (int i = 0; i < 4; ++i) {
+    const double angle = start + i * M_PI / 2 + jitter(random);
+    ring.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return Polygon(ring);
+}
+
+// Overlapping pairs, the centres `distance` apart, moved by `offset`.
+std::vector<Pair> make_pairs(double distance, double offset = 0) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+  std::vector<Pair> pairs;
+  while (pairs.size() < 256) {
+    const Polygon a = random_quad(random);
+    const double direction = turn(random);
+    std::vector<Vec2> ring = random_quad(random).vertices();
+    for (Vec2& v : ring) v += distance * Vec2(std::cos(direction), std::sin(direction));
+    std::vector<Vec2> moved = a.vertices();
+    for (Vec2& v : moved) v += Vec2(offset, offset);
+    for (Vec2& v : ring) v += Vec2(offset, offset);
+    const Polygon far_a(moved);
+    const Polygon far_b(ring);
+    const PairResult exact = exact_method(far_a, far_b, {});
+    if (exact.integral.penetration < 1e-2) continue;
+    pairs.push_back({far_a, far_b, make_potential(far_a), make_potential(far_b), exact});
+  }
+  return pairs;
+}
+
+const std::vector<Pair>& touching_pairs() {
+  static const std::vector<Pair> pairs = make_pairs(1.2);
+  return pairs;
+}
+
+template <class Method>
+void measure(benchmark::State& state, const std::vector<Pair>& pairs, const Method& method) {
+  double worst = 0;
+  int failures = 0;
+  for (const Pair& pair : pairs) {
+    try {
+      const double error = (method(pair).integral.force - pair.exact.integral.force).norm() /
+                           pair.exact.integral.weight;
+      if (!(error < 1e-2)) {
+        ++failures;
+      } else {
+        worst = std::max(worst, error);
+      }
+    } catch (const std::runtime_error&) {
+      ++failures;
+    }
+  }
+  size_t i = 0;
+  for (auto _ : state) {
+    try {
+      benchmark::DoNotOptimize(method(pairs[i++ % pairs.size()]));
+    } catch (const std::runtime_error&) {
+      // counted above; its time counts as well
+    }
+  }
+  state.counters["error"] = worst;
+  state.counters["failures"] = failures;
+}
+
+// The kernel as the step loop calls it: shapes placed, memory at hand.
+void edge_kernel(benchmark::State& state, const std::vector<Pair>& pairs) {
+  struct Placed {
+    PlacedShapes shapes;
+    Vec2 offset;
+  };
+  std::vector<Placed> placed;
+  EdgeWorkspace workspace;
+  double worst = 0;
+  for (const Pair& pair : pairs) {
+    Placed& p = placed.emplace_back();
+    p.shapes.add(pair.potential_a);
+    p.shapes.add(pair.potential_b);
+    p.shapes.place(0, 0, 0, 0);
+    p.shapes.place(1, 0, 0, 0);
+    p.offset = pair.a.origin() - pair.b.origin();
+    const PairIntegral result =
+        pair_integral(p.shapes.view(0), p.shapes.view(1), p.offset, workspace);
+    worst = std::max(
+        worst, (result.force - pair.exact.integral.force).norm() / pair.exact.integral.weight);
+  }
+  size_t i = 0;
+  for (auto _ : state) {
+    const Placed& p = placed[i++ % placed.size()];
+    benchmark::DoNotOptimize(
+        pair_integral(p.shapes.view(0), p.shapes.view(1), p.offset, workspace));
+  }
+  state.counters["error"] = worst;
+  state.counters["failures"] = 0;
+}
+
+void quad_pair_edge(benchmark::State& state) { edge_kernel(state, touching_pairs()); }
+void quad_pair_edge_offset(benchmark::State& state) {
+  edge_kernel(state, make_pairs(1.2, static_cast<double>(state.range(0))));
+}
+void quad_pair_near_miss(benchmark::State& state) {
+  std::vector<Pair> pairs = touching_pairs();
+  for (Pair& pair : pairs) {  // apart, but their boxes may still overlap
+    pair.exact = {};
+    pair.exact.integral.weight = 1;
+    std::vector<Vec2> ring = pair.b.vertices();
+    const Vec2 away = ring[0] + ring[2] - pair.a[0] - pair.a[2];
+    for (Vec2& v : ring) v += away.normalized() * .85;
+    pair.b = Polygon(ring);
+  }
+  edge_kernel(state, pairs);
+}
+void quad_pair_overlap_inexact(benchmark::State& state) {
+  measure(state, touching_pairs(), [](const Pair& p) {
+    return overlap_method(p.a, p.potential_a, p.b, p.potential_b, Arithmetic::inexact);
+  });
+}
+void quad_pair_overlap_exact(benchmark::State& state) {
+  measure(state, touching_pairs(), [](const Pair& p) {
+    return overlap_method(p.a, p.potential_a, p.b, p.potential_b, Arithmetic::exact);
+  });
+}
+void quad_pair_oracle(benchmark::State& state) {
+  measure(state, touching_pairs(), [](const Pair& p) { return exact_method(p.a, p.b, {}); });
+}
+
+void impact_steps(benchmark::State& state) {
+  const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impact-asymmetric.json");
+  std::optional<Simulation> simulation;
+  for (auto _ : state) {
+    if (!simulation || simulation->state().time >= scene.time.end) {
+      state.PauseTiming();
+      simulation.emplace(scene.model, scene.time, scene.output.frames, 1);
+      state.ResumeTiming();
+    }
+    simulation->step();
+  }
+  state.counters["steps/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+// A pack of quadrilaterals inside the skin of their neighbours: the whole step per body.
+void pack_step(benchmark::State& state) {
+  Model model;
+  model.materials = {{"rock", 2000}};
+  model.contact.normal_stiffness = 2e9;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> velocity(-1, 1);
+  const int n = static_cast<int>(state.range(0));
+  const int columns = static_cast<int>(std::sqrt(n));
+  for (int i = 0; i < n; ++i) {
+    std::vector<Vec2> ring = random_quad(random).vertices();
+    for (Vec2& v : ring) v += 1.5 * Vec2(i % columns, i / columns);
+    RigidBody body;
+    body.name = std::to_string(i);
+    set_shape(body, Polygon(ring), model);
+    body.velocity = {velocity(random), velocity(random)};
+    model.bodies.push_back(body);
+  }
+  Simulation simulation(model, {.end = 1e3, .safety = .1}, 1, 1);
+  for (auto _ : state) simulation.step();
+  state.counters["per_body"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * n,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["touching"] = simulation.counts().touching_now;
+}
+
+BENCHMARK(quad_pair_edge);
+BENCHMARK(quad_pair_edge_offset)->Arg(1'000'000)->Arg(1'000'000'000);
+BENCHMARK(quad_pair_near_miss);
+BENCHMARK(quad_pair_overlap_inexact);
+BENCHMARK(quad_pair_overlap_exact);
+BENCHMARK(quad_pair_oracle);
+BENCHMARK(impact_steps);
+BENCHMARK(pack_step)->Arg(300)->Arg(3000);
+
+}  // namespace
+
+BENCHMARK_MAIN();
