@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
 #include <new>
 
 #include "commands.hpp"
@@ -14,6 +16,16 @@ namespace {
 
 using namespace apothem;
 
+// CLI11's own PositiveNumber lets nan and inf pass.
+const CLI::Validator kPositive(
+    [](std::string& text) {
+      char* end = nullptr;
+      const double x = std::strtod(text.c_str(), &end);
+      return x > 0 && std::isfinite(x) && *end == '\0' ? std::string()
+                                                       : "must be a positive number, not " + text;
+    },
+    "POSITIVE");
+
 void add_run(CLI::App& app, RunOptions& o) {
   CLI::App* sub = app.add_subcommand("run", "Run a scene");
   sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
@@ -22,7 +34,7 @@ void add_run(CLI::App& app, RunOptions& o) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
-      ->check(CLI::PositiveNumber);
+      ->check(kPositive);
   CLI::Option* resume =
       sub->add_flag("--resume", o.resume, "Continue from the checkpoint in the output folder");
   sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
@@ -53,7 +65,7 @@ void add_contact(CLI::App& app, ContactOptions& o) {
       ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
       ->capture_default_str();
   sub->add_option("--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
-      ->check(CLI::PositiveNumber)
+      ->check(kPositive)
       ->capture_default_str();
   sub->add_flag("--json", o.json, "Print JSON");
 }
@@ -89,12 +101,18 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      return fail(apothem::exit_code::system_failed, "standard output cannot be written");
+    }
+    return code;
   } catch (const apothem::SceneError& error) {
     return fail(apothem::exit_code::bad_input, error.what());
   } catch (const apothem::SystemFailure& error) {
     return fail(apothem::exit_code::system_failed, error.what());
   } catch (const std::bad_alloc&) {
     return fail(apothem::exit_code::system_failed, "out of memory");
+  } catch (const std::exception& error) {  // a full pipe, a file name the system refuses, ...
+    return fail(apothem::exit_code::system_failed, error.what());
   }
 }

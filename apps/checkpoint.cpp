@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -44,9 +45,11 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
   write_file(file(folder), json.dump() + "\n");
 }
 
-Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash) {
+Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash,
+                           const State& like) {
   const std::string name = file(folder);
-  if (!std::filesystem::exists(name)) {
+  std::error_code error_code;
+  if (!std::filesystem::exists(name, error_code)) {
     throw SceneError(name, 0, "", "there is no checkpoint to resume from; run without --resume");
   }
   Checkpoint c;
@@ -73,6 +76,21 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
   if (c.scene_hash != scene_hash) {
     throw SceneError(name, 0, "",
                      "belongs to another scene, or the scene has been changed; run it anew");
+  }
+  const State& state = c.snapshot.state;
+  const size_t size = like.position.size();
+  if (state.position.size() != size || state.remainder.size() != size ||
+      state.velocity.size() != size || state.force.size() != size || !(c.snapshot.step_size > 0)) {
+    throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
+  }
+  constexpr std::array histories{"history.csv", "energy.csv", "momentum.csv"};
+  for (size_t i = 0; i < histories.size(); ++i) {
+    const std::string history = folder + "/" + histories[i];
+    const auto length = std::filesystem::file_size(history, error_code);
+    if (error_code || length < static_cast<std::uintmax_t>(c.history_sizes[i])) {
+      throw SceneError(history, 0, "",
+                       "is missing or shorter than the checkpoint says; run it anew");
+    }
   }
   return c;
 }

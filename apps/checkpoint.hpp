@@ -20,8 +20,10 @@ struct Checkpoint {
 /// Throws SystemFailure; an older checkpoint is then intact.
 void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint);
 
-/// Throws SceneError if there is none, if it is damaged or if it belongs to another scene.
-Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash);
+/// Throws SceneError if there is none, if it is damaged, if it belongs to another scene (whose
+/// state has another size than `like`) or if the histories it continues are not there any more.
+Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash,
+                           const State& like);
 
 void remove_checkpoint(const std::string& folder);
 

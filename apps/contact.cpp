@@ -126,6 +126,7 @@ int batch(const ContactOptions& options) {
       which = "b";
       const Polygon b(read_ring(line));
       which = "";
+      if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
     } catch (const InvalidPolygon& error) {
@@ -133,7 +134,7 @@ int batch(const ContactOptions& options) {
           {"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
       code = exit_code::bad_input;
     }
-    fmt::print("{}\n", object.dump());
+    fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
   }
   return code;
 }

@@ -83,6 +83,14 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
   }
 }
 
+// Heights of a point over the edges of y, and 1 for the cap.
+void height_row(const PlacedPotential& y, double px, double py, double* row) {
+  for (int i = 0; i < y.size; ++i) {
+    row[i] = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
+  }
+  if (y.capped) row[y.size] = 1;
+}
+
 // Heights of the points of x over the edges of y: rows of y.size (+ 1 for the cap) entries, one per
 // vertex, first row repeated at the end. True when one edge of y has all of x outside.
 bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
@@ -90,13 +98,7 @@ bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, doub
   const int n = y.size;
   const int width = n + (y.capped ? 1 : 0);
   for (int v = 0; v < x.size; ++v) {
-    double* row = rows + v * width;
-    const double px = x.x[v] + dx;
-    const double py = x.y[v] + dy;
-    for (int i = 0; i < n; ++i) {
-      row[i] = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
-    }
-    if (y.capped) row[n] = 1;
+    height_row(y, x.x[v] + dx, x.y[v] + dy, rows + v * width);
   }
   for (int i = 0; i < width; ++i) rows[x.size * width + i] = rows[i];
   for (int i = 0; i < n; ++i) {
@@ -116,74 +118,203 @@ struct Half {
   double largest = 0;
 };
 
-Half integrate(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-               const double* rows, double*& pieces) {
+// End points of the clipped edges, in a buffer that only grows.
+class Pieces {
+ public:
+  explicit Pieces(std::vector<double>& buffer) : buffer_(buffer) {}
+  void reserve(int more) {
+    const size_t size = used_ + 4 * static_cast<size_t>(more);
+    if (buffer_.size() < size) buffer_.resize(size);
+  }
+  void add(double x0, double y0, double x1, double y1) {
+    double* const end = buffer_.data() + used_;
+    end[0] = x0, end[1] = y0, end[2] = x1, end[3] = y1;
+    used_ += 4;
+  }
+  [[nodiscard]] size_t used() const { return used_; }
+  [[nodiscard]] const double* data() const { return buffer_.data(); }
+
+ private:
+  std::vector<double>& buffer_;
+  size_t used_ = 0;
+};
+
+// Moments of phi along one edge, u in [0, 1].
+struct EdgeMoments {
+  double sum = 0;    // INT phi du
+  double first = 0;  // INT phi u du
+  double largest = 0;
+
+  void add(double u1, double v1, double u2, double v2) {
+    const double h = u2 - u1;
+    sum += h * (v1 + v2) / 2;
+    first += h * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
+    largest = std::max(largest, std::max(v1, v2));
+  }
+  void add_capped(double u1, double v1, double u2, double v2) {
+    if ((v1 > 1) == (v2 > 1)) {
+      add(u1, std::min(v1, 1.0), u2, std::min(v2, 1.0));
+      return;
+    }
+    const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
+    add(u1, std::min(v1, 1.0), u, 1);
+    add(u, 1, u2, std::min(v2, 1.0));
+  }
+};
+
+// An edge of x in the frame of y, its start also relative to y's reference point.
+struct PlacedEdge {
+  PlacedEdge(const PlacedPotential& x, const PlacedPotential& y, int e, double dx, double dy)
+      : px(x.x[e] + dx),
+        py(x.y[e] + dy),
+        qx(px - y.reference.x()),
+        qy(py - y.reference.y()),
+        ex(x.x[e + 1] - x.x[e]),
+        ey(x.y[e + 1] - x.y[e]) {
+    shorten(y);
+  }
+  double px, py, qx, qy, ex, ey;
+  bool shortened = false;
+
+  void add_piece(double s0, double s1, Pieces& pieces) const {
+    pieces.add(qx + s0 * ex, qy + s0 * ey, qx + s1 * ex, qy + s1 * ey);
+  }
+
+ private:
+  // Of an edge that is long against y only the part around the foot of y's reference point counts:
+  // a fraction of the whole length could not place the few millimetres inside y on a floor of a
+  // kilometre.
+  void shorten(const PlacedPotential& y) {
+    constexpr double kLong = 8;
+    const double length2 = ex * ex + ey * ey;
+    if (!(length2 > kLong * kLong * y.radius * y.radius) || y.radius == 0) return;
+    const double length = std::sqrt(length2);
+    const double tx = ex / length;
+    const double ty = ey / length;
+    const double foot = -(tx * qx + ty * qy);  // along the edge, from its start
+    const double height = tx * qy - ty * qx;   // of the edge's line over the reference point
+    const double from = foot - 2 * y.radius;
+    const double until = foot + 2 * y.radius;
+    if (until <= 0 || from >= length) return;
+    const Vec2 start =
+        from <= 0 ? Vec2(qx, qy)
+                  : Vec2(-ty * height - 2 * y.radius * tx, tx * height - 2 * y.radius * ty);
+    const Vec2 end = until >= length
+                         ? Vec2(qx + ex, qy + ey)
+                         : Vec2(-ty * height + 2 * y.radius * tx, tx * height + 2 * y.radius * ty);
+    qx = start.x();
+    qy = start.y();
+    px = qx + y.reference.x();
+    py = qy + y.reference.y();
+    ex = end.x() - start.x();
+    ey = end.y() - start.y();
+    shortened = true;
+  }
+};
+
+void accumulate(const PlacedEdge& edge, const EdgeMoments& m, double inside, Half& half) {
+  const double qx = edge.qx, qy = edge.qy, ex = edge.ex, ey = edge.ey;
+  const double length = std::sqrt(ex * ex + ey * ey);
+  half.fx += ey * m.sum;
+  half.fy -= ex * m.sum;
+  half.moment -= (qx * ex + qy * ey) * m.sum + (ex * ex + ey * ey) * m.first;
+  half.weight += length * m.sum;
+  half.wx += length * (qx * m.sum + ex * m.first);
+  half.wy += length * (qy * m.sum + ey * m.first);
+  half.length += length * inside;
+  half.largest = std::max(half.largest, m.largest);
+}
+
+// y convex: its envelope on the part of each edge of x that clipping leaves.
+Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                        const double* rows, double* spare, Pieces& pieces) {
   const int width = y.size + (y.capped ? 1 : 0);
   Half half;
+  pieces.reserve(x.size);
   for (int e = 0; e < x.size; ++e) {
-    const Row row{rows + e * width, rows + (e + 1) * width, y.size, width};
+    const PlacedEdge edge(x, y, e, dx, dy);
+    Row row{rows + e * width, rows + (e + 1) * width, y.size, width};
+    if (edge.shortened) {
+      height_row(y, edge.px, edge.py, spare);
+      height_row(y, edge.px + edge.ex, edge.py + edge.ey, spare + width);
+      row.a = spare;
+      row.b = spare + width;
+    }
     double s0, s1;
     if (!clip(row, s0, s1)) continue;
-    double sum = 0;    // INT phi du
-    double first = 0;  // INT phi u du
-    double largest = 0;
-    walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
-      const double h = u2 - u1;
-      sum += h * (v1 + v2) / 2;
-      first += h * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
-      largest = std::max(largest, std::max(v1, v2));
-    });
-    const double px = x.x[e] + dx;
-    const double py = x.y[e] + dy;
-    const double qx = px - y.reference.x();
-    const double qy = py - y.reference.y();
-    const double ex = x.x[e + 1] - x.x[e];
-    const double ey = x.y[e + 1] - x.y[e];
-    const double length = std::sqrt(ex * ex + ey * ey);
-    half.fx += ey * sum;
-    half.fy -= ex * sum;
-    half.moment -= (qx * ex + qy * ey) * sum + (ex * ex + ey * ey) * first;
-    half.weight += length * sum;
-    half.wx += length * (qx * sum + ex * first);
-    half.wy += length * (qy * sum + ey * first);
-    half.length += length * (s1 - s0);
-    half.largest = std::max(half.largest, largest);
-    *pieces++ = px + s0 * ex;
-    *pieces++ = py + s0 * ey;
-    *pieces++ = px + s1 * ex;
-    *pieces++ = py + s1 * ey;
+    EdgeMoments moments;
+    walk_envelope(row, s0, s1,
+                  [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
+    accumulate(edge, moments, s1 - s0, half);
+    edge.add_piece(s0, s1, pieces);
   }
   return half;
 }
 
-struct Rows {
-  double* of_a;
-  double* of_b;
-  double* pieces;
-};
-
-Rows reserve(const PlacedPotential& a, const PlacedPotential& b, EdgeWorkspace& workspace) {
-  const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
-  const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
-  if (workspace.values.size() < rows_a + rows_b) workspace.values.resize(rows_a + rows_b);
-  const size_t pieces = 4 * static_cast<size_t>(a.size + b.size);
-  if (workspace.pieces.size() < pieces) workspace.pieces.resize(pieces);
-  return {workspace.values.data(), workspace.values.data() + rows_a, workspace.pieces.data()};
+// y not convex: its roof along each edge of x, which may enter and leave several times.
+Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                    RoofTrace<double>& trace, Pieces& pieces) {
+  Half half;
+  Box box;
+  double finite = 0;  // 0 * coordinate: a NaN or an infinity shows
+  for (int i = 0; i < y.size; ++i) {
+    box.include(y.x[i], y.y[i]);
+    finite += 0 * y.x[i] + 0 * y.y[i];
+  }
+  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
+  half.weight = finite;  // NaN never passes as "no contact"
+  const PlacedRoof<double> roof{&y.roof->arcs, y.size,   static_cast<int>(y.roof->values.size()),
+                                y.node_x,      y.node_y, y.roof->values.data()};
+  for (int e = 0; e < x.size; ++e) {
+    const PlacedEdge edge(x, y, e, dx, dy);
+    Box own;
+    own.include(edge.px, edge.py);
+    own.include(edge.px + edge.ex, edge.py + edge.ey);
+    if (apart(own, box)) continue;
+    trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+    EdgeMoments moments;
+    double inside = 0;
+    trace.pieces([&](double u1, double v1, double u2, double v2) {
+      if (y.capped) {
+        moments.add_capped(u1, v1, u2, v2);
+      } else {
+        moments.add(u1, v1, u2, v2);
+      }
+      inside += u2 - u1;
+      pieces.reserve(1);
+      edge.add_piece(u1, u2, pieces);
+    });
+    accumulate(edge, moments, inside, half);
+  }
+  return half;
 }
 
 }  // namespace
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace) {
-  const Rows rows = reserve(a, b, workspace);
+  const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
+  const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
+  const size_t spare = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
+  if (workspace.values.size() < rows_a + rows_b + spare) {
+    workspace.values.resize(rows_a + rows_b + spare);
+  }
+  double* const of_a_rows = workspace.values.data();
+  double* const of_b_rows = of_a_rows + rows_a;
+  double* const spare_rows = of_b_rows + rows_b;
   const double dx = offset.x();
   const double dy = offset.y();
-  if (heights(a, b, dx, dy, rows.of_a) || heights(b, a, -dx, -dy, rows.of_b)) return {};
+  if (!b.roof && heights(a, b, dx, dy, of_a_rows)) return {};
+  if (!a.roof && heights(b, a, -dx, -dy, of_b_rows)) return {};
 
-  double* middle = rows.pieces;
-  const Half of_a = integrate(a, b, dx, dy, rows.of_a, middle);  // frame of b
-  double* end = middle;
-  const Half of_b = integrate(b, a, -dx, -dy, rows.of_b, end);  // frame of a
+  Pieces pieces(workspace.pieces);
+  const Half of_a =
+      b.roof ? integrate_roof(a, b, dx, dy, workspace.trace, pieces)
+             : integrate_envelope(a, b, dx, dy, of_a_rows, spare_rows, pieces);  // frame of b
+  const size_t middle = pieces.used();
+  const Half of_b =
+      a.roof ? integrate_roof(b, a, -dx, -dy, workspace.trace, pieces)
+             : integrate_envelope(b, a, -dx, -dy, of_b_rows, spare_rows, pieces);  // frame of a
 
   PairIntegral pair;
   const double fx = of_b.fx - of_a.fx;
@@ -208,16 +339,16 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
     const double nx = fx / size;
     const double ny = fy / size;
     double n0 = HUGE_VAL, n1 = -HUGE_VAL, t0 = HUGE_VAL, t1 = -HUGE_VAL;
-    const auto project = [&](const double* from, const double* to, double shift_n, double shift_t) {
-      for (; from != to; from += 2) {
-        const double n = nx * from[0] + ny * from[1] + shift_n;
-        const double t = nx * from[1] - ny * from[0] + shift_t;
+    const auto project = [&](size_t from, size_t to, double shift_n, double shift_t) {
+      for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
+        const double n = nx * p[0] + ny * p[1] + shift_n;
+        const double t = nx * p[1] - ny * p[0] + shift_t;
         n0 = std::min(n0, n), n1 = std::max(n1, n);
         t0 = std::min(t0, t), t1 = std::max(t1, t);
       }
     };
-    project(rows.pieces, middle, 0, 0);
-    project(middle, end, nx * dx + ny * dy, nx * dy - ny * dx);
+    project(0, middle, 0, 0);
+    project(middle, pieces.used(), nx * rx + ny * ry, nx * ry - ny * rx);
     pair.penetration = n1 - n0;
     pair.breadth = t1 - t0;
   }
@@ -237,16 +368,57 @@ std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const 
 
 }  // namespace
 
+namespace {
+
+using Ring = std::vector<Vec2>;
+using Parts = std::vector<lower_envelope::SignedRing<double>>;
+
+Ring ring(const PlacedPotential& p, const Vec2& shift) {
+  Ring result;
+  for (int v = 0; v < p.size; ++v) result.push_back(Vec2(p.x[v], p.y[v]) + shift);
+  return result;
+}
+
+Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
+  if (p.roof) return lower_envelope::fan(ring(p, shift));
+  return {{ring(p, shift), 1}};
+}
+
+// INT phi_p dA over the overlap with the parts of the other polygon.
+double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& others) {
+  const auto planes = lines(p, shift);
+  if (p.roof) {
+    std::vector<Ring> faces;
+    for (const std::vector<int>& nodes : p.roof->faces) {
+      Ring& face = faces.emplace_back();
+      for (const int i : nodes) face.push_back(Vec2(p.node_x[i], p.node_y[i]) + shift);
+    }
+    return lower_envelope::volume_under_faces(faces, planes, p.capped, others);
+  }
+  const Ring outline = ring(p, shift);
+  double volume = 0;
+  for (const auto& part : others) {
+    volume += part.sign * lower_envelope::volume_under(planes, p.capped,
+                                                       lower_envelope::inside(part.ring, outline));
+  }
+  return volume;
+}
+
+}  // namespace
+
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
-  const auto lines_a = lines(a, offset);
-  const auto lines_b = lines(b, Vec2::Zero());
-  std::vector<Vec2> overlap;
-  for (int v = 0; v < a.size; ++v) overlap.push_back(Vec2(a.x[v], a.y[v]) + offset);
-  for (const auto& line : lines_b) overlap = lower_envelope::clip(overlap, line, true);
+  const Parts parts_a = convex_parts(a, offset);
+  const Parts parts_b = convex_parts(b, Vec2::Zero());
   PairVolume volume;
-  volume.overlap_area = lower_envelope::area_integral(overlap, {Vec2::Zero(), 1});
-  volume.energy = lower_envelope::volume_under(lines_a, a.capped, overlap) +
-                  lower_envelope::volume_under(lines_b, b.capped, overlap);
+  volume.energy = volume_under(a, offset, parts_b) + volume_under(b, Vec2::Zero(), parts_a);
+  const lower_envelope::Line<double> one{Vec2::Zero(), 1};
+  for (const auto& part_a : parts_a) {
+    for (const auto& part_b : parts_b) {
+      volume.overlap_area +=
+          part_a.sign * part_b.sign *
+          lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);
+    }
+  }
   return volume;
 }
 
@@ -264,19 +436,42 @@ namespace {
 // about vertex 0.
 struct Placement {
   Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
-    for (int i = 0; i <= polygon.size(); ++i) {
-      const Vec2 v = polygon[i == polygon.size() ? 0 : i] - origin;
-      x.push_back(v.x());
-      y.push_back(v.y());
-    }
+    const auto add = [&](const Vec2& p) {
+      x.push_back(p.x());
+      y.push_back(p.y());
+    };
+    for (const Vec2& v : polygon.vertices()) add(v - origin);
+    add(polygon[0] - origin);
     for (const Vec2& g : potential.gradients) {
       gx.push_back(g.x());
       gy.push_back(g.y());
     }
-    view = {x.data(),       y.data(),           gx.data(),       gy.data(),
-            polygon.size(), potential.capped(), Vec2(x[0], y[0])};
+    if (potential.roof) {
+      // The boundary exactly as given, the inner nodes by their place in the polygon.
+      node_x.assign(x.begin(), x.end() - 1);
+      node_y.assign(y.begin(), y.end() - 1);
+      const Vec2 shift = polygon.origin() - origin;
+      for (size_t i = polygon.vertices().size(); i < potential.roof->points.size(); ++i) {
+        node_x.push_back(potential.roof->points[i].x() + shift.x());
+        node_y.push_back(potential.roof->points[i].y() + shift.y());
+      }
+    }
+    double radius = 0;
+    for (size_t i = 1; i < x.size(); ++i)
+      radius = std::max(radius, std::hypot(x[i] - x[0], y[i] - y[0]));
+    view = {x.data(),
+            y.data(),
+            gx.data(),
+            gy.data(),
+            polygon.size(),
+            potential.capped(),
+            potential.roof ? &*potential.roof : nullptr,
+            node_x.data(),
+            node_y.data(),
+            Vec2(x[0], y[0]),
+            radius};
   }
-  std::vector<double> x, y, gx, gy;
+  std::vector<double> x, y, gx, gy, node_x, node_y;
   PlacedPotential view;
 };
 

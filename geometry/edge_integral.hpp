@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "geometry/potential.hpp"
+#include "geometry/roof.hpp"
 
 namespace apothem {
 
@@ -25,7 +26,11 @@ struct PlacedPotential {
   const double* gy;
   int size;
   bool capped;
+  const Roof* roof = nullptr;      ///< of a polygon that is not convex
+  const double* node_x = nullptr;  ///< its nodes, placed
+  const double* node_y = nullptr;
   Vec2 reference = Vec2::Zero();  ///< in the frame; what the pair's moments are about
+  double radius = 0;              ///< largest distance of a vertex from it; 0: not known
 };
 
 /// Integrals of a pair for unit stiffness. Multiply force, moments, weight and energy by k_n.
@@ -49,6 +54,7 @@ struct PairIntegral {
 struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
   std::vector<double> pieces;  ///< end points of the clipped edges
+  RoofTrace<double> trace;     ///< for polygons that are not convex
 };
 
 /// The pair kernel. `offset` is the origin of a's frame minus that of b's. No allocation after the
@@ -62,8 +68,8 @@ struct PairVolume {
   double overlap_area = 0;
 };
 
-/// The volume under the potentials: the overlap polygon by clipping, cut by the faces of both. Not
-/// for the step loop: for ledgers and pictures.
+/// The volume under the potentials, by clipping: not for the step loop, but for ledgers and
+/// pictures.
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
 
 /// Loading point of the resultant: the weighted centre moved along the tangent onto the line of

@@ -23,12 +23,25 @@ struct Region {
 template <class Real>
 std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
 
-/// phi = min(1 if capped, min_i lines_i), and the point that moments refer to.
+/// phi = min(1 if capped, min_i lines_i), and the point that moments refer to. If the polygon is
+/// not convex, phi is instead the roof with these nodes, and lines are the planes of its faces.
 template <class Real>
 struct Envelope {
   std::vector<Line<Real>> lines;
   bool capped;
   Vec<Real> reference;
+  const Roof* roof = nullptr;
+  std::vector<Real> x, y, values;
+
+  [[nodiscard]] Real volume(const std::vector<Vec<Real>>& polygon) const {
+    if (!roof) return volume_under(lines, capped, polygon);
+    std::vector<std::vector<Vec<Real>>> faces;
+    for (const std::vector<int>& nodes : roof->faces) {
+      faces.emplace_back();
+      for (const int i : nodes) faces.back().emplace_back(x[i], y[i]);
+    }
+    return volume_under_faces(faces, lines, capped, fan(polygon));
+  }
 };
 
 /// phi along one edge, u in [0, 1].
@@ -44,6 +57,7 @@ template <class Real>
 class EdgeTrace {
  public:
   EdgeIntegral<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p, const Vec<Real>& q) {
+    if (phi.roof) return integrate_roof(phi, p, q);
     knots_.assign({{0, phi.lines[0](p)}, {1, phi.lines[0](q)}});
     for (size_t i = 1; i < phi.lines.size(); ++i) cut(phi.lines[i](p), phi.lines[i](q));
     if (phi.capped) cut(1, 1);
@@ -56,6 +70,22 @@ class EdgeTrace {
   struct Knot {
     Real u, value;
   };
+
+  EdgeIntegral<Real> integrate_roof(const Envelope<Real>& phi, const Vec<Real>& p,
+                                    const Vec<Real>& q) {
+    roof_.cross(
+        {&phi.roof->arcs, static_cast<int>(phi.lines.size()), static_cast<int>(phi.values.size()),
+         phi.x.data(), phi.y.data(), phi.values.data()},
+        p.x(), p.y(), q.x() - p.x(), q.y() - p.y());
+    EdgeIntegral<Real> result;
+    roof_.pieces([&](const Real& u1, const Real& v1, const Real& u2, const Real& v2) {
+      knots_.assign({{u1, v1}, {u2, v2}});
+      if (phi.capped) cut(1, 1);
+      for (size_t i = 1; i < knots_.size(); ++i)
+        add_positive_part(knots_[i - 1], knots_[i], result);
+    });
+    return result;
+  }
 
   static Knot between(const Knot& k, const Knot& l, const Real& share) {
     return {k.u + share * (l.u - k.u), k.value + share * (l.value - k.value)};
@@ -93,6 +123,7 @@ class EdgeTrace {
   }
 
   std::vector<Knot> knots_, cut_;
+  RoofTrace<Real> roof_;
 };
 
 /// Eq. 8 and the energy.
@@ -129,7 +160,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
     }
     area += area_integral(v, one);
-    energy += volume_under(a.lines, a.capped, v) + volume_under(b.lines, b.capped, v);
+    energy += a.volume(v) + b.volume(v);
   }
 
   const auto rounded = [](const Real& x) { return static_cast<double>(x); };

@@ -86,6 +86,60 @@ Real volume_under(const std::vector<Line<Real>>& lines, bool capped,
   return volume;
 }
 
+/// Part of a ring inside a convex one. A ring that is not convex leaves pieces that hang together
+/// by edges which cancel in every integral.
+template <class Real>
+std::vector<Vec<Real>> inside(std::vector<Vec<Real>> part, const std::vector<Vec<Real>>& convex) {
+  for (size_t i = 0; i < convex.size() && !part.empty(); ++i) {
+    const Vec<Real>& p = convex[i];
+    const Vec<Real> e = convex[i + 1 == convex.size() ? 0 : i + 1] - p;
+    const Vec<Real> normal(-e.y(), e.x());
+    part = clip<Real>(part, {normal, -normal.dot(p)}, true);
+  }
+  return part;
+}
+
+/// Triangles whose signed sum is a polygon, convex or not.
+template <class Real>
+struct SignedRing {
+  std::vector<Vec<Real>> ring;  // counter-clockwise
+  int sign;
+};
+template <class Real>
+std::vector<SignedRing<Real>> fan(const std::vector<Vec<Real>>& polygon) {
+  std::vector<SignedRing<Real>> triangles;
+  for (size_t i = 2; i < polygon.size(); ++i) {
+    const Vec<Real>&a = polygon[0], &b = polygon[i - 1], &c = polygon[i];
+    const Real twice = cross<Real>(b - a, c - a);
+    if (twice > 0) triangles.push_back({{a, b, c}, 1});
+    if (twice < 0) triangles.push_back({{a, c, b}, -1});
+  }
+  return triangles;
+}
+
+/// INT phi dA over a polygon, phi given by its faces (polygons) and their planes.
+template <class Real>
+Real volume_under_faces(const std::vector<std::vector<Vec<Real>>>& faces,
+                        const std::vector<Line<Real>>& planes, bool capped,
+                        const std::vector<SignedRing<Real>>& parts) {
+  const Line<Real> one{Vec<Real>(0, 0), 1};
+  Real volume = 0;
+  for (const SignedRing<Real>& part : parts) {
+    for (size_t e = 0; e < faces.size(); ++e) {
+      const std::vector<Vec<Real>> face = inside(faces[e], part.ring);
+      const Line<Real>& plane = planes[e];
+      if (!capped) {
+        volume += part.sign * area_integral(face, plane);
+        continue;
+      }
+      volume +=
+          part.sign * (area_integral(clip(face, {-plane.gradient, 1 - plane.height}, true), plane) +
+                       area_integral(clip(face, {plane.gradient, plane.height - 1}, false), one));
+    }
+  }
+  return volume;
+}
+
 /// The corners of all faces with the height of the envelope there: its maximum is at one of them.
 template <class Real>
 struct Corner {

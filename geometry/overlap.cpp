@@ -172,11 +172,23 @@ std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
 }
 
 Envelope<double> envelope(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
-  Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid};
+  Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid, nullptr, {}, {}, {}};
   phi.reference += polygon.origin() - origin;
   for (int i = 0; i < potential.size(); ++i) {
     const Vec2& gradient = potential.gradients[i];
     phi.lines.push_back({gradient, -gradient.dot(polygon[i] - origin)});
+  }
+  if (!potential.roof) return phi;
+  // The boundary exactly as given, the inner nodes by their place in the polygon.
+  phi.roof = &*potential.roof;
+  phi.values = potential.roof->values;
+  const Vec2 shift = polygon.origin() - origin;
+  for (size_t i = 0; i < phi.values.size(); ++i) {
+    const bool given = static_cast<int>(i) < polygon.size();
+    const Vec2 p = given ? Vec2(polygon[static_cast<int>(i)] - origin)
+                         : Vec2(potential.roof->points[i] + shift);
+    phi.x.push_back(p.x());
+    phi.y.push_back(p.y());
   }
   return phi;
 }

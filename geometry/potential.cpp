@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "geometry/inscribed_circle.hpp"
 #include "geometry/lower_envelope.hpp"
 
 namespace apothem {
@@ -17,8 +18,7 @@ void require_convex(const Polygon& polygon) {
   if (const auto reflex = polygon.first_reflex_vertex()) {
     const int i = polygon.input_index(*reflex);
     throw InvalidPolygon("vertex " + std::to_string(i) +
-                             " is reflex (interior angle above 180 degrees): contact needs convex "
-                             "polygons; split the body into convex ones",
+                             " is reflex (interior angle above 180 degrees): give a convex polygon",
                          i);
   }
 }
@@ -78,8 +78,37 @@ void scale(Potential& potential, double factor) {
   potential.top *= factor;
 }
 
+// A polygon that is not convex: phi is the roof of its straight skeleton over r.
+Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  const Skeleton skeleton = [&] {
+    try {
+      return straight_skeleton(polygon);
+    } catch (const SkeletonFailure& failure) {
+      throw InvalidPolygon(failure.what(), 0);
+    }
+  }();
+  using Reference = PotentialChoice::Reference;
+  const double reference = choice.reference == Reference::length ? choice.length
+                           : choice.reference == Reference::inscribed_circle
+                               ? largest_inscribed_circle(polygon).radius
+                               : skeleton.roof_height;
+  Potential potential;
+  potential.vertices = polygon.local_vertices();
+  potential.gradients = inward_normals(polygon);
+  for (Vec2& g : potential.gradients) g /= reference;
+  potential.steepest = 1 / reference;
+  potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
+  potential.roof = make_roof(skeleton, reference);
+  for (const Skeleton::Node& node : skeleton.nodes) {
+    if (node.height >= skeleton.roof_height * (1 - kSameHeight)) {
+      potential.top_points.push_back(node.point);
+    }
+  }
+  return potential;
+}
+
 Potential distance_potential(const Polygon& polygon, const PotentialChoice& choice) {
-  require_convex(polygon);
+  if (!polygon.is_convex()) return roof_potential(polygon, choice);
   Potential potential = envelope_potential(polygon, inward_normals(polygon));
   const double inradius = potential.top;
   if (choice.reference == PotentialChoice::Reference::length) {
@@ -130,6 +159,9 @@ Potential make_potential(const Polygon& polygon, const PotentialChoice& choice) 
 Potential translated(Potential potential, const Vec2& shift) {
   for (Vec2& v : potential.vertices) v -= shift;
   for (Vec2& v : potential.top_points) v -= shift;
+  if (potential.roof) {
+    for (Vec2& v : potential.roof->points) v -= shift;
+  }
   return potential;
 }
 

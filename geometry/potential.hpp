@@ -1,25 +1,29 @@
-// The contact potential of a convex polygon: one structure for the distance potential of the paper
-// (Eq. 6) and for Munjiza's area potential of triangles (Eq. 2).
+// The contact potential of a polygon: one structure for the distance potential of the paper (Eq. 6)
+// and for Munjiza's area potential of triangles (Eq. 2). For a convex polygon
 //
 //   phi(x) = min(1, min_i g_i . (x - p_i))   inside,   0 outside,
 //
 // with p_i a point of edge i and g_i its inward normal divided by a length: the edge list with one
 // inverse length per edge. Lines are kept in this difference form because its round-off follows the
-// size of the polygon, not its distance from the origin of the coordinates.
+// size of the polygon, not its distance from the origin of the coordinates. A polygon that is not
+// convex has the same lines over the faces of its straight skeleton (roof.hpp).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/polygon.hpp"
+#include "geometry/roof.hpp"
 
 namespace apothem {
 
 struct Potential {
   std::vector<Vec2> vertices;    ///< p_i, relative to an origin of the owner's choice, m
   std::vector<Vec2> gradients;   ///< g_i, 1/m
-  double top = 0;                ///< maximum of the uncapped envelope
+  double top = 0;                ///< maximum of phi without the cap
   std::vector<Vec2> top_points;  ///< where it is attained: one point, or the ends of a segment
   double steepest = 0;           ///< largest |g_i|: the inverse of the smallest length, 1/m
+  std::optional<Roof> roof;      ///< of a polygon that is not convex; the envelope is not phi there
 
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
   /// True when min(1, .) matters: the plateau phi = 1 is the paper's singular area.
@@ -36,7 +40,8 @@ struct InscribedCircle {
 InscribedCircle inscribed_circle(const Polygon& polygon);
 
 /// Which potential, and the length r that normalises the distance potential. For a convex polygon
-/// the roof height is the inradius, so `roof` and `inscribed_circle` agree.
+/// the roof height is the inradius, so `roof` and `inscribed_circle` agree; otherwise the roof
+/// height is the smaller one.
 struct PotentialChoice {
   enum class Kind { distance, area };
   enum class Reference { roof, inscribed_circle, length };
@@ -46,7 +51,8 @@ struct PotentialChoice {
 };
 
 /// The potential of a polygon, with vertices relative to polygon.origin(). Throws InvalidPolygon if
-/// the polygon is not convex or, for the area potential (slope 3 / altitude), not a triangle.
+/// there is none: for the area potential (slope 3 / altitude) of all but triangles, for the
+/// distance potential of polygons whose straight skeleton cannot be found.
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice = {});
 
 /// The potential seen from another origin: all points minus `shift`.

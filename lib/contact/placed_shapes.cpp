@@ -5,8 +5,18 @@
 namespace apothem {
 
 int PlacedShapes::add(const Potential& potential) {
-  Shape shape{x_.size(),          gx_.size(), potential.size(),
-              potential.capped(), 0,          potential.top_points.front()};
+  Shape shape{x_.size(),
+              gx_.size(),
+              potential.size(),
+              potential.capped(),
+              0,
+              potential.top_points.front(),
+              potential.roof ? &*potential.roof : nullptr,
+              node_x_.size()};
+  if (shape.roof) {
+    node_x_.resize(node_x_.size() + shape.roof->points.size());
+    node_y_.resize(node_x_.size());
+  }
   for (const Vec2& v : potential.vertices) shape.radius = std::max(shape.radius, v.norm());
   shapes_.push_back(shape);
   body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
@@ -40,6 +50,13 @@ void PlacedShapes::place(int i, double x, double y, double angle) {
   }
   vx[shape.size] = vx[0];
   vy[shape.size] = vy[0];
+  if (shape.roof) {
+    const std::vector<Vec2>& points = shape.roof->points;
+    for (size_t k = 0; k < points.size(); ++k) {
+      node_x_[shape.nodes + k] = c * points[k].x() - s * points[k].y();
+      node_y_[shape.nodes + k] = s * points[k].x() + c * points[k].y();
+    }
+  }
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
@@ -48,12 +65,18 @@ bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) co
   const double s = std::sin(angle);
   const Vec2& body = shapes_[i].top;
   const Vec2 top = offset + Vec2(c * body.x() - s * body.y(), s * body.x() + c * body.y());
+  // Even-odd rule, for convex and other shapes.
   const PlacedPotential other = view(j);
+  bool inside = false;
   for (int k = 0; k < other.size; ++k) {
-    if (other.gx[k] * (top.x() - other.x[k]) + other.gy[k] * (top.y() - other.y[k]) < 0)
-      return false;
+    const double dy0 = other.y[k] - top.y();
+    const double dy1 = other.y[k + 1] - top.y();
+    if ((dy0 > 0) == (dy1 > 0)) continue;
+    const double dx0 = other.x[k] - top.x();
+    const double dx1 = other.x[k + 1] - top.x();
+    if ((dx0 * dy1 - dx1 * dy0 > 0) == (dy1 > dy0)) inside = !inside;
   }
-  return true;
+  return inside;
 }
 
 }  // namespace apothem

@@ -10,6 +10,7 @@ namespace apothem {
 class PlacedShapes {
  public:
   /// Adds a shape given in its body frame (reference point = mass centre) and returns its index.
+  /// The potential must outlive this object if the shape is not convex.
   /// The potential must outlive this object.
   int add(const Potential& potential);
 
@@ -23,7 +24,12 @@ class PlacedShapes {
             gx_.data() + s.edges,
             gy_.data() + s.edges,
             s.size,
-            s.capped};
+            s.capped,
+            s.roof,
+            node_x_.data() + s.nodes,
+            node_y_.data() + s.nodes,
+            Vec2::Zero(),
+            s.radius};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's, `angle` that of i.
@@ -40,11 +46,14 @@ class PlacedShapes {
     int size;
     bool capped;
     double radius;
-    Vec2 top;  // of the potential, body frame
+    Vec2 top;          // of the potential, body frame
+    const Roof* roof;  // if not convex
+    size_t nodes;      // first of its placed nodes
   };
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
   std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
+  std::vector<double> node_x_, node_y_;               // of roofs, the same
   std::vector<Box> boxes_;                            // in the coordinates of the model
 };
 

@@ -15,7 +15,6 @@ Ledger::Ledger(const Model& model, const State& state, double contact_energy) : 
     const RigidBody& body = model.bodies[i];
     if (body.motion == Motion::free) {
       free_.push_back(i);
-      free_mass_ += body.mass;
       if (body.held[0] || body.held[1] || body.held[2]) held_.push_back(i);
     } else {
       not_free_.push_back(i);
@@ -68,8 +67,10 @@ Energies Ledger::terms(const State& state, double contact_energy) const {
     const double* v = &state.velocity[3 * static_cast<size_t>(i)];
     const double* x = &state.position[3 * static_cast<size_t>(i)];
     e.kinetic += (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
-    e.gravity -= body.mass * (model_.gravity.x() * (x[0] - body.position.x()) +
-                              model_.gravity.y() * (x[1] - body.position.y()));
+    // What rounding keeps out of the position counts: the fall may be far smaller than the height.
+    const double* r = &state.remainder[3 * static_cast<size_t>(i)];
+    e.gravity -= body.mass * (model_.gravity.x() * ((x[0] - body.position.x()) + r[0]) +
+                              model_.gravity.y() * ((x[1] - body.position.y()) + r[1]));
   }
   e.contact = contact_energy;
   e.external_work = balance_.external_work;

@@ -40,7 +40,6 @@ class Ledger {
 
   const Model& model_;
   std::vector<int> free_, held_, driven_, not_free_;
-  double free_mass_ = 0;
   Balance balance_;
 };
 

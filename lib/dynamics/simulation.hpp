@@ -104,6 +104,8 @@ class Simulation {
   [[nodiscard]] const Counts& counts() const { return counts_; }
   /// Seconds per phase over the whole run, extrapolated from the steps that were timed.
   [[nodiscard]] std::array<double, kPhaseNames.size()> phase_seconds() const;
+  /// Steps taken by this object, without those before a snapshot.
+  [[nodiscard]] std::int64_t own_steps() const { return state_.step - steps_before_; }
 
  private:
   void choose_step(const TimeSettings& time, int frames);
@@ -144,6 +146,8 @@ class Simulation {
   Extremes extremes_;
   Counts counts_;
   double energy_in_play_ = 0;
+  double energy_noise_ = 0;
+  std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
   std::array<double, kPhaseNames.size()> timed_seconds_{};
   std::int64_t timed_steps_ = 0;
 };

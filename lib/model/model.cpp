@@ -65,7 +65,8 @@ std::array<double, 3> RigidBody::inverse_mass() const {
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model) {
   const AreaMoments moments = area_moments(polygon);
   body.potential = translated(make_potential(polygon, model.contact.potential), moments.centroid);
-  body.inradius = inscribed_circle(polygon).radius;
+  body.inradius = polygon.is_convex() ? inscribed_circle(polygon).radius
+                                      : body.potential.top / body.potential.steepest;
   body.area = moments.area;
   const double surface_density = model.materials[body.material].density * model.thickness;
   body.mass = surface_density * moments.area;

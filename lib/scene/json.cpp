@@ -186,6 +186,12 @@ const JsonValue* JsonValue::find(std::string_view key) const {
 }
 
 JsonValue parse_json(const std::string& text, const std::string& file) {
+  if (const size_t nul = text.find('\0');
+      nul != std::string::npos) {  // the parser would stop there
+    const auto lines =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+    throw SceneError(file, 1 + static_cast<int>(lines), "", "not valid JSON: a NUL character");
+  }
   size_t taken = 0;
   Builder builder(text, file, taken);
   const CountingIterator begin{text.data(), &taken};

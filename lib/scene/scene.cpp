@@ -38,13 +38,20 @@ class SceneReader {
     top.finish();
     track_by_default();
     if (output_value) output(*output_value);
+    scene_.time.longest_step = scene_.output.history_interval.value_or(scene_.time.end / 1000);
     if (expect_value) expect(*expect_value);
   }
 
  private:
+  static bool has_control_character(const std::string& name) {
+    return std::any_of(name.begin(), name.end(),
+                       [](unsigned char c) { return c < 32 || c == 127; });
+  }
+
   const std::string& scene_name(const JsonValue& value) {
     const std::string& name = in_.string(value);
-    if (name.empty() || name.find_first_of("/\\\n") != std::string::npos || name[0] == '.') {
+    if (name.empty() || has_control_character(name) ||
+        name.find_first_of("/\\\n") != std::string::npos || name[0] == '.') {
       in_.fail(value,
                "must be usable as the name of a folder: not empty, without / or \\, not "
                "starting with a dot");
@@ -169,6 +176,13 @@ class SceneReader {
     } catch (const InvalidPolygon& error) {
       in_.fail(vertex_or(outline, error.vertex()), polygon_message(error));
     }
+    if (!(body.mass > 0 && body.inertia > 0 && std::isfinite(1 / body.mass) &&
+          std::isfinite(1 / body.inertia) && std::isfinite(body.potential.steepest))) {
+      in_.fail(value,
+               fmt::format("has a mass of {:g} kg and an inertia of {:g} kg m^2, out of the range "
+                           "of double precision; check density, thickness and size",
+                           body.mass, body.inertia));
+    }
     if (const JsonValue* v = object.optional("position")) {
       body.position = in_.vec2(*v, "m") - model_.origin;
     }
@@ -193,7 +207,8 @@ class SceneReader {
 
   const std::string& body_name(const JsonValue& value) {
     const std::string& name = in_.string(value);
-    if (name.empty() || name.find_first_of(",\"\n\r[]") != std::string::npos) {
+    if (name.empty() || has_control_character(name) ||
+        name.find_first_of(",\"\n\r[]") != std::string::npos) {
       in_.fail(value, "must not be empty nor hold , \" [ ] or line breaks: it heads CSV columns");
     }
     for (size_t i = 0; i < model_.bodies.size(); ++i) {
@@ -372,6 +387,7 @@ class SceneReader {
       if (const JsonValue* v = object.optional("between")) {
         const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
         if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
+        if (t[0] > scene_.time.end || t[1] < 0) in_.fail(*v, "lies outside the run");
         e.from = t[0];
         e.until = t[1];
       }

@@ -107,6 +107,8 @@ TEST_CASE("help and usage", "[program]") {
                                                 {"run"},
                                                 {"run", kScene, "--threads", "0"},
                                                 {"run", kScene, "--until", "-1"},
+                                                {"run", kScene, "--until", "nan"},
+                                                {"run", kScene, "--until", "inf"},
                                                 {"contact", "a"},
                                                 {"contact"},
                                                 {"contact", "a", "b", "--method", "guess"},
@@ -233,6 +235,14 @@ TEST_CASE("a resumed run continues bit for bit", "[program]") {
   }
   CHECK(Json::parse(content(folder / "whole/run.json"))["final_state_hash"] ==
         Json::parse(content(folder / "parts/run.json"))["final_state_hash"]);
+  // Resuming only to stop at once, inside a contact, changes nothing either.
+  const std::string soft = folder.write("soft.json", scene(R"({ "end": 0.3, "step": 2e-5 })"));
+  REQUIRE(run({"run", soft, "-o", folder / "soft", "--until", "0.1431"}, folder).code == 0);
+  REQUIRE(run({"run", soft, "-o", folder / "soft", "--resume", "--until", "0.08"}, folder).code ==
+          0);
+  REQUIRE(run({"run", soft, "-o", folder / "soft", "--resume"}, folder).code == 0);
+  REQUIRE(run({"run", soft, "-o", folder / "soft2"}, folder).code == 0);
+  CHECK((content(folder / "soft/energy.csv") == content(folder / "soft2/energy.csv")));
   // Nothing to resume any more; and never from another scene's checkpoint.
   CHECK(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 2);
   REQUIRE(run({"run", file, "-o", folder / "other", "--until", "0.01"}, folder).code == 0);
@@ -259,6 +269,15 @@ TEST_CASE("a system that fails gives exit code 4 and keeps what was complete", "
     const std::string frame = folder / ("full/" + pvd.substr(at, pvd.find('"', at) - at));
     CHECK(content(frame).ends_with("</VTKFile>\n"));
   }
+}
+
+TEST_CASE("--until behind the end of the scene ends with the scene", "[program]") {
+  const Folder folder;
+  const std::string file =
+      folder.write("short.json", scene(R"({ "end": 0.01 }, "output": { "frames": 5 })"));
+  REQUIRE(run({"run", file, "-o", folder / "short", "--until", "5"}, folder).code == 0);
+  CHECK(read_history(folder / "short/history.csv").columns[0].back() == .01);
+  CHECK(content(folder / "short/frames.pvd").find("bodies_000006") == std::string::npos);
 }
 
 TEST_CASE("the same scene gives the same bits", "[program]") {

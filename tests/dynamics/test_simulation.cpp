@@ -295,6 +295,60 @@ TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
   CHECK(std::abs(fall({0x1p30, 0x1p30}) - here) < 1e-12);
 }
 
+TEST_CASE("what round-off moves is no energy error", "[dynamics]") {
+  for (const double w : {.1, .3, .7, 1.0, 3.0}) {
+    Model model = make_model();  // squares that touch exactly
+    model.gravity = Vec2::Zero();
+    for (int i = 0; i < 12; ++i) {
+      model.bodies.push_back(
+          make_body(model, std::to_string(i),
+                    Polygon({{i * w, 0}, {(i + 1) * w, 0}, {(i + 1) * w, w}, {i * w, w}})));
+    }
+    Simulation simulation(model, {.end = 1}, 1, 1);
+    for (int i = 0; i < 100; ++i) {
+      simulation.step();
+      REQUIRE_NOTHROW(simulation.energies());
+    }
+  }
+  Model model = make_model();  // a short fall from far up
+  model.bodies.push_back(
+      make_body(model, "floor", Polygon({{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}), Motion::fixed));
+  model.bodies.push_back(make_body(model, "high", Polygon({{0, 100}, {.5, 101}, {-.5, 101}})));
+  Simulation simulation(model, {.end = 1e-5}, 100, 1);
+  for (int i = 0; i < 100; ++i) {
+    simulation.step();
+    REQUIRE_NOTHROW(simulation.energies());
+  }
+}
+
+TEST_CASE("the step respects rotation", "[dynamics]") {
+  Model model = make_model(1e8);
+  model.gravity = Vec2::Zero();
+  model.bodies.push_back(
+      make_body(model, "bar", Polygon({{-5, -.2}, {5, -.2}, {5, .2}, {-5, .2}})));
+  model.bodies.push_back(make_body(
+      model, "square", Polygon({{4.55, 1.25}, {4.85, 1.25}, {4.85, 1.55}, {4.55, 1.55}})));
+  model.bodies[0].spin = 1500;
+  const double radius = std::hypot(5, .2);
+  CHECK(motion_step_limit(model).step * 1500 * radius <= kLargestStride * .15 * (1 + 1e-12));
+  model.bodies[0].spin = 0;
+  model.bodies[0].motion = Motion::prescribed;
+  model.bodies[0].history.spin = {{0, 1500}};
+  CHECK(motion_step_limit(model).step * 1500 * radius <= kLargestStride * .15 * (1 + 1e-12));
+}
+
+TEST_CASE("magnitudes that leave no step are refused", "[dynamics]") {
+  for (const int which : {0, 1, 2}) {
+    Model model = bouncing_triangle();
+    TimeSettings time{.end = 1};
+    if (which == 0) model.gravity = {0, -1e308};
+    if (which == 1) time.end = 1e308;
+    if (which == 2) model.contact.normal_stiffness = 1.7e308;
+    INFO(which);
+    CHECK_THROWS_AS(Simulation(model, time, 1, 1), Unrunnable);
+  }
+}
+
 TEST_CASE("a run that leaves the method's range stops and says where", "[dynamics]") {
   {
     Model model = bouncing_triangle();  // far too soft: falls through

@@ -107,6 +107,21 @@ TEST_CASE("the same force far from the origin", "[overlap]") {
   }
 }
 
+TEST_CASE("a tip on a long edge", "[overlap]") {
+  // The part of the edge that counts is a tiny fraction of it.
+  for (const double length : {4.0, 40.0, 4000.0, 4e6}) {
+    INFO("length " << length);
+    const double d = 6.1e-5;
+    const Polygon tip({{0, -d}, {.25, 4 - d}, {-.25, 4 - d}});
+    const Polygon floor({{-.47 * length, 0}, {-.3 * length, -1}, {.53 * length, 0}});
+    const PairResult x = exact_method(tip, floor, {});
+    const PairResult e = test::edge(tip, floor);
+    CHECK((e.integral.force - x.integral.force).norm() < 1e-12 * x.integral.weight);
+    CHECK(std::abs(e.integral.own_length_b - x.integral.own_length_b) <
+          1e-11 * x.integral.own_length_b);
+  }
+}
+
 TEST_CASE("degenerate pairs on a lattice", "[overlap]") {
   // Shared vertices and edges, ridges on edges, coincident polygons: all in plenty.
   test::Random random(14);

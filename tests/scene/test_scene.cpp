@@ -121,7 +121,6 @@ const std::vector<Broken> kBroken{
      "vertex 2 repeats vertex 1", false},
     {"[1, -1], [1, 0], [-1, 0]]", "[1, -1], [0, -1], [-1, 0]]", ":8: /bodies/0/polygon/1", "spike",
      false},
-    {"[1, 0], [-1, 0]]", "[1, 0], [0, -0.5], [-1, 0]]", ":8: /bodies/0/polygon/3", "reflex", false},
     {"[1, 0], [-1, 0]]", "[1, 0], [-1]]", ":8: /bodies/0/polygon/3", "must be [x, y] in m"},
     {"[1, 0], [-1, 0]]", "[1, 0], [-1, 1e300]]", ":8: /bodies/0/polygon/3", "beyond 1e60", false},
     {"\"polygon\": [[-1, -1], [1, -1], [1, 0], [-1, 0]]", "\"polygon\": \"missing.wkt\"",
@@ -155,6 +154,8 @@ const std::vector<Broken> kBroken{
      "must be an object"},
     {"\"falling.y\"", "\"falling.z\"", ":14: /expect/0/quantity", "no history has a column", false},
     {"\"tolerance\": 1 ", "\"tolerance\": 1, \"relative\": 1 ", ":14: /expect/0", "either"},
+    {"[0, 1], \"value\"", "[5, 6], \"value\"", ":14: /expect/0/between", "outside the run", false},
+    {"2000", "1e-320", ":9: /bodies/1", "range of double precision", false},
     {"[0, 1], \"value\"", "[1, 0], \"value\"", ":14: /expect/0/between", "before it starts", false},
     {"\"gravity\": [0, -9.81],", "\"gravity\": [0, -9.81], \"gravity\": [0, 0],", ":3: /gravity",
      "duplicate key, first given in line 3", false},
@@ -203,6 +204,14 @@ TEST_CASE("every kind of broken scene gives one line that names the place", "[sc
     CHECK(error.find(broken.message) != std::string::npos);
     CHECK(error.find('\n') == std::string::npos);
   }
+  for (const auto& [what, by] : {std::pair("\"gravity\"", "\"grav\\nity\""),
+                                 std::pair("\"rock\", \"motion\"", "\"ro\\nck\", \"motion\"")}) {
+    const std::string error = error_of(folder.write("lines.json", replaced(kGood, what, by)));
+    CHECK(error.find("lines.json:") != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK(error_of(folder.write("nul.json", std::string(kGood) + '\0' + "x")).find("NUL") !=
+        std::string::npos);
   CHECK(error_of(folder.write("empty.json", "")).find("not valid JSON") != std::string::npos);
   CHECK(error_of(folder.write("array.json", "[]")).find("must be an object") != std::string::npos);
   CHECK(error_of(folder.write("deep.json", std::string(100000, '['))).find("nested too deeply") !=

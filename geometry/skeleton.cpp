@@ -1,0 +1,863 @@
+#include "geometry/skeleton.hpp"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/create_straight_skeleton_2.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <Eigen/QR>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <numeric>
+#include <random>
+
+namespace apothem {
+namespace {
+
+using Ring = std::vector<Vec2>;
+using Node = Skeleton::Node;
+using Faces = std::vector<std::vector<int>>;
+
+constexpr double kTolerance = 1e-9;  // of the polygon's size
+
+int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
+
+// Line of an edge with its distance function.
+struct EdgeLine {
+  Vec2 start;
+  Vec2 tangent;
+  double length;
+  [[nodiscard]] Vec2 normal() const { return {-tangent.y(), tangent.x()}; }  // inward
+  [[nodiscard]] double along(const Vec2& x) const { return tangent.dot(x - start); }
+  [[nodiscard]] double distance(const Vec2& x) const { return cross(tangent, x - start); }
+};
+
+// Directions come from the given coordinates: local ones may have lost an edge of one ulp.
+std::vector<EdgeLine> edge_lines(const Polygon& polygon) {
+  std::vector<EdgeLine> lines;
+  for (int i = 0; i < polygon.size(); ++i) {
+    const Vec2 edge = polygon.after(i) - polygon[i];
+    const double length = std::hypot(edge.x(), edge.y());
+    lines.push_back({polygon[i] - polygon.origin(), edge / length, length});
+  }
+  return lines;
+}
+
+// ------------------------------------------------------------------------------------------------
+// From faces to a skeleton
+
+// Arcs follow from the faces. What does not fit together becomes an arc that breaks a law.
+void set_arcs(Skeleton& skeleton) {
+  const int n = static_cast<int>(skeleton.faces.size());
+  std::map<std::pair<int, int>, int> face_of;
+  for (int f = 0; f < n; ++f) {
+    const std::vector<int>& face = skeleton.faces[f];
+    for (size_t i = 0; i < face.size(); ++i) {
+      face_of[{face[i], face[i + 1 == face.size() ? 0 : i + 1]}] = f;
+    }
+  }
+  for (int e = 0; e < n; ++e) skeleton.arcs.push_back({e, next(e, n), e, -1});
+  for (const auto& [ends, face] : face_of) {
+    const auto [start, end] = ends;
+    if (face < n && start == face && end == next(face, n)) continue;
+    const auto opposite = face_of.find({end, start});
+    const int right = opposite == face_of.end() ? -1 : opposite->second;
+    if (right < 0 || start < end) skeleton.arcs.push_back({start, end, face, right});
+  }
+}
+
+Skeleton assemble(std::vector<Node> nodes, Faces faces) {
+  Skeleton skeleton;
+  skeleton.nodes = std::move(nodes);
+  skeleton.faces = std::move(faces);
+  set_arcs(skeleton);
+  for (const Node& node : skeleton.nodes) {
+    skeleton.roof_height = std::max(skeleton.roof_height, node.height);
+  }
+  return skeleton;
+}
+
+// ------------------------------------------------------------------------------------------------
+// Convex polygons: the edge that vanishes first is taken out until three are left. All nodes come
+// from the original lines, so round-off in the order of events that are not simultaneous is
+// harmless. Among simultaneous ones (a ridge of constant height) the nearest comes first.
+
+class ConvexShrink {
+ public:
+  explicit ConvexShrink(const Polygon& polygon)
+      : ring_(polygon.local_vertices()),
+        lines_(edge_lines(polygon)),
+        size_(polygon.size()),
+        simultaneous_(1e-13 * bounding_box(polygon).extent()),
+        previous_(size_),
+        next_(size_),
+        left_(size_),
+        right_(size_),
+        events_(size_) {
+    for (const Vec2& v : ring_) nodes_.push_back({v, 0});
+    for (int e = 0; e < size_; ++e) {
+      next_[e] = next(e, size_);
+      previous_[next_[e]] = e;
+    }
+    for (int e = 0; e < size_; ++e) events_[e] = collapse(e);
+  }
+
+  Skeleton run() {
+    std::vector<int> front(size_);
+    std::iota(front.begin(), front.end(), 0);
+    while (front.size() > 3) {
+      const auto first = first_event(front);
+      take_out(*first);
+      front.erase(first);
+    }
+    const auto best = std::max_element(front.begin(), front.end(), [&](int e, int f) {
+      return events_[e].conditioning < events_[f].conditioning;
+    });
+    const int top = add_node(events_[*best]);
+    for (const int e : front) right_[e].push_back(top);
+    return assemble(std::move(nodes_), faces());
+  }
+
+ private:
+  struct Event {
+    Vec2 point;
+    double height;
+    double conditioning;
+  };
+
+  [[nodiscard]] std::vector<int>::iterator first_event(std::vector<int>& front) const {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const int e : front) lowest = std::min(lowest, events_[e].height);
+    auto first = front.end();
+    double shortest = std::numeric_limits<double>::infinity();
+    for (auto e = front.begin(); e != front.end(); ++e) {
+      if (!(events_[*e].height <= lowest + simultaneous_)) continue;
+      const double way = way_to(*e);
+      if (first == front.end() || way < shortest) {
+        first = e;
+        shortest = way;
+      }
+    }
+    return first;
+  }
+
+  // From where the two ends of a front edge started to where they meet.
+  [[nodiscard]] double way_to(int e) const {
+    const int left = left_[e].empty() ? e : left_[e].back();
+    const int right = right_[e].empty() ? next(e, size_) : right_[e].back();
+    const Vec2& point = events_[e].point;
+    return (nodes_[left].point - point).norm() + (nodes_[right].point - point).norm();
+  }
+
+  // Bisector of edge e and its neighbour f, seen from e's end point: going up by t it moves inward
+  // by (t rise - gap) / run. Written without a difference that cancels for a small turn.
+  struct Bisector {
+    double run, rise, gap;
+  };
+  [[nodiscard]] Bisector bisector(int e, int f, double turn, double gap) const {
+    const double rise = (lines_[e].tangent - lines_[f].tangent).squaredNorm() / 2;
+    const double norm = std::hypot(turn, rise);
+    if (!(norm > 0)) return {1, 0, 0};  // straight on
+    return {turn / norm, rise / norm, gap / norm};
+  }
+
+  // Where edge e, between the neighbours it has now, shrinks to a point.
+  [[nodiscard]] Event collapse(int e) const {
+    const int p = previous_[e];
+    const int q = next_[e];
+    const EdgeLine &line = lines_[e], &before = lines_[p], &after = lines_[q];
+    const Vec2& end = ring_[next(e, size_)];
+    const Bisector a = bisector(e, p, cross(before.tangent, line.tangent),
+                                cross(before.tangent, line.start - ring_[next(p, size_)]));
+    const Bisector b =
+        bisector(e, q, cross(line.tangent, after.tangent), cross(after.tangent, end - after.start));
+    const double determinant = a.run * b.rise + b.run * a.rise;
+    const double reach = line.length * b.run + b.gap;
+    const double height = (a.run * reach + b.run * a.gap) / determinant;
+    const double along = (a.rise * reach - b.rise * a.gap) / determinant;
+    if (!(determinant > 0)) return {line.start, std::numeric_limits<double>::infinity(), 0};
+    return {line.start + along * line.tangent + height * line.normal(), height, determinant};
+  }
+
+  int add_node(const Event& event) {
+    nodes_.push_back({event.point, event.height});
+    return static_cast<int>(nodes_.size()) - 1;
+  }
+
+  void take_out(int e) {
+    const int node = add_node(events_[e]);
+    const int p = previous_[e];
+    const int q = next_[e];
+    right_[e].push_back(node);
+    right_[p].push_back(node);
+    left_[q].push_back(node);
+    next_[p] = q;
+    previous_[q] = p;
+    events_[p] = collapse(p);
+    events_[q] = collapse(q);
+  }
+
+  [[nodiscard]] Faces faces() const {
+    Faces result(size_);
+    for (int e = 0; e < size_; ++e) {
+      result[e] = {e, next(e, size_)};
+      result[e].insert(result[e].end(), right_[e].begin(), right_[e].end());
+      result[e].insert(result[e].end(), left_[e].rbegin(), left_[e].rend());
+    }
+    return result;
+  }
+
+  Ring ring_;
+  std::vector<EdgeLine> lines_;
+  int size_;
+  double simultaneous_;
+  std::vector<int> previous_, next_;  // of each edge in the shrinking front
+  Faces left_, right_;                // nodes up either side of each face
+  std::vector<Event> events_;
+  std::vector<Node> nodes_;
+};
+
+// ------------------------------------------------------------------------------------------------
+// CGAL, in a child process
+
+// What travels through the pipe: n, the number of nodes, three numbers per node, then every face as
+// the number of its nodes and their indices. Empty: CGAL found no skeleton.
+using Message = std::vector<double>;
+
+template <class Kernel>
+Message cgal_skeleton(const Ring& ring) {
+  using Point = typename Kernel::Point_2;
+  std::vector<Point> points;
+  std::map<std::pair<double, double>, int> index;  // of the polygon's vertices
+  for (const Vec2& v : ring) {
+    index[{v.x(), v.y()}] = static_cast<int>(points.size());
+    points.emplace_back(v.x(), v.y());
+  }
+  const auto skeleton =
+      CGAL::create_interior_straight_skeleton_2(points.begin(), points.end(), Kernel());
+  if (!skeleton) return {};
+
+  const size_t n = ring.size();
+  std::map<int, int> node_of;  // CGAL's vertex id -> node
+  std::vector<Node> nodes;
+  for (const Vec2& v : ring) nodes.push_back({v, 0});
+  for (auto v = skeleton->vertices_begin(); v != skeleton->vertices_end(); ++v) {
+    const Vec2 p(CGAL::to_double(v->point().x()), CGAL::to_double(v->point().y()));
+    if (v->is_contour()) {
+      const auto found = index.find({p.x(), p.y()});
+      if (found == index.end()) return {};
+      node_of[v->id()] = found->second;
+    } else {
+      node_of[v->id()] = static_cast<int>(nodes.size());
+      nodes.push_back({p, CGAL::to_double(v->time())});
+    }
+  }
+  Faces faces(n);
+  for (auto f = skeleton->faces_begin(); f != skeleton->faces_end(); ++f) {
+    const auto contour = f->halfedge()->defining_contour_edge();
+    std::vector<int> face;
+    auto h = contour;
+    do {
+      face.push_back(node_of[h->opposite()->vertex()->id()]);
+      h = h->next();
+    } while (h != contour && face.size() <= nodes.size());
+    if (face[0] < static_cast<int>(n)) faces[face[0]] = face;
+  }
+
+  Message message{static_cast<double>(n), static_cast<double>(nodes.size())};
+  for (const Node& node : nodes) {
+    message.insert(message.end(), {node.point.x(), node.point.y(), node.height});
+  }
+  for (const std::vector<int>& face : faces) {
+    message.push_back(static_cast<double>(face.size()));
+    message.insert(message.end(), face.begin(), face.end());
+  }
+  return message;
+}
+
+void write_all(int file, const Message& message) {
+  const char* data = reinterpret_cast<const char*>(message.data());
+  size_t left = message.size() * sizeof(double);
+  while (left > 0) {
+    const ssize_t written = write(file, data, left);
+    if (written <= 0) return;
+    data += written;
+    left -= static_cast<size_t>(written);
+  }
+}
+
+// The child inherits whatever the program does with signals, and must do none of it.
+[[noreturn]] void work_as_child(int file, const Ring& ring, bool exact, double seconds) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTERM, SIGINT}) {
+    std::signal(signal, SIG_DFL);
+  }
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  const auto cpu = static_cast<rlim_t>(seconds) + 2;  // also when the parent is gone
+  const rlimit time{cpu, cpu};
+  setrlimit(RLIMIT_CPU, &time);
+  const int silence = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (silence >= 0) {
+    dup2(silence, STDOUT_FILENO);
+    dup2(silence, STDERR_FILENO);
+  }
+  try {
+    write_all(file, exact
+                        ? cgal_skeleton<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
+                        : cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(ring));
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+// Reads to the end of the file; nothing when time is up first.
+std::optional<Message> read_until(int file, std::chrono::steady_clock::time_point deadline) {
+  std::vector<char> bytes;
+  char buffer[65536];
+  while (true) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        deadline - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return std::nullopt;
+    pollfd wait{file, POLLIN, 0};
+    const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
+    if (ready <= 0) continue;
+    const ssize_t count = read(file, buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    bytes.insert(bytes.end(), buffer, buffer + count);
+  }
+  Message message(bytes.size() / sizeof(double));
+  std::copy_n(bytes.data(), message.size() * sizeof(double),
+              reinterpret_cast<char*>(message.data()));
+  return message;
+}
+
+struct Answer {
+  Message message;
+  std::string failure;  // empty if there is a message
+};
+
+Answer ask_child(const Ring& ring, bool exact, double seconds) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {{}, "no pipe to a child process"};
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    work_as_child(ends[1], ring, exact, seconds);
+  }
+  close(ends[1]);
+  if (child < 0) {
+    close(ends[0]);
+    return {{}, "no child process"};
+  }
+  const auto deadline = std::chrono::steady_clock::now() +
+                        std::chrono::milliseconds(static_cast<long long>(1000 * seconds));
+  std::optional<Message> message = read_until(ends[0], deadline);
+  close(ends[0]);
+  if (!message) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!message) {
+    return {{}, "CGAL did not return within " + std::to_string(std::lround(seconds)) + " s"};
+  }
+  if (WIFSIGNALED(status)) {
+    return {{}, "CGAL crashed with signal " + std::to_string(WTERMSIG(status))};
+  }
+  if (message->empty()) return {{}, "CGAL found no skeleton"};
+  return {std::move(*message), ""};
+}
+
+// Nothing when the message is cut off.
+std::optional<Skeleton> decode(const Message& message) {
+  size_t at = 0;
+  const auto take = [&] { return at < message.size() ? message[at++] : (++at, 0.0); };
+  const auto n = static_cast<size_t>(take());
+  const auto node_count = static_cast<size_t>(take());
+  if (message.size() < 2 + 3 * node_count + n) return std::nullopt;
+  std::vector<Node> nodes(node_count);
+  for (Node& node : nodes) {
+    node.point.x() = take();
+    node.point.y() = take();
+    node.height = take();
+  }
+  Faces faces(n);
+  for (std::vector<int>& face : faces) {
+    for (auto left = static_cast<size_t>(take()); left > 0 && at < message.size(); --left) {
+      face.push_back(static_cast<int>(take()));
+    }
+  }
+  if (at != message.size()) return std::nullopt;
+  return assemble(std::move(nodes), std::move(faces));
+}
+
+// ------------------------------------------------------------------------------------------------
+// Polish
+
+// Moves every inner node by the shortest way onto the planes of its faces, whatever the arithmetic
+// or a jitter did to it. Directions that the planes do not determine stay as they are.
+class Polish {
+ public:
+  Polish(Skeleton& skeleton, const Polygon& polygon)
+      : skeleton_(skeleton), lines_(edge_lines(polygon)), faces_at_(skeleton.nodes.size()) {
+    const int node_count = static_cast<int>(skeleton.nodes.size());
+    for (size_t f = 0; f < skeleton.faces.size(); ++f) {
+      for (const int node : skeleton.faces[f]) {
+        if (node >= 0 && node < node_count) faces_at_[node].push_back(static_cast<int>(f));
+      }
+    }
+  }
+
+  void run() {
+    skeleton_.roof_height = 0;
+    for (size_t i = lines_.size(); i < skeleton_.nodes.size(); ++i) {
+      for (int round = 0; round < 2; ++round) improve(skeleton_.nodes[i], faces_at_[i]);
+      skeleton_.roof_height = std::max(skeleton_.roof_height, skeleton_.nodes[i].height);
+    }
+  }
+
+ private:
+  void improve(Node& node, const std::vector<int>& faces) {
+    rows_.clear();
+    off_.clear();
+    for (const int f : faces) {
+      const EdgeLine& line = lines_[f];
+      add({line.normal().x(), line.normal().y(), -1}, line.distance(node.point) - node.height);
+      const int g = next(f, static_cast<int>(lines_.size()));
+      if (std::find(faces.begin(), faces.end(), g) != faces.end()) add_bisector(f, g, node.point);
+    }
+    const auto count = static_cast<Eigen::Index>(off_.size());
+    const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> rows(rows_.data(), 3, count);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 3>> solver;
+    solver.setThreshold(1e-7);
+    solver.compute(rows.transpose());
+    const Eigen::Vector3d step =
+        solver.solve(Eigen::Map<const Eigen::VectorXd>(off_.data(), count));
+    node.point -= step.head<2>();
+    node.height -= step[2];
+  }
+
+  // Two planes say little about the place of their bisector when the edges are nearly in line; the
+  // vertex between them says it all.
+  void add_bisector(int f, int g, const Vec2& point) {
+    if (!(lines_[f].tangent.dot(lines_[g].tangent) > 0)) return;
+    const Vec2 across = (lines_[f].tangent + lines_[g].tangent).normalized();
+    add({across.x(), across.y(), 0}, across.dot(point - lines_[g].start));
+  }
+
+  void add(const Eigen::Vector3d& row, double off) {
+    rows_.insert(rows_.end(), row.begin(), row.end());
+    off_.push_back(off);
+  }
+
+  Skeleton& skeleton_;
+  std::vector<EdgeLine> lines_;
+  Faces faces_at_;
+  std::vector<double> rows_, off_;
+};
+
+// ------------------------------------------------------------------------------------------------
+// Attempts
+
+bool is_simple(const Ring& ring) {
+  try {
+    return Polygon(ring).vertices() == ring;  // neither crossed nor turned inside out
+  } catch (const InvalidPolygon&) {
+    return false;
+  }
+}
+
+// Coordinates for CGAL: centred and scaled to 1. The scale is a power of two and the centre has few
+// digits, so that the change of frame is exact whenever it can be.
+struct Frame {
+  Vec2 centre;
+  double scale;
+
+  explicit Frame(const Polygon& polygon) {
+    const Box box = bounding_box(polygon);
+    scale = std::exp2(-std::ilogb(box.extent()));
+    const double grid = std::ldexp(1 / scale, -8);
+    centre = {grid * std::round((box.x0 + box.x1) / 2 / grid),
+              grid * std::round((box.y0 + box.y1) / 2 / grid)};
+    if (!is_simple(inward(polygon))) centre.setZero();
+  }
+
+  [[nodiscard]] Ring inward(const Polygon& polygon) const {
+    Ring ring = polygon.vertices();
+    for (Vec2& v : ring) v = (v - centre) * scale;
+    return ring;
+  }
+
+  void outward(Skeleton& skeleton, const Polygon& polygon) const {
+    const Vec2 shift = centre - polygon.origin();
+    for (Node& node : skeleton.nodes) {
+      node.point = node.point / scale + shift;
+      node.height /= scale;
+    }
+    const Ring ring = polygon.local_vertices();
+    for (size_t i = 0; i < ring.size(); ++i) skeleton.nodes[i] = {ring[i], 0};
+  }
+};
+
+struct Attempt {
+  double jitter;  // of the size
+  bool exact;
+};
+constexpr Attempt kAttempts[] = {{0, false},     {1e-13, false}, {1e-12, false}, {0, true},
+                                 {1e-11, false}, {1e-13, false}, {1e-12, false}, {1e-11, false},
+                                 {1e-10, false}, {1e-12, true},  {1e-10, false}, {1e-9, false}};
+
+Ring jittered(Ring ring, double amplitude, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  const auto random = [&] { return std::ldexp(static_cast<double>(engine() >> 11), -52) - 1; };
+  const Ring original = ring;
+  const size_t n = ring.size();
+  for (size_t i = 0; i < n; ++i) {
+    const double nearest = std::min((original[i] - original[(i + n - 1) % n]).norm(),
+                                    (original[i] - original[(i + 1) % n]).norm());
+    const double step = std::min(amplitude, nearest / 1000);
+    ring[i] += step * Vec2(random(), random());
+  }
+  return ring;
+}
+
+// Events of a polygon without symmetry are found in about n^2 steps.
+double time_limit(size_t n, bool exact) {
+  const double thousands = static_cast<double>(n) / 1000;
+  return (exact ? 4 : 1) * (1 + 20 * thousands * thousands);
+}
+
+struct Outcome {
+  Skeleton skeleton;
+  std::string failure;  // empty if the skeleton passes the laws
+};
+
+Outcome try_once(const Polygon& polygon, const Frame& frame, const Ring& input,
+                 const Attempt& attempt) {
+  if (!is_simple(input)) return {{}, "the outline is not simple in scaled coordinates"};
+  const Answer answer = ask_child(input, attempt.exact, time_limit(input.size(), attempt.exact));
+  if (!answer.failure.empty()) return {{}, answer.failure};
+  std::optional<Skeleton> skeleton = decode(answer.message);
+  if (!skeleton) return {{}, "CGAL's answer was cut off"};
+  frame.outward(*skeleton, polygon);
+  Polish(*skeleton, polygon).run();
+  return {*skeleton, broken_law(*skeleton, polygon).value_or("")};
+}
+
+std::string describe(const std::vector<std::string>& failures) {
+  std::map<std::string, int> counts;
+  for (const std::string& failure : failures) ++counts[failure];
+  std::string text;
+  for (const auto& [failure, count] : counts) {
+    text += (text.empty() ? "" : "; ") + failure + " (" + std::to_string(count) + " times)";
+  }
+  return text;
+}
+
+}  // namespace
+
+Skeleton straight_skeleton(const Polygon& polygon) {
+  std::vector<std::string> failures;
+  if (polygon.is_convex()) {
+    Skeleton skeleton = ConvexShrink(polygon).run();
+    const std::optional<std::string> broken = broken_law(skeleton, polygon);
+    if (!broken) return skeleton;
+    failures.push_back(*broken);
+  }
+  const Frame frame(polygon);
+  const Ring ring = frame.inward(polygon);
+  unsigned seed = 0;
+  for (const Attempt& attempt : kAttempts) {
+    Outcome outcome = try_once(polygon, frame, jittered(ring, attempt.jitter, ++seed), attempt);
+    if (outcome.failure.empty()) {
+      outcome.skeleton.attempts = static_cast<int>(failures.size()) + 1;
+      outcome.skeleton.exact = attempt.exact;
+      return std::move(outcome.skeleton);
+    }
+    failures.push_back(outcome.failure);
+  }
+  throw SkeletonFailure("no valid straight skeleton of this polygon with " +
+                        std::to_string(ring.size()) + " vertices in " +
+                        std::to_string(failures.size()) + " attempts: " + describe(failures) +
+                        ". Remove details smaller than 1e-9 of the polygon's size, or choose the "
+                        "field 'distance', which needs no skeleton");
+}
+
+// ------------------------------------------------------------------------------------------------
+// Laws
+
+namespace {
+
+class Laws {
+ public:
+  Laws(const Skeleton& skeleton, const Polygon& polygon)
+      : skeleton_(skeleton),
+        ring_(polygon.local_vertices()),
+        lines_(edge_lines(polygon)),
+        size_(polygon.size()),
+        tolerance_(kTolerance * bounding_box(polygon).extent()),
+        area_(area_moments(polygon).area) {}
+
+  std::optional<std::string> broken() {
+    check_numbers();
+    if (!broken_) check_outline();
+    if (!broken_) check_arcs();
+    if (!broken_) check_tree();
+    if (!broken_) check_heights();
+    if (!broken_) check_faces();
+    if (!broken_) check_valleys();
+    if (!broken_) check_inside();
+    return broken_;
+  }
+
+ private:
+  void fail(const std::string& law) {
+    if (!broken_) broken_ = law;
+  }
+  [[nodiscard]] bool is_node(int i) const {
+    return i >= 0 && i < static_cast<int>(skeleton_.nodes.size());
+  }
+  [[nodiscard]] bool is_face(int i) const { return i >= 0 && i < size_; }
+  [[nodiscard]] const Vec2& point(int node) const { return skeleton_.nodes[node].point; }
+
+  void check_numbers() {
+    for (const Node& node : skeleton_.nodes) {
+      if (!is_finite(node.point) || !std::isfinite(node.height)) fail("a node is not finite");
+    }
+    double top = 0;
+    for (const Node& node : skeleton_.nodes) top = std::max(top, node.height);
+    if (skeleton_.roof_height != top) fail("the roof height is not that of the highest node");
+    for (const Skeleton::Arc& arc : skeleton_.arcs) {
+      if (!is_node(arc.start) || !is_node(arc.end) || !is_face(arc.left) || arc.right >= size_) {
+        fail("an arc has an index out of range");
+      }
+    }
+    for (const std::vector<int>& face : skeleton_.faces) {
+      if (!std::all_of(face.begin(), face.end(), [&](int i) { return is_node(i); })) {
+        fail("a face has an index out of range");
+      }
+    }
+  }
+
+  void check_outline() {
+    const auto n = static_cast<size_t>(size_);
+    if (skeleton_.faces.size() != n || skeleton_.nodes.size() <= n || skeleton_.arcs.size() <= n) {
+      return fail("there are too few faces, nodes or arcs");
+    }
+    for (int e = 0; e < size_; ++e) {
+      const Node& node = skeleton_.nodes[e];
+      if (node.point != ring_[e] || node.height != 0) fail("a vertex of the polygon is not a node");
+      const Skeleton::Arc& arc = skeleton_.arcs[e];
+      if (arc.start != e || arc.end != next(e, size_) || arc.left != e || arc.right != -1) {
+        fail("an edge of the polygon is not an arc");
+      }
+      const std::vector<int>& face = skeleton_.faces[e];
+      if (face.size() < 3 || face[0] != e || face[1] != next(e, size_)) {
+        fail("a face does not start with its own edge");
+      }
+    }
+  }
+
+  void check_arcs() {
+    for (const Skeleton::Arc& arc : skeleton_.arcs) {
+      bool fresh = left_of_.try_emplace({arc.start, arc.end}, arc.left).second;
+      if (arc.right >= 0) {
+        fresh = left_of_.try_emplace({arc.end, arc.start}, arc.right).second && fresh;
+      }
+      if (!fresh) fail("two arcs join the same nodes");
+      if (arc.left == arc.right) fail("an arc has one face on both sides");
+    }
+    for (size_t a = static_cast<size_t>(size_); a < skeleton_.arcs.size(); ++a) {
+      if (skeleton_.arcs[a].right < 0) fail("an arc lacks a face on one side");
+    }
+    size_t passed = 0;
+    for (int f = 0; f < size_; ++f) {
+      const std::vector<int>& face = skeleton_.faces[f];
+      for (size_t i = 0; i < face.size(); ++i, ++passed) {
+        const auto found = left_of_.find({face[i], face[i + 1 == face.size() ? 0 : i + 1]});
+        if (found == left_of_.end() || found->second != f) fail("a side of a face is not its arc");
+      }
+    }
+    if (passed != left_of_.size()) fail("an arc is not a side of its faces");
+  }
+
+  // Of a union-find forest.
+  static int root(std::vector<int>& parent, int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+
+  void check_tree() {
+    std::vector<int> parent(skeleton_.nodes.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (size_t a = static_cast<size_t>(size_); a < skeleton_.arcs.size(); ++a) {
+      const int start = root(parent, skeleton_.arcs[a].start);
+      const int end = root(parent, skeleton_.arcs[a].end);
+      if (start == end) fail("the inner arcs contain a cycle");
+      parent[start] = end;
+    }
+    if (skeleton_.arcs.size() - static_cast<size_t>(size_) + 1 != skeleton_.nodes.size()) {
+      fail("the inner arcs do not reach every node");
+    }
+  }
+
+  void check_heights() {
+    for (int f = 0; f < size_; ++f) {
+      for (const int i : skeleton_.faces[f]) {
+        const Node& node = skeleton_.nodes[i];
+        if (!(node.height >= -tolerance_)) fail("a node has a negative height");
+        if (!(std::abs(lines_[f].distance(node.point) - node.height) <= tolerance_)) {
+          fail("the height of a node is not its distance to an edge whose face meets there");
+        }
+      }
+    }
+  }
+
+  void check_faces() {
+    double sum = 0;
+    for (int f = 0; f < size_; ++f) {
+      const double area = face_area(f);
+      // Faces may be so thin that their area is round-off.
+      if (!(area >= -tolerance_ * lines_[f].length)) fail("a face has no positive area");
+      sum += area;
+      check_face(f);
+    }
+    if (!(std::abs(sum - area_) <= tolerance_ * tolerance_ / kTolerance)) {
+      fail("the areas of the faces do not sum to the polygon's");
+    }
+  }
+
+  [[nodiscard]] double face_area(int f) const {
+    const std::vector<int>& face = skeleton_.faces[f];
+    double twice = 0;
+    for (size_t i = 2; i < face.size(); ++i) {
+      twice += cross(point(face[i - 1]) - ring_[f], point(face[i]) - ring_[f]);
+    }
+    return twice / 2;
+  }
+
+  // Along its edge a face is monotone: from the edge's end to the right, back to the left above,
+  // and down to the edge's start. And its upper side is above its lower one. What is wrong counts
+  // with the error that it makes in the roof: where two edges are in line, nobody can tell, and
+  // need not know, where between their faces the arc is.
+  void check_face(int f) {
+    const std::vector<int>& face = skeleton_.faces[f];
+    const size_t n = face.size();
+    std::vector<double> along(n + 1);
+    std::vector<double> bends(n);
+    for (size_t i = 0; i <= n; ++i) along[i] = lines_[f].along(point(face[i % n]));
+    for (size_t i = 0; i < n; ++i) bends[i] = bend(f, face[i], face[(i + 1) % n]);
+    const auto right = std::max_element(along.begin() + 1, along.end());
+    const auto left = std::min_element(right, along.end());
+    double error = 0;
+    double slack = tolerance_;  // along the edge
+    for (size_t i = 1; i < n; ++i) {
+      const auto at = along.begin() + static_cast<std::ptrdiff_t>(i);
+      const double sense = at >= right && at < left ? -1 : 1;
+      const double back = std::max(0.0, sense * (along[i] - along[i + 1]));
+      error += bends[i] * back;
+      slack += back;
+    }
+    if (!(error <= tolerance_)) fail("a face is not monotone along its edge");
+    for (size_t i = 0; i < n; ++i) {
+      const Vec2& p = point(face[i]);
+      const Vec2 side = point(face[(i + 1) % n]) - p;
+      const double length = side.norm();
+      const double low = std::min(along[i], along[i + 1]) + slack;
+      const double high = std::max(along[i], along[i + 1]) - slack;
+      if (!(low < high)) continue;
+      for (size_t j = 0; j < n; ++j) {
+        if (along[j] > low && along[j] < high &&
+            !(bends[i] * cross(side, point(face[j]) - p) >= -tolerance_ * length)) {
+          fail("a face is folded over itself");
+        }
+      }
+    }
+  }
+
+  // Change of the roof's gradient across a side of face f.
+  [[nodiscard]] double bend(int f, int start, int end) const {
+    const auto other = left_of_.find({end, start});
+    if (other == left_of_.end()) return 1;  // outside
+    return (lines_[f].tangent - lines_[other->second].tangent).norm();
+  }
+
+  // Nodes that short arcs join count as one.
+  void check_valleys() {
+    const double shortest = 1000 * tolerance_;
+    std::vector<int> parent(skeleton_.nodes.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (const Skeleton::Arc& arc : skeleton_.arcs) {
+      if ((point(arc.end) - point(arc.start)).norm() < shortest) {
+        parent[root(parent, arc.start)] = root(parent, arc.end);
+      }
+    }
+    std::vector<bool> fed(parent.size());
+    for (int v = 0; v < size_; ++v) fed[root(parent, v)] = true;
+    for (const Valley& valley : valleys(0)) fed[root(parent, valley.upper)] = true;
+    for (const Valley& valley : valleys(1e-6)) {
+      if (valley.length > shortest && !fed[root(parent, valley.lower)]) {
+        fail("a valley of the roof starts inside");
+      }
+    }
+  }
+
+  struct Valley {
+    int lower, upper;
+    double length;
+  };
+  [[nodiscard]] std::vector<Valley> valleys(double steepness) const {
+    std::vector<Valley> result;
+    for (const Skeleton::Arc& arc : skeleton_.arcs) {
+      if (arc.right < 0) continue;
+      const Vec2 along = point(arc.end) - point(arc.start);
+      const double length = along.norm();
+      const Vec2 bend = lines_[arc.left].normal() - lines_[arc.right].normal();
+      if (!(cross(along, bend) > steepness * length)) continue;
+      const bool rising = skeleton_.nodes[arc.start].height <= skeleton_.nodes[arc.end].height;
+      result.push_back(rising ? Valley{arc.start, arc.end, length}
+                              : Valley{arc.end, arc.start, length});
+    }
+    return result;
+  }
+
+  void check_inside() {
+    for (size_t i = static_cast<size_t>(size_); i < skeleton_.nodes.size(); ++i) {
+      const Vec2& p = skeleton_.nodes[i].point;
+      bool inside = false;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int e = 0; e < size_; ++e) {
+        const Vec2 a = ring_[e] - p;
+        const Vec2 b = ring_[next(e, size_)] - p;
+        if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) inside = !inside;
+        const double along = std::clamp(lines_[e].along(p), 0.0, lines_[e].length);
+        nearest = std::min(nearest, (a + along * lines_[e].tangent).norm());
+      }
+      if (!inside && nearest > tolerance_) fail("a node is outside the polygon");
+    }
+  }
+
+  const Skeleton& skeleton_;
+  Ring ring_;
+  std::vector<EdgeLine> lines_;
+  int size_;
+  double tolerance_;
+  double area_;
+  std::map<std::pair<int, int>, int> left_of_;  // face on the left of each arc and its reverse
+  std::optional<std::string> broken_;
+};
+
+}  // namespace
+
+std::optional<std::string> broken_law(const Skeleton& skeleton, const Polygon& polygon) {
+  return Laws(skeleton, polygon).broken();
+}
+
+}  // namespace apothem
