@@ -46,9 +46,11 @@ void add_nodes(Envelope<Wide>& phi, const std::vector<WideVec>& v, const Roof& r
       continue;
     }
     const std::vector<size_t>& at = faces_at[i];
-    Wide best = 0;
-    WideVec point(0, 0);
-    Wide value = 0;
+    // Where all planes are parallel to one line (collinear edges on one side of a level ridge) the
+    // place along it has no effect on the roof, and the rounded one serves.
+    Wide best = 1e-9;
+    WideVec point = v[0] + widened(roof.points[i]);
+    Wide value = phi.lines[at[0]](point);
     for (size_t a = 0; a < at.size(); ++a) {
       for (size_t b = a + 1; b < at.size(); ++b) {
         for (size_t c = b + 1; c < at.size(); ++c) {

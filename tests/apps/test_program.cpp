@@ -271,7 +271,7 @@ TEST_CASE("a system that fails gives exit code 4 and keeps what was complete", "
   }
 }
 
-TEST_CASE("--until behind the end of the scene ends with the scene", "[program]") {
+TEST_CASE("until behind the end of the scene ends with the scene", "[program]") {
   const Folder folder;
   const std::string file =
       folder.write("short.json", scene(R"({ "end": 0.01 }, "output": { "frames": 5 })"));

@@ -155,7 +155,7 @@ const std::vector<Broken> kBroken{
     {"\"falling.y\"", "\"falling.z\"", ":14: /expect/0/quantity", "no history has a column", false},
     {"\"tolerance\": 1 ", "\"tolerance\": 1, \"relative\": 1 ", ":14: /expect/0", "either"},
     {"[0, 1], \"value\"", "[5, 6], \"value\"", ":14: /expect/0/between", "outside the run", false},
-    {"2000", "1e-320", ":9: /bodies/1", "range of double precision", false},
+    {"2000", "1e-320", ":7: /bodies/0", "range of double precision", false},
     {"[0, 1], \"value\"", "[1, 0], \"value\"", ":14: /expect/0/between", "before it starts", false},
     {"\"gravity\": [0, -9.81],", "\"gravity\": [0, -9.81], \"gravity\": [0, 0],", ":3: /gravity",
      "duplicate key, first given in line 3", false},
