@@ -169,7 +169,8 @@ class SceneReader {
     RigidBody body;
     const JsonValue& name = object.required("name", "a string, unique among the bodies");
     body.name = body_name(name);
-    body.material = material_index(object.required("material", "the name of a material"));
+    body.material = index_of(object.required("material", "the name of a material"),
+                             model_.materials, "material");
     const JsonValue& outline = object.required("polygon", "");
     try {
       set_shape(body, polygon, model_);
@@ -220,14 +221,16 @@ class SceneReader {
     return name;
   }
 
-  int material_index(const JsonValue& value) {
+  // Index of the one of that name in a list of materials or bodies.
+  template <class Named>
+  int index_of(const JsonValue& value, const std::vector<Named>& list, const char* kind) {
     const std::string& name = in_.string(value);
     std::vector<std::string> names;
-    for (size_t i = 0; i < model_.materials.size(); ++i) {
-      if (model_.materials[i].name == name) return static_cast<int>(i);
-      names.push_back(model_.materials[i].name);
+    for (size_t i = 0; i < list.size(); ++i) {
+      if (list[i].name == name) return static_cast<int>(i);
+      names.push_back(list[i].name);
     }
-    in_.fail(value, "unknown material " + suggest(name, names));
+    in_.fail(value, fmt::format("unknown {} {}", kind, suggest(name, names)));
   }
 
   static constexpr const char* kHeldRate =
@@ -336,7 +339,8 @@ class SceneReader {
         output.track.clear();
         for (const JsonValue& item : in_.array(*list)) {
           JsonObject tracked(in_, item);
-          const int body = body_index(tracked.required("body", "the name of a body"));
+          const int body =
+              index_of(tracked.required("body", "the name of a body"), model_.bodies, "body");
           tracked.finish();
           if (std::find(output.track.begin(), output.track.end(), body) != output.track.end()) {
             in_.fail(item, "is tracked already; leave it out");
@@ -353,16 +357,6 @@ class SceneReader {
       checkpoint.finish();
     }
     object.finish();
-  }
-
-  int body_index(const JsonValue& value) {
-    const std::string& name = in_.string(value);
-    std::vector<std::string> names;
-    for (size_t i = 0; i < model_.bodies.size(); ++i) {
-      if (model_.bodies[i].name == name) return static_cast<int>(i);
-      names.push_back(model_.bodies[i].name);
-    }
-    in_.fail(value, "unknown body " + suggest(name, names));
   }
 
   void expect(const JsonValue& value) {

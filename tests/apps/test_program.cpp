@@ -11,37 +11,16 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "folder.hpp"
 #include "output/history.hpp"
 #include "support.hpp"
 
 using namespace apothem;
+using test::content;
+using test::Folder;
 using Json = nlohmann::json;
 
 namespace {
-
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("apothem-program-" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return *this / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string content(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 struct Result {
   int code;

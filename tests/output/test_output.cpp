@@ -15,35 +15,17 @@
 #include <filesystem>
 #include <fstream>
 
+#include "folder.hpp"
 #include "output/files.hpp"
 #include "output/frames.hpp"
 #include "output/history.hpp"
 #include "support.hpp"
 
 using namespace apothem;
+using test::content;
+using test::Folder;
 
 namespace {
-
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("apothem-output-" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string content(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 Model two_bodies() {
   Model model;

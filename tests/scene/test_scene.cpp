@@ -7,32 +7,16 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "folder.hpp"
 #include "scene/polygon_file.hpp"
 #include "scene/scene.hpp"
 #include "support.hpp"
 
 using namespace apothem;
+using test::Folder;
 using Json = nlohmann::json;
 
 namespace {
-
-// Scenes in a folder of their own, gone at the end.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("apothem-scene-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 const char* const kGood = R"({
   "name": "good", // a comment
