@@ -30,12 +30,11 @@ int check_command(const CheckOptions& options) {
                             model.bodies.size(), free, fixed, prescribed, vertices));
   say("elements", "0");
   say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end, steps));
-  const StepLimit& limit = simulation.limit();
   say("time step",
       fmt::format(
-          "{} s ({}); limited by: {} ({:.6g} s)", simulation.step_size(),
+          "{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
           scene.time.fixed_step ? "fixed" : fmt::format("auto, safety {:g}", scene.time.safety),
-          limit.reason, limit.step));
+          simulation.limit().reason, simulation.stability_limit()));
   say("output", fmt::format("{} frames, histories of {} bodies every {:g} s",
                             scene.output.frames + 1, scene.output.track.size(),
                             scene.output.history_interval.value_or(scene.time.end / 1000)));

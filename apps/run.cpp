@@ -203,8 +203,13 @@ class Run {
     Progress progress(!options_.quiet, end_);
     Schedule rows(scene_.output.history_interval.value_or(scene_.time.end / 1000), from.next_row);
     Schedule pictures(scene_.time.end / std::max(scene_.output.frames, 1), from.next_frame);
+    std::int64_t last_row = -1, last_picture = -1;  // steps
     const auto record = [&](bool row, bool picture) {
+      row = row && last_row != simulation_.state().step;
+      picture = picture && last_picture != simulation_.state().step;
       if (!row && !picture) return;
+      if (row) last_row = simulation_.state().step;
+      if (picture) last_picture = simulation_.state().step;
       const Clock::time_point before = Clock::now();
       if (row) history.add(simulation_.state(), simulation_.energies(), simulation_.momenta());
       if (picture) {
@@ -305,7 +310,7 @@ class Run {
               {"dt", simulation_.step_size()},
               {"dt_limited_by",
                scene_.time.fixed_step ? "time.step of the scene" : simulation_.limit().reason},
-              {"stability_limit", simulation_.limit().step},
+              {"stability_limit", simulation_.stability_limit()},
               {"steps_per_second", static_cast<double>(simulation_.own_steps()) / wall},
               {"wall_time", parts},
               {"pairs_per_step",

@@ -114,6 +114,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
 
 void Simulation::choose_step(const TimeSettings& time, int frames) {
   limit_ = contact_step_limit(model_);
+  stability_limit_ = limit_.step;
   automatic_ = !time.fixed_step;
   safety_ = time.safety;
   const auto require_progress = [&] {
@@ -368,6 +369,7 @@ void Simulation::tighten_step() {
   base_time_ = state_.time;
   base_step_ = state_.step;
   while (dt_ > safety_ * limit) dt_ /= 2;
+  stability_limit_ = limit;
   limit_ = {limit, fmt::format("contacts of \"{}\" {}", name(worst_body_), at_time())};
 }
 

@@ -95,7 +95,10 @@ class Simulation {
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] double step_size() const { return dt_; }
+  /// What limits the step.
   [[nodiscard]] const StepLimit& limit() const { return limit_; }
+  /// Largest stable step of the contacts, s; infinite if nothing can touch.
+  [[nodiscard]] double stability_limit() const { return stability_limit_; }
   /// Energies now. Throws Unstable if more than a tenth of the energy in play is unaccounted for.
   Energies energies();
   [[nodiscard]] Momenta momenta() const { return ledger_->momenta(state_); }
@@ -136,6 +139,7 @@ class Simulation {
   bool automatic_ = true;
   double safety_ = 0.1;
   double dt_ = 0;
+  double stability_limit_ = 0;
   double base_time_ = 0;
   std::int64_t base_step_ = 0;
   double largest_stride_ = 0;

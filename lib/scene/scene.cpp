@@ -105,6 +105,7 @@ class SceneReader {
     if (value.type == JsonValue::Type::number) {
       choice.reference = PotentialChoice::Reference::length;
       choice.length = in_.positive(value, "m");
+      if (!std::isfinite(1 / choice.length)) in_.fail(value, "is too small for double precision");
       return;
     }
     std::vector<std::string> names;

@@ -88,6 +88,7 @@ const std::vector<Broken> kBroken{
     {"\"roof\"", "\"floor\"", ":5: /contact/reference",
      "unknown choice \"floor\" (known: roof, inscribed_circle)"},
     {"\"roof\"", "-0.1", ":5: /contact/reference", "must be positive (in m)"},
+    {"\"roof\"", "1e-320", ":5: /contact/reference", "too small", false},
     {"\"distance\"", "\"area\"", ":5: /contact/reference", "no reference length", false},
     {"\"potential\": \"distance\", \"normal_stiffness\": 20e9, \"reference\": \"roof\"",
      "\"potential\": \"area\", \"normal_stiffness\": 1", ":8: /bodies/0/polygon/3",
