@@ -324,6 +324,23 @@ TEST_CASE("any shape: the roof is that of the motorcycle graph", "[skeleton]") {
   }
 }
 
+TEST_CASE("known shapes: the roof is that of the motorcycle graph at 10 000 points", "[skeleton]") {
+  test::Random random(3);
+  const std::vector<std::pair<std::string, Ring>> shapes{
+      {"cross", cross_ring()},
+      {"L", l_ring()},
+      {"star of 5", star_ring(5, .4)},
+      {"star of 40", star_ring(40, .7)},
+      {"comb of 8", comb_ring(8)},
+      {"spiral of 3", spiral_ring(3)},
+      {"bent sliver of aspect 1e6", {{0, 0}, {1, 0}, {1, 1e-6}, {.4, 5e-7}, {0, 1e-6}}}};
+  for (const auto& [name, ring] : shapes) {
+    const Polygon polygon(turned(ring, name == "cross" || name == "L" ? 0 : .3));
+    INFO(name);
+    CHECK(roof_error(polygon, MotorcycleRoof(polygon), random, test::scaled(10000)) < 1e-12);
+  }
+}
+
 TEST_CASE("turned crosses of equal arms always get a skeleton", "[skeleton]") {
   test::Random random(4);
   int retried = 0;
