@@ -391,7 +391,7 @@ TEST_CASE("every public ring gets a skeleton", "[skeleton]") {
     words >> name >> n;
     Ring ring(n);
     for (Vec2& v : ring) words >> v.x() >> v.y();
-    if (n > 1000) continue;  // minutes
+    if (n > 2500) continue;  // minutes
     for (const Variant& variant : variants(ring)) {
       INFO(name << ", " << variant.name);
       std::optional<Polygon> polygon;
