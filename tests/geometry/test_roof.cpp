@@ -171,15 +171,23 @@ TEST_CASE("work of non-convex contact on closed paths", "[roof]") {
                             .5 + (.1 + .1 * c[2]) * std::sin(s),
                             6 * c[3] + .3 * c[4] * std::sin(s + 1)};
         };
-        double work = 0, path = 0;
-        for (int i = 0; i < steps; ++i) {
-          const auto p0 = pose(2 * M_PI * i / steps), p1 = pose(2 * M_PI * (i + 1) / steps),
-                     p = pose(2 * M_PI * (i + .5) / steps);
+        const auto power = [&](double s) {
+          const auto p = pose(s);
           shapes.place(0, p[0], p[1], p[2]);
           const PairIntegral f =
               pair_integral(shapes.view(0), shapes.view(1), {p[0], p[1]}, workspace);
-          const double dw = f.force.x() * (p1[0] - p0[0]) + f.force.y() * (p1[1] - p0[1]) +
-                            f.moment_a * (p1[2] - p0[2]);
+          return -f.force.x() * (.1 + .1 * c[0]) * std::sin(s + 6 * c[1]) +
+                 f.force.y() * (.1 + .1 * c[2]) * std::cos(s) +
+                 f.moment_a * .3 * c[4] * std::cos(s + 1);
+        };
+        // Gauss's three points in every step: a corner that passes an edge bends the force.
+        const double h = 2 * M_PI / steps, gauss = std::sqrt(.15);
+        double work = 0, path = 0;
+        for (int i = 0; i < steps; ++i) {
+          const double middle = (i + .5) * h;
+          const double dw =
+              h / 18 *
+              (5 * power(middle - gauss * h) + 8 * power(middle) + 5 * power(middle + gauss * h));
           work += dw;
           path += std::abs(dw);
         }
