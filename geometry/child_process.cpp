@@ -19,6 +19,7 @@ namespace apothem {
 namespace {
 
 constexpr double kMemory = 4e9;  // bytes, beyond what the parent has
+constexpr double kWait = 10;     // a busy machine may take so many times the processor time
 
 enum ExitCode { kDone = 0, kException = 1, kNoMemory = 2 };
 
@@ -57,7 +58,7 @@ double mapped_bytes() {
     std::signal(signal, SIG_DFL);
   }
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, std::ceil(seconds) + 2);  // also when the parent is gone
+  limit(RLIMIT_CPU, std::ceil(seconds));
   limit(RLIMIT_AS, mapped_bytes() + kMemory);
   const int silence = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (silence >= 0) {
@@ -97,7 +98,10 @@ std::optional<std::vector<double>> read_until(int file,
   return numbers;
 }
 
-std::string failure(int status) {
+std::string failure(int status, double seconds) {
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)) {
+    return "did not return within " + std::to_string(std::lround(std::ceil(seconds))) + " s";
+  }
   if (WIFSIGNALED(status)) return "crashed with signal " + std::to_string(WTERMSIG(status));
   if (WEXITSTATUS(status) == kNoMemory) return "ran out of memory";
   return WEXITSTATUS(status) == kDone ? "" : "failed with an exception";
@@ -119,17 +123,14 @@ ChildAnswer in_child_process(const std::function<std::vector<double>()>& work, d
     return {{}, "could not start a child process"};
   }
   const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::milliseconds(static_cast<long long>(1000 * seconds));
-  std::optional<std::vector<double>> numbers = read_until(ends[0], deadline);
+                        std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds));
+  const std::optional<std::vector<double>> numbers = read_until(ends[0], deadline);
   close(ends[0]);
   if (!numbers) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!numbers) {
-    return {{}, "did not return within " + std::to_string(std::lround(seconds)) + " s"};
-  }
-  return {std::move(*numbers), failure(status)};
+  return {numbers.value_or(std::vector<double>{}), failure(status, seconds)};
 }
 
 }  // namespace apothem

@@ -12,8 +12,9 @@ struct ChildAnswer {
   std::string failure;  ///< empty if the work was done, otherwise what happened to it
 };
 
-/// Runs `work` in a forked child, silenced, and returns what it returned. The child is killed after
-/// `seconds` and may take 4 GB of memory. An exception of `work` is a failure like any other.
+/// Runs `work` in a forked child, silenced, and returns what it returned. The child may take
+/// `seconds` of processor time (rounded up), ten times that by the clock, and 4 GB of memory. An
+/// exception of `work` is a failure like any other.
 ChildAnswer in_child_process(const std::function<std::vector<double>()>& work, double seconds);
 
 }  // namespace apothem

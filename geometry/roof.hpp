@@ -44,23 +44,29 @@ class RoofTrace {
   void cross(const PlacedRoof<Real>& roof, const Real& px, const Real& py, const Real& ex,
              const Real& ey) {
     side_.resize(roof.nodes);
-    along_.resize(roof.nodes);
-    const Real inverse = 1 / (ex * ex + ey * ey);
-    for (int i = 0; i < roof.nodes; ++i) {
-      const Real rx = roof.x[i] - px;
-      const Real ry = roof.y[i] - py;
-      side_[i] = ex * ry - ey * rx;
-      along_[i] = (ex * rx + ey * ry) * inverse;
-    }
     crossings_.clear();
-    for (int k = 0; k < static_cast<int>(roof.arcs->size()); ++k) {
+    for (int i = 0; i < roof.boundary; ++i) {
+      side_[i] = ex * (roof.y[i] - py) - ey * (roof.x[i] - px);
+    }
+    const Real inverse = 1 / (ex * ex + ey * ey);
+    const auto along = [&](int i) -> Real {
+      return (ex * (roof.x[i] - px) + ey * (roof.y[i] - py)) * inverse;
+    };
+    const auto cross_arc = [&](int k) {
       const auto [a, b] = (*roof.arcs)[k];
-      if ((side_[a] >= 0) == (side_[b] >= 0)) continue;
+      if ((side_[a] >= 0) == (side_[b] >= 0)) return;
       const Real w = side_[a] / (side_[a] - side_[b]);
-      crossings_.push_back({along_[a] + w * (along_[b] - along_[a]),
+      const Real start = along(a);
+      crossings_.push_back({start + w * (along(b) - start),
                             roof.values[a] + w * (roof.values[b] - roof.values[a]),
                             k < roof.boundary});
+    };
+    for (int k = 0; k < roof.boundary; ++k) cross_arc(k);
+    if (crossings_.empty()) return;  // the line misses the polygon
+    for (int i = roof.boundary; i < roof.nodes; ++i) {
+      side_[i] = ex * (roof.y[i] - py) - ey * (roof.x[i] - px);
     }
+    for (int k = roof.boundary; k < static_cast<int>(roof.arcs->size()); ++k) cross_arc(k);
     std::sort(crossings_.begin(), crossings_.end(),
               [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
   }
@@ -87,7 +93,7 @@ class RoofTrace {
     Real s, value;
     bool boundary;
   };
-  std::vector<Real> side_, along_;
+  std::vector<Real> side_;
   std::vector<Crossing> crossings_;
 };
 

@@ -428,7 +428,7 @@ Ring jittered(Ring ring, double amplitude, unsigned seed) {
 // Events of a polygon without symmetry are found in about n^2 steps.
 double time_limit(size_t n, bool exact) {
   const double thousands = static_cast<double>(n) / 1000;
-  return (exact ? 4 : 1) * (1 + 20 * thousands * thousands);
+  return (exact ? 4 : 1) * (1 + 60 * thousands * thousands);
 }
 
 struct Outcome {
