@@ -87,6 +87,9 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) 
       throw InvalidPolygon(failure.what(), 0);
     }
   }();
+  if (!(skeleton.roof_height > kThinnest * bounding_box(polygon).extent())) {
+    throw InvalidPolygon("is thinner than double precision resolves", 0);
+  }
   using Reference = PotentialChoice::Reference;
   const double reference = choice.reference == Reference::length ? choice.length
                            : choice.reference == Reference::inscribed_circle
