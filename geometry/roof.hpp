@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "geometry/line_crossings.hpp"
 #include "geometry/point.hpp"
 #include "geometry/skeleton.hpp"
 
@@ -34,32 +34,22 @@ struct PlacedRoof {
   const Real* values;
 };
 
-/// phi along a segment, by one sign per node (half-open rule) and no tolerance: every crossing of
-/// an arc is computed once and belongs to both of its faces, whichever way round-off decides the
-/// signs.
+/// phi along a segment: every crossing of an arc is computed once and belongs to both of its faces.
 template <class Real>
 class RoofTrace {
  public:
   /// Finds the crossings of the line p + s e.
   void cross(const PlacedRoof<Real>& roof, const Real& px, const Real& py, const Real& ex,
              const Real& ey) {
-    side_.resize(roof.nodes);
-    along_.resize(roof.nodes);
-    const Real inverse = 1 / (ex * ex + ey * ey);
-    for (int i = 0; i < roof.nodes; ++i) {
-      const Real rx = roof.x[i] - px;
-      const Real ry = roof.y[i] - py;
-      side_[i] = ex * ry - ey * rx;
-      along_[i] = (ex * rx + ey * ry) * inverse;
-    }
+    lines_.place(roof.nodes, roof.x, roof.y, px, py, ex, ey);
     crossings_.clear();
     for (int k = 0; k < static_cast<int>(roof.arcs->size()); ++k) {
       const auto [a, b] = (*roof.arcs)[k];
-      if ((side_[a] >= 0) == (side_[b] >= 0)) continue;
-      const Real w = side_[a] / (side_[a] - side_[b]);
-      crossings_.push_back({along_[a] + w * (along_[b] - along_[a]),
-                            roof.values[a] + w * (roof.values[b] - roof.values[a]),
-                            k < roof.boundary});
+      const Real& start = roof.values[a];
+      const Real& end = roof.values[b];
+      lines_.cross(a, b, [&](const Real& s, const Real& w) {
+        crossings_.push_back({s, start + w * (end - start), k < roof.boundary});
+      });
     }
     std::sort(crossings_.begin(), crossings_.end(),
               [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
@@ -87,7 +77,7 @@ class RoofTrace {
     Real s, value;
     bool boundary;
   };
-  std::vector<Real> side_, along_;
+  LineCrossings<Real> lines_;
   std::vector<Crossing> crossings_;
 };
 
