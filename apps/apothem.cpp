@@ -59,6 +59,8 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   sub->add_option("--potential", o.potential, "Contact potential")
       ->check(CLI::IsMember({"distance", "area"}))
       ->capture_default_str();
+  sub->add_option("--field", o.field, "Depth in polygons that are not convex (default: roof)")
+      ->check(CLI::IsMember({"roof", "distance"}));
   sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
       ->capture_default_str();
   sub->add_option("--method", o.method, "Way to the numbers")

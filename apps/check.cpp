@@ -10,11 +10,13 @@ int check_command(const CheckOptions& options) {
   const Simulation simulation = make_simulation(scene, 1);
   const Model& model = scene.model;
 
-  int free = 0, fixed = 0, prescribed = 0, held = 0, vertices = 0;
+  int free = 0, fixed = 0, prescribed = 0, held = 0, vertices = 0, roofs = 0, fields = 0;
   for (const RigidBody& body : model.bodies) {
     (body.motion == Motion::free ? free : body.motion == Motion::fixed ? fixed : prescribed)++;
     held += body.held[0] || body.held[1] || body.held[2];
     vertices += body.potential.size();
+    roofs += body.potential.roof.has_value();
+    fields += body.potential.distance.has_value();
   }
   const bool contact = model.bodies.size() > 1 && fixed < static_cast<int>(model.bodies.size());
   const double steps = std::ceil(scene.time.end / simulation.step_size());
@@ -48,6 +50,14 @@ int check_command(const CheckOptions& options) {
                  model.contact.potential.kind == PotentialChoice::Kind::area ? "area" : "distance",
                  model.contact.normal_stiffness)
            : "nothing can touch");
+  const bool height =
+      fields > 0 && model.contact.potential.reference == PotentialChoice::Reference::roof;
+  uses("straight skeleton", roofs > 0 || height,
+       roofs > 0 ? fmt::format("depth in {} bodies that are not convex", roofs)
+       : height  ? "reference length of the distance field"
+                 : "");
+  uses("distance field", fields > 0,
+       fields > 0 ? fmt::format("depth in {} bodies that are not convex", fields) : "");
   uses("pair search", contact, contact ? "hierarchical grid with a skin" : "");
   uses("gravity", model.gravity != Vec2::Zero(),
        fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));

@@ -36,6 +36,7 @@ struct ContactOptions {
   std::string a, b;
   std::string batch;  ///< file of pairs instead of a and b
   std::string potential = "distance";
+  std::optional<std::string> field;  ///< distance potential only; by default its roof
   std::string reference = "roof";
   std::string method = "edge";
   double stiffness = 1;

@@ -21,6 +21,12 @@ PotentialChoice potential_choice(const ContactOptions& options) {
   for (const NamedPotential& p : kPotentials) {
     if (options.potential == p.name) choice.kind = p.kind;
   }
+  if (options.field && choice.kind == PotentialChoice::Kind::area) {
+    throw SceneError("--field", 0, "", "the area potential has one field only; leave it out");
+  }
+  for (const NamedField& f : kFields) {
+    if (options.field == f.name) choice.field = f.field;
+  }
   for (const NamedReference& r : kReferences) {
     if (options.reference == r.name) {
       choice.reference = r.reference;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "geometry/distance_volume.hpp"
 #include "geometry/lower_envelope.hpp"
 
 namespace apothem {
@@ -139,28 +140,16 @@ class Pieces {
   size_t used_ = 0;
 };
 
-// Moments of phi along one edge, u in [0, 1].
-struct EdgeMoments {
-  double sum = 0;    // INT phi du
-  double first = 0;  // INT phi u du
-  double largest = 0;
-
-  void add(double u1, double v1, double u2, double v2) {
-    const double h = u2 - u1;
-    sum += h * (v1 + v2) / 2;
-    first += h * (v1 * (2 * u1 + u2) + v2 * (u1 + 2 * u2)) / 6;
-    largest = std::max(largest, std::max(v1, v2));
+// A linear piece of phi below the cap.
+void add_capped(double u1, double v1, double u2, double v2, SegmentMoments<double>& moments) {
+  if ((v1 > 1) == (v2 > 1)) {
+    moments.add(u1, std::min(v1, 1.0), u2, std::min(v2, 1.0));
+    return;
   }
-  void add_capped(double u1, double v1, double u2, double v2) {
-    if ((v1 > 1) == (v2 > 1)) {
-      add(u1, std::min(v1, 1.0), u2, std::min(v2, 1.0));
-      return;
-    }
-    const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
-    add(u1, std::min(v1, 1.0), u, 1);
-    add(u, 1, u2, std::min(v2, 1.0));
-  }
-};
+  const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
+  moments.add(u1, std::min(v1, 1.0), u, 1);
+  moments.add(u, 1, u2, std::min(v2, 1.0));
+}
 
 // An edge of x in the frame of y, its start also relative to y's reference point.
 struct PlacedEdge {
@@ -212,7 +201,8 @@ struct PlacedEdge {
   }
 };
 
-void accumulate(const PlacedEdge& edge, const EdgeMoments& m, double inside, Half& half) {
+void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, double inside,
+                Half& half) {
   const double qx = edge.qx, qy = edge.qy, ex = edge.ex, ey = edge.ey;
   const double length = std::sqrt(ex * ex + ey * ey);
   half.fx += ey * m.sum;
@@ -242,7 +232,7 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
     }
     double s0, s1;
     if (!clip(row, s0, s1)) continue;
-    EdgeMoments moments;
+    SegmentMoments<double> moments;
     walk_envelope(row, s0, s1,
                   [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
     accumulate(edge, moments, s1 - s0, half);
@@ -251,9 +241,11 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
   return half;
 }
 
-// y not convex: its roof along each edge of x, which may enter and leave several times.
-Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    RoofTrace<double>& trace, Pieces& pieces) {
+// y not convex: calls along(edge, pieces), which returns phi's moments and adds the parts inside y
+// to `inside`, for the edges of x that may enter y, perhaps several times.
+template <class Along>
+Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                     const Along& along) {
   Half half;
   Box box;
   double finite = 0;  // 0 * coordinate: a NaN or an infinity shows
@@ -263,20 +255,30 @@ Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double d
   }
   for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
   half.weight = finite;  // NaN never passes as "no contact"
-  const PlacedRoof<double> roof{&y.roof->arcs, y.size,   static_cast<int>(y.roof->values.size()),
-                                y.node_x,      y.node_y, y.roof->values.data()};
+  if (!(finite == 0)) return half;
   for (int e = 0; e < x.size; ++e) {
     const PlacedEdge edge(x, y, e, dx, dy);
     Box own;
     own.include(edge.px, edge.py);
     own.include(edge.px + edge.ex, edge.py + edge.ey);
     if (apart(own, box)) continue;
-    trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
-    EdgeMoments moments;
     double inside = 0;
+    const SegmentMoments<double> moments = along(edge, inside);
+    accumulate(edge, moments, inside, half);
+  }
+  return half;
+}
+
+Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                    RoofTrace<double>& trace, Pieces& pieces) {
+  const PlacedRoof<double> roof{&y.roof->arcs, y.size,   static_cast<int>(y.roof->values.size()),
+                                y.node_x,      y.node_y, y.roof->values.data()};
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+    trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+    SegmentMoments<double> moments;
     trace.pieces([&](double u1, double v1, double u2, double v2) {
       if (y.capped) {
-        moments.add_capped(u1, v1, u2, v2);
+        add_capped(u1, v1, u2, v2, moments);
       } else {
         moments.add(u1, v1, u2, v2);
       }
@@ -284,9 +286,24 @@ Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double d
       pieces.reserve(1);
       edge.add_piece(u1, u2, pieces);
     });
-    accumulate(edge, moments, inside, half);
-  }
-  return half;
+    return moments;
+  });
+}
+
+PlacedDistance<double> placed_distance(const PlacedPotential& y) {
+  return {y.size, y.x, y.y, y.gx, y.gy, y.distance->slope, &y.distance->corners, y.capped};
+}
+
+Half integrate_distance(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                        DistanceTrace<double>& trace, Pieces& pieces) {
+  const PlacedDistance<double> field = placed_distance(y);
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+    return trace.integrate(field, edge.px, edge.py, edge.ex, edge.ey, [&](double u1, double u2) {
+      inside += u2 - u1;
+      pieces.reserve(1);
+      edge.add_piece(u1, u2, pieces);
+    });
+  });
 }
 
 }  // namespace
@@ -304,17 +321,19 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   double* const spare_rows = of_b_rows + rows_b;
   const double dx = offset.x();
   const double dy = offset.y();
-  if (!b.roof && heights(a, b, dx, dy, of_a_rows)) return {};
-  if (!a.roof && heights(b, a, -dx, -dy, of_b_rows)) return {};
+  if (b.convex() && heights(a, b, dx, dy, of_a_rows)) return {};
+  if (a.convex() && heights(b, a, -dx, -dy, of_b_rows)) return {};
 
   Pieces pieces(workspace.pieces);
-  const Half of_a =
-      b.roof ? integrate_roof(a, b, dx, dy, workspace.trace, pieces)
-             : integrate_envelope(a, b, dx, dy, of_a_rows, spare_rows, pieces);  // frame of b
+  const auto half = [&](const PlacedPotential& x, const PlacedPotential& y, double x0, double y0,
+                        const double* rows) {
+    if (y.roof) return integrate_roof(x, y, x0, y0, workspace.roof, pieces);
+    if (y.distance) return integrate_distance(x, y, x0, y0, workspace.distance, pieces);
+    return integrate_envelope(x, y, x0, y0, rows, spare_rows, pieces);
+  };
+  const Half of_a = half(a, b, dx, dy, of_a_rows);  // frame of b
   const size_t middle = pieces.used();
-  const Half of_b =
-      a.roof ? integrate_roof(b, a, -dx, -dy, workspace.trace, pieces)
-             : integrate_envelope(b, a, -dx, -dy, of_b_rows, spare_rows, pieces);  // frame of a
+  const Half of_b = half(b, a, -dx, -dy, of_b_rows);  // frame of a
 
   PairIntegral pair;
   const double fx = of_b.fx - of_a.fx;
@@ -380,8 +399,8 @@ Ring ring(const PlacedPotential& p, const Vec2& shift) {
 }
 
 Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
-  if (p.roof) return lower_envelope::fan(ring(p, shift));
-  return {{ring(p, shift), 1}};
+  if (p.convex()) return {{ring(p, shift), 1}};
+  return lower_envelope::fan(ring(p, shift));
 }
 
 // INT phi_p dA over the overlap with the parts of the other polygon.
@@ -404,13 +423,26 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& ot
   return volume;
 }
 
+// The same for a distance field and the whole other polygon, which stands at `shift` seen from p.
+double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
+                             const Vec2& shift) {
+  std::vector<double> x, y;
+  for (const Vec2& v : ring(other, shift)) {
+    x.push_back(v.x());
+    y.push_back(v.y());
+  }
+  return DistanceVolume<double>().over(placed_distance(p), x, y);
+}
+
 }  // namespace
 
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
   const Parts parts_a = convex_parts(a, offset);
   const Parts parts_b = convex_parts(b, Vec2::Zero());
   PairVolume volume;
-  volume.energy = volume_under(a, offset, parts_b) + volume_under(b, Vec2::Zero(), parts_a);
+  volume.energy =
+      (a.distance ? volume_under_distance(a, b, -offset) : volume_under(a, offset, parts_b)) +
+      (b.distance ? volume_under_distance(b, a, offset) : volume_under(b, Vec2::Zero(), parts_a));
   const lower_envelope::Line<double> one{Vec2::Zero(), 1};
   for (const auto& part_a : parts_a) {
     for (const auto& part_b : parts_b) {
@@ -468,6 +500,7 @@ struct Placement {
             potential.roof ? &*potential.roof : nullptr,
             node_x.data(),
             node_y.data(),
+            potential.distance ? &*potential.distance : nullptr,
             Vec2(x[0], y[0]),
             radius};
   }

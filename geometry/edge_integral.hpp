@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "geometry/distance_field.hpp"
 #include "geometry/potential.hpp"
 #include "geometry/roof.hpp"
 
@@ -26,11 +27,15 @@ struct PlacedPotential {
   const double* gy;
   int size;
   bool capped;
-  const Roof* roof = nullptr;      ///< of a polygon that is not convex
-  const double* node_x = nullptr;  ///< its nodes, placed
+  const Roof* roof = nullptr;      ///< of a polygon that is not convex, or
+  const double* node_x = nullptr;  ///< (its nodes, placed)
   const double* node_y = nullptr;
-  Vec2 reference = Vec2::Zero();  ///< in the frame; what the pair's moments are about
-  double radius = 0;              ///< largest distance of a vertex from it; 0: not known
+  const DistanceField* distance = nullptr;  ///< this
+  Vec2 reference = Vec2::Zero();            ///< in the frame; what the pair's moments are about
+  double radius = 0;                        ///< largest distance of a vertex from it; 0: not known
+
+  /// True where phi is the lower envelope of the lines.
+  [[nodiscard]] bool convex() const { return !roof && !distance; }
 };
 
 /// Integrals of a pair for unit stiffness. Multiply force, moments, weight and energy by k_n.
@@ -54,7 +59,8 @@ struct PairIntegral {
 struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
   std::vector<double> pieces;  ///< end points of the clipped edges
-  RoofTrace<double> trace;     ///< for polygons that are not convex
+  RoofTrace<double> roof;      ///< for polygons that are not convex
+  DistanceTrace<double> distance;
 };
 
 /// The pair kernel. `offset` is the origin of a's frame minus that of b's. No allocation after the

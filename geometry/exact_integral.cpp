@@ -82,7 +82,7 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
   const auto [area, centroid] = moments(v);
 
   // Inward normals of unit length, or with slope 3 / altitude = 3 length / (2 area).
-  Envelope<Wide> phi{{}, false, centroid, nullptr, {}, {}, {}};
+  Envelope<Wide> phi{{}, false, centroid};
   for (size_t i = 0; i < v.size(); ++i) {
     const WideVec d = v[i + 1 == v.size() ? 0 : i + 1] - v[i];
     const Wide length = distance ? sqrt(Wide(d.squaredNorm())) : Wide(2 * area / 3);
@@ -91,19 +91,25 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
   }
   if (distance) {
     Wide roof_height = 0;
+    using Reference = PotentialChoice::Reference;
     if (potential.roof) {
       add_nodes(phi, v, *potential.roof);
       roof_height = *std::max_element(phi.values.begin(), phi.values.end());
-    } else {
+    } else if (potential.distance && choice.reference == Reference::roof) {
+      const Potential roof = make_potential(polygon, {});
+      Envelope<Wide> other = phi;
+      add_nodes(other, v, *roof.roof);
+      roof_height = *std::max_element(other.values.begin(), other.values.end());
+    } else if (!potential.distance) {
       for (const Corner<Wide>& corner : corners(phi.lines, v)) {
         roof_height = std::max(roof_height, corner.height);
       }
     }
-    using Reference = PotentialChoice::Reference;
     const bool given = choice.reference == Reference::length;
     // The inscribed circle of a polygon that is not convex is known in double precision only.
+    const bool convex = !potential.roof && !potential.distance;
     const Wide reference = given ? Wide(choice.length)
-                           : potential.roof && choice.reference == Reference::inscribed_circle
+                           : !convex && choice.reference == Reference::inscribed_circle
                                ? Wide(1 / potential.steepest)
                                : roof_height;
     for (Line<Wide>& line : phi.lines) {
@@ -111,7 +117,8 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
       line.height /= reference;
     }
     for (Wide& value : phi.values) value /= reference;
-    phi.capped = given && roof_height > reference;
+    phi.capped = potential.distance ? potential.capped() : given && roof_height > reference;
+    if (potential.distance) phi.set_distance(*potential.distance, v, 1 / reference);
   }
   return phi;
 }

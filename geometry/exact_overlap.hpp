@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/distance_volume.hpp"
 #include "geometry/lower_envelope.hpp"
 #include "geometry/overlap.hpp"
 
@@ -24,16 +25,44 @@ template <class Real>
 std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
 
 /// phi = min(1 if capped, min_i lines_i), and the point that moments refer to. If the polygon is
-/// not convex, phi is instead the roof with these nodes, and lines are the planes of its faces.
+/// not convex, phi is instead the roof with these nodes, and lines are the planes of its faces; or
+/// the distance field, with the polygon's vertices as nodes and its lines.
 template <class Real>
 struct Envelope {
   std::vector<Line<Real>> lines;
   bool capped;
   Vec<Real> reference;
   const Roof* roof = nullptr;
-  std::vector<Real> x, y, values;
+  std::vector<Real> x{}, y{}, values{};
+  const DistanceField* distance = nullptr;
+  Real slope = 0;  // of the distance field, 1 / r
+  std::vector<Real> gx{}, gy{};
+
+  void set_distance(const DistanceField& field, const std::vector<Vec<Real>>& vertices,
+                    const Real& inverse_reference) {
+    distance = &field;
+    slope = inverse_reference;
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      x.push_back(vertices[i].x());
+      y.push_back(vertices[i].y());
+      gx.push_back(lines[i].gradient.x());
+      gy.push_back(lines[i].gradient.y());
+    }
+  }
+  [[nodiscard]] PlacedDistance<Real> placed_distance() const {
+    return {static_cast<int>(x.size()), x.data(), y.data(), gx.data(), gy.data(), slope,
+            &distance->corners,         capped};
+  }
 
   [[nodiscard]] Real volume(const std::vector<Vec<Real>>& polygon) const {
+    if (distance) {
+      std::vector<Real> px, py;
+      for (const Vec<Real>& p : polygon) {
+        px.push_back(p.x());
+        py.push_back(p.y());
+      }
+      return DistanceVolume<Real>().over(placed_distance(), px, py);
+    }
     if (!roof) return volume_under(lines, capped, polygon);
     std::vector<std::vector<Vec<Real>>> faces;
     for (const std::vector<int>& nodes : roof->faces) {
@@ -44,24 +73,21 @@ struct Envelope {
   }
 };
 
-/// phi along one edge, u in [0, 1].
-template <class Real>
-struct EdgeIntegral {
-  Real sum = 0;    // INT phi du
-  Real first = 0;  // INT phi u du
-  Real largest = 0;
-};
-
 /// Envelope along a segment as a polyline, cut by one line after the other; keeps its memory.
 template <class Real>
 class EdgeTrace {
  public:
-  EdgeIntegral<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p, const Vec<Real>& q) {
+  SegmentMoments<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p,
+                                 const Vec<Real>& q) {
     if (phi.roof) return integrate_roof(phi, p, q);
+    if (phi.distance) {
+      return distance_.integrate(phi.placed_distance(), p.x(), p.y(), q.x() - p.x(), q.y() - p.y(),
+                                 [](const Real&, const Real&) {});
+    }
     knots_.assign({{0, phi.lines[0](p)}, {1, phi.lines[0](q)}});
     for (size_t i = 1; i < phi.lines.size(); ++i) cut(phi.lines[i](p), phi.lines[i](q));
     if (phi.capped) cut(1, 1);
-    EdgeIntegral<Real> result;
+    SegmentMoments<Real> result;
     for (size_t i = 1; i < knots_.size(); ++i) add_positive_part(knots_[i - 1], knots_[i], result);
     return result;
   }
@@ -71,13 +97,13 @@ class EdgeTrace {
     Real u, value;
   };
 
-  EdgeIntegral<Real> integrate_roof(const Envelope<Real>& phi, const Vec<Real>& p,
-                                    const Vec<Real>& q) {
+  SegmentMoments<Real> integrate_roof(const Envelope<Real>& phi, const Vec<Real>& p,
+                                      const Vec<Real>& q) {
     roof_.cross(
         {&phi.roof->arcs, static_cast<int>(phi.lines.size()), static_cast<int>(phi.values.size()),
          phi.x.data(), phi.y.data(), phi.values.data()},
         p.x(), p.y(), q.x() - p.x(), q.y() - p.y());
-    EdgeIntegral<Real> result;
+    SegmentMoments<Real> result;
     roof_.pieces([&](const Real& u1, const Real& v1, const Real& u2, const Real& v2) {
       knots_.assign({{u1, v1}, {u2, v2}});
       if (phi.capped) cut(1, 1);
@@ -112,18 +138,16 @@ class EdgeTrace {
   }
 
   // Negative values inside the overlap are round-off.
-  static void add_positive_part(Knot k, Knot l, EdgeIntegral<Real>& result) {
+  static void add_positive_part(Knot k, Knot l, SegmentMoments<Real>& result) {
     if (k.value < 0 && l.value < 0) return;
     if (k.value < 0) k = {between(k, l, k.value / (k.value - l.value)).u, 0};
     if (l.value < 0) l = {between(k, l, k.value / (k.value - l.value)).u, 0};
-    const Real du = l.u - k.u;
-    result.sum += du * (k.value + l.value) / 2;
-    result.first += du * (k.value * (2 * k.u + l.u) + l.value * (k.u + 2 * l.u)) / 6;
-    result.largest = std::max(result.largest, std::max(k.value, l.value));
+    result.add(k.u, k.value, l.u, l.value);
   }
 
   std::vector<Knot> knots_, cut_;
   RoofTrace<Real> roof_;
+  DistanceTrace<Real> distance_;
 };
 
 /// Eq. 8 and the energy.
@@ -147,8 +171,8 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       const bool known = !region.edges.empty();
       const bool skip_a = known && region.edges[i].edge_of_a >= 0;
       const bool skip_b = known && region.edges[i].edge_of_b >= 0;
-      const auto phi_a = skip_a ? EdgeIntegral<Real>{} : trace.integrate(a, p, p + d);
-      const auto phi_b = skip_b ? EdgeIntegral<Real>{} : trace.integrate(b, p, p + d);
+      const auto phi_a = skip_a ? SegmentMoments<Real>{} : trace.integrate(a, p, p + d);
+      const auto phi_b = skip_b ? SegmentMoments<Real>{} : trace.integrate(b, p, p + d);
       if (known ? skip_a : phi_a.sum <= phi_b.sum) own_a += length;
       if (known ? skip_b : phi_b.sum <= phi_a.sum) own_b += length;
       const Real difference = phi_a.sum - phi_b.sum;

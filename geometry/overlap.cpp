@@ -172,11 +172,16 @@ std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
 }
 
 Envelope<double> envelope(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
-  Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid, nullptr, {}, {}, {}};
+  Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid};
   phi.reference += polygon.origin() - origin;
   for (int i = 0; i < potential.size(); ++i) {
     const Vec2& gradient = potential.gradients[i];
     phi.lines.push_back({gradient, -gradient.dot(polygon[i] - origin)});
+  }
+  if (potential.distance) {
+    std::vector<Vec2> vertices;
+    for (const Vec2& v : polygon.vertices()) vertices.emplace_back(v - origin);
+    phi.set_distance(*potential.distance, vertices, potential.distance->slope);
   }
   if (!potential.roof) return phi;
   // The boundary exactly as given, the inner nodes by their place in the polygon.

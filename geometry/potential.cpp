@@ -78,28 +78,36 @@ void scale(Potential& potential, double factor) {
   potential.top *= factor;
 }
 
-// A polygon that is not convex: phi is the roof of its straight skeleton over r.
-Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
-  const Skeleton skeleton = [&] {
-    try {
-      return straight_skeleton(polygon);
-    } catch (const SkeletonFailure& failure) {
-      throw InvalidPolygon(failure.what(), 0);
-    }
-  }();
-  if (!(skeleton.roof_height > kThinnest * bounding_box(polygon).extent())) {
-    throw InvalidPolygon("is thinner than double precision resolves", 0);
+Skeleton skeleton_of(const Polygon& polygon) {
+  try {
+    Skeleton skeleton = straight_skeleton(polygon);
+    if (skeleton.roof_height > kThinnest * bounding_box(polygon).extent()) return skeleton;
+  } catch (const SkeletonFailure& failure) {
+    throw InvalidPolygon(failure.what(), 0);
   }
-  using Reference = PotentialChoice::Reference;
-  const double reference = choice.reference == Reference::length ? choice.length
-                           : choice.reference == Reference::inscribed_circle
-                               ? largest_inscribed_circle(polygon).radius
-                               : skeleton.roof_height;
+  throw InvalidPolygon("is thinner than double precision resolves", 0);
+}
+
+// The lines of a polygon that is not convex.
+Potential sloped_lines(const Polygon& polygon, double reference) {
   Potential potential;
   potential.vertices = polygon.local_vertices();
   potential.gradients = inward_normals(polygon);
   for (Vec2& g : potential.gradients) g /= reference;
   potential.steepest = 1 / reference;
+  return potential;
+}
+
+using Reference = PotentialChoice::Reference;
+
+// A polygon that is not convex: phi is the roof of its straight skeleton over r.
+Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  const Skeleton skeleton = skeleton_of(polygon);
+  const double reference = choice.reference == Reference::length ? choice.length
+                           : choice.reference == Reference::inscribed_circle
+                               ? largest_inscribed_circle(polygon).radius
+                               : skeleton.roof_height;
+  Potential potential = sloped_lines(polygon, reference);
   potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
   potential.roof = make_roof(skeleton, reference);
   for (const Skeleton::Node& node : skeleton.nodes) {
@@ -110,8 +118,25 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) 
   return potential;
 }
 
+// Or the distance to its boundary over r, which needs a skeleton for its height alone.
+Potential field_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  const InscribedCircle circle = largest_inscribed_circle(polygon);
+  const double reference = choice.reference == Reference::length ? choice.length
+                           : choice.reference == Reference::inscribed_circle
+                               ? circle.radius
+                               : skeleton_of(polygon).roof_height;
+  Potential potential = sloped_lines(polygon, reference);
+  potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
+  potential.top_points = circle.centres;
+  potential.distance = make_distance_field(polygon, reference);
+  return potential;
+}
+
 Potential distance_potential(const Polygon& polygon, const PotentialChoice& choice) {
-  if (!polygon.is_convex()) return roof_potential(polygon, choice);
+  if (!polygon.is_convex()) {
+    return choice.field == PotentialChoice::Field::roof ? roof_potential(polygon, choice)
+                                                        : field_potential(polygon, choice);
+  }
   Potential potential = envelope_potential(polygon, inward_normals(polygon));
   const double inradius = potential.top;
   if (choice.reference == PotentialChoice::Reference::length) {

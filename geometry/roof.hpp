@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "geometry/line_crossings.hpp"
 #include "geometry/point.hpp"
 #include "geometry/skeleton.hpp"
 
@@ -34,38 +34,27 @@ struct PlacedRoof {
   const Real* values;
 };
 
-/// phi along a segment, by one sign per node (half-open rule) and no tolerance: every crossing of
-/// an arc is computed once and belongs to both of its faces, whichever way round-off decides the
-/// signs.
+/// phi along a segment: every crossing of an arc is computed once and belongs to both of its faces.
 template <class Real>
 class RoofTrace {
  public:
   /// Finds the crossings of the line p + s e.
   void cross(const PlacedRoof<Real>& roof, const Real& px, const Real& py, const Real& ex,
              const Real& ey) {
-    side_.resize(roof.nodes);
+    lines_.set(roof.nodes, roof.x, roof.y, px, py, ex, ey);
     crossings_.clear();
-    for (int i = 0; i < roof.boundary; ++i) {
-      side_[i] = ex * (roof.y[i] - py) - ey * (roof.x[i] - px);
-    }
-    const Real inverse = 1 / (ex * ex + ey * ey);
-    const auto along = [&](int i) -> Real {
-      return (ex * (roof.x[i] - px) + ey * (roof.y[i] - py)) * inverse;
-    };
     const auto cross_arc = [&](int k) {
       const auto [a, b] = (*roof.arcs)[k];
-      if ((side_[a] >= 0) == (side_[b] >= 0)) return;
-      const Real w = side_[a] / (side_[a] - side_[b]);
-      const Real start = along(a);
-      crossings_.push_back({start + w * (along(b) - start),
-                            roof.values[a] + w * (roof.values[b] - roof.values[a]),
-                            k < roof.boundary});
+      const Real& start = roof.values[a];
+      const Real& end = roof.values[b];
+      lines_.cross(a, b, [&](const Real& s, const Real& w) {
+        crossings_.push_back({s, start + w * (end - start), k < roof.boundary});
+      });
     };
+    lines_.place(0, roof.boundary);
     for (int k = 0; k < roof.boundary; ++k) cross_arc(k);
     if (crossings_.empty()) return;  // the line misses the polygon
-    for (int i = roof.boundary; i < roof.nodes; ++i) {
-      side_[i] = ex * (roof.y[i] - py) - ey * (roof.x[i] - px);
-    }
+    lines_.place(roof.boundary, roof.nodes);
     for (int k = roof.boundary; k < static_cast<int>(roof.arcs->size()); ++k) cross_arc(k);
     std::sort(crossings_.begin(), crossings_.end(),
               [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
@@ -93,7 +82,7 @@ class RoofTrace {
     Real s, value;
     bool boundary;
   };
-  std::vector<Real> side_;
+  LineCrossings<Real> lines_;
   std::vector<Crossing> crossings_;
 };
 

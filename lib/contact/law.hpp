@@ -23,6 +23,16 @@ inline constexpr std::array kPotentials{
     NamedPotential{"area", PotentialChoice::Kind::area},          // Eq. 2, triangles only
 };
 
+/// What measures the depth in a polygon that is not convex; convex ones have one field only.
+struct NamedField {
+  std::string_view name;
+  PotentialChoice::Field field;
+};
+inline constexpr std::array kFields{
+    NamedField{"roof", PotentialChoice::Field::roof},
+    NamedField{"distance", PotentialChoice::Field::distance},
+};
+
 /// The reference lengths a scene can name (a number is a length in m).
 struct NamedReference {
   std::string_view name;

@@ -12,7 +12,8 @@ int PlacedShapes::add(const Potential& potential) {
               0,
               potential.top_points.front(),
               potential.roof ? &*potential.roof : nullptr,
-              node_x_.size()};
+              node_x_.size(),
+              potential.distance ? &*potential.distance : nullptr};
   if (shape.roof) {
     node_x_.resize(node_x_.size() + shape.roof->points.size());
     node_y_.resize(node_x_.size());

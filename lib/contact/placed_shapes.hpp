@@ -10,7 +10,6 @@ namespace apothem {
 class PlacedShapes {
  public:
   /// Adds a shape given in its body frame (reference point = mass centre) and returns its index.
-  /// The potential must outlive this object if the shape is not convex.
   /// The potential must outlive this object.
   int add(const Potential& potential);
 
@@ -28,6 +27,7 @@ class PlacedShapes {
             s.roof,
             node_x_.data() + s.nodes,
             node_y_.data() + s.nodes,
+            s.distance,
             Vec2::Zero(),
             s.radius};
   }
@@ -47,8 +47,9 @@ class PlacedShapes {
     bool capped;
     double radius;
     Vec2 top;          // of the potential, body frame
-    const Roof* roof;  // if not convex
-    size_t nodes;      // first of its placed nodes
+    const Roof* roof;  // if not convex, or
+    size_t nodes;      // (first of its placed nodes)
+    const DistanceField* distance;
   };
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`

@@ -47,7 +47,7 @@ struct RigidBody {
   double area = 0;      ///< m^2
   double mass = 0;      ///< kg, with the model's thickness
   double inertia = 0;   ///< about the mass centre, kg m^2
-  double inradius = 0;  ///< m; of a body that is not convex: its roof height
+  double inradius = 0;  ///< m; of a body that is not convex: the largest depth of its field
   Motion motion = Motion::free;
   std::array<bool, 3> held{};    ///< x, y, angle that a free body may not change
   MotionHistory history;         ///< if prescribed

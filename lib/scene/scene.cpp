@@ -93,8 +93,19 @@ class SceneReader {
     }
     law.normal_stiffness =
         in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
+    if (const JsonValue* v = object.optional("field")) field(*v);
     if (const JsonValue* v = object.optional("reference")) reference(*v);
     object.finish();
+  }
+
+  void field(const JsonValue& value) {
+    PotentialChoice& choice = model_.contact.potential;
+    if (choice.kind == PotentialChoice::Kind::area) {
+      in_.fail(value, "the area potential has one field only; leave it out");
+    }
+    std::vector<std::string> names;
+    for (const NamedField& f : kFields) names.emplace_back(f.name);
+    choice.field = kFields[in_.choice(value, names)].field;
   }
 
   void reference(const JsonValue& value) {
