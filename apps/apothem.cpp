@@ -75,7 +75,9 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
   sub->add_option("REGION", o.region, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}")
       ->required();
   sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->required();
-  sub->add_option("--seed", o.voronoi.seed, "Of the random sites")->capture_default_str();
+  sub->add_option("--seed", o.voronoi.seed, "Of the random sites")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   sub->add_option("--lloyd", o.voronoi.lloyd, "Steps of Lloyd's iteration, at most")
       ->capture_default_str();
   sub->add_option("--shortest-edge", o.voronoi.shortest_edge,

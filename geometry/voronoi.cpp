@@ -10,11 +10,13 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <array>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include "geometry/boxes.hpp"
@@ -38,13 +40,9 @@ using Ring = std::vector<int>;  // of nodes
 constexpr double kSettled = 1e-3;        // movement in cell sizes
 constexpr double kUnresolved = 0x1p-40;  // of the region's size
 
-enum class Rounding { nearby, exact };  // nearby is faster and good for 5 digits at least
-
-Vec2 rounded(const Exact::Point_2& p, Rounding rounding) {
-  if (rounding == Rounding::exact) {
-    return {CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y()))};
-  }
-  return {CGAL::to_double(p.x()), CGAL::to_double(p.y())};
+// The same bits however the point was constructed, unlike CGAL's approximation of it.
+Vec2 rounded(const Exact::Point_2& p) {
+  return {CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y()))};
 }
 
 Polygon local_polygon(const Polygon& region) {
@@ -101,6 +99,9 @@ class Diagram {
     const CGAL::Cartesian_converter<Inexact, Exact> exact;
     for (const auto face : delaunay.finite_face_handles()) {
       face->info() = static_cast<int>(centres.size());
+      std::array<int, 3>& triple = triples_.emplace_back();
+      for (int k = 0; k < 3; ++k) triple[k] = face->vertex(k)->info();
+      std::sort(triple.begin(), triple.end());
       centres.push_back(CGAL::circumcenter(exact(face->vertex(0)->point()),
                                            exact(face->vertex(1)->point()),
                                            exact(face->vertex(2)->point())));
@@ -130,9 +131,16 @@ class Diagram {
     return box;
   }
 
-  [[nodiscard]] std::vector<Vec2> whole_cell(int site) const {
+  // In plain double precision, good enough to move sites.
+  [[nodiscard]] std::vector<Vec2> whole_cell(int site, const std::vector<Vec2>& sites) const {
     std::vector<Vec2> ring;
-    for (const int c : cells_[site]) ring.push_back(rounded(centres[c], Rounding::nearby));
+    for (const int c : cells_[site]) {
+      const auto& [i, j, k] = triples_[c];
+      const Vec2 p = sites[j] - sites[i];
+      const Vec2 q = sites[k] - sites[i];
+      const Vec2 r = q.squaredNorm() * p - p.squaredNorm() * q;
+      ring.push_back(sites[i] + Vec2(-r.y(), r.x()) / (2 * cross(p, q)));
+    }
     return ring;
   }
 
@@ -140,7 +148,8 @@ class Diagram {
   std::vector<Edge> edges;
 
  private:
-  std::vector<std::vector<int>> cells_;  // centres around each site, counter-clockwise
+  std::vector<std::vector<int>> cells_;      // centres around each site, counter-clockwise
+  std::vector<std::array<int, 3>> triples_;  // sites around each centre, ascending
 };
 
 // A piece of a cell, later a whole cell.
@@ -161,6 +170,35 @@ struct Pieces {
     return result;
   }
 };
+
+// Into an order that does not depend on CGAL's: nodes of the region first, then from left to right;
+// rings from their first node on; pieces by their site, then by that node.
+void put_in_order(Pieces& pieces, int outline_size) {
+  std::vector<int> order(pieces.nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin() + outline_size, order.end(), [&](int i, int j) {
+    const Vec2& p = pieces.nodes[i];
+    const Vec2& q = pieces.nodes[j];
+    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+  });
+  Pieces sorted;
+  std::vector<int> index(order.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    index[order[i]] = static_cast<int>(i);
+    sorted.nodes.push_back(pieces.nodes[order[i]]);
+    sorted.freedom.push_back(pieces.freedom[order[i]]);
+  }
+  for (Piece& piece : pieces.list) {
+    for (int& node : piece.ring) node = index[node];
+    std::rotate(piece.ring.begin(), std::min_element(piece.ring.begin(), piece.ring.end()),
+                piece.ring.end());
+  }
+  sorted.list = std::move(pieces.list);
+  std::sort(sorted.list.begin(), sorted.list.end(), [](const Piece& a, const Piece& b) {
+    return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
+  });
+  pieces = std::move(sorted);
+}
 
 // The ring about both, if they have an edge in common and their union is a simple ring.
 std::optional<Ring> united(const Ring& a, const Ring& b) {
@@ -301,7 +339,7 @@ class Cutter {
 
   // The cells of the sites that are `wanted`, cut by the outline. Pieces of these cells come whole.
   [[nodiscard]] Pieces cut(const Diagram& diagram, const std::vector<Vec2>& sites,
-                           const std::vector<bool>& wanted, Rounding rounding) const {
+                           const std::vector<bool>& wanted) const {
     const int n = region_.size();
     std::vector<Traits::Curve_2> curves;
     for (int k = 0; k < n; ++k) {
@@ -330,9 +368,10 @@ class Cutter {
       const auto start = face->outer_ccb();
       auto edge = start;
       do {
-        piece.ring.push_back(node_at(edge->target(), pieces, rounding));
+        piece.ring.push_back(node_at(edge->target(), pieces));
       } while (++edge != start);
     }
+    put_in_order(pieces, n);
     find_owned(pieces, sites);
     return pieces;
   }
@@ -391,7 +430,7 @@ class Cutter {
     return 0;
   }
 
-  int node_at(Arrangement::Vertex_handle vertex, Pieces& pieces, Rounding rounding) const {
+  int node_at(Arrangement::Vertex_handle vertex, Pieces& pieces) const {
     if (vertex->data() >= 0) return vertex->data();
     int freedom = kAnywhere;
     const auto start = vertex->incident_halfedges();
@@ -408,7 +447,7 @@ class Cutter {
       }
     } while (++edge != start);
     vertex->set_data(static_cast<int>(pieces.nodes.size()));
-    pieces.nodes.push_back(rounded(vertex->point(), rounding));
+    pieces.nodes.push_back(rounded(vertex->point()));
     pieces.freedom.push_back(freedom);
     return vertex->data();
   }
@@ -470,9 +509,9 @@ std::vector<Vec2> sites_after_step(const Cutter& cutter, const std::vector<Vec2>
     return site + m.first / m.area;
   };
   for (int i = 0; i < n; ++i) {
-    if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i), sites[i]);
+    if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i, sites), sites[i]);
   }
-  Pieces pieces = cutter.cut(diagram, sites, at_outline, Rounding::nearby);
+  Pieces pieces = cutter.cut(diagram, sites, at_outline);
   Joiner(pieces).run();
   for (const Piece& piece : pieces.list) {
     if (!piece.owned) continue;
@@ -482,29 +521,6 @@ std::vector<Vec2> sites_after_step(const Cutter& cutter, const std::vector<Vec2>
     if (strictly_inside(cutter.region().vertices(), place)) moved[piece.site] = place;
   }
   return moved;
-}
-
-// Region vertices first, then the others from left to right.
-void sort_nodes(Pieces& pieces, int outline_size) {
-  std::vector<int> order(pieces.nodes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin() + outline_size, order.end(), [&](int i, int j) {
-    const Vec2& p = pieces.nodes[i];
-    const Vec2& q = pieces.nodes[j];
-    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-  });
-  Pieces sorted;
-  std::vector<int> index(order.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    index[order[i]] = static_cast<int>(i);
-    sorted.nodes.push_back(pieces.nodes[order[i]]);
-    sorted.freedom.push_back(pieces.freedom[order[i]]);
-  }
-  for (Piece& piece : pieces.list) {
-    for (int& node : piece.ring) node = index[node];
-  }
-  sorted.list = std::move(pieces.list);
-  pieces = std::move(sorted);
 }
 
 }  // namespace
@@ -566,9 +582,7 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
     }
   }
   const Diagram diagram(sites, cutter.box());
-  Pieces pieces =
-      cutter.cut(diagram, sites, std::vector<bool>(sites.size(), true), Rounding::exact);
-  sort_nodes(pieces, region.size());
+  Pieces pieces = cutter.cut(diagram, sites, std::vector<bool>(sites.size(), true));
   VoronoiMesh result;
   result.sites = sites;
   result.joined_pieces = static_cast<int>(pieces.list.size() - sites.size());
