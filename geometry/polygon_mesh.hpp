@@ -34,9 +34,10 @@ constexpr int kNowhere = -2;
 
 struct ShortEdges {
   int collapsed = 0;
-  /// Still short. Between two fixed nodes of the outline they are the outline's own and not
-  /// counted. Others stay where both ends lie on the outline and the edge crosses the inside, where
-  /// a cell is a triangle (it would vanish), and where each new place makes a cell invalid.
+  /// Still short; edges between two fixed nodes of the outline are the outline's own and do not
+  /// count. They stay where both ends lie on the outline and the edge crosses the inside, where a
+  /// cell is a triangle (it would vanish), and where every new place makes a cell invalid, say
+  /// because a vertex of the outline bars the way.
   int left = 0;
 };
 

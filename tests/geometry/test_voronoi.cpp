@@ -98,6 +98,23 @@ Rational exact_area(const PolygonMesh& mesh, const std::vector<int>& nodes) {
   return sum;
 }
 
+// Moving node `from` to node `to` makes a cell invalid.
+bool collapse_is_barred(const PolygonMesh& mesh, int from, int to) {
+  for (std::vector<int> cell : mesh.cells) {
+    if (std::count(cell.begin(), cell.end(), to) > 0) {
+      std::erase(cell, from);
+    } else {
+      std::replace(cell.begin(), cell.end(), from, to);
+    }
+    try {
+      if (Polygon(cell_ring(mesh, cell)).input_index(1) != 1) return true;
+    } catch (const InvalidPolygon&) {
+      return true;
+    }
+  }
+  return false;
+}
+
 struct Found {
   double outline_deviation = 0;  // of a node from its edge of the region, of the region's size
   double area_defect = 0;        // of the region
@@ -166,7 +183,10 @@ Found lawful(const Polygon& region, const VoronoiMesh& voronoi, size_t cells, do
     const bool inside = cell_of.count({v, u});
     if ((mesh.points[u] - mesh.points[v]).norm() >= shortest * size) continue;
     if (inside ? u < v : u >= n || v >= n) ++short_edges;
-    if (inside) CHECK((on_outline.count(u) && on_outline.count(v)));
+    if (!inside || (on_outline.count(u) && on_outline.count(v))) continue;
+    // With one end on the outline, a vertex of the outline must be in the way.
+    REQUIRE((on_outline.count(u) || on_outline.count(v)));
+    CHECK(collapse_is_barred(mesh, on_outline.count(u) ? v : u, on_outline.count(u) ? u : v));
   }
   CHECK(short_edges == voronoi.short_edges.left);
   return found;
