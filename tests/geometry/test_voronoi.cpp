@@ -312,6 +312,30 @@ TEST_CASE("lattices have their known cells", "[voronoi]") {
     CHECK(area_moments(Polygon(cell_ring(grid.mesh, cell))).area == 1 / 64.);
   }
 
+  // Unit squares again, with Voronoi edges through the reflex vertices and along the outline.
+  std::vector<Shape> built = shapes();
+  for (const Shape& shape : {built[3], built[4]}) {  // L, cross
+    const Polygon region(shape.ring);
+    const Ring local = region.local_vertices();
+    sites.clear();
+    for (double x = -2.5; x < 3; ++x) {
+      for (double y = -2.5; y < 4; ++y) {
+        if (contains(local, {x, y})) sites.emplace_back(x, y);
+      }
+    }
+    REQUIRE(sites.size() == 5);
+    const VoronoiMesh units = voronoi_mesh(region, sites, .1);
+    lawful(region, units, 5, .1);
+    CHECK(units.joined_pieces == 0);
+    CHECK(units.short_edges.collapsed == 0);
+    CHECK(units.mesh.points.size() == 12);
+    for (size_t i = 0; i < 5; ++i) {
+      const Polygon cell(cell_ring(units.mesh, units.mesh.cells[i]));
+      CHECK(area_moments(cell).area == 1);
+      CHECK(cell.origin() + area_moments(cell).centroid == sites[i]);
+    }
+  }
+
   // Regular hexagons of area sqrt(3)/2 a^2 and side a/sqrt(3), away from the outline.
   const double a = .1;
   sites.clear();
