@@ -11,15 +11,12 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <array>
-#include <map>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <set>
-#include <tuple>
-#include <unordered_map>
 
 #include "geometry/boxes.hpp"
+#include "geometry/cell_pieces.hpp"
 #include "geometry/predicates.hpp"
 #include "geometry/triangulation.hpp"
 
@@ -35,7 +32,6 @@ using Delaunay = CGAL::Delaunay_triangulation_2<
 using Segments = CGAL::Arr_segment_traits_2<Exact>;
 using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
-using Ring = std::vector<int>;  // of nodes
 
 constexpr double kSettled = 1e-3;        // movement in cell sizes
 constexpr double kUnresolved = 0x1p-40;  // of the region's size
@@ -150,153 +146,6 @@ class Diagram {
  private:
   std::vector<std::vector<int>> cells_;      // centres around each site, counter-clockwise
   std::vector<std::array<int, 3>> triples_;  // sites around each centre, ascending
-};
-
-// A piece of a cell, later a whole cell.
-struct Piece {
-  int site;
-  Ring ring;
-  bool owned;  // has a site
-};
-
-struct Pieces {
-  std::vector<Vec2> nodes;
-  std::vector<int> freedom;  // as in collapse_short_edges; vertex k of the region is node k
-  std::vector<Piece> list;
-
-  [[nodiscard]] std::vector<Vec2> points(const Ring& ring) const {
-    std::vector<Vec2> result;
-    for (const int i : ring) result.push_back(nodes[i]);
-    return result;
-  }
-};
-
-// Into an order that does not depend on CGAL's: nodes of the region first, then from left to right;
-// rings from their first node on; pieces by their site, then by that node.
-void put_in_order(Pieces& pieces, int outline_size) {
-  std::vector<int> order(pieces.nodes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin() + outline_size, order.end(), [&](int i, int j) {
-    const Vec2& p = pieces.nodes[i];
-    const Vec2& q = pieces.nodes[j];
-    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-  });
-  Pieces sorted;
-  std::vector<int> index(order.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    index[order[i]] = static_cast<int>(i);
-    sorted.nodes.push_back(pieces.nodes[order[i]]);
-    sorted.freedom.push_back(pieces.freedom[order[i]]);
-  }
-  for (Piece& piece : pieces.list) {
-    for (int& node : piece.ring) node = index[node];
-    std::rotate(piece.ring.begin(), std::min_element(piece.ring.begin(), piece.ring.end()),
-                piece.ring.end());
-  }
-  sorted.list = std::move(pieces.list);
-  std::sort(sorted.list.begin(), sorted.list.end(), [](const Piece& a, const Piece& b) {
-    return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
-  });
-  pieces = std::move(sorted);
-}
-
-// The ring about both, if they have an edge in common and their union is a simple ring.
-std::optional<Ring> united(const Ring& a, const Ring& b) {
-  std::set<std::pair<int, int>> edges;
-  for (const Ring* ring : {&a, &b}) {
-    for (size_t i = 0; i < ring->size(); ++i) {
-      const int u = (*ring)[i];
-      const int v = (*ring)[i + 1 == ring->size() ? 0 : i + 1];
-      if (edges.erase({v, u}) == 0) edges.insert({u, v});
-    }
-  }
-  if (edges.empty() || edges.size() == a.size() + b.size()) return std::nullopt;
-  std::unordered_map<int, int> next;
-  for (const auto& [u, v] : edges) {
-    if (!next.emplace(u, v).second) return std::nullopt;
-  }
-  Ring ring;
-  for (int node = edges.begin()->first; ring.empty() || node != ring.front(); node = next.at(node))
-    ring.push_back(node);
-  if (ring.size() != edges.size()) return std::nullopt;
-  return ring;
-}
-
-// Joins pieces without a site to neighbours until only cells with a site are left.
-class Joiner {
- public:
-  explicit Joiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
-    std::iota(group_.begin(), group_.end(), 0);
-    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
-      const Ring& ring = pieces_.list[i].ring;
-      for (size_t k = 0; k < ring.size(); ++k) {
-        piece_left_of_[{ring[k], ring[k + 1 == ring.size() ? 0 : k + 1]}] = i;
-      }
-    }
-  }
-
-  // Returns false if pieces are left that no neighbour can take.
-  bool run() {
-    std::vector<int> alone;
-    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
-      if (!pieces_.list[i].owned) alone.push_back(i);
-    }
-    bool any_neighbour = false;
-    while (!alone.empty()) {
-      const size_t before = alone.size();
-      std::erase_if(alone, [&](int i) {
-        // In the second attempt one piece may join another, once.
-        if (any_neighbour && alone.size() < before) return false;
-        return join(i, any_neighbour);
-      });
-      if (alone.size() < before) {
-        any_neighbour = false;
-      } else if (any_neighbour) {
-        break;
-      } else {
-        any_neighbour = true;
-      }
-    }
-    std::erase_if(pieces_.list, [](const Piece& piece) { return piece.ring.empty(); });
-    return alone.empty();
-  }
-
- private:
-  int group(int i) const {
-    while (group_[i] != i) i = group_[i];
-    return i;
-  }
-
-  bool join(int i, bool any_neighbour) {
-    Ring& ring = pieces_.list[i].ring;
-    std::map<int, double> common;  // neighbour -> length
-    for (size_t k = 0; k < ring.size(); ++k) {
-      const int u = ring[k];
-      const int v = ring[k + 1 == ring.size() ? 0 : k + 1];
-      const auto other = piece_left_of_.find({v, u});
-      if (other == piece_left_of_.end()) continue;
-      const int j = group(other->second);
-      if (!any_neighbour && !pieces_.list[j].owned) continue;
-      common[j] += (pieces_.nodes[u] - pieces_.nodes[v]).norm();
-    }
-    std::vector<int> neighbours;
-    for (const auto& [j, length] : common) neighbours.push_back(j);
-    std::stable_sort(neighbours.begin(), neighbours.end(),
-                     [&](int a, int b) { return common[a] > common[b]; });
-    for (const int j : neighbours) {
-      std::optional<Ring> both = united(pieces_.list[j].ring, ring);
-      if (!both) continue;
-      pieces_.list[j].ring = std::move(*both);
-      ring.clear();
-      group_[i] = j;
-      return true;
-    }
-    return false;
-  }
-
-  Pieces& pieces_;
-  std::vector<int> group_;  // the piece that a piece has joined, or itself
-  std::map<std::pair<int, int>, int> piece_left_of_;
 };
 
 // The region, in coordinates relative to its origin.
@@ -512,7 +361,7 @@ std::vector<Vec2> sites_after_step(const Cutter& cutter, const std::vector<Vec2>
     if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i, sites), sites[i]);
   }
   Pieces pieces = cutter.cut(diagram, sites, at_outline);
-  Joiner(pieces).run();
+  join_pieces(pieces);
   for (const Piece& piece : pieces.list) {
     if (!piece.owned) continue;
     const Vec2& site = sites[piece.site];
@@ -586,7 +435,12 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
   VoronoiMesh result;
   result.sites = sites;
   result.joined_pieces = static_cast<int>(pieces.list.size() - sites.size());
-  const bool joined = Joiner(pieces).run();
+  if (!join_pieces(pieces)) {
+    throw InvalidPolygon(
+        "cuts pieces off its cells that no other cell can take; change the seed or the number of "
+        "cells",
+        0);
+  }
   result.mesh.points = std::move(pieces.nodes);
   result.mesh.cells.resize(sites.size());
   for (Piece& piece : pieces.list) result.mesh.cells[piece.site] = std::move(piece.ring);
@@ -595,7 +449,6 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
       collapse_short_edges(result.mesh, std::move(pieces.freedom),
                            std::max(shortest_edge * size, kUnresolved * cutter.box().extent()));
   try {
-    if (!joined) throw InvalidPolygon("pieces of cells are left", 0);
     tiling_boundary(result.mesh);
   } catch (const InvalidPolygon& error) {
     throw InvalidPolygon(
