@@ -72,6 +72,23 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
+void add_mesh(CLI::App& app, MeshOptions& o) {
+  CLI::App* sub = app.add_subcommand("mesh", "Mesh a region with polygonal cells");
+  sub->add_option("REGION", o.region, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}")
+      ->required();
+  sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->required();
+  sub->add_option("--seed", o.voronoi.seed, "Of the random sites")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  sub->add_option("--lloyd", o.voronoi.lloyd, "Steps of Lloyd's iteration, at most")
+      ->capture_default_str();
+  sub->add_option("--shortest-edge", o.voronoi.shortest_edge,
+                  "Collapse shorter edges; 0 to 0.5, of the mean cell size sqrt(area / cells)")
+      ->capture_default_str();
+  sub->add_option("-o,--output", o.output, "JSON file (default: standard output)");
+  sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at");
+}
+
 int fail(int code, const char* what) {
   fmt::print(stderr, "apothem: {}\n", what);
   return code;
@@ -84,9 +101,11 @@ int run(int argc, char** argv) {
   RunOptions run_options;
   CheckOptions check_options;
   ContactOptions contact_options;
+  MeshOptions mesh_options;
   add_run(app, run_options);
   add_check(app, check_options);
   add_contact(app, contact_options);
+  add_mesh(app, mesh_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -96,6 +115,7 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("run")) return run_command(run_options);
   if (app.got_subcommand("check")) return check_command(check_options);
+  if (app.got_subcommand("mesh")) return mesh_command(mesh_options);
   return contact_command(contact_options);
 }
 

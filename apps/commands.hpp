@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "geometry/voronoi.hpp"
+
 namespace apothem {
 
 namespace exit_code {
@@ -43,5 +45,13 @@ struct ContactOptions {
   bool json = false;
 };
 int contact_command(const ContactOptions& options);
+
+struct MeshOptions {
+  std::string region;
+  VoronoiOptions voronoi;
+  std::string output;  ///< empty: standard output
+  std::string vtk;     ///< empty: none
+};
+int mesh_command(const MeshOptions& options);
 
 }  // namespace apothem

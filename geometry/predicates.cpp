@@ -31,4 +31,19 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
          (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
 }
 
+bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p) {
+  // Edges that a ray to the right crosses, each with its lower end but not its upper one.
+  bool inside = false;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2& a = ring[i];
+    const Vec2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
+    if (std::max(a.y(), b.y()) < p.y() || std::min(a.y(), b.y()) > p.y()) continue;
+    const int side = orientation(a, b, p);
+    if (side == 0 && between(a, b, p)) return false;
+    if (a.y() <= p.y() && p.y() < b.y() && side > 0) inside = !inside;
+    if (b.y() <= p.y() && p.y() < a.y() && side < 0) inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace apothem

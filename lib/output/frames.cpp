@@ -175,4 +175,25 @@ void FrameWriter::write(const State& state, const std::vector<ContactRecord>& co
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
 }
 
+void write_mesh(const std::string& file, const PolygonMesh& mesh) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const Vec2& p : mesh.points) points->InsertNextPoint(p.x(), p.y(), 0);
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> index = integers("cell");
+  vtkNew<vtkDoubleArray> area = doubles("area", 1);
+  for (const std::vector<int>& cell : mesh.cells) {
+    index->InsertNextValue(static_cast<int>(cells->GetNumberOfCells()));
+    area->InsertNextValue(area_moments(Polygon(cell_ring(mesh, cell))).area);
+    cells->InsertNextCell(static_cast<int>(cell.size()));
+    for (const int node : cell) cells->InsertCellPoint(node);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLYGON, cells);
+  grid->GetCellData()->AddArray(index);
+  grid->GetCellData()->AddArray(area);
+  write_file(file, xml(grid));
+}
+
 }  // namespace apothem

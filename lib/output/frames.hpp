@@ -1,10 +1,11 @@
 // The VTK time series: frames.pvd with one .vtu per frame for the bodies, contacts.pvd for the
-// contact patches. Opens in ParaView.
+// contact patches. A mesh as a .vtu of its own. All open in ParaView.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "geometry/polygon_mesh.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 
@@ -26,5 +27,9 @@ class FrameWriter {
   const Model& model_;
   std::vector<double> times_;
 };
+
+/// The cells as polygons with shared points; cell data: cell (index), area in m^2. Throws
+/// SystemFailure.
+void write_mesh(const std::string& file, const PolygonMesh& mesh);
 
 }  // namespace apothem

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "folder.hpp"
+#include "geometry/voronoi.hpp"
 #include "output/history.hpp"
 #include "support.hpp"
 
@@ -80,7 +81,8 @@ TEST_CASE("help and usage", "[program]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
-  for (const char* sub : {"run", "check", "contact"}) CHECK(run({sub, "--help"}, folder).code == 0);
+  for (const char* sub : {"run", "check", "contact", "mesh"})
+    CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
                                                 {"fly"},
                                                 {"run"},
@@ -324,4 +326,65 @@ TEST_CASE("contact of many pairs goes on after a refusal", "[program]") {
   CHECK(objects[2].contains("error"));
   CHECK(objects[3]["vertex"] == 2);
   CHECK(objects[4]["results"][0]["force"][0] == 0);
+}
+
+TEST_CASE("a mesh of a region", "[program]") {
+  const Folder folder;
+  // An L far from the origin: shifted by an exact 2^20 m.
+  const std::string region = folder.write(
+      "L.json", "[[1048576,0.1],[1048579,0.1],[1048579,1],[1048577,1],[1048577,3],[1048576,3]]");
+  const std::vector<std::string> mesh{"mesh", region, "--voronoi", "30", "--seed", "5"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), mesh.begin(), mesh.end());
+    return run(more, folder);
+  };
+  const Result printed = with({});
+  REQUIRE(printed.code == 0);
+  CHECK(lines(printed.err) == 5);
+  const Result written = with({"-o", folder / "m.json", "--vtk", folder / "m.vtu"});
+  REQUIRE(written.code == 0);
+  CHECK(written.out == printed.err);  // the summary
+  CHECK(written.err.empty());
+  CHECK((content(folder / "m.json") == printed.out));
+
+  const Json json = Json::parse(printed.out);
+  CHECK(json["region"] == Json::parse(content(region)));
+  REQUIRE(json["cells"].size() == 30);
+  PolygonMesh read;
+  for (const Json& p : json["points"]) read.points.emplace_back(p[0], p[1]);
+  for (const Json& cell : json["cells"]) read.cells.push_back(cell);
+  for (size_t i = 0; i < 6; ++i) CHECK(json["points"][i] == json["region"][i]);
+  CHECK_NOTHROW(tiling_boundary(read));
+  // The numbers are those of the library, to the last bit.
+  std::vector<Vec2> ring;
+  for (const Json& p : json["region"]) ring.emplace_back(p[0], p[1]);
+  const VoronoiMesh voronoi = voronoi_mesh(Polygon(ring), {.cells = 30, .seed = 5});
+  CHECK(read.points == in_world(Polygon(ring), voronoi.mesh).points);
+  CHECK(read.cells == voronoi.mesh.cells);
+
+  const std::string bow = folder.write("bow.json", "[[0,0],[1,1],[1,0],[0,1]]");
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"mesh", region},
+        {"mesh", "--voronoi", "5"},
+        {"mesh", region, "--voronoi", "0"},
+        {"mesh", region, "--voronoi", "2.5"},
+        {"mesh", region, "--voronoi", "5", "--seed", "-1"},
+        {"mesh", region, "--voronoi", "5", "--lloyd", "-1"},
+        {"mesh", region, "--voronoi", "5", "--shortest-edge", "0.6"},
+        {"mesh", region, "--voronoi", "5", "--shortest-edge", "nan"},
+        {"mesh", region, "--voronoi", "5", "-o", folder / "x", "--vtk", folder / "x"},
+        {"mesh", bow, "--voronoi", "5", "-o", folder / "x"},
+        {"mesh", folder / "missing.json", "--voronoi", "5"}}) {
+    const Result r = run(wrong, folder);
+    INFO(r.err);
+    CHECK(r.code == 2);
+    CHECK(lines(r.err) == 1);
+    CHECK(r.out.empty());
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "x"));
+  for (const char* option : {"-o", "--vtk"}) {
+    const Result r = with({option, "/proc/none/m"});
+    CHECK(r.code == 4);
+    CHECK(r.out.empty());
+  }
 }

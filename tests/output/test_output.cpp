@@ -2,6 +2,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
@@ -122,6 +123,29 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   CHECK(grid->GetPointData()->GetArray("force_on_a")->GetComponent(0, 1) == 20);
   CHECK(grid->GetPointData()->GetArray("penetration")->GetTuple1(0) == 1e-3);
   CHECK(grid->GetPointData()->GetArray("phi")->GetTuple1(0) == 0.01);
+}
+
+TEST_CASE("VTK's own reader gets a mesh back, with shared points", "[output]") {
+  const Folder folder;
+  const PolygonMesh mesh{{{0, 0}, {2, 0}, {2, 1}, {0, 1}, {.1, 0}, {.3, 1}},
+                         {{0, 4, 5, 3}, {1, 2, 5, 4}}};
+  write_mesh(folder / "mesh.vtu", mesh);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "mesh.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  REQUIRE(grid->GetNumberOfPoints() == 6);
+  CHECK(grid->GetPoint(5)[0] == .3);
+  REQUIRE(grid->GetNumberOfCells() == 2);
+  CHECK(grid->GetCellType(1) == VTK_POLYGON);
+  vtkNew<vtkIdList> nodes;
+  grid->GetCellPoints(1, nodes);
+  REQUIRE(nodes->GetNumberOfIds() == 4);
+  for (int i = 0; i < 4; ++i) CHECK(nodes->GetId(i) == mesh.cells[1][i]);
+  CHECK(grid->GetCellData()->GetArray("cell")->GetTuple1(1) == 1);
+  CHECK(grid->GetCellData()->GetArray("area")->GetTuple1(0) == Approx(.2).epsilon(1e-15));
+  CHECK(grid->GetCellData()->GetArray("area")->GetTuple1(1) == Approx(1.8).epsilon(1e-15));
+  CHECK_THROWS_AS(write_mesh("/proc/none/mesh.vtu", mesh), SystemFailure);
 }
 
 TEST_CASE("histories read back to the same doubles", "[output]") {
