@@ -70,6 +70,21 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
+void add_polygon(CLI::App& app, PolygonOptions& o) {
+  CLI::App* sub = app.add_subcommand("polygon", "A polygon's roof, singular area and circles");
+  CLI::Option* file =
+      sub->add_option("FILE", o.file, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}");
+  CLI::Option* batch =
+      sub->add_option("--batch", o.batch, "File with one ring per line: name n x y ...")
+          ->excludes(file);
+  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
+      ->capture_default_str();
+  sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")->excludes(batch);
+  sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+      ->excludes(batch);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
 int fail(int code, const char* what) {
   fmt::print(stderr, "apothem: {}\n", what);
   return code;
@@ -82,9 +97,11 @@ int run(int argc, char** argv) {
   RunOptions run_options;
   CheckOptions check_options;
   ContactOptions contact_options;
+  PolygonOptions polygon_options;
   add_run(app, run_options);
   add_check(app, check_options);
   add_contact(app, contact_options);
+  add_polygon(app, polygon_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -94,6 +111,7 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("run")) return run_command(run_options);
   if (app.got_subcommand("check")) return check_command(check_options);
+  if (app.got_subcommand("polygon")) return polygon_command(polygon_options);
   return contact_command(contact_options);
 }
 

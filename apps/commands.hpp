@@ -43,4 +43,14 @@ struct ContactOptions {
 };
 int contact_command(const ContactOptions& options);
 
+struct PolygonOptions {
+  std::string file;
+  std::string batch;  ///< file of rings instead of one polygon
+  std::string reference = "roof";
+  std::string vtk;      ///< folder
+  std::string picture;  ///< file
+  bool json = false;
+};
+int polygon_command(const PolygonOptions& options);
+
 }  // namespace apothem

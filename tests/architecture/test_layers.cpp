@@ -68,6 +68,7 @@ TEST_CASE("each library has its only places", "[architecture]") {
   const Rule rules[]{
       {"CGAL/", {"geometry"}, true},
       {"vtk", {"lib/output"}, true},
+      {"cairo", {"lib/output"}, true},
       {"nlohmann/", {"lib/scene", "apps"}, true},
       {"CLI/", {"apps"}, true},
       {"boost/geometry", {"lib/scene"}, true},
@@ -81,9 +82,10 @@ TEST_CASE("each library has its only places", "[architecture]") {
         INFO(relative << " includes " << include.what);
         CHECK(rule.places.count(place));
         // A header that others include would spread the library; exact_overlap.hpp is private to
-        // CGAL's files.
+        // CGAL's files, vtk_grid.hpp to the writers of VTK files.
         if (rule.sources_only)
-          CHECK((relative.extension() == ".cpp" || relative.filename() == "exact_overlap.hpp"));
+          CHECK((relative.extension() == ".cpp" || relative.filename() == "exact_overlap.hpp" ||
+                 relative.filename() == "vtk_grid.hpp"));
       }
     }
   }
