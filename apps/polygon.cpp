@@ -46,6 +46,13 @@ Analysis analyse(std::vector<Vec2> ring, const PotentialChoice& choice) {
           reference, std::move(singular)};
 }
 
+const char* reference_name(const PotentialChoice& choice) {
+  using Reference = PotentialChoice::Reference;
+  return choice.reference == Reference::roof               ? "roof height"
+         : choice.reference == Reference::inscribed_circle ? "inscribed circle"
+                                                           : "given";
+}
+
 const char* arithmetic(const Skeleton& skeleton) { return skeleton.exact ? "exact" : "inexact"; }
 
 // ------------------------------------------------------------------------------------------------
@@ -197,8 +204,7 @@ int polygon_command(const PolygonOptions& options) {
   }
   try {
     const Analysis a = analyse(read_polygon_file(options.file), choice);
-    const std::string name =
-        choice.reference == PotentialChoice::Reference::length ? "given" : options.reference;
+    const std::string name = reference_name(choice);
     if (!options.picture.empty()) {
       write_file(options.picture,
                  draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, name},

@@ -43,11 +43,14 @@ Ticks make_ticks(const Axis& axis, double low, double high, int most) {
   Ticks ticks;
   for (double k = std::ceil((low + shift) / step); k * step <= high + shift; ++k) {
     ticks.places.push_back(k * step - shift);
-    ticks.numbers.push_back(fmt::format("{:.{}f}", (k == 0 ? 0 : k) * step / unit, decimals));
+    ticks.numbers.push_back(
+        fmt::format("{}{:.{}f}", k < 0 ? "−" : "", std::abs(k) * step / unit, decimals));
   }
   ticks.name = axis.name;
-  if (base != 0)
-    ticks.name += fmt::format(" {} {:.17g} {}", base > 0 ? "−" : "+", std::abs(base), axis.unit);
+  if (base != 0) {
+    ticks.name += fmt::format(" {} {:.15g}", base > 0 ? "−" : "+", std::abs(base));
+    if (power != 0) ticks.name += " " + axis.unit;
+  }
   ticks.name += power == 0 ? fmt::format(" ({})", axis.unit)
                            : fmt::format(" (10{} {})", superscript(power), axis.unit);
   return ticks;

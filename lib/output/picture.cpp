@@ -24,6 +24,7 @@ const Pen kContour{{0, 0, 0, .45}, .6};
 const Pen kOutline{kBlack, 1.4};
 const Pen kSingular{kRed, 2};
 const Pen kCircle{kBlack, 1, {5, 3}};
+const Pen kHalo{{1, 1, 1, .5}, 2};  // shows the circle's dashes on dark bands
 
 // ------------------------------------------------------------------------------------------------
 // From the polygon's local coordinates to those of the drawing
@@ -142,7 +143,7 @@ class Drawing {
   }
 
   [[nodiscard]] Pen face_pen() const {
-    return {{1, 1, 1, .85}, std::clamp(60. / picture_.polygon.size(), .25, 1.)};
+    return {{1, 1, 1, .85}, std::clamp(30. / picture_.polygon.size(), .2, 1.)};
   }
 
  private:
@@ -153,8 +154,8 @@ class Drawing {
     const Skeleton& skeleton = picture_.skeleton;
     for (const Skeleton::Arc& arc : skeleton.arcs) {
       if (arc.right < 0) continue;
-      canvas_.stroke(place({skeleton.nodes[arc.start].point, skeleton.nodes[arc.end].point}), false,
-                     face_pen());
+      canvas_.stroke({place(skeleton.nodes[arc.start].point), place(skeleton.nodes[arc.end].point)},
+                     false, face_pen());
     }
   }
 
@@ -166,6 +167,7 @@ class Drawing {
         const double angle = 2 * M_PI * i / kCorners;
         ring.push_back(centre + picture_.circle.radius * Vec2(std::cos(angle), std::sin(angle)));
       }
+      canvas_.stroke(place(ring), true, kHalo);
       canvas_.stroke(place(ring), true, kCircle);
     }
   }
@@ -174,7 +176,7 @@ class Drawing {
     for (const Ring& ring : picture_.singular.polygons)
       canvas_.stroke(place(ring), true, kSingular);
     for (const auto& [a, b] : picture_.singular.segments) {
-      canvas_.stroke(place({a, b}), false, {kRed, 3.5});
+      canvas_.stroke({place(a), place(b)}, false, {kRed, 3.5});
     }
     for (const Vec2& p : picture_.singular.points)
       canvas_.circle(place(p), 4.5, kRed, {kWhite, .8});

@@ -67,6 +67,31 @@ bool inside(const Ring& ring, const Vec2& x) {
   return result;
 }
 
+// Sets of connected skeleton nodes above the depth: by flooding.
+int components_above(const Skeleton& skeleton, double depth) {
+  std::vector<bool> open;
+  for (const Skeleton::Node& node : skeleton.nodes) open.push_back(node.height > depth);
+  int count = 0;
+  for (size_t first = 0; first < open.size(); ++first) {
+    if (!open[first]) continue;
+    ++count;
+    std::vector<int> queue{static_cast<int>(first)};
+    open[first] = false;
+    while (!queue.empty()) {
+      const int node = queue.back();
+      queue.pop_back();
+      for (const Skeleton::Arc& arc : skeleton.arcs) {
+        if (arc.start != node && arc.end != node) continue;
+        const int other = arc.start == node ? arc.end : arc.start;
+        if (!open[other]) continue;
+        open[other] = false;
+        queue.push_back(other);
+      }
+    }
+  }
+  return count;
+}
+
 double largest_extent(const Polygon& polygon) { return bounding_box(polygon).extent(); }
 
 }  // namespace
@@ -221,6 +246,8 @@ TEST_CASE("singular area of a convex polygon: the intersection of shifted half-p
     const Skeleton skeleton = straight_skeleton(polygon);
     const double r = random.uniform(0, 1) * skeleton.roof_height;
     CHECK(std::abs(singular_area(skeleton, r).area() - area_of(shrunk(polygon, r))) < 1e-14);
+    // The inradius is the same height, found another way.
+    CHECK(singular_area(skeleton, inscribed_circle(polygon).radius).kind() == Kind::point);
   }
 }
 
@@ -242,6 +269,7 @@ TEST_CASE("singular areas of any shape are level, nested, simple and shrink by t
       const double r = share * skeleton.roof_height;
       const SingularArea area = singular_area(skeleton, r);
       REQUIRE(!area.polygons.empty());
+      CHECK(static_cast<int>(area.polygons.size()) == components_above(skeleton, r));
       double worst = 0;
       for (const Ring& ring : area.polygons) {
         CHECK(area_of(ring) > 0);
