@@ -14,8 +14,10 @@ using Ring = std::vector<Vec2>;
 // Lengths in points.
 constexpr double kLongest = 470, kHighest = 430, kShortest = 190;  // of the frame
 constexpr double kLeft = 78, kRight = 92, kTop = 60, kBottom = 70;
-constexpr double kThin = 1. / 16;  // of height over length: scales are unequal below
-constexpr double kMargin = .05;    // around the polygon
+constexpr double kEdge = 20, kNarrowest = 480;  // of the canvas
+constexpr double kTitle = 13, kNote = 10;       // font sizes
+constexpr double kThin = 1. / 16;               // of height over length: scales are unequal below
+constexpr double kMargin = .05;                 // around the polygon
 
 const Colour kBlack{0, 0, 0};
 const Colour kWhite{1, 1, 1};
@@ -50,29 +52,29 @@ Box box_of(const Ring& ring) {
   return box;
 }
 
-bool thin(const Box& box) {
-  return std::min(box.x1 - box.x0, box.y1 - box.y0) < kThin * box.extent();
+double slenderness(const Box& box) {
+  return std::min(box.x1 - box.x0, box.y1 - box.y0) / box.extent();
 }
 
-// Upright and to scale unless the polygon is thin; a thin one lies along its longest chord, unless
-// it lies along an axis already.
+// Upright and to scale unless the polygon is thin. A thin one is stretched: along an axis if it
+// lies so, else along its longest chord.
 View choose_view(const Ring& ring) {
-  View view;
-  if (thin(box_of(ring))) {
-    view.stretched = true;
-    return view;
-  }
   View chord;
   double longest = 0;
   for (const Vec2& p : ring) {
     for (const Vec2& q : ring) {
       const double length = (q - p).norm();
-      if (!(q.x() > p.x()) || !(length > longest)) continue;
+      if (!(std::pair(q.x(), q.y()) > std::pair(p.x(), p.y())) || !(length > longest)) continue;
       longest = length;
       chord = {p, (q - p) / length, true, true};
     }
   }
-  return thin(box_of(chord(ring))) ? chord : view;
+  constexpr double kLiesSo = 4;
+  View upright;
+  const double thickness = slenderness(box_of(ring));
+  const double least = slenderness(box_of(chord(ring)));
+  upright.stretched = thickness < kThin && thickness <= kLiesSo * least;
+  return least > 0 && least < kThin && !upright.stretched ? chord : upright;
 }
 
 struct Layout {
@@ -214,13 +216,13 @@ std::vector<std::string> title(const PotentialPicture& picture, const View& view
 // Samples with names, from left to right below the axes.
 void draw_legend(Canvas& canvas, const Vec2& start, const Pen& faces,
                  const PotentialPicture& picture) {
-  constexpr double kSample = 22, kGap = 18, kSize = 10;
+  constexpr double kSample = 22, kGap = 18;
   Vec2 at = start;
   const auto sample = [&](const std::string& name, const Pen& pen) {
     canvas.stroke({at, at + Vec2(kSample, 0)}, false, pen);
     at.x() += kSample + 5;
-    canvas.text(at, name, {kSize});
-    at.x() += canvas.text_width(name, kSize) + kGap;
+    canvas.text(at, name, {kNote});
+    at.x() += canvas.text_width(name, kNote) + kGap;
   };
   const Vec2 half(0, 5);
   canvas.fill({at - half, at - half + Vec2(kSample, 0), at + half + Vec2(kSample, 0), at + half},
@@ -245,11 +247,14 @@ std::string draw_potential(const PotentialPicture& picture, PictureFormat format
           : Axes(layout.frame, layout.window, {"x", "m", zero.x()}, {"y", "m", zero.y()});
   const Bands bands = make_bands(std::min(1.0, picture.skeleton.roof_height / picture.reference));
 
-  const double width = std::max(layout.frame.x1 + kRight, 480.);
-  Canvas canvas(format, width, layout.frame.y1 + kBottom);
   const std::vector<std::string> lines = title(picture, view, layout);
-  canvas.text({kLeft, 18}, lines[0], {13});
-  canvas.text({kLeft, 36}, lines[1], {10});
+  const Canvas ruler(format, 1, 1);
+  const double text =
+      std::max(ruler.text_width(lines[0], kTitle), ruler.text_width(lines[1], kNote));
+  const double width = std::max(layout.frame.x1 + kRight, kLeft + text + kEdge);
+  Canvas canvas(format, std::max(width, kNarrowest), layout.frame.y1 + kBottom);
+  canvas.text({kLeft, 18}, lines[0], {kTitle});
+  canvas.text({kLeft, 36}, lines[1], {kNote});
   Drawing drawing(canvas, picture, view, axes);
   drawing.draw(bands);
   axes.draw(canvas);

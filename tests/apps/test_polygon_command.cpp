@@ -1,6 +1,8 @@
 // `apothem polygon` as its users meet it.
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -195,6 +197,50 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
   CHECK(list[5]["name"] == "l");
   CHECK(list[5]["singular_area"]["kind"] == "segment");
   CHECK(run({"polygon", "--batch", folder.write("ok.txt", "t 3 0 0 1 0 0 1\n")}, folder).code == 0);
+}
+
+TEST_CASE("every public ring is described or refused", "[program][polygon]") {
+  const char* polygons = std::getenv("APOTHEM_POLYGONS");
+  if (polygons == nullptr) {
+    WARN("skipped: the environment variable APOTHEM_POLYGONS names no folder with rings.txt");
+    return;
+  }
+  const Folder folder;
+  std::string text;
+  std::vector<std::string> names;
+  std::ifstream file(std::string(polygons) + "/rings.txt");
+  REQUIRE(file);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string name;
+    int n = 0;
+    words >> name >> n;
+    if (n > 300) continue;  // minutes
+    names.push_back(name);
+    text += line + '\n';
+  }
+  const Result r = run({"polygon", "--batch", folder.write("rings.txt", text)}, folder);
+  CHECK((r.code == 0 || r.code == 2));
+  const std::vector<Json> list = objects(r.out);
+  REQUIRE(list.size() == names.size());
+  for (size_t i = 0; i < list.size(); ++i) {
+    INFO(names[i]);
+    CHECK(list[i]["name"] == names[i]);
+    if (list[i].contains("error")) {
+      CHECK(list[i]["vertex"].is_number_integer());
+      continue;
+    }
+    // Round-off of an area is that of the coordinates times the outline's length.
+    double reach = 0, length = 0;
+    for (const Json& face : list[i]["faces"]) {
+      const Vec2 a = point(face["polygon"][0]);
+      reach = std::max({reach, std::abs(a.x()), std::abs(a.y())});
+      length += (point(face["polygon"][1]) - a).norm();
+    }
+    const double area = list[i]["area"];
+    CHECK(std::abs(faces_area(list[i]) - area) < 1e-12 * area + 4e-16 * reach * length);
+    CHECK(list[i]["singular_area"]["kind"] != "none");
+  }
 }
 
 TEST_CASE("pictures and VTK files are complete or not there", "[program][polygon]") {

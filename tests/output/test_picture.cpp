@@ -110,7 +110,7 @@ TEST_CASE("pictures of any polygon, in both formats, twice the same", "[picture]
   for (Vec2& v : tiny) v *= 1e-9;
   for (Vec2& v : huge) v *= 1e9;
   for (const Ring& ring : {far, tiny, huge, sliver, turned(sliver, .6), cross_ring(), comb_ring(5),
-                           spiral_ring(2), regular_ring(100)}) {
+                           spiral_ring(2), regular_ring(100), Ring{{0, 0}, {1e-6, .3}, {0, 1}}}) {
     const Polygon polygon(ring);
     for (const double share : {.4, 1., 3.}) {
       const std::string png = draw(polygon, share, PictureFormat::png);
