@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <new>
 
@@ -89,6 +90,21 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
   sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at");
 }
 
+void add_polygon(CLI::App& app, PolygonOptions& o) {
+  CLI::App* sub = app.add_subcommand("polygon", "A polygon's roof, singular area and circles");
+  CLI::Option* file =
+      sub->add_option("FILE", o.file, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}");
+  CLI::Option* batch =
+      sub->add_option("--batch", o.batch, "File with one ring per line: name n x y ...")
+          ->excludes(file);
+  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
+      ->capture_default_str();
+  sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")->excludes(batch);
+  sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+      ->excludes(batch);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
 int fail(int code, const char* what) {
   fmt::print(stderr, "apothem: {}\n", what);
   return code;
@@ -101,10 +117,12 @@ int run(int argc, char** argv) {
   RunOptions run_options;
   CheckOptions check_options;
   ContactOptions contact_options;
+  PolygonOptions polygon_options;
   MeshOptions mesh_options;
   add_run(app, run_options);
   add_check(app, check_options);
   add_contact(app, contact_options);
+  add_polygon(app, polygon_options);
   add_mesh(app, mesh_options);
   try {
     app.parse(argc, argv);
@@ -116,12 +134,14 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("run")) return run_command(run_options);
   if (app.got_subcommand("check")) return check_command(check_options);
   if (app.got_subcommand("mesh")) return mesh_command(mesh_options);
+  if (app.got_subcommand("polygon")) return polygon_command(polygon_options);
   return contact_command(contact_options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error of write()
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

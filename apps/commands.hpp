@@ -53,5 +53,14 @@ struct MeshOptions {
   std::string vtk;     ///< empty: none
 };
 int mesh_command(const MeshOptions& options);
+struct PolygonOptions {
+  std::string file;
+  std::string batch;  ///< file of rings instead of one polygon
+  std::string reference = "roof";
+  std::string vtk;      ///< folder
+  std::string picture;  ///< file
+  bool json = false;
+};
+int polygon_command(const PolygonOptions& options);
 
 }  // namespace apothem

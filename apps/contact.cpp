@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "commands.hpp"
 #include "contact/law.hpp"
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
-#include "scene/json.hpp"
+#include "polygon_input.hpp"
+#include "scene/error.hpp"
 #include "scene/polygon_file.hpp"
 
 namespace apothem {
@@ -27,21 +27,7 @@ PotentialChoice potential_choice(const ContactOptions& options) {
   for (const NamedField& f : kFields) {
     if (options.field == f.name) choice.field = f.field;
   }
-  for (const NamedReference& r : kReferences) {
-    if (options.reference == r.name) {
-      choice.reference = r.reference;
-      return choice;
-    }
-  }
-  choice.reference = PotentialChoice::Reference::length;
-  char* end = nullptr;
-  choice.length = std::strtod(options.reference.c_str(), &end);
-  if (*end != '\0' || !(choice.length > 0) || !std::isfinite(choice.length)) {
-    throw SceneError(
-        "--reference", 0, "",
-        fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"",
-                    options.reference));
-  }
+  set_reference(choice, options.reference);
   return choice;
 }
 
@@ -102,29 +88,10 @@ Polygon read_polygon(const std::string& file, const char* which) {
 }
 
 // name n x y ... m x y ...
-std::vector<Vec2> read_ring(std::istringstream& line) {
-  int n = 0;
-  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    std::string x, y;  // not as double: streams do not read nan or inf
-    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
-    char* end_x = nullptr;
-    char* end_y = nullptr;
-    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
-    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
-  }
-  return ring;
-}
-
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a bad option is one error, not one per line
-  std::istringstream lines(read_text(options.batch));
   int code = exit_code::done;
-  for (std::string text; std::getline(lines, text);) {
-    std::istringstream line(text);
-    std::string name;
-    if (!(line >> name)) continue;
+  for_each_line(options.batch, [&](const std::string& name, std::istream& line) {
     Json object{{"name", name}};
     const char* which = "a";
     try {
@@ -132,7 +99,7 @@ int batch(const ContactOptions& options) {
       which = "b";
       const Polygon b(read_ring(line));
       which = "";
-      if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
+      require_end(line);
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
     } catch (const InvalidPolygon& error) {
@@ -141,7 +108,7 @@ int batch(const ContactOptions& options) {
       code = exit_code::bad_input;
     }
     fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
-  }
+  });
   return code;
 }
 

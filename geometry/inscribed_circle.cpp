@@ -28,6 +28,8 @@ constexpr double kSameHeight = 1e-13;  // as in potential.cpp
 constexpr double kThinnest = 0x1p-49;  // as in potential.cpp
 constexpr double kSamePlace = 1e-6;    // centres closer than this share of the radius are one
 constexpr double kNearlyParallel = 1e-4;
+// Up to here clipping all edges of a convex polygon with each other is the faster way.
+constexpr int kFewEdges = 100;
 
 using Heights = Eigen::Vector3d;  // of a plane at the corners of a triangle
 
@@ -400,7 +402,7 @@ bool before(const Vec2& p, const Vec2& q) {
 }  // namespace
 
 InscribedCircle largest_inscribed_circle(const Polygon& polygon) {
-  if (polygon.is_convex()) return inscribed_circle(polygon);
+  if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
   const double unit = std::exp2(std::ceil(std::log2(bounding_box(polygon).extent())));
   Search search(polygon, unit);
   search.run();

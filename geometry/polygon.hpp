@@ -42,6 +42,8 @@ class Polygon {
 
   /// Index of vertex i in the ring as it was given.
   [[nodiscard]] int input_index(int i) const { return reversed_ && i > 0 ? size() - i : i; }
+  /// Index of edge e (from vertex e to e + 1) in the ring as it was given.
+  [[nodiscard]] int input_edge(int e) const { return reversed_ ? size() - 1 - e : e; }
 
   /// Where the polygon's local coordinates start: vertex 0. Local coordinates are differences of
   /// input coordinates, so they do not lose digits far from the world's origin.

@@ -39,6 +39,11 @@ struct Skeleton {
   bool exact = false;                   ///< made with exact constructions
 };
 
+/// Node i in the coordinates of the polygon's vertices; vertices come back to the last bit.
+inline Vec2 world_point(const Polygon& polygon, const std::vector<Skeleton::Node>& nodes, int i) {
+  return i < polygon.size() ? polygon[i] : Vec2(polygon.origin() + nodes[i].point);
+}
+
 /// Throws SkeletonFailure when no attempt passes the laws. Convex polygons need no child process.
 Skeleton straight_skeleton(const Polygon& polygon);
 

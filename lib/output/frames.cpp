@@ -3,36 +3,21 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
-#include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <array>
 #include <cmath>
 
 #include "output/files.hpp"
+#include "output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {
-
-vtkNew<vtkDoubleArray> doubles(const char* name, int components) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  return array;
-}
-
-vtkNew<vtkIntArray> integers(const char* name) {
-  vtkNew<vtkIntArray> array;
-  array->SetName(name);
-  return array;
-}
 
 void add_time(vtkUnstructuredGrid* grid, double time) {
   vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name VTK's readers know
@@ -45,17 +30,6 @@ void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<st
   array->SetName(name);
   for (const std::string& n : names) array->InsertNextValue(n);
   grid->GetFieldData()->AddArray(array);
-}
-
-// XML as text: base64 and zlib, so that other readers than VTK's take it as well.
-std::string xml(vtkUnstructuredGrid* grid) {
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(grid);
-  writer->SetDataModeToBinary();
-  writer->SetCompressorTypeToZLib();
-  writer->WriteToOutputStringOn();
-  writer->Write();
-  return writer->GetOutputString();
 }
 
 vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {

@@ -66,11 +66,9 @@ TEST_CASE("each library has its only places", "[architecture]") {
     bool sources_only;
   };
   const Rule rules[]{
-      {"CGAL/", {"geometry"}, true},
-      {"vtk", {"lib/output"}, true},
-      {"nlohmann/", {"lib/scene", "apps"}, true},
-      {"CLI/", {"apps"}, true},
-      {"boost/geometry", {"lib/scene"}, true},
+      {"CGAL/", {"geometry"}, true},   {"vtk", {"lib/output"}, true},
+      {"cairo", {"lib/output"}, true}, {"nlohmann/", {"lib/scene", "apps"}, true},
+      {"CLI/", {"apps"}, true},        {"boost/geometry", {"lib/scene"}, true},
   };
   for (const char* folder : {"geometry", "lib", "apps"}) {
     for (const Include& include : includes(folder)) {
@@ -81,9 +79,10 @@ TEST_CASE("each library has its only places", "[architecture]") {
         INFO(relative << " includes " << include.what);
         CHECK(rule.places.count(place));
         // A header that others include would spread the library; exact_overlap.hpp is private to
-        // CGAL's files.
+        // CGAL's files, vtk_grid.hpp to the writers of VTK files.
         if (rule.sources_only)
-          CHECK((relative.extension() == ".cpp" || relative.filename() == "exact_overlap.hpp"));
+          CHECK((relative.extension() == ".cpp" || relative.filename() == "exact_overlap.hpp" ||
+                 relative.filename() == "vtk_grid.hpp"));
       }
     }
   }

@@ -370,3 +370,27 @@ TEST_CASE("every simple ring of a folder has its circle", "[inscribed_circle]") 
   CHECK(found > 0);
   WARN(found << " circles, " << thin << " polygons refused as thinner than double precision");
 }
+
+TEST_CASE("convex polygons of many edges: the same circle as by clipping", "[inscribed_circle]") {
+  test::Random random(11);
+  for (int i = 0; i < test::scaled(30); ++i) {
+    const Polygon polygon = random.convex(random.integer(101, 250));
+    const InscribedCircle circle = largest_inscribed_circle(polygon);
+    const InscribedCircle clipped = inscribed_circle(polygon);
+    CHECK(std::abs(circle.radius - clipped.radius) < 1e-13 * clipped.radius);
+    CHECK(circle.centres.size() == 1);
+    CHECK((circle.centres[0] - clipped.centres[0]).norm() < 1e-6 * clipped.radius);
+  }
+  std::vector<Vec2> stadium;  // round ends of 100 edges each, 3 apart
+  for (int i = 0; i <= 200; ++i) {
+    const double angle = M_PI * ((i <= 100 ? i : i - 1) / 100. - .5);
+    stadium.emplace_back((i <= 100 ? 3 : 0) + std::cos(angle), std::sin(angle));
+  }
+  stadium.emplace_back(0, -1);
+  const InscribedCircle circle = largest_inscribed_circle(Polygon(stadium));
+  CHECK(std::abs(circle.radius - 1) < 1e-14);
+  REQUIRE(circle.centres.size() == 2);
+  // Its ends are as deep below the first edge of the round as below the straight one.
+  const double length = 3 - 2 * std::tan(M_PI / 400);
+  CHECK(std::abs((circle.centres[1] - circle.centres[0]).norm() - length) < 1e-9);
+}

@@ -1,0 +1,138 @@
+#include "output/axes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+constexpr double kTick = 4;      // points
+constexpr double kNumbers = 10;  // font size
+constexpr double kNames = 11;
+
+std::string superscript(int number) {
+  static const char* const digits[]{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text;
+  for (const char c : std::to_string(number)) text += c == '-' ? "⁻" : digits[c - '0'];
+  return text;
+}
+
+struct Ticks {
+  std::vector<double> places;  // in the data
+  std::vector<std::string> numbers;
+  std::string name;  // of the axis, with unit
+};
+
+Ticks make_ticks(const Axis& axis, double low, double high, int most) {
+  constexpr double kDigits = 2e4;  // more than so many steps from zero need too many digits
+  const double step = round_step(high - low, most);
+  const double middle = axis.zero + (low + high) / 2;
+  double base = 0;
+  if (std::abs(middle) > kDigits * step) {
+    const double grid = std::pow(10, std::ceil(std::log10(high - low)) + 1);
+    base = std::round(middle / grid) * grid;
+  }
+  const double shift = axis.zero - base;
+  const double largest = std::max(std::abs(low + shift), std::abs(high + shift));
+  const int power = largest >= 1e4 || largest < 1e-2
+                        ? 3 * static_cast<int>(std::floor(std::log10(largest) / 3))
+                        : 0;
+  const double unit = std::pow(10, power);
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step / unit) + 1e-9)));
+  Ticks ticks;
+  for (double k = std::ceil((low + shift) / step); k * step <= high + shift; ++k) {
+    ticks.places.push_back(k * step - shift);
+    ticks.numbers.push_back(
+        fmt::format("{}{:.{}f}", k < 0 ? "−" : "", std::abs(k) * step / unit, decimals));
+  }
+  ticks.name = axis.name;
+  if (base != 0) {
+    ticks.name += fmt::format(" {} {:.15g}", base > 0 ? "−" : "+", std::abs(base));
+    if (power != 0) ticks.name += " " + axis.unit;
+  }
+  ticks.name += power == 0 ? fmt::format(" ({})", axis.unit)
+                           : fmt::format(" (10{} {})", superscript(power), axis.unit);
+  return ticks;
+}
+
+}  // namespace
+
+double round_step(double range, int most) {
+  const double least = range / most;
+  const double ten = std::pow(10, std::floor(std::log10(least)));
+  for (const double step : {1., 2., 5.}) {
+    if (step * ten >= least * (1 - 1e-9)) return step * ten;
+  }
+  return 10 * ten;
+}
+
+Axes::Axes(const Box& frame, const Box& window, Axis x, Axis y)
+    : frame_(frame), window_(window), x_(std::move(x)), y_(std::move(y)) {}
+
+Vec2 Axes::operator()(const Vec2& data) const {
+  const double u = (data.x() - window_.x0) / (window_.x1 - window_.x0);
+  const double v = (data.y() - window_.y0) / (window_.y1 - window_.y0);
+  return {frame_.x0 + u * (frame_.x1 - frame_.x0), frame_.y1 - v * (frame_.y1 - frame_.y0)};
+}
+
+std::vector<Vec2> Axes::operator()(std::vector<Vec2> data) const {
+  for (Vec2& p : data) p = (*this)(p);
+  return data;
+}
+
+void Axes::draw(Canvas& canvas) const {
+  const Pen pen{{.25, .25, .25}, .8};
+  canvas.stroke({{frame_.x0, frame_.y0},
+                 {frame_.x1, frame_.y0},
+                 {frame_.x1, frame_.y1},
+                 {frame_.x0, frame_.y1}},
+                true, pen);
+  const Ticks x = make_ticks(x_, window_.x0, window_.x1,
+                             std::max(2, static_cast<int>((frame_.x1 - frame_.x0) / 60)));
+  for (size_t i = 0; i < x.places.size(); ++i) {
+    const double at = (*this)({x.places[i], window_.y0}).x();
+    canvas.stroke({{at, frame_.y1}, {at, frame_.y1 + kTick}}, false, pen);
+    canvas.text({at, frame_.y1 + 12}, x.numbers[i], {kNumbers, Align::centre});
+  }
+  canvas.text({(frame_.x0 + frame_.x1) / 2, frame_.y1 + 29}, x.name, {kNames, Align::centre});
+  const Ticks y = make_ticks(y_, window_.y0, window_.y1,
+                             std::max(2, static_cast<int>((frame_.y1 - frame_.y0) / 35)));
+  double widest = 0;
+  for (size_t i = 0; i < y.places.size(); ++i) {
+    const double at = (*this)({window_.x0, y.places[i]}).y();
+    canvas.stroke({{frame_.x0 - kTick, at}, {frame_.x0, at}}, false, pen);
+    canvas.text({frame_.x0 - 7, at}, y.numbers[i], {kNumbers, Align::right});
+    widest = std::max(widest, canvas.text_width(y.numbers[i], kNumbers));
+  }
+  canvas.text({frame_.x0 - 18 - widest, (frame_.y0 + frame_.y1) / 2}, y.name,
+              {kNames, Align::centre, true});
+}
+
+void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>& bounds,
+                     const std::vector<Colour>& colours, size_t stride, const std::string& name) {
+  const Pen pen{{.25, .25, .25}, .8};
+  const double low = bounds.front();
+  const double high = bounds.back();
+  const auto place = [&](double value) {
+    return frame.y1 - (value - low) / (high - low) * (frame.y1 - frame.y0);
+  };
+  // From the lowest to the top, one over the other: no seams.
+  for (size_t i = 0; i + 1 < bounds.size(); ++i) {
+    const double bottom = place(bounds[i]);
+    canvas.fill(
+        {{frame.x0, bottom}, {frame.x1, bottom}, {frame.x1, frame.y0}, {frame.x0, frame.y0}},
+        colours[i]);
+  }
+  canvas.stroke(
+      {{frame.x0, frame.y0}, {frame.x1, frame.y0}, {frame.x1, frame.y1}, {frame.x0, frame.y1}},
+      true, pen);
+  for (size_t i = 0; i < bounds.size(); i += stride) {
+    const double at = place(bounds[i]);
+    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, pen);
+    canvas.text({frame.x1 + 7, at}, fmt::format("{:.6g}", bounds[i]), {kNumbers});
+  }
+  canvas.text({(frame.x0 + frame.x1) / 2, frame.y0 - 12}, name, {kNames, Align::centre});
+}
+
+}  // namespace apothem

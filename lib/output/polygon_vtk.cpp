@@ -1,0 +1,79 @@
+#include "output/polygon_vtk.hpp"
+
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <algorithm>
+
+#include "output/files.hpp"
+#include "output/vtk_grid.hpp"
+
+namespace apothem {
+namespace {
+
+vtkNew<vtkPoints> double_points() {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  return points;
+}
+
+std::string faces(const Polygon& polygon, const Skeleton& skeleton, double reference) {
+  const CutFaces cut = cut_faces(skeleton, reference);
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points = double_points();
+  vtkNew<vtkDoubleArray> height = doubles("roof_height", 1);
+  vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
+  for (int i = 0; i < static_cast<int>(cut.nodes.size()); ++i) {
+    const Vec2 p = world_point(polygon, cut.nodes, i);
+    points->InsertNextPoint(p.x(), p.y(), 0);
+    height->InsertNextValue(cut.nodes[i].height);
+    phi->InsertNextValue(std::min(1.0, cut.nodes[i].height / reference));
+  }
+  grid->SetPoints(points);
+  vtkNew<vtkIntArray> edge = integers("edge");
+  vtkNew<vtkIntArray> plateau = integers("plateau");
+  for (const CutFaces::Part& part : cut.parts) {
+    const std::vector<vtkIdType> nodes(part.nodes.begin(), part.nodes.end());
+    grid->InsertNextCell(VTK_POLYGON, static_cast<vtkIdType>(nodes.size()), nodes.data());
+    edge->InsertNextValue(polygon.input_edge(part.edge));
+    plateau->InsertNextValue(part.above ? 1 : 0);
+  }
+  grid->GetPointData()->AddArray(height);
+  grid->GetPointData()->AddArray(phi);
+  grid->GetCellData()->AddArray(edge);
+  grid->GetCellData()->AddArray(plateau);
+  return xml(grid);
+}
+
+std::string singular_parts(const Polygon& polygon, const SingularArea& singular) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points = double_points();
+  grid->SetPoints(points);
+  const auto add = [&](int type, const auto& corners) {
+    std::vector<vtkIdType> nodes;
+    for (const Vec2& corner : corners) {
+      const Vec2 p = polygon.origin() + corner;
+      nodes.push_back(points->InsertNextPoint(p.x(), p.y(), 0));
+    }
+    grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+  };
+  for (const std::vector<Vec2>& ring : singular.polygons) add(VTK_POLYGON, ring);
+  for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends);
+  for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point});
+  return xml(grid);
+}
+
+}  // namespace
+
+void write_polygon_vtk(const std::string& folder, const Polygon& polygon, const Skeleton& skeleton,
+                       const SingularArea& singular, double reference) {
+  const std::string roof = faces(polygon, skeleton, reference);
+  const std::string area = singular_parts(polygon, singular);
+  create_folder(folder);
+  write_file(folder + "/faces.vtu", roof);
+  write_file(folder + "/singular_area.vtu", area);
+}
+
+}  // namespace apothem
