@@ -53,6 +53,7 @@ struct MeshOptions {
   std::string vtk;     ///< empty: none
 };
 int mesh_command(const MeshOptions& options);
+
 struct PolygonOptions {
   std::string file;
   std::string batch;  ///< file of rings instead of one polygon
