@@ -282,7 +282,7 @@ TEST_CASE("work of the distance field on closed paths", "[distance-field]") {
       const double worst = test::closed_path_work(a, b, field_choice(), steps);
       INFO(steps << " steps: " << worst);
       CHECK(worst < previous);
-      if (steps == 12800) CHECK(worst < 1e-8);
+      if (steps == 12800) CHECK(worst < 1e-9);
       previous = worst;
     }
   }
@@ -338,14 +338,14 @@ TEST_CASE("shallow crosses: the distance field gives the force of the roof", "[d
       const PairIntegral r = force(roofs, near - depth), f = force(fields, near - depth);
       same += (r.force - f.force).norm() <= 1e-13 * r.weight;
     }
-    WARN("depth " << depth << ": " << same << " of " << poses);
+    INFO("depth " << depth << ": " << same << " of " << poses);
     CHECK(same >= .9 * poses);
   }
 }
 
 TEST_CASE("the distance field is continuous in the shape, the roof is not", "[distance-field]") {
   const Polygon cross = test::cross_shape();
-  const Polygon block = test::posed(Polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), {.9, .8}, .3);
+  const Polygon block = test::posed(Polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), {.5, .5}, .3);
   const auto changed = [&](const std::vector<Vec2>& instead, const PotentialChoice& choice) {
     std::vector<Vec2> ring;  // another outline at the reflex vertex (.5, .5)
     for (const Vec2& v : cross.vertices()) {
