@@ -156,6 +156,46 @@ void quad_pair_oracle(benchmark::State& state) {
   measure(state, touching_pairs(), [](const Pair& p) { return exact_method(p.a, p.b, {}); });
 }
 
+// Two crosses of five unit squares that overlap; 0: the roof, 1: the distance field.
+void cross_pair_edge(benchmark::State& state) {
+  const double a = .5, b = 1.5;
+  const Polygon cross({{-a, -b},
+                       {a, -b},
+                       {a, -a},
+                       {b, -a},
+                       {b, a},
+                       {a, a},
+                       {a, b},
+                       {-a, b},
+                       {-a, a},
+                       {-b, a},
+                       {-b, -a},
+                       {-a, -a}});
+  const PotentialChoice choice{.field = state.range(0) == 0 ? PotentialChoice::Field::roof
+                                                            : PotentialChoice::Field::distance,
+                               .reference = PotentialChoice::Reference::inscribed_circle};
+  const Potential potential =
+      translated(make_potential(cross, choice), area_moments(cross).centroid);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+  constexpr int kPoses = 256;
+  PlacedShapes shapes;
+  std::vector<Vec2> offsets;
+  for (int i = 0; i < 2 * kPoses; ++i) {
+    shapes.add(potential);
+    shapes.place(i, 0, 0, turn(random));
+    const double direction = turn(random);
+    offsets.push_back(2 * Vec2(std::cos(direction), std::sin(direction)));
+  }
+  EdgeWorkspace workspace;
+  int i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        pair_integral(shapes.view(2 * i), shapes.view(2 * i + 1), offsets[i], workspace));
+    i = i + 1 == kPoses ? 0 : i + 1;
+  }
+}
+
 void impact_steps(benchmark::State& state) {
   const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impact-asymmetric.json");
   std::optional<Simulation> simulation;
@@ -203,6 +243,7 @@ BENCHMARK(quad_pair_near_miss);
 BENCHMARK(quad_pair_overlap_inexact);
 BENCHMARK(quad_pair_overlap_exact);
 BENCHMARK(quad_pair_oracle);
+BENCHMARK(cross_pair_edge)->ArgName("distance_field")->Arg(0)->Arg(1);
 BENCHMARK(impact_steps);
 BENCHMARK(pack_step)->Arg(300)->Arg(3000);
 

@@ -41,14 +41,14 @@ struct PlacedDistance {
   bool capped;
 };
 
-/// INT sqrt(d2 + w^2) dw from w1 to w2 and, about the middle of the interval, the first moment. No
-/// difference of large numbers: all terms of the first are positive.
+/// INT sqrt(d2 + w^2) dw from w1 to w1 + h and, about the middle of the interval, the first moment.
+/// No difference of large numbers: all terms of the first are positive.
 template <class Real>
-std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& w2) {
+std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) {
   using std::asinh;
   using std::sqrt;
-  const Real h = w2 - w1;
-  const Real m = (w1 + w2) / 2;
+  const Real w2 = w1 + h;
+  const Real m = w1 + h / 2;
   const Real r1 = sqrt(d2 + w1 * w1);
   const Real r2 = sqrt(d2 + w2 * w2);
   const Real r = (r1 + r2) / 2;
@@ -235,7 +235,7 @@ class DistanceTrace {
         moments.add(u1, v1, u2, v2);
         continue;
       }
-      const auto [sum, first] = root_moments<Real>(f.b, k_ * (u1 - f.a), k_ * (u2 - f.a));
+      const auto [sum, first] = root_moments<Real>(f.b, k_ * (u1 - f.a), k_ * (u2 - u1));
       moments.sum += sum / k_;
       moments.first += sum / k_ * ((u1 + u2) / 2) + first / (k_ * k_);
       moments.largest = std::max(moments.largest, std::max(v1, v2));

@@ -272,7 +272,8 @@ class DistanceVolume {
       if (!clip(p, q, cross(p, left), cross(q, left))) continue;
       beyond_segment(in_frame(p), in_frame(q), sums, coverage);
     }
-    if (sums.low_size <= sums.high_size) return sums.low;
+    // Near the vertex directions are noise, and only the sum from the foot does not mind.
+    if (sums.high_size > 0) return sums.low;
     Real whole = 0;
     for (size_t k = 0; k < ceiling_.size(); ++k) {
       if (!ceiling_[k].known) continue;
@@ -281,7 +282,7 @@ class DistanceVolume {
       add_cap_cuts(ceiling_[k].function, 1);
       between_cuts([&](const Real& a, const Real& b) { whole += sector(reach, a, b); });
     }
-    return sums.high + coverage * whole;
+    return coverage * whole;
   }
 
   [[nodiscard]] Point in_frame(const Point& p) const { return {dot(axis_, p), cross(axis_, p)}; }
@@ -387,7 +388,7 @@ class DistanceVolume {
     if (capped_ && D * (1 + middle * middle) > across(middle)) {
       return D * step / 2 - half_angle / 3;
     }
-    return D / 3 * root_moments<Real>(D * D, w, w + step)[0];
+    return D / 3 * root_moments<Real>(D * D, w, step)[0];
   }
 
   // Where rho = 1.
@@ -417,8 +418,10 @@ class DistanceVolume {
       add_cap_cuts(line, d);
       between_cuts([&](const Real& a, const Real& b) {
         const Real full = sector(reach, a, b);
-        const bool nearer = line.below(scaled, (a + b) / 2);
-        sums.add(sign * (nearer ? sector(own, a, b) : full), sign * full);
+        const Real middle = (a + b) / 2;
+        const bool missed = line(middle) >= 0;  // by round-off of a segment through the vertex
+        const bool nearer = line.below(scaled, middle);
+        sums.add(sign * (missed ? Real(0) : nearer ? sector(own, a, b) : full), sign * full);
       });
     }
   }

@@ -50,6 +50,7 @@ TEST_CASE("help and usage", "[program]") {
                                                 {"contact", "a"},
                                                 {"contact"},
                                                 {"contact", "a", "b", "--method", "guess"},
+                                                {"contact", "a", "b", "--field", "x"},
                                                 {"contact", "a", "b", "--reference", "x"},
                                                 {"polygon"},
                                                 {"polygon", "missing.json"},
@@ -269,6 +270,28 @@ TEST_CASE("contact of two polygon files", "[program]") {
       run({"contact", c, folder.write("bad.json", "[[0,0],[1,1],[1,0],[0,1]]")}, folder);
   CHECK(bad.code == 2);
   CHECK(bad.err.find("bad.json") != std::string::npos);
+}
+
+TEST_CASE("contact by either field", "[program]") {
+  Folder folder;
+  const std::string l = folder.write("l.json", "[[0,0],[2,0],[2,1],[1,1],[1,2],[0,2]]");
+  const std::string c = folder.write("c.json", "[[0.8,0.8],[3,0.9],[3,3],[0.9,3]]");
+  std::vector<double> forces;
+  for (const char* field : {"roof", "distance"}) {
+    const Result r =
+        run({"contact", l, c, "--field", field, "--reference", "0.5", "--method", "all", "--json"},
+            folder);
+    REQUIRE(r.code == 0);
+    const Json results = Json::parse(r.out)["results"];
+    forces.push_back(results[0]["force"][0]);
+    CHECK(results[2]["force"][0].get<double>() == Approx(forces.back()).epsilon(1e-13));
+    CHECK(results[2]["energy"].get<double>() ==
+          Approx(results[0]["energy"].get<double>()).epsilon(1e-13));
+  }
+  CHECK(std::abs(forces[0] - forces[1]) > 1e-3);
+  const Result area = run({"contact", l, c, "--potential", "area", "--field", "distance"}, folder);
+  CHECK(area.code == 2);
+  CHECK(area.err.find("one field only") != std::string::npos);
 }
 
 TEST_CASE("contact of many pairs goes on after a refusal", "[program]") {
