@@ -9,6 +9,7 @@
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
 #include "scene/json.hpp"
+#include "scene/pair_file.hpp"
 #include "scene/polygon_file.hpp"
 
 namespace apothem {
@@ -95,44 +96,31 @@ Polygon read_polygon(const std::string& file, const char* which) {
   }
 }
 
-// name n x y ... m x y ...
-std::vector<Vec2> read_ring(std::istringstream& line) {
-  int n = 0;
-  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    std::string x, y;  // not as double: streams do not read nan or inf
-    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
-    char* end_x = nullptr;
-    char* end_y = nullptr;
-    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
-    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
-  }
-  return ring;
-}
-
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a bad option is one error, not one per line
   std::istringstream lines(read_text(options.batch));
   int code = exit_code::done;
   for (std::string text; std::getline(lines, text);) {
-    std::istringstream line(text);
-    std::string name;
-    if (!(line >> name)) continue;
+    const std::string name = pair_name(text);
+    if (name.empty()) continue;
     Json object{{"name", name}};
+    const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
+      object = {{"name", name}, {"error", reason}, {"polygon", which}, {"vertex", vertex}};
+      code = exit_code::bad_input;
+    };
     const char* which = "a";
     try {
-      const Polygon a(read_ring(line));
+      const PolygonPair pair = parse_pair(text);
+      const Polygon a(pair.a);
       which = "b";
-      const Polygon b(read_ring(line));
+      const Polygon b(pair.b);
       which = "";
-      if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
+    } catch (const BadPairLine& error) {
+      refuse(error.what(), error.polygon(), error.vertex());
     } catch (const InvalidPolygon& error) {
-      object = {
-          {"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
-      code = exit_code::bad_input;
+      refuse(error.what(), which, error.vertex());
     }
     fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
   }

@@ -3,20 +3,14 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/create_straight_skeleton_2.h>
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <Eigen/QR>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <map>
 #include <numeric>
 #include <random>
 
+#include "geometry/child_process.hpp"
 #include "geometry/edge_lines.hpp"
 
 namespace apothem {
@@ -260,98 +254,28 @@ Message cgal_skeleton(const Ring& ring) {
   return message;
 }
 
-void write_all(int file, const Message& message) {
-  const char* data = reinterpret_cast<const char*>(message.data());
-  size_t left = message.size() * sizeof(double);
-  while (left > 0) {
-    const ssize_t written = write(file, data, left);
-    if (written <= 0) return;
-    data += written;
-    left -= static_cast<size_t>(written);
-  }
-}
-
-// The child inherits whatever the program does with signals, and must do none of it.
-[[noreturn]] void work_as_child(int file, const Ring& ring, bool exact, double seconds) {
-  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTERM, SIGINT}) {
-    std::signal(signal, SIG_DFL);
-  }
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  const auto cpu = static_cast<rlim_t>(seconds) + 2;  // also when the parent is gone
-  const rlimit time{cpu, cpu};
-  setrlimit(RLIMIT_CPU, &time);
-  const int silence = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (silence >= 0) {
-    dup2(silence, STDOUT_FILENO);
-    dup2(silence, STDERR_FILENO);
-  }
-  try {
-    write_all(file, exact
-                        ? cgal_skeleton<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
-                        : cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(ring));
-  } catch (...) {
-    _exit(1);
-  }
-  _exit(0);
-}
-
-// Reads to the end of the file; nothing when time is up first.
-std::optional<Message> read_until(int file, std::chrono::steady_clock::time_point deadline) {
-  std::vector<char> bytes;
-  char buffer[65536];
-  while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return std::nullopt;
-    pollfd wait{file, POLLIN, 0};
-    const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
-    if (ready <= 0) continue;
-    const ssize_t count = read(file, buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    bytes.insert(bytes.end(), buffer, buffer + count);
-  }
-  Message message(bytes.size() / sizeof(double));
-  std::copy_n(bytes.data(), message.size() * sizeof(double),
-              reinterpret_cast<char*>(message.data()));
-  return message;
-}
-
 struct Answer {
   Message message;
   std::string failure;  // empty if there is a message
 };
 
 Answer ask_child(const Ring& ring, bool exact, double seconds) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {{}, "no pipe to a child process"};
-  const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    work_as_child(ends[1], ring, exact, seconds);
-  }
-  close(ends[1]);
-  if (child < 0) {
-    close(ends[0]);
-    return {{}, "no child process"};
-  }
-  const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::milliseconds(static_cast<long long>(1000 * seconds));
-  std::optional<Message> message = read_until(ends[0], deadline);
-  close(ends[0]);
-  if (!message) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!message) {
+  using End = ChildAnswer::End;
+  ChildAnswer answer = run_in_child(
+      [&](const SendNumbers& send) {
+        send(exact ? cgal_skeleton<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
+                   : cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(ring));
+      },
+      seconds);
+  if (answer.end == End::not_started) return {{}, "no child process"};
+  if (answer.end == End::silent) {
     return {{}, "CGAL did not return within " + std::to_string(std::lround(seconds)) + " s"};
   }
-  if (WIFSIGNALED(status)) {
-    return {{}, "CGAL crashed with signal " + std::to_string(WTERMSIG(status))};
+  if (answer.end == End::crashed) {
+    return {{}, "CGAL crashed with signal " + std::to_string(answer.signal)};
   }
-  if (message->empty()) return {{}, "CGAL found no skeleton"};
-  return {std::move(*message), ""};
+  if (answer.numbers.empty()) return {{}, "CGAL found no skeleton"};
+  return {std::move(answer.numbers), ""};
 }
 
 // Nothing when the message is cut off.

@@ -9,66 +9,24 @@
 #include "support.hpp"
 
 using namespace apothem;
+using namespace apothem::samples;
 
 namespace {
 
-Polygon cross_shape(double arm = 1) {  // five unit squares
-  const double a = .5, b = .5 + arm;
-  return Polygon({{-a, -b},
-                  {a, -b},
-                  {a, -a},
-                  {b, -a},
-                  {b, a},
-                  {a, a},
-                  {a, b},
-                  {-a, b},
-                  {-a, a},
-                  {-b, a},
-                  {-b, -a},
-                  {-a, -a}});
-}
+Polygon small_comb(int teeth) { return scaled(comb(teeth), .4); }
 
-Polygon star(int points, double inner) {
-  std::vector<Vec2> ring;
-  for (int i = 0; i < 2 * points; ++i) {
-    const double r = i % 2 ? inner : 1, angle = M_PI * i / points;
-    ring.emplace_back(r * std::cos(angle), r * std::sin(angle));
-  }
-  return Polygon(ring);
-}
-
-Polygon comb(int teeth) {
-  std::vector<Vec2> ring{{0, 0}, {2.0 * teeth - 1, 0}};
-  for (int i = teeth - 1; i >= 0; --i) {
-    ring.insert(ring.end(), {{2.0 * i + 1, 3}, {2.0 * i, 3}});
-    if (i > 0) ring.insert(ring.end(), {{2.0 * i, 1}, {2.0 * i - 1, 1}});
-  }
-  for (Vec2& v : ring) v *= .4;
-  return Polygon(ring);
-}
-
-// Star-shaped about 0, in general not convex.
-Polygon blob(test::Random& random, int n) {
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    const double angle = 2 * M_PI * (i + random.uniform(0, .9)) / n;
-    ring.push_back(random.uniform(.35, 1) * Vec2(std::cos(angle), std::sin(angle)));
-  }
-  return Polygon(ring);
-}
-
-Polygon any_shape(test::Random& random) {
+Polygon any_shape(Random& random) {
   switch (random.integer(0, 4)) {
     case 0:
-      return cross_shape();
+      return cross_of_squares();
     case 1:
       return star(random.integer(3, 7), random.uniform(.3, .6));
     case 2:
-      return comb(random.integer(2, 4));
+      return small_comb(random.integer(2, 4));
     case 3:
-      return random.convex(random.integer(3, 8));
+      return random_convex(random, random.integer(3, 8));
     default:
-      return blob(random, random.integer(4, 12));
+      return random_star_shaped(random, random.integer(4, 12), .35);
   }
 }
 
@@ -91,14 +49,14 @@ void check_against(const PairResult& r, const PairResult& x) {
 }  // namespace
 
 TEST_CASE("the roof of known shapes", "[roof]") {
-  const Potential cross = make_potential(cross_shape());
+  const Potential cross = make_potential(cross_of_squares());
   CHECK(cross.steepest == Approx(2).epsilon(1e-14));  // roof height 1/2
   CHECK(cross.top == 1);
-  const Potential circle =
-      make_potential(cross_shape(), {.reference = PotentialChoice::Reference::inscribed_circle});
+  const Potential circle = make_potential(
+      cross_of_squares(), {.reference = PotentialChoice::Reference::inscribed_circle});
   CHECK(circle.steepest == Approx(std::sqrt(2.0)).epsilon(1e-14));  // inscribed radius sqrt(2)/2
   CHECK(circle.top == Approx(std::sqrt(.5)).epsilon(1e-14));
-  const Polygon l({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}});
+  const Polygon l = l_shape();
   CHECK(make_potential(l).steepest == Approx(2).epsilon(1e-14));
   CHECK(
       1 / make_potential(l, {.reference = PotentialChoice::Reference::inscribed_circle}).steepest ==
@@ -106,13 +64,13 @@ TEST_CASE("the roof of known shapes", "[roof]") {
 }
 
 TEST_CASE("non-convex pairs: edge and overlap kernel against the oracle", "[roof]") {
-  test::Random random(40);
+  Random random(40);
   int touching = 0;
   for (const int kind : {0, 1, 2}) {  // roof, inscribed circle, capped
     for (int i = 0; i < test::scaled(100); ++i) {
       const Polygon a =
-          test::posed(any_shape(random), {random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2)},
-                      random.uniform(0, 6));
+          posed(any_shape(random), {random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2)},
+                random.uniform(0, 6));
       const Polygon b = any_shape(random);
       PotentialChoice choice;
       if (kind == 1) choice.reference = PotentialChoice::Reference::inscribed_circle;
@@ -127,18 +85,17 @@ TEST_CASE("non-convex pairs: edge and overlap kernel against the oracle", "[roof
 }
 
 TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
-  test::Random random(41);
+  Random random(41);
   const double h = 1e-4;
   for (int i = 0; i < test::scaled(50); ++i) {
     const Polygon a = any_shape(random);
     const Polygon b = any_shape(random);
-    const Vec2 x =
-        test::world_centroid(b) + Vec2(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
+    const Vec2 x = world_centroid(b) + Vec2(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
     const double angle = random.uniform(0, 6);
     const auto energy = [&](double dx, double dy, double turn) {
-      return test::edge(test::posed(a, x + Vec2(dx, dy), angle + turn), b).volume.energy;
+      return test::edge(posed(a, x + Vec2(dx, dy), angle + turn), b).volume.energy;
     };
-    const PairIntegral pair = test::edge(test::posed(a, x, angle), b).integral;
+    const PairIntegral pair = test::edge(posed(a, x, angle), b).integral;
     const double scale = std::max(pair.weight, 1e-2);
     REQUIRE(std::abs(pair.force.x() + (energy(h, 0, 0) - energy(-h, 0, 0)) / (2 * h)) <
             2e-5 * scale);
@@ -150,8 +107,9 @@ TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
 }
 
 TEST_CASE("work of non-convex contact on closed paths", "[roof]") {
-  for (const auto& [a, b] : {std::pair(cross_shape(), cross_shape()),
-                             std::pair(star(5, .45), star(6, .5)), std::pair(comb(3), comb(2))}) {
+  for (const auto& [a, b] :
+       {std::pair(cross_of_squares(), cross_of_squares()), std::pair(star(5, .45), star(6, .5)),
+        std::pair(small_comb(3), small_comb(2))}) {
     const Potential potential_a = translated(make_potential(a), area_moments(a).centroid);
     const Potential potential_b = translated(make_potential(b), area_moments(b).centroid);
     PlacedShapes shapes;
@@ -162,7 +120,7 @@ TEST_CASE("work of non-convex contact on closed paths", "[roof]") {
     double previous = HUGE_VAL;
     for (const int steps : {800, 3200, 12800}) {
       double worst = 0;
-      test::Random random(43);
+      Random random(43);
       for (int loop = 0; loop < test::scaled(10); ++loop) {
         double c[5];
         for (double& x : c) x = random.uniform(0, 1);
@@ -194,10 +152,10 @@ TEST_CASE("work of non-convex contact on closed paths", "[roof]") {
 }
 
 TEST_CASE("swap and shift of non-convex pairs, to the last bit", "[roof]") {
-  test::Random random(44);
+  Random random(44);
   for (int i = 0; i < test::scaled(100); ++i) {
-    const Polygon a = test::posed(any_shape(random), {random.uniform(-1, 1), random.uniform(-1, 1)},
-                                  random.uniform(0, 6));
+    const Polygon a = posed(any_shape(random), {random.uniform(-1, 1), random.uniform(-1, 1)},
+                            random.uniform(0, 6));
     const Polygon b = any_shape(random);
     const PairIntegral ab = test::edge(a, b).integral;
     const PairIntegral ba = test::edge(b, a).integral;
