@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace apothem {
 
@@ -42,5 +43,12 @@ struct ContactOptions {
   bool json = false;
 };
 int contact_command(const ContactOptions& options);
+
+struct AccuracyOptions {
+  std::vector<std::string> cases;  ///< files of pairs; none: generic and hard pairs
+  std::string folder = "out/accuracy";
+  std::string write_cases;  ///< write the hard pairs with expected values there instead
+};
+int accuracy_command(const AccuracyOptions& options);
 
 }  // namespace apothem
