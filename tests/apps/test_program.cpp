@@ -1,66 +1,23 @@
 // The program as its users meet it: arguments, exit codes, messages, files.
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "folder.hpp"
 #include "output/history.hpp"
+#include "program.hpp"
 #include "support.hpp"
 
 using namespace apothem;
 using test::content;
 using test::Folder;
+using test::lines;
+using test::Result;
+using test::run;
 using Json = nlohmann::json;
 
 namespace {
-
-struct Result {
-  int code;
-  std::string out, err;
-};
-
-struct Limits {
-  rlim_t file_size = RLIM_INFINITY;
-  double interrupt_after = 0;  // s
-};
-
-Result run(std::vector<std::string> arguments, const Folder& folder, const Limits& limits = {}) {
-  arguments.insert(arguments.begin(), test::kProgram);
-  const std::string out = folder / "stdout", err = folder / "stderr";
-  const pid_t child = fork();
-  if (child == 0) {
-    if (limits.file_size != RLIM_INFINITY) {
-      const rlimit limit{limits.file_size, limits.file_size};
-      setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 1);
-    dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
-    std::vector<char*> argv;
-    for (std::string& a : arguments) argv.push_back(a.data());
-    argv.push_back(nullptr);
-    execv(argv[0], argv.data());
-    _exit(127);
-  }
-  if (limits.interrupt_after > 0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(limits.interrupt_after));
-    kill(child, SIGINT);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(out), content(err)};
-}
-
-int lines(const std::string& text) {
-  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-}
 
 const std::string kScene = test::kSource + "/data/scenes/impact-asymmetric.json";
 
@@ -80,7 +37,8 @@ TEST_CASE("help and usage", "[program]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
-  for (const char* sub : {"run", "check", "contact"}) CHECK(run({sub, "--help"}, folder).code == 0);
+  for (const char* sub : {"run", "check", "contact", "accuracy"})
+    CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
                                                 {"fly"},
                                                 {"run"},
@@ -90,6 +48,9 @@ TEST_CASE("help and usage", "[program]") {
                                                 {"run", kScene, "--until", "inf"},
                                                 {"contact", "a"},
                                                 {"contact"},
+                                                {"accuracy", "--cases"},
+                                                {"accuracy", "--cases", "a", "--write-cases", "b"},
+                                                {"accuracy", "--cases", "missing.txt"},
                                                 {"contact", "a", "b", "--method", "guess"},
                                                 {"contact", "a", "b", "--reference", "x"}}) {
     const Result r = run(wrong, folder);

@@ -1,0 +1,46 @@
+#include "geometry/child_process.hpp"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <stdexcept>
+
+using namespace apothem;
+using End = ChildAnswer::End;
+
+TEST_CASE("a child process hands over its numbers", "[child]") {
+  const ChildAnswer answer = run_in_child(
+      [](const SendNumbers& send) {
+        send({1, 2});
+        send(std::vector<double>(100000, 3));
+      },
+      10);
+  CHECK(answer.end == End::finished);
+  REQUIRE(answer.numbers.size() == 100002);
+  CHECK(answer.numbers[1] == 2);
+  CHECK(answer.numbers.back() == 3);
+}
+
+TEST_CASE("what goes wrong in a child process stays there", "[child]") {
+  const auto after_one_number = [](const auto& fault) {
+    return run_in_child(
+        [&](const SendNumbers& send) {
+          send({1});
+          fault();
+        },
+        .2);
+  };
+  const ChildAnswer crashed = after_one_number([] { std::raise(SIGKILL); });
+  CHECK(crashed.end == End::crashed);
+  CHECK(crashed.signal == SIGKILL);
+  CHECK(crashed.numbers == std::vector<double>{1});
+  const ChildAnswer silent = after_one_number([] {
+    volatile bool forever = true;
+    while (forever) {
+    }
+  });
+  CHECK(silent.end == End::silent);
+  CHECK(silent.numbers == std::vector<double>{1});
+  const ChildAnswer failed = after_one_number([] { throw std::runtime_error("no"); });
+  CHECK(failed.end == End::failed);
+  CHECK(failed.numbers == std::vector<double>{1});
+}
