@@ -332,7 +332,7 @@ set title "Contact force of two polygons: error against time, one dot per method
 set logscale xy
 set format '10^{%T}'
 set xlabel 'time per pair [ns]'
-set ylabel 'worst force error of a case [stiffness x own boundary length]'
+set ylabel 'worst error of the force [k_n × own boundary length]' noenhanced
 set ytics add ("≤10^{-18}" 1e-18, 'failed' 1)
 set yrange [2e-19:8]
 set grid lc rgb '#cccccc' lt 1 lw .5

@@ -114,7 +114,8 @@ void evaluate_from(size_t first, std::string_view method, const std::vector<Prep
   });
 }
 
-// Rounds over all pairs with a result, for a twentieth of a second; the median round.
+// Rounds over all pairs with a result, for a twentieth of a second or more; the round that the rest
+// of the machine disturbed least.
 void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs,
                  const std::vector<size_t>& good, const SendNumbers& send) {
   with_method(method, pairs, [&](const auto& evaluate) {
@@ -122,7 +123,7 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
     volatile double sink = 0;
     const Clock::time_point start = Clock::now();
     const size_t repetitions = 1 + 200 / good.size();  // a round is long against the clock's grain
-    while (rounds.size() < 5 || seconds_since(start) < .05) {
+    while (rounds.size() < 3 || seconds_since(start) < .05) {
       const Clock::time_point round = Clock::now();
       for (size_t k = 0; k < repetitions; ++k) {
         for (const size_t i : good) sink = evaluate(i).integral.force.x();
@@ -130,9 +131,8 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
       rounds.push_back(seconds_since(round) / static_cast<double>(repetitions));
     }
     (void)sink;
-    std::nth_element(rounds.begin(),
-                     rounds.begin() + static_cast<std::ptrdiff_t>(rounds.size() / 2), rounds.end());
-    send({1e9 * rounds[rounds.size() / 2] / static_cast<double>(good.size())});
+    send(
+        {1e9 * *std::min_element(rounds.begin(), rounds.end()) / static_cast<double>(good.size())});
   });
 }
 
@@ -202,7 +202,7 @@ AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>&
   run.nanoseconds = std::nan("");
   if (good.empty()) return run;
   run.nanoseconds = 1e9 * seconds / static_cast<double>(good.size());
-  if (seconds > .05) return run;
+  if (seconds > .3) return run;
   const ChildAnswer timing = run_in_child(
       [&](const SendNumbers& send) { time_rounds(method, pairs, good, send); }, patience);
   if (!timing.numbers.empty()) run.nanoseconds = timing.numbers[0];

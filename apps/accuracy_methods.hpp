@@ -44,7 +44,7 @@ struct AccuracyOutcome {
 
 struct AccuracyRun {
   std::vector<AccuracyOutcome> outcomes;  ///< one per pair
-  double nanoseconds = 0;                 ///< per pair that has a result; NaN if none has
+  double nanoseconds = 0;                 ///< per pair that has a result, fastest round; NaN: none
 };
 
 /// Runs a method on all pairs in a child process, again and again behind the pairs on which it
