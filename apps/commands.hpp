@@ -9,7 +9,7 @@ namespace apothem {
 
 namespace exit_code {
 inline constexpr int done = 0;
-inline constexpr int missed = 1;  ///< run --verify: an expectation of the scene was not met
+inline constexpr int missed = 1;  ///< an expectation of the scene or of a file of pairs was not met
 inline constexpr int bad_input = 2;
 inline constexpr int unstable = 3;
 inline constexpr int system_failed = 4;
