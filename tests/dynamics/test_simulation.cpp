@@ -52,8 +52,8 @@ Model heap(int columns, int rows) {
   wall("right", w, 0, w + 2, h);
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
-      const Polygon p =
-          samples::posed(samples::random_convex(random, random.integer(3, 8)), {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
+      const Polygon p = samples::posed(samples::random_convex(random, random.integer(3, 8)),
+                                       {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
       model.bodies.push_back(make_body(model, std::to_string(i) + "-" + std::to_string(j), p));
       model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-6, 0)};
       model.bodies.back().spin = random.uniform(-1, 1);
@@ -174,7 +174,7 @@ TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
   for (int i = 0; i < 6; ++i) {
     const double angle = i * M_PI / 3;
     const Polygon p = samples::posed(samples::random_convex(random, random.integer(3, 7)),
-                                  2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
+                                     2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
     model.bodies.push_back(make_body(model, std::to_string(i), p));
     model.bodies.back().velocity = -3 * Vec2(std::cos(angle + .1), std::sin(angle + .1));
     model.bodies.back().spin = random.uniform(-2, 2);
@@ -230,8 +230,8 @@ TEST_CASE("the same bits for any number of threads", "[dynamics]") {
   samples::Random random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads
     const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-    model.bodies.push_back(make_body(model, std::to_string(i),
-                                     samples::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
+    model.bodies.push_back(make_body(
+        model, std::to_string(i), samples::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
     model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-3, 3)};
     model.bodies.back().spin = random.uniform(-1, 1);
   }
