@@ -105,6 +105,16 @@ void add_polygon(CLI::App& app, PolygonOptions& o) {
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
+void add_accuracy(CLI::App& app, AccuracyOptions& o) {
+  CLI::App* sub = app.add_subcommand("accuracy", "Speed against error of the contact methods");
+  CLI::Option* cases = sub->add_option(
+      "--cases", o.cases, "Files of pairs (JSON, or lines as of contact --batch) instead of ours");
+  sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
+  sub->add_option("--write-cases", o.write_cases,
+                  "Write our hard pairs with expected values to this file, and end")
+      ->excludes(cases);
+}
+
 int fail(int code, const char* what) {
   fmt::print(stderr, "apothem: {}\n", what);
   return code;
@@ -122,8 +132,10 @@ int run(int argc, char** argv) {
   add_run(app, run_options);
   add_check(app, check_options);
   add_contact(app, contact_options);
+  AccuracyOptions accuracy_options;
   add_polygon(app, polygon_options);
   add_mesh(app, mesh_options);
+  add_accuracy(app, accuracy_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -135,6 +147,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("check")) return check_command(check_options);
   if (app.got_subcommand("mesh")) return mesh_command(mesh_options);
   if (app.got_subcommand("polygon")) return polygon_command(polygon_options);
+  if (app.got_subcommand("accuracy")) return accuracy_command(accuracy_options);
   return contact_command(contact_options);
 }
 

@@ -9,12 +9,12 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <random>
 
 #include "contact/placed_shapes.hpp"
 #include "dynamics/simulation.hpp"
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
+#include "geometry/samples.hpp"
 #include "scene/scene.hpp"
 
 namespace {
@@ -27,33 +27,17 @@ struct Pair {
   PairResult exact;
 };
 
-Polygon random_quad(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
-  std::uniform_real_distribution<double> jitter(-.4, .4);
-  const double start = turn(random);
-  std::vector<Vec2> ring;
-  for (int i = 0; i < 4; ++i) {
-    const double angle = start + i * M_PI / 2 + jitter(random);
-    ring.emplace_back(std::cos(angle), std::sin(angle));
-  }
-  return Polygon(ring);
-}
-
 // Overlapping pairs, the centres `distance` apart, moved by `offset`.
 std::vector<Pair> make_pairs(double distance, double offset = 0) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+  samples::Random random(1);
   std::vector<Pair> pairs;
   while (pairs.size() < 256) {
-    const Polygon a = random_quad(random);
-    const double direction = turn(random);
-    std::vector<Vec2> ring = random_quad(random).vertices();
-    for (Vec2& v : ring) v += distance * Vec2(std::cos(direction), std::sin(direction));
-    std::vector<Vec2> moved = a.vertices();
-    for (Vec2& v : moved) v += Vec2(offset, offset);
-    for (Vec2& v : ring) v += Vec2(offset, offset);
-    const Polygon far_a(moved);
-    const Polygon far_b(ring);
+    const Vec2 far(offset, offset);
+    const double direction = random.uniform(0, 2 * M_PI);
+    const Vec2 apart = distance * Vec2(std::cos(direction), std::sin(direction));
+    const Polygon far_a = samples::shifted(samples::random_quad(random), far);
+    const Polygon far_b =
+        samples::shifted(samples::shifted(samples::random_quad(random), apart), far);
     const PairResult exact = exact_method(far_a, far_b, {});
     if (exact.integral.penetration < 1e-2) continue;
     pairs.push_back({far_a, far_b, make_potential(far_a), make_potential(far_b), exact});
@@ -135,10 +119,8 @@ void quad_pair_near_miss(benchmark::State& state) {
   for (Pair& pair : pairs) {  // apart, but their boxes may still overlap
     pair.exact = {};
     pair.exact.integral.weight = 1;
-    std::vector<Vec2> ring = pair.b.vertices();
-    const Vec2 away = ring[0] + ring[2] - pair.a[0] - pair.a[2];
-    for (Vec2& v : ring) v += away.normalized() * .85;
-    pair.b = Polygon(ring);
+    const Vec2 away = pair.b[0] + pair.b[2] - pair.a[0] - pair.a[2];
+    pair.b = samples::shifted(pair.b, .85 * away.normalized());
   }
   edge_kernel(state, pairs);
 }
@@ -216,17 +198,17 @@ void pack_step(benchmark::State& state) {
   Model model;
   model.materials = {{"rock", 2000}};
   model.contact.normal_stiffness = 2e9;
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> velocity(-1, 1);
+  samples::Random random(2);
   const int n = static_cast<int>(state.range(0));
   const int columns = static_cast<int>(std::sqrt(n));
   for (int i = 0; i < n; ++i) {
-    std::vector<Vec2> ring = random_quad(random).vertices();
-    for (Vec2& v : ring) v += 1.5 * Vec2(i % columns, i / columns);
     RigidBody body;
     body.name = std::to_string(i);
-    set_shape(body, Polygon(ring), model);
-    body.velocity = {velocity(random), velocity(random)};
+    set_shape(body,
+              samples::shifted(samples::random_quad(random), 1.5 * Vec2(i % columns, i / columns)),
+              model);
+    const double vx = random.uniform(-1, 1);
+    body.velocity = {vx, random.uniform(-1, 1)};
     model.bodies.push_back(body);
   }
   Simulation simulation(model, {.end = 1e3, .safety = .1}, 1, 1);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/voronoi.hpp"
 
@@ -10,7 +11,7 @@ namespace apothem {
 
 namespace exit_code {
 inline constexpr int done = 0;
-inline constexpr int missed = 1;  ///< run --verify: an expectation of the scene was not met
+inline constexpr int missed = 1;  ///< an expectation of the scene or of a file of pairs was not met
 inline constexpr int bad_input = 2;
 inline constexpr int unstable = 3;
 inline constexpr int system_failed = 4;
@@ -63,5 +64,12 @@ struct PolygonOptions {
   bool json = false;
 };
 int polygon_command(const PolygonOptions& options);
+
+struct AccuracyOptions {
+  std::vector<std::string> cases;  ///< files of pairs; none: generic and hard pairs
+  std::string folder = "out/accuracy";
+  std::string write_cases;  ///< write the hard pairs with expected values there instead
+};
+int accuracy_command(const AccuracyOptions& options);
 
 }  // namespace apothem

@@ -8,7 +8,8 @@
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
 #include "polygon_input.hpp"
-#include "scene/error.hpp"
+#include "scene/json.hpp"
+#include "scene/pair_file.hpp"
 #include "scene/polygon_file.hpp"
 
 namespace apothem {
@@ -87,25 +88,28 @@ Polygon read_polygon(const std::string& file, const char* which) {
   }
 }
 
-// name n x y ... m x y ...
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a bad option is one error, not one per line
   int code = exit_code::done;
-  for_each_line(options.batch, [&](const std::string& name, std::istream& line) {
+  for_each_line(options.batch, [&](const std::string& name, const std::string& text) {
     Json object{{"name", name}};
+    const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
+      object = {{"name", name}, {"error", reason}, {"polygon", which}, {"vertex", vertex}};
+      code = exit_code::bad_input;
+    };
     const char* which = "a";
     try {
-      const Polygon a(read_ring(line));
+      const PolygonPair pair = parse_pair(text);
+      const Polygon a(pair.a);
       which = "b";
-      const Polygon b(read_ring(line));
+      const Polygon b(pair.b);
       which = "";
-      require_end(line);
       object["normal_stiffness"] = options.stiffness;
       object["results"] = results(a, b, options);
+    } catch (const BadPairLine& error) {
+      refuse(error.what(), error.polygon(), error.vertex());
     } catch (const InvalidPolygon& error) {
-      object = {
-          {"name", name}, {"error", error.what()}, {"polygon", which}, {"vertex", error.vertex()}};
-      code = exit_code::bad_input;
+      refuse(error.what(), which, error.vertex());
     }
     fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
   });

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "commands.hpp"
 #include "geometry/inscribed_circle.hpp"
@@ -173,11 +174,12 @@ void print_table(const Analysis& a, const std::string& reference_name) {
 
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {
   int code = exit_code::done;
-  for_each_line(options.batch, [&](const std::string& name, std::istream& line) {
+  for_each_line(options.batch, [&](const std::string& name, const std::string& line) {
     Json object{{"name", name}};
     try {
-      std::vector<Vec2> ring = read_ring(line);
-      require_end(line);
+      std::istringstream words(line.substr(line.find(name) + name.size()));
+      std::vector<Vec2> ring = read_ring(words);
+      require_end(words);
       object.update(to_json(analyse(std::move(ring), choice)));
     } catch (const InvalidPolygon& error) {
       object.update(to_json(error));

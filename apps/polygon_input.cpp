@@ -27,33 +27,13 @@ void set_reference(PotentialChoice& choice, const std::string& text) {
   }
 }
 
-std::vector<Vec2> read_ring(std::istream& line) {
-  int n = 0;
-  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    std::string x, y;  // not as double: streams do not read nan or inf
-    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
-    char* end_x = nullptr;
-    char* end_y = nullptr;
-    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
-    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
-  }
-  return ring;
-}
-
 void for_each_line(const std::string& file,
-                   const std::function<void(const std::string&, std::istream&)>& evaluate) {
+                   const std::function<void(const std::string&, const std::string&)>& evaluate) {
   std::istringstream lines(read_text(file));
-  for (std::string text; std::getline(lines, text);) {
-    std::istringstream line(text);
-    std::string name;
-    if (line >> name) evaluate(name, line);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    if (std::string name; words >> name) evaluate(name, line);
   }
-}
-
-void require_end(std::istream& line) {
-  if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
 }
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// What `contact` and `polygon` read alike from the command line and from files of polygons.
+// What `contact` and `polygon` read alike from the command line and from files.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,9 @@ namespace apothem {
 /// --reference: roof, inscribed_circle or a length in m. Throws SceneError.
 void set_reference(PotentialChoice& choice, const std::string& text);
 
-/// A ring as n x y ... Throws InvalidPolygon; coordinates that are no finite numbers are left to
-/// Polygon.
-std::vector<Vec2> read_ring(std::istream& line);
-
-/// Calls evaluate(name, rest of the line) for every line of a file that is not empty. Throws
-/// SceneError if the file cannot be read.
+/// Calls evaluate(name, line) for every line of a file that is not empty; the name is its first
+/// word. Throws SceneError if the file cannot be read.
 void for_each_line(const std::string& file,
-                   const std::function<void(const std::string&, std::istream&)>& evaluate);
-
-/// Throws InvalidPolygon if anything is left.
-void require_end(std::istream& line);
+                   const std::function<void(const std::string&, const std::string&)>& evaluate);
 
 }  // namespace apothem

@@ -12,16 +12,14 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <new>
-#include <optional>
 
 namespace apothem {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr double kMemory = 4e9;  // bytes, beyond what the parent has
 constexpr double kWait = 10;     // a busy machine may take so many times the processor time
-
-enum ExitCode { kDone = 0, kException = 1, kNoMemory = 2 };
 
 void write_all(int file, const std::vector<double>& numbers) {
   const char* data = reinterpret_cast<const char*>(numbers.data());
@@ -29,16 +27,22 @@ void write_all(int file, const std::vector<double>& numbers) {
   while (left > 0) {
     const ssize_t written = write(file, data, left);
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) _exit(kException);
+    if (written <= 0) _exit(1);  // nobody listens any more
     data += written;
     left -= static_cast<size_t>(written);
   }
 }
 
-void limit(decltype(RLIMIT_CPU) what, double most) {
-  const auto value = static_cast<rlim_t>(most);
-  const rlimit both{value, value};
-  setrlimit(what, &both);
+// Also when the parent is gone and kills no more.
+void limit_processor_time(double seconds) {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  rlimit time{};
+  getrlimit(RLIMIT_CPU, &time);
+  time.rlim_cur =
+      std::min(time.rlim_max, static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1) +
+                                  static_cast<rlim_t>(std::ceil(seconds)));
+  setrlimit(RLIMIT_CPU, &time);
 }
 
 // The memory that this process has mapped; a sanitizer maps terabytes.
@@ -52,66 +56,82 @@ double mapped_bytes() {
 }
 
 // The child inherits whatever the program does with signals, and must do none of it.
-[[noreturn]] void work_as_child(int file, const std::function<std::vector<double>()>& work,
+[[noreturn]] void work_as_child(int file, const std::function<void(const SendNumbers&)>& work,
                                 double seconds) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTERM, SIGINT}) {
     std::signal(signal, SIG_DFL);
   }
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, std::ceil(seconds));
-  limit(RLIMIT_AS, mapped_bytes() + kMemory);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  limit_processor_time(seconds);
+  const auto most = static_cast<rlim_t>(mapped_bytes() + kMemory);
+  const rlimit memory{most, most};
+  setrlimit(RLIMIT_AS, &memory);
   const int silence = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (silence >= 0) {
     dup2(silence, STDOUT_FILENO);
     dup2(silence, STDERR_FILENO);
   }
   try {
-    write_all(file, work());
-  } catch (const std::bad_alloc&) {
-    _exit(kNoMemory);
+    work([&](const std::vector<double>& numbers) {
+      write_all(file, numbers);
+      limit_processor_time(seconds);
+    });
   } catch (...) {
-    _exit(kException);
+    _exit(1);
   }
-  _exit(kDone);
+  _exit(0);
 }
 
-// Reads to the end of the file; nothing when time is up first.
-std::optional<std::vector<double>> read_until(int file,
-                                              std::chrono::steady_clock::time_point deadline) {
+// All that comes through the pipe until it is closed; false after a silence of so many seconds.
+bool read_to_end(int file, double seconds, std::vector<double>& numbers) {
   std::vector<char> bytes;
   char buffer[65536];
-  while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return std::nullopt;
+  const auto patience = std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds));
+  Clock::time_point deadline = Clock::now() + patience;
+  bool ended = false;
+  while (!ended) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+    if (left.count() <= 0) break;
     pollfd wait{file, POLLIN, 0};
     const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
     if (ready <= 0) continue;
     const ssize_t count = read(file, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    bytes.insert(bytes.end(), buffer, buffer + count);
+    ended = count <= 0;
+    if (!ended) bytes.insert(bytes.end(), buffer, buffer + count);
+    deadline = Clock::now() + patience;
   }
-  std::vector<double> numbers(bytes.size() / sizeof(double));
+  numbers.resize(bytes.size() / sizeof(double));
   std::copy_n(bytes.data(), numbers.size() * sizeof(double),
               reinterpret_cast<char*>(numbers.data()));
-  return numbers;
-}
-
-std::string failure(int status, double seconds) {
-  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)) {
-    return "did not return within " + std::to_string(std::lround(std::ceil(seconds))) + " s";
-  }
-  if (WIFSIGNALED(status)) return "crashed with signal " + std::to_string(WTERMSIG(status));
-  if (WEXITSTATUS(status) == kNoMemory) return "ran out of memory";
-  return WEXITSTATUS(status) == kDone ? "" : "failed with an exception";
+  return ended;
 }
 
 }  // namespace
 
-ChildAnswer in_child_process(const std::function<std::vector<double>()>& work, double seconds) {
+std::string ChildAnswer::failure() const {
+  switch (end) {
+    case End::finished:
+      return "";
+    case End::failed:
+      return "failed with an exception or for lack of memory";
+    case End::crashed:
+      return "crashed with signal " + std::to_string(signal);
+    case End::silent:
+      return "did not return in time";
+    case End::not_started:
+      break;
+  }
+  return "could not be started in a child process";
+}
+
+ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds) {
+  using End = ChildAnswer::End;
+  ChildAnswer answer;
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {{}, "could not get a pipe to a child process"};
+  if (pipe2(ends, O_CLOEXEC) != 0) return answer;
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
@@ -120,17 +140,23 @@ ChildAnswer in_child_process(const std::function<std::vector<double>()>& work, d
   close(ends[1]);
   if (child < 0) {
     close(ends[0]);
-    return {{}, "could not start a child process"};
+    return answer;
   }
-  const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds));
-  const std::optional<std::vector<double>> numbers = read_until(ends[0], deadline);
+  const bool ended = read_to_end(ends[0], seconds, answer.numbers);
   close(ends[0]);
-  if (!numbers) kill(child, SIGKILL);
+  if (!ended) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return {numbers.value_or(std::vector<double>{}), failure(status, seconds)};
+  if (!ended) {
+    answer.end = End::silent;
+  } else if (WIFSIGNALED(status)) {
+    answer.end = WTERMSIG(status) == SIGXCPU ? End::silent : End::crashed;
+    answer.signal = WTERMSIG(status);
+  } else {
+    answer.end = WEXITSTATUS(status) == 0 ? End::finished : End::failed;
+  }
+  return answer;
 }
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// Work that may hang, crash or eat all memory, done in a child process.
+// Work in a child process: what crashes there, never ends or eats all memory harms nobody.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,21 @@
 namespace apothem {
 
 struct ChildAnswer {
-  std::vector<double> numbers;
-  std::string failure;  ///< empty if the work was done, otherwise what happened to it
+  enum class End { finished, failed, crashed, silent, not_started };
+  std::vector<double> numbers;  ///< all that was sent before the end
+  End end = End::not_started;   ///< failed: an exception; silent: killed for taking too long
+  int signal = 0;               ///< of a crash
+
+  /// What happened, in words; empty if the work was done.
+  [[nodiscard]] std::string failure() const;
 };
 
-/// Runs `work` in a forked child, silenced, and returns what it returned. The child may take
-/// `seconds` of processor time (rounded up), ten times that by the clock, and 4 GB of memory. An
-/// exception of `work` is a failure like any other.
-ChildAnswer in_child_process(const std::function<std::vector<double>()>& work, double seconds);
+/// Hands numbers to the parent; may be called any number of times.
+using SendNumbers = std::function<void(const std::vector<double>&)>;
+
+/// Runs `work` in a child process with standard output and error closed off. It is killed when it
+/// sends nothing for `seconds` of processor time (rounded up) or ten times that by the clock, and
+/// may take 4 GB of memory.
+ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds);
 
 }  // namespace apothem

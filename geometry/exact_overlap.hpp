@@ -150,10 +150,10 @@ class EdgeTrace {
   DistanceTrace<Real> distance_;
 };
 
-/// Eq. 8 and the energy.
+/// Eq. 8 and, if asked for, the energy.
 template <class Real>
 PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
-                     const Envelope<Real>& b) {
+                     const Envelope<Real>& b, bool with_energy = true) {
   using std::sqrt;
   if (overlap.empty()) return {};
   const Line<Real> one{Vec<Real>(0, 0), 1};
@@ -184,7 +184,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
     }
     area += area_integral(v, one);
-    energy += a.volume(v) + b.volume(v);
+    if (with_energy) energy += a.volume(v) + b.volume(v);
   }
 
   const auto rounded = [](const Real& x) { return static_cast<double>(x); };

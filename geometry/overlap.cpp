@@ -236,4 +236,16 @@ PairResult overlap_method(const Polygon& a, const Potential& potential_a, const 
   return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin));
 }
 
+PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const Vec2& origin,
+                              const Polygon& a, const Potential& potential_a, const Polygon& b,
+                              const Potential& potential_b) {
+  std::vector<Region<double>> regions;
+  for (const OverlapPolygon& polygon : overlap) {
+    regions.push_back({polygon.vertices, polygon.edges});
+  }
+  return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin),
+                   false)
+      .integral;
+}
+
 }  // namespace apothem

@@ -34,4 +34,11 @@ std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b,
 PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                           const Potential& potential_b, Arithmetic arithmetic = Arithmetic::exact);
 
+/// The same force and moments from overlap polygons that come from elsewhere, without the energy.
+/// Edges without owners (an empty list) are integrated over both potentials, of which one is
+/// round-off.
+PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const Vec2& origin,
+                              const Polygon& a, const Potential& potential_a, const Polygon& b,
+                              const Potential& potential_b);
+
 }  // namespace apothem

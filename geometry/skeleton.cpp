@@ -254,18 +254,22 @@ Message cgal_skeleton(const Ring& ring) {
   return message;
 }
 
-ChildAnswer ask_cgal(const Ring& ring, bool exact, double seconds) {
-  const auto work = [&] {
-    return exact ? cgal_skeleton<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
-                 : cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(ring);
-  };
-  ChildAnswer answer = in_child_process(work, seconds);
-  if (answer.failure.empty()) {
-    if (answer.numbers.empty()) answer.failure = "CGAL found no skeleton";
-  } else {
-    answer.failure = "CGAL " + answer.failure;
-  }
-  return answer;
+struct Answer {
+  Message message;
+  std::string failure;  // empty if there is a message
+};
+
+Answer ask_cgal(const Ring& ring, bool exact, double seconds) {
+  ChildAnswer answer = run_in_child(
+      [&](const SendNumbers& send) {
+        send(exact ? cgal_skeleton<CGAL::Exact_predicates_exact_constructions_kernel>(ring)
+                   : cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(ring));
+      },
+      seconds);
+  if (const std::string failure = answer.failure(); !failure.empty())
+    return {{}, "CGAL " + failure};
+  if (answer.numbers.empty()) return {{}, "CGAL found no skeleton"};
+  return {std::move(answer.numbers), ""};
 }
 
 // Nothing when the message is cut off.
@@ -439,10 +443,9 @@ struct Outcome {
 Outcome try_once(const Polygon& polygon, const Frame& frame, const Ring& input,
                  const Attempt& attempt) {
   if (!is_simple(input)) return {{}, "the outline is not simple in scaled coordinates"};
-  const ChildAnswer answer =
-      ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact));
+  const Answer answer = ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact));
   if (!answer.failure.empty()) return {{}, answer.failure};
-  std::optional<Skeleton> skeleton = decode(answer.numbers);
+  std::optional<Skeleton> skeleton = decode(answer.message);
   if (!skeleton) return {{}, "CGAL's answer was cut off"};
   frame.outward(*skeleton, polygon);
   Polish(*skeleton, polygon).run();

@@ -30,7 +30,7 @@ struct Limits {
 
 inline Result run(std::vector<std::string> arguments, const Folder& folder,
                   const Limits& limits = {}) {
-  arguments.insert(arguments.begin(), test::kProgram);
+  arguments.insert(arguments.begin(), kProgram);
   const std::string out = folder / "stdout", err = folder / "stderr";
   const pid_t child = fork();
   if (child == 0) {

@@ -3,7 +3,10 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
+#include <cstdlib>
+#include <istream>
 
+#include "geometry/polygon.hpp"
 #include "scene/json.hpp"
 
 namespace apothem {
@@ -42,6 +45,25 @@ std::vector<Vec2> read_polygon_file(const std::string& file) {
   std::vector<Vec2> ring = reader.ring(object.required("polygon", "[[x,y],...] in m"));
   object.finish();
   return ring;
+}
+
+std::vector<Vec2> read_ring(std::istream& line) {
+  int n = 0;
+  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
+  std::vector<Vec2> ring;
+  for (int i = 0; i < n; ++i) {
+    std::string x, y;  // not as double: streams do not read nan or inf
+    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
+    char* end_x = nullptr;
+    char* end_y = nullptr;
+    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
+    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
+  }
+  return ring;
+}
+
+void require_end(std::istream& line) {
+  if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
 }
 
 }  // namespace apothem

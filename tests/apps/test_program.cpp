@@ -1,5 +1,4 @@
 // The program as its users meet it: arguments, exit codes, messages, files.
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -38,7 +37,7 @@ TEST_CASE("help and usage", "[program]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
-  for (const char* sub : {"run", "check", "contact", "polygon", "mesh"})
+  for (const char* sub : {"run", "check", "contact", "polygon", "mesh", "accuracy"})
     CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
                                                 {"fly"},
@@ -49,6 +48,9 @@ TEST_CASE("help and usage", "[program]") {
                                                 {"run", kScene, "--until", "inf"},
                                                 {"contact", "a"},
                                                 {"contact"},
+                                                {"accuracy", "--cases"},
+                                                {"accuracy", "--cases", "a", "--write-cases", "b"},
+                                                {"accuracy", "--cases", "missing.txt"},
                                                 {"contact", "a", "b", "--method", "guess"},
                                                 {"contact", "a", "b", "--field", "x"},
                                                 {"contact", "a", "b", "--reference", "x"},

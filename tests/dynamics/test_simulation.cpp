@@ -40,7 +40,7 @@ double drop_energy(const Model& model) { return model.bodies[1].mass * 9.81 * .1
 
 // A dense heap: bodies of different shapes in a box of four walls.
 Model heap(int columns, int rows) {
-  test::Random random(20);
+  samples::Random random(20);
   Model model = make_model(1e8);
   const double w = columns * 2.2, h = rows * 2.2 + 5;
   const auto wall = [&](const char* name, double x0, double y0, double x1, double y1) {
@@ -52,8 +52,8 @@ Model heap(int columns, int rows) {
   wall("right", w, 0, w + 2, h);
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
-      const Polygon p =
-          test::posed(random.convex(random.integer(3, 8)), {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
+      const Polygon p = samples::posed(samples::random_convex(random, random.integer(3, 8)),
+                                       {1.1 + 2.2 * i, 1.1 + 2.2 * j}, 0);
       model.bodies.push_back(make_body(model, std::to_string(i) + "-" + std::to_string(j), p));
       model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-6, 0)};
       model.bodies.back().spin = random.uniform(-1, 1);
@@ -170,11 +170,11 @@ TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]
 TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
   Model model = make_model(2e9);
   model.gravity = Vec2::Zero();
-  test::Random random(21);
+  samples::Random random(21);
   for (int i = 0; i < 6; ++i) {
     const double angle = i * M_PI / 3;
-    const Polygon p = test::posed(random.convex(random.integer(3, 7)),
-                                  2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
+    const Polygon p = samples::posed(samples::random_convex(random, random.integer(3, 7)),
+                                     2.5 * Vec2(std::cos(angle), std::sin(angle)), 0);
     model.bodies.push_back(make_body(model, std::to_string(i), p));
     model.bodies.back().velocity = -3 * Vec2(std::cos(angle + .1), std::sin(angle + .1));
     model.bodies.back().spin = random.uniform(-2, 2);
@@ -227,11 +227,11 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
 
 TEST_CASE("the same bits for any number of threads", "[dynamics]") {
   Model model = make_model(1e8);
-  test::Random random(22);
+  samples::Random random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads
     const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
-    model.bodies.push_back(make_body(model, std::to_string(i),
-                                     test::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
+    model.bodies.push_back(make_body(
+        model, std::to_string(i), samples::posed(square, {1.02 * (i % 40), 1.02 * (i / 40)}, 0)));
     model.bodies.back().velocity = {random.uniform(-3, 3), random.uniform(-3, 3)};
     model.bodies.back().spin = random.uniform(-1, 1);
   }
@@ -278,8 +278,8 @@ TEST_CASE("a pair search with a skin changes nothing", "[dynamics]") {
 TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
   const auto fall = [](const Vec2& offset) {
     Model model = make_model();
-    const Polygon target = test::shifted(Polygon({{-1, 0}, {.25, -1.25}, {1, 0}}), offset);
-    const Polygon falling = test::shifted(Polygon({{0, .125}, {.5, 1}, {-.5, 1}}), offset);
+    const Polygon target = samples::shifted(Polygon({{-1, 0}, {.25, -1.25}, {1, 0}}), offset);
+    const Polygon falling = samples::shifted(Polygon({{0, .125}, {.5, 1}, {-.5, 1}}), offset);
     Box box = bounding_box(target);
     for (const Vec2& v : falling.vertices()) box.include(v.x(), v.y());
     model.origin = local_origin(box);

@@ -26,7 +26,7 @@ Ring turned(Ring ring, double angle) {
   return ring;
 }
 
-Ring star_shaped(test::Random& random, int n, double inner) {
+Ring star_shaped(samples::Random& random, int n, double inner) {
   Ring ring;
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * M_PI * (i + random.uniform(0, .9)) / n;
@@ -52,7 +52,7 @@ Ring comb(int teeth) {
 }
 
 // Few distinct coordinates: every coincidence there is.
-Ring lattice(test::Random& random) {
+Ring lattice(samples::Random& random) {
   Ring ring;
   const int n = random.integer(3, 9);
   for (int i = 0; i < n; ++i)
@@ -60,7 +60,7 @@ Ring lattice(test::Random& random) {
   return ring;
 }
 
-Ring any_ring(test::Random& random) {
+Ring any_ring(samples::Random& random) {
   const double turn = random.integer(0, 1) ? random.uniform(0, 6) : 0;
   switch (random.integer(0, 9)) {
     case 0:
@@ -84,7 +84,7 @@ Ring any_ring(test::Random& random) {
     case 8:
       return star_shaped(random, random.integer(3, 64), .99);
     default:
-      return random.convex(random.integer(3, 8)).vertices();
+      return samples::random_convex(random, random.integer(3, 8)).vertices();
   }
 }
 
@@ -94,7 +94,7 @@ struct Shape {
 };
 
 std::vector<Shape> shapes(int count) {
-  test::Random random(60);
+  samples::Random random(60);
   std::vector<Shape> result;
   while (static_cast<int>(result.size()) < count) {
     Ring ring = any_ring(random);
@@ -109,7 +109,7 @@ std::vector<Shape> shapes(int count) {
   return result;
 }
 
-Vec2 point_of(test::Random& random, const Polygon& polygon) {
+Vec2 point_of(samples::Random& random, const Polygon& polygon) {
   const int i = random.integer(0, polygon.size() - 1);
   const int place = random.integer(0, 3);
   const double s = place == 0 ? random.uniform(0, 1) : place == 1 ? .5 : 0;
@@ -118,7 +118,7 @@ Vec2 point_of(test::Random& random, const Polygon& polygon) {
 
 // Where b goes: anywhere, or a point of its boundary onto one of a's, or onto itself; then by as
 // little as the grid allows, or not at all.
-Vec2 move(test::Random& random, const Polygon& a, const Polygon& b) {
+Vec2 move(samples::Random& random, const Polygon& a, const Polygon& b) {
   Vec2 shift(random.uniform(-1, 1), random.uniform(-1, 1));
   const int kind = random.integer(0, 5);
   if (kind > 0) shift = point_of(random, a) - point_of(random, b);
@@ -139,11 +139,11 @@ TEST_CASE("random and adversarial pairs", "[fuzz]") {
   int touching = 0;
   test::PairErrors worst;
   for (int i = 0; i < pairs; ++i) {
-    test::Random random(static_cast<unsigned>(i));
+    samples::Random random(static_cast<unsigned>(i));
     const Shape& a = pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
     const Shape& b =
         random.integer(0, 9) == 0 ? a : pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
-    const Polygon moved = test::shifted(b.polygon, move(random, a.polygon, b.polygon));
+    const Polygon moved = samples::shifted(b.polygon, move(random, a.polygon, b.polygon));
     const test::PairCheck check = test::check_pair(a.polygon, a.potential, moved, b.potential);
     touching += check.touching;
     worst.force = std::max(worst.force, check.errors.force);

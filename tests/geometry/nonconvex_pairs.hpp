@@ -10,50 +10,12 @@
 
 namespace apothem::test {
 
-inline Polygon cross_shape(double arm = 1) {  // five unit squares
-  const double a = .5, b = .5 + arm;
-  return Polygon({{-a, -b},
-                  {a, -b},
-                  {a, -a},
-                  {b, -a},
-                  {b, a},
-                  {a, a},
-                  {a, b},
-                  {-a, b},
-                  {-a, a},
-                  {-b, a},
-                  {-b, -a},
-                  {-a, -a}});
-}
+using samples::l_shape;
+using samples::Random;
+using samples::star;
 
-inline Polygon star(int points, double inner) {
-  std::vector<Vec2> ring;
-  for (int i = 0; i < 2 * points; ++i) {
-    const double r = i % 2 ? inner : 1, angle = M_PI * i / points;
-    ring.emplace_back(r * std::cos(angle), r * std::sin(angle));
-  }
-  return Polygon(ring);
-}
-
-inline Polygon comb(int teeth) {
-  std::vector<Vec2> ring{{0, 0}, {2.0 * teeth - 1, 0}};
-  for (int i = teeth - 1; i >= 0; --i) {
-    ring.insert(ring.end(), {{2.0 * i + 1, 3}, {2.0 * i, 3}});
-    if (i > 0) ring.insert(ring.end(), {{2.0 * i, 1}, {2.0 * i - 1, 1}});
-  }
-  for (Vec2& v : ring) v *= .4;
-  return Polygon(ring);
-}
-
-// Star-shaped about 0, in general not convex.
-inline Polygon blob(Random& random, int n) {
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    const double angle = 2 * M_PI * (i + random.uniform(0, .9)) / n;
-    ring.push_back(random.uniform(.35, 1) * Vec2(std::cos(angle), std::sin(angle)));
-  }
-  return Polygon(ring);
-}
+inline Polygon cross_shape() { return samples::cross_of_squares(); }
+inline Polygon comb(int teeth) { return samples::scaled(samples::comb(teeth), .4); }
 
 inline Polygon any_shape(Random& random) {
   switch (random.integer(0, 4)) {
@@ -64,13 +26,11 @@ inline Polygon any_shape(Random& random) {
     case 2:
       return comb(random.integer(2, 4));
     case 3:
-      return random.convex(random.integer(3, 8));
+      return samples::random_convex(random, random.integer(3, 8));
     default:
-      return blob(random, random.integer(4, 12));
+      return samples::random_star_shaped(random, random.integer(4, 12), .35);
   }
 }
-
-inline Polygon l_shape() { return Polygon({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}); }
 
 // A band of width .4, wound up with gaps of the same width.
 inline Polygon spiral() {

@@ -6,7 +6,7 @@
 using namespace apothem;
 
 TEST_CASE("the box grid finds what brute force finds", "[boxes]") {
-  test::Random random(3);
+  samples::Random random(3);
   BoxGrid grid;
   std::vector<BoxPair> found;
   for (int round = 0; round < test::scaled(200); ++round) {

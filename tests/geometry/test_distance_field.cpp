@@ -17,7 +17,7 @@ PotentialChoice field_choice(Reference reference = Reference::inscribed_circle, 
   return {.field = PotentialChoice::Field::distance, .reference = reference, .length = length};
 }
 
-Polygon non_convex(test::Random& random) {
+Polygon non_convex(samples::Random& random) {
   switch (random.integer(0, 6)) {
     case 0:
       return test::cross_shape();
@@ -31,7 +31,7 @@ Polygon non_convex(test::Random& random) {
       return test::spiral();
     default:
       while (true) {
-        const Polygon blob = test::blob(random, random.integer(4, 12));
+        const Polygon blob = samples::random_star_shaped(random, random.integer(4, 12), .35);
         if (!blob.is_convex()) return blob;
       }
   }
@@ -112,10 +112,11 @@ std::vector<PotentialChoice> all_references() {
 }  // namespace
 
 TEST_CASE("both fields of a convex polygon are one, to the last bit", "[distance-field]") {
-  test::Random random(60);
+  samples::Random random(60);
   for (int i = 0; i < test::scaled(200); ++i) {
-    const Polygon a = random.convex(random.integer(3, 8));
-    const Polygon b = test::shifted(random.convex(random.integer(3, 8)), {.7, .3});
+    const Polygon a = samples::random_convex(random, random.integer(3, 8));
+    const Polygon b =
+        samples::shifted(samples::random_convex(random, random.integer(3, 8)), {.7, .3});
     for (const Reference r : {Reference::roof, Reference::inscribed_circle, Reference::length}) {
       const PotentialChoice field = field_choice(r, .2);
       PotentialChoice roof = field;
@@ -146,10 +147,10 @@ TEST_CASE("reference lengths of the distance field", "[distance-field]") {
 }
 
 TEST_CASE("the distance field at points", "[distance-field]") {
-  test::Random random(61);
+  samples::Random random(61);
   double worst = 0;
   for (int i = 0; i < test::scaled(300); ++i) {
-    const Polygon polygon = test::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
+    const Polygon polygon = samples::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
     Placed field(polygon, field_choice());
     const double r = 1 / field.potential.steepest;
     for (int k = 0; k < 20; ++k) {
@@ -167,10 +168,10 @@ TEST_CASE("the distance field at points", "[distance-field]") {
 }
 
 TEST_CASE("the distance field along segments against quadrature", "[distance-field]") {
-  test::Random random(62);
+  samples::Random random(62);
   for (const PotentialChoice& choice : all_references()) {
     for (int i = 0; i < test::scaled(20); ++i) {
-      const Polygon polygon = test::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
+      const Polygon polygon = samples::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
       Placed field(polygon, choice);
       const double slope = field.potential.steepest;
       const double cap = field.potential.capped() ? 1 : HUGE_VAL;
@@ -190,17 +191,17 @@ TEST_CASE("the distance field along segments against quadrature", "[distance-fie
 }
 
 TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distance-field]") {
-  test::Random random(63);
+  samples::Random random(63);
   int touching = 0;
   for (const PotentialChoice& choice : all_references()) {
     for (const double offset : {0.0, 1e6, 1e9}) {
       for (int i = 0; i < test::scaled(25); ++i) {
-        const Polygon other = i % 5 == 0 ? random.convex(5) : non_convex(random);
-        const Polygon a = test::posed(
+        const Polygon other = i % 5 == 0 ? samples::random_convex(random, 5) : non_convex(random);
+        const Polygon a = samples::posed(
             non_convex(random),
             {offset + random.uniform(-1.2, 1.2), 2 * offset + random.uniform(-1.2, 1.2)},
             random.uniform(0, 6));
-        const Polygon b = test::shifted(other, {offset, 2 * offset});
+        const Polygon b = samples::shifted(other, {offset, 2 * offset});
         const PairResult x = exact_method(a, b, choice);
         touching += x.integral.weight > 0;
         test::check_against(test::edge(a, b, choice), x);
@@ -212,11 +213,11 @@ TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distan
 }
 
 TEST_CASE("energy of the distance field against quadrature over lines", "[distance-field]") {
-  test::Random random(64);
+  samples::Random random(64);
   for (const PotentialChoice& choice : all_references()) {
     for (int i = 0; i < test::scaled(5); ++i) {
-      const Polygon a = test::posed(non_convex(random), {.4, .3}, random.uniform(0, 6));
-      const Polygon b = test::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
+      const Polygon a = samples::posed(non_convex(random), {.4, .3}, random.uniform(0, 6));
+      const Polygon b = samples::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
       Placed field_a(a, choice), field_b(b, choice);
       // phi of both on the parts of a level line that lie in both.
       const auto line = [&](double y) {
@@ -250,19 +251,19 @@ TEST_CASE("energy of the distance field against quadrature over lines", "[distan
 }
 
 TEST_CASE("force of the distance field is minus the gradient of the energy", "[distance-field]") {
-  test::Random random(65);
+  samples::Random random(65);
   const double h = 1e-4;
   for (int i = 0; i < test::scaled(50); ++i) {
     const PotentialChoice choice = all_references()[i % 4];
     const Polygon a = non_convex(random);
     const Polygon b = non_convex(random);
     const Vec2 x =
-        test::world_centroid(b) + Vec2(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
+        samples::world_centroid(b) + Vec2(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
     const double angle = random.uniform(0, 6);
     const auto energy = [&](double dx, double dy, double turn) {
-      return test::edge(test::posed(a, x + Vec2(dx, dy), angle + turn), b, choice).volume.energy;
+      return test::edge(samples::posed(a, x + Vec2(dx, dy), angle + turn), b, choice).volume.energy;
     };
-    const PairIntegral pair = test::edge(test::posed(a, x, angle), b, choice).integral;
+    const PairIntegral pair = test::edge(samples::posed(a, x, angle), b, choice).integral;
     const double scale = std::max(pair.weight, 1e-2);
     REQUIRE(std::abs(pair.force.x() + (energy(h, 0, 0) - energy(-h, 0, 0)) / (2 * h)) <
             2e-5 * scale);
@@ -287,9 +288,9 @@ TEST_CASE("work of the distance field on closed paths", "[distance-field]") {
 }
 
 TEST_CASE("swapping the bodies of a distance-field pair, to the last bit", "[distance-field]") {
-  test::Random random(67);
+  samples::Random random(67);
   for (int i = 0; i < test::scaled(100); ++i) {
-    const Polygon a = test::posed(
+    const Polygon a = samples::posed(
         non_convex(random), {random.uniform(-1, 1), random.uniform(-1, 1)}, random.uniform(0, 6));
     const Polygon b = non_convex(random);
     const PairIntegral ab = test::edge(a, b, field_choice()).integral;
@@ -300,7 +301,7 @@ TEST_CASE("swapping the bodies of a distance-field pair, to the last bit", "[dis
 }
 
 TEST_CASE("shallow crosses: the distance field gives the force of the roof", "[distance-field]") {
-  test::Random random(68);
+  samples::Random random(68);
   const Vec2 centre = area_moments(test::cross_shape()).centroid;
   const Potential roof =
       translated(make_potential(test::cross_shape(), test::length_choice(.5)), centre);
@@ -343,7 +344,7 @@ TEST_CASE("shallow crosses: the distance field gives the force of the roof", "[d
 
 TEST_CASE("the distance field is continuous in the shape, the roof is not", "[distance-field]") {
   const Polygon cross = test::cross_shape();
-  const Polygon block = test::posed(Polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), {.5, .5}, .3);
+  const Polygon block = samples::posed(Polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), {.5, .5}, .3);
   const auto changed = [&](const std::vector<Vec2>& instead, const PotentialChoice& choice) {
     std::vector<Vec2> ring;  // another outline at the reflex vertex (.5, .5)
     for (const Vec2& v : cross.vertices()) {

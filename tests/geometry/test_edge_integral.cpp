@@ -12,18 +12,6 @@ void check_close(double x, double y, double scale = 0) {
   CHECK(std::abs(x - y) <= 1e-13 * std::max(std::abs(y), scale));
 }
 
-// Triangle pointing down to `apex` with half-angle a and legs of length 1.
-Polygon wedge_down(const Vec2& apex, double a) {
-  return Polygon(
-      {apex, apex + Vec2(std::sin(a), std::cos(a)), apex + Vec2(-std::sin(a), std::cos(a))});
-}
-Polygon wedge_up(const Vec2& apex, double a) {
-  return Polygon(
-      {apex, apex - Vec2(std::sin(a), std::cos(a)), apex + Vec2(std::sin(a), -std::cos(a))});
-}
-Polygon block(double x0, double y0, double x1, double y1) {
-  return Polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
 double inradius(const Polygon& p) { return inscribed_circle(p).radius; }
 
 void check_bits(const PairIntegral& a, const PairIntegral& b) {
@@ -37,9 +25,9 @@ void check_bits(const PairIntegral& a, const PairIntegral& b) {
 }  // namespace
 
 TEST_CASE("benchmark poses P1 and P5", "[edge]") {
-  const Vec2 cq = test::world_centroid(test::quad_q());
+  const Vec2 cq = samples::world_centroid(test::quad_q());
   const PairResult p1 =
-      test::edge(test::posed(test::triangle_t(), cq + Vec2(.45, .40), .7), test::quad_q());
+      test::edge(samples::posed(test::triangle_t(), cq + Vec2(.45, .40), .7), test::quad_q());
   check_close(p1.integral.force.x(), .3660230920854565);
   check_close(p1.integral.force.y(), .3520624820420965);
   check_close(p1.integral.moment_a, .02410351352467215, .3);
@@ -52,8 +40,8 @@ TEST_CASE("benchmark poses P1 and P5", "[edge]") {
   CHECK(point.x() == Approx(-.1386766678643).epsilon(1e-12));
   CHECK(point.y() == Approx(-.1992397938578).epsilon(1e-12));
 
-  const Vec2 ct = test::world_centroid(test::triangle_t());
-  const Polygon c = test::posed(Polygon({{0, 0}, {.8, .1}, {.2, .7}}), ct + Vec2(.35, .25), .5);
+  const Vec2 ct = samples::world_centroid(test::triangle_t());
+  const Polygon c = samples::posed(Polygon({{0, 0}, {.8, .1}, {.2, .7}}), ct + Vec2(.35, .25), .5);
   const PairResult area = test::edge(c, test::triangle_t(), test::area_choice());
   check_close(area.integral.force.x(), .2300100729993399);
   check_close(area.integral.force.y(), .1752177043292752);
@@ -74,8 +62,8 @@ TEST_CASE("closed forms", "[edge]") {
   for (const double d : {.2, .05, .01, .002}) {
     INFO("depth " << d);
     {
-      const Polygon t = block(-2, -1, 2, 0);
-      const Polygon c = block(-.5, -d, .5, 1 - d);
+      const Polygon t = samples::block(-2, -1, 2, 0);
+      const Polygon c = samples::block(-.5, -d, .5, 1 - d);
       const PairResult r = test::edge(c, t);
       const double rc = inradius(c), rt = inradius(t), w = 1;
       CHECK(r.integral.force.y() == Approx(d * (w / rt + (w - d) / rc)).epsilon(1e-12));
@@ -91,15 +79,15 @@ TEST_CASE("closed forms", "[edge]") {
     for (const double a : {M_PI / 6, M_PI / 3, .2}) {
       INFO("half-angle " << a);
       // Apex on apex; the overlap is a rhombus of height d.
-      const Polygon c = wedge_down({0, -d}, a);
-      const Polygon t = wedge_up({0, 0}, a);
+      const Polygon c = samples::shifted(samples::wedge_down(a), {0, -d});
+      const Polygon t = samples::wedge_up(a);
       const PairResult apex = test::edge(c, t);
       const double force =
           d * d * std::sin(a) * std::tan(a) * (1 / inradius(c) + 1 / inradius(t)) / 2;
       CHECK(apex.integral.force.y() == Approx(force).epsilon(1e-12));
       CHECK(apex.volume.energy == Approx(force * d / 3).epsilon(1e-12));
       CHECK(apex.integral.penetration == Approx(d).epsilon(1e-12));
-      const Polygon flat = block(-3, -2, 3, 0);
+      const Polygon flat = samples::block(-3, -2, 3, 0);
       const PairResult on_flat = test::edge(c, flat);
       CHECK(on_flat.integral.force.y() ==
             Approx(d * d * std::tan(a) * (1 / inradius(flat) + std::sin(a) / inradius(c)))
@@ -109,21 +97,21 @@ TEST_CASE("closed forms", "[edge]") {
 }
 
 TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
-  test::Random random(4);
+  samples::Random random(4);
   const double h = 1e-4;
   for (const int kind : {0, 1, 2}) {  // distance, capped distance, area
     for (int i = 0; i < test::scaled(300); ++i) {
-      const Polygon a = random.convex(kind == 2 ? 3 : random.integer(3, 12));
-      const Polygon b = random.convex(kind == 2 ? 3 : random.integer(3, 12));
+      const Polygon a = samples::random_convex(random, kind == 2 ? 3 : random.integer(3, 12));
+      const Polygon b = samples::random_convex(random, kind == 2 ? 3 : random.integer(3, 12));
       const PotentialChoice choice =
           kind == 0   ? PotentialChoice{}
           : kind == 1 ? test::length_choice(.4 * std::min(inradius(a), inradius(b)))
                       : test::area_choice();
       const Vec2 x(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
       const double angle = random.uniform(0, 6);
-      const Vec2 centre = test::world_centroid(b);
+      const Vec2 centre = samples::world_centroid(b);
       const auto energy = [&](double dx, double dy, double turn) {
-        return test::edge(test::posed(a, centre + x + Vec2(dx, dy), angle + turn), b, choice)
+        return test::edge(samples::posed(a, centre + x + Vec2(dx, dy), angle + turn), b, choice)
             .volume.energy;
       };
       // Fourth-order difference: E is piecewise cubic, so only its kinks limit the agreement.
@@ -133,7 +121,8 @@ TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
                  energy(-2 * h * dx, -2 * h * dy, -2 * h * turn))) /
                (12 * h);
       };
-      const PairIntegral pair = test::edge(test::posed(a, centre + x, angle), b, choice).integral;
+      const PairIntegral pair =
+          test::edge(samples::posed(a, centre + x, angle), b, choice).integral;
       const double scale = std::max(pair.weight, 1e-3);
       REQUIRE(std::abs(pair.force.x() + slope(1, 0, 0)) < 2e-7 * scale);
       REQUIRE(std::abs(pair.force.y() + slope(0, 1, 0)) < 2e-7 * scale);
@@ -145,9 +134,9 @@ TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
 }
 
 TEST_CASE("work along closed paths", "[edge]") {
-  test::Random random(5);
+  samples::Random random(5);
   const Polygon t = test::quad_q();
-  const Vec2 centre = test::world_centroid(t);
+  const Vec2 centre = samples::world_centroid(t);
   for (const auto& [steps, limit] :
        {std::pair(800, 2e-6), std::pair(3200, 4e-8), std::pair(12800, 1e-9)}) {
     double worst = 0;
@@ -166,7 +155,7 @@ TEST_CASE("work along closed paths", "[edge]") {
         pose(2 * M_PI * (i + 1) / steps, x1, y1, a1);
         pose(2 * M_PI * (i + .5) / steps, x, y, a);
         const PairIntegral p =
-            test::edge(test::posed(test::triangle_t(), centre + Vec2(x, y), a), t).integral;
+            test::edge(samples::posed(test::triangle_t(), centre + Vec2(x, y), a), t).integral;
         const double dw =
             p.force.x() * (x1 - x0) + p.force.y() * (y1 - y0) + p.moment_a * (a1 - a0);
         work += dw;
@@ -180,11 +169,11 @@ TEST_CASE("work along closed paths", "[edge]") {
 }
 
 TEST_CASE("swapping the bodies negates the force to the last bit", "[edge]") {
-  test::Random random(6);
+  samples::Random random(6);
   for (int i = 0; i < test::scaled(20000); ++i) {
-    const Polygon a = random.convex(random.integer(3, 12));
-    const Polygon b = test::shifted(random.convex(random.integer(3, 12)),
-                                    {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)});
+    const Polygon a = samples::random_convex(random, random.integer(3, 12));
+    const Polygon b = samples::shifted(samples::random_convex(random, random.integer(3, 12)),
+                                       {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)});
     const PairIntegral ab = test::edge(a, b).integral;
     const PairIntegral ba = test::edge(b, a).integral;
     REQUIRE(ab.force == -ba.force);
@@ -196,7 +185,7 @@ TEST_CASE("swapping the bodies negates the force to the last bit", "[edge]") {
 }
 
 TEST_CASE("representable shifts change no bit", "[edge]") {
-  test::Random random(7);
+  samples::Random random(7);
   // Coordinates on a grid of 2^-20, so that shifts up to 2^30 are exact.
   const auto on_grid = [&](const Polygon& p) {
     std::vector<Vec2> ring = p.vertices();
@@ -206,31 +195,31 @@ TEST_CASE("representable shifts change no bit", "[edge]") {
     return Polygon(ring);
   };
   for (int i = 0; i < test::scaled(2000); ++i) {
-    const Polygon a = on_grid(random.convex(random.integer(3, 8)));
-    const Polygon b = on_grid(test::shifted(random.convex(random.integer(3, 8)),
-                                            {random.uniform(-1, 1), random.uniform(-1, 1)}));
+    const Polygon a = on_grid(samples::random_convex(random, random.integer(3, 8)));
+    const Polygon b = on_grid(samples::shifted(samples::random_convex(random, random.integer(3, 8)),
+                                               {random.uniform(-1, 1), random.uniform(-1, 1)}));
     if (!a.is_convex() || !b.is_convex()) continue;
     const PairIntegral here = test::edge(a, b).integral;
     for (const Vec2& shift : {Vec2(1e6, -3e6), Vec2(1e9, 1e9), Vec2(0.5, 1024)}) {
-      check_bits(test::edge(test::shifted(a, shift), test::shifted(b, shift)).integral, here);
+      check_bits(test::edge(samples::shifted(a, shift), samples::shifted(b, shift)).integral, here);
     }
   }
 }
 
 TEST_CASE("the contact stiffness stays below its bound", "[edge]") {
-  test::Random random(8);
+  samples::Random random(8);
   const double h = 1e-6;
   double closest = 0;
   for (int i = 0; i < test::scaled(5000); ++i) {
-    const Polygon a = random.convex(random.integer(3, 8));
-    const Polygon b = random.convex(random.integer(3, 8));
+    const Polygon a = samples::random_convex(random, random.integer(3, 8));
+    const Polygon b = samples::random_convex(random, random.integer(3, 8));
     const Vec2 x(random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2));
     const double direction = random.uniform(0, 7);
     const Vec2 e(std::cos(direction), std::sin(direction));
-    const PairIntegral pair = test::edge(test::shifted(a, x), b).integral;
+    const PairIntegral pair = test::edge(samples::shifted(a, x), b).integral;
     if (!pair.touching()) continue;
-    const Vec2 change = test::edge(test::shifted(a, x + h * e), b).integral.force -
-                        test::edge(test::shifted(a, x - h * e), b).integral.force;
+    const Vec2 change = test::edge(samples::shifted(a, x + h * e), b).integral.force -
+                        test::edge(samples::shifted(a, x - h * e), b).integral.force;
     const double bound = pair.own_length_a / inradius(b) + pair.own_length_b / inradius(a);
     REQUIRE(change.norm() / (2 * h) <= bound * (1 + 1e-3) + 1e-3);
     closest = std::max(closest, change.norm() / (2 * h) / bound);

@@ -28,14 +28,14 @@ double area(const std::vector<OverlapPolygon>& polygons) {
 }  // namespace
 
 TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
-  test::Random random(10);
+  samples::Random random(10);
   double worst = 0;
   double worst_conditioned = 0;  // error x depth / (eps size): flat in depth for a sane method
   int touching = 0;
   for (int i = 0; i < test::scaled(100000); ++i) {
-    const Polygon a = random.convex(random.integer(3, 12));
-    const Polygon b = test::shifted(random.convex(random.integer(3, 12)),
-                                    {random.uniform(-1.4, 1.4), random.uniform(-1.4, 1.4)});
+    const Polygon a = samples::random_convex(random, random.integer(3, 12));
+    const Polygon b = samples::shifted(samples::random_convex(random, random.integer(3, 12)),
+                                       {random.uniform(-1.4, 1.4), random.uniform(-1.4, 1.4)});
     const PairResult e = test::edge(a, b);
     const PairResult o = overlap(a, b);
     const double weight = o.integral.weight;
@@ -59,12 +59,13 @@ TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
 }
 
 TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
-  test::Random random(12);
+  samples::Random random(12);
   for (const int kind : {0, 1, 2}) {  // distance, capped distance, area
     for (int i = 0; i < test::scaled(1000); ++i) {
-      const Polygon a = random.convex(kind == 2 ? 3 : random.integer(3, 12));
-      const Polygon b = test::shifted(random.convex(kind == 2 ? 3 : random.integer(3, 12)),
-                                      {random.uniform(-1.4, 1.4), random.uniform(-1.4, 1.4)});
+      const Polygon a = samples::random_convex(random, kind == 2 ? 3 : random.integer(3, 12));
+      const Polygon b =
+          samples::shifted(samples::random_convex(random, kind == 2 ? 3 : random.integer(3, 12)),
+                           {random.uniform(-1.4, 1.4), random.uniform(-1.4, 1.4)});
       const PotentialChoice choice = kind == 0 ? PotentialChoice{}
                                      : kind == 1
                                          ? test::length_choice(.3 * inscribed_circle(a).radius)
@@ -89,15 +90,15 @@ TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
 }
 
 TEST_CASE("the same force far from the origin", "[overlap]") {
-  test::Random random(13);
+  samples::Random random(13);
   for (int i = 0; i < test::scaled(200); ++i) {
-    const Polygon a = random.convex(random.integer(3, 8));
-    const Polygon b = test::shifted(random.convex(random.integer(3, 8)),
-                                    {random.uniform(-.8, .8), random.uniform(-.8, .8)});
+    const Polygon a = samples::random_convex(random, random.integer(3, 8));
+    const Polygon b = samples::shifted(samples::random_convex(random, random.integer(3, 8)),
+                                       {random.uniform(-.8, .8), random.uniform(-.8, .8)});
     for (const double offset : {1e6, 1e9}) {
       // Rounding the shifted coordinates changes the shapes: compare with the oracle on those.
-      const Polygon far_a = test::shifted(a, {offset, -offset});
-      const Polygon far_b = test::shifted(b, {offset, -offset});
+      const Polygon far_a = samples::shifted(a, {offset, -offset});
+      const Polygon far_b = samples::shifted(b, {offset, -offset});
       const PairResult x = exact_method(far_a, far_b, {});
       if (x.integral.penetration < 1e-2) continue;
       for (const PairResult& r : {test::edge(far_a, far_b), overlap(far_a, far_b)}) {
@@ -125,7 +126,7 @@ TEST_CASE("a tip on a long edge", "[overlap]") {
 
 TEST_CASE("degenerate pairs on a lattice", "[overlap]") {
   // Shared vertices and edges, ridges on edges, coincident polygons: all in plenty.
-  test::Random random(14);
+  samples::Random random(14);
   int pairs = 0;
   while (pairs < test::scaled(2000)) {
     const auto lattice = [&]() -> std::optional<Polygon> {
@@ -143,16 +144,8 @@ TEST_CASE("degenerate pairs on a lattice", "[overlap]") {
     if (!a || !b) continue;
     if (pairs % 2) {  // turned: the degeneracies then hold up to one rounding
       const double angle = random.uniform(0, 6);
-      const auto turned = [&](const Polygon& p) {
-        std::vector<Vec2> ring;
-        for (const Vec2& v : p.vertices()) {
-          ring.emplace_back(std::cos(angle) * v.x() - std::sin(angle) * v.y(),
-                            std::sin(angle) * v.x() + std::cos(angle) * v.y());
-        }
-        return Polygon(ring);
-      };
-      a = turned(*a);
-      b = turned(*b);
+      a = samples::turned(*a, angle);
+      b = samples::turned(*b, angle);
       if (!a->is_convex() || !b->is_convex()) continue;
     }
     ++pairs;
@@ -201,15 +194,15 @@ TEST_CASE("degenerate contacts are ordinary input", "[overlap]") {
       CHECK(std::abs(r.volume.overlap_area - overlap_area) < 1e-14);
     }
   };
-  check(test::shifted(square, {1, 0}), 0);                                // shared edge
-  check(test::shifted(square, {1, 1}), 0);                                // shared vertex
-  check(test::shifted(square, {1, .5}), 0);                               // part of an edge
-  check(test::shifted(square, {1.5, .5}), 0);                             // apart
+  check(samples::shifted(square, {1, 0}), 0);                             // shared edge
+  check(samples::shifted(square, {1, 1}), 0);                             // shared vertex
+  check(samples::shifted(square, {1, .5}), 0);                            // part of an edge
+  check(samples::shifted(square, {1.5, .5}), 0);                          // apart
   check(square, 1);                                                       // coincident
-  check(test::shifted(square, {.5, 0}), .5);                              // two collinear edges
+  check(samples::shifted(square, {.5, 0}), .5);                           // two collinear edges
   check(Polygon({{.25, .25}, {.75, .25}, {.75, .75}, {.25, .75}}), .25);  // one inside the other
   check(Polygon({{.25, 0}, {.75, 0}, {.75, .5}, {.25, .5}}), .25);        // inside, on an edge
   check(Polygon({{.5, 1}, {0, 2}, {-.5, 1}}), 0);  // vertex on edge, edge on edge
   check(Polygon({{1, 1}, {2, 1}, {2, 2}}), 0);
-  check(test::shifted(square, {std::nextafter(1.0, 0.0), 0}), 1 - std::nextafter(1.0, 0.0));
+  check(samples::shifted(square, {std::nextafter(1.0, 0.0), 0}), 1 - std::nextafter(1.0, 0.0));
 }

@@ -57,7 +57,7 @@ TEST_CASE("simplicity is decided exactly", "[polygon]") {
 }
 
 TEST_CASE("orientation obeys its laws on nearly collinear points", "[predicates]") {
-  test::Random random(1);
+  samples::Random random(1);
   int zero = 0;
   for (int i = 0; i < test::scaled(20000); ++i) {
     const Vec2 a(random.uniform(-1, 1), random.uniform(-1, 1));
@@ -90,7 +90,7 @@ TEST_CASE("area, centroid and second moment", "[polygon]") {
   // Non-convex, and far from the origin: an L of three unit squares.
   const Polygon l({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}});
   for (const double offset : {0.0, 1e6, 1e9}) {
-    const AreaMoments m = area_moments(test::shifted(l, {offset, -offset}));
+    const AreaMoments m = area_moments(samples::shifted(l, {offset, -offset}));
     CHECK(m.area == 3);
     CHECK(m.centroid.x() == Approx(5.0 / 6).epsilon(1e-15));
     CHECK(m.polar == Approx(3.0 / 6 + 4.0 / 3).epsilon(1e-14));  // 3 squares + parallel axes

@@ -45,7 +45,7 @@ TEST_CASE("inscribed circles with known radius", "[potential]") {
     CHECK(inscribed_circle(p).radius == Approx(.5).epsilon(1e-13));
   }
   // Nearly straight vertices, at every angle of the bevel and turned by any angle.
-  test::Random random(1);
+  samples::Random random(1);
   for (double h = 1e-3; h > 1e-18; h /= 10) {
     const Polygon p({{-.5, -.4},
                      {-.1, -.4 - h},
@@ -55,7 +55,7 @@ TEST_CASE("inscribed circles with known radius", "[potential]") {
                      {.45, .5},
                      {-.5, .5}});
     for (int k = 0; k < 50; ++k) {
-      const Polygon turned = test::posed(p, {0, 0}, random.uniform(0, 6));
+      const Polygon turned = samples::posed(p, {0, 0}, random.uniform(0, 6));
       if (!turned.is_convex()) continue;
       INFO("bevel " << h);
       REQUIRE(std::abs(inscribed_circle(turned).radius - .45) < h + 1e-15);
@@ -67,9 +67,9 @@ TEST_CASE("inscribed circles with known radius", "[potential]") {
 }
 
 TEST_CASE("the inradius is the maximum of the envelope", "[potential]") {
-  test::Random random(2);
+  samples::Random random(2);
   for (int i = 0; i < test::scaled(2000); ++i) {
-    const Polygon polygon = random.convex(random.integer(3, 12));
+    const Polygon polygon = samples::random_convex(random, random.integer(3, 12));
     const InscribedCircle circle = inscribed_circle(polygon);
     const Potential unit = make_potential(polygon, test::length_choice(1));
     for (const Vec2& centre : circle.centres) {

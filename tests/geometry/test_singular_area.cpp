@@ -8,6 +8,7 @@
 
 using namespace apothem;
 using namespace apothem::test;
+using samples::Random;
 using Kind = SingularArea::Kind;
 
 namespace {
@@ -242,7 +243,7 @@ TEST_CASE("singular area of a convex polygon: the intersection of shifted half-p
           "[singular]") {
   Random random(7);
   for (int i = 0; i < scaled(300); ++i) {
-    const Polygon polygon = random.convex(random.integer(3, 40));
+    const Polygon polygon = samples::random_convex(random, random.integer(3, 40));
     const Skeleton skeleton = straight_skeleton(polygon);
     const double r = random.uniform(0, 1) * skeleton.roof_height;
     CHECK(std::abs(singular_area(skeleton, r).area() - area_of(shrunk(polygon, r))) < 1e-14);

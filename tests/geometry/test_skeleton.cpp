@@ -7,13 +7,14 @@
 #include <sstream>
 
 #include "geometry/predicates.hpp"
-#include "shapes.hpp"
 #include "support.hpp"
 
 using namespace apothem;
-using namespace apothem::test;
+using namespace apothem::samples;
 
 namespace {
+
+using Ring = std::vector<Vec2>;
 
 // An independent roof for polygons in general position: the lower envelope of the edges' slabs,
 // bounded by the tracks of the motorcycle graph (Huber & Held 2011; Cheng & Vigneron 2007).
@@ -143,8 +144,7 @@ Skeleton lawful(const Polygon& polygon) {
 
 // Largest error of the roof at random points, relative to the polygon's size.
 template <class Reference>
-double roof_error(const Polygon& polygon, const Reference& reference, test::Random& random,
-                  int points) {
+double roof_error(const Polygon& polygon, const Reference& reference, Random& random, int points) {
   const Skeleton skeleton = lawful(polygon);
   const Box box = bounding_box(polygon);
   double worst = 0;
@@ -175,10 +175,11 @@ struct Variant {
 };
 
 std::vector<Variant> variants(const Ring& ring) {
-  std::vector<Variant> result{{"as given", 1, ring},         {"turned", 1, turned(ring, 1.2345)},
+  std::vector<Variant> result{{"as given", 1, ring},         {"turned", 1, ring},
                               {"reflected", 1, ring},        {"scaled by 1e-6", 1e-6, ring},
                               {"scaled by 1e6", 1e6, ring},  {"shifted by 1e6", 1, ring},
                               {"started elsewhere", 1, ring}};
+  for (Vec2& v : result[1].ring) v = turned(v, 1.2345);
   for (Vec2& v : result[2].ring) v.x() = -v.x();
   for (Vec2& v : result[3].ring) v *= 1e-6;
   for (Vec2& v : result[4].ring) v *= 1e6;
@@ -197,14 +198,14 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
     double height;
   };
   const std::vector<Known> shapes{
-      {"cross", cross_ring(), .5},
-      {"L", l_ring(), .5},
+      {"cross", cross_of_squares().vertices(), .5},
+      {"L", l_shape().vertices(), .5},
       {"rectangle", {{0, 0}, {3, 0}, {3, 1}, {0, 1}}, .5},
       {"rectangle with straight vertices",
        {{0, 0}, {.5, 0}, {1, 0}, {2, 0}, {3, 0}, {3, .5}, {3, 1}, {2, 1}, {1, 1}, {0, 1}},
        .5},
-      {"1000-gon", regular_ring(1000), std::cos(M_PI / 1000)},
-      {"comb", comb_ring(6), .5},
+      {"1000-gon", regular(1000).vertices(), std::cos(M_PI / 1000)},
+      {"comb", comb(6).vertices(), .5},
       {"sliver", {{0, 0}, {1, 0}, {1, 1e-6}, {0, 1e-6}}, 5e-7},
       {"triangle 3 4 5", {{0, 0}, {4, 0}, {0, 3}}, 1}};
   for (const Known& shape : shapes) {
@@ -219,9 +220,10 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
 }
 
 TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skeleton]") {
-  for (const Ring& ring :
-       {star_ring(5, .4), star_ring(17, .9), star_ring(8, .1), comb_ring(3), comb_ring(20),
-        spiral_ring(1), spiral_ring(4), regular_ring(1000), Ring{{0, 0}, {1, 0}, {.3, 1e-6}}}) {
+  for (const Polygon& polygon :
+       {star(5, .4), star(17, .9), star(8, .1), comb(3, 3), comb(20, 3), spiral(1, 12),
+        spiral(4, 12), regular(1000), Polygon({{0, 0}, {1, 0}, {.3, 1e-6}})}) {
+    const Ring ring = polygon.vertices();
     for (const Variant& variant : variants(ring)) {
       INFO(ring.size() << " vertices, " << variant.name);
       lawful(Polygon(variant.ring));
@@ -230,50 +232,51 @@ TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skele
 }
 
 TEST_CASE("convex: the roof is the lower envelope of the edges' lines", "[skeleton]") {
-  test::Random random(1);
+  Random random(1);
   for (int i = 0; i < test::scaled(300); ++i) {
-    const Polygon polygon = random.convex(random.integer(3, 40));
+    const Polygon polygon = random_convex(random, random.integer(3, 40));
     const auto reference = [&](const Vec2& x) { return envelope(polygon, x); };
     CHECK(roof_error(polygon, reference, random, 100) < 1e-12);
   }
-  const Polygon round(regular_ring(1000));
+  const Polygon round = regular(1000);
   const auto reference = [&](const Vec2& x) { return envelope(round, x); };
   CHECK(roof_error(round, reference, random, test::scaled(1000)) < 1e-12);
 }
 
 TEST_CASE("any shape: the roof is that of the motorcycle graph", "[skeleton]") {
-  test::Random random(2);
+  Random random(2);
   for (int i = 0; i < test::scaled(500); ++i) {
-    const Polygon polygon = random_polygon(random, random.integer(4, 30));
+    const Polygon polygon =
+        random_star_shaped(random, random.integer(4, 30), random.uniform(.1, 1));
     INFO("polygon " << i << " with " << polygon.size() << " vertices");
     CHECK(roof_error(polygon, MotorcycleRoof(polygon), random, 100) < 1e-12);
   }
 }
 
 TEST_CASE("known shapes: the roof is that of the motorcycle graph at 10 000 points", "[skeleton]") {
-  test::Random random(3);
-  const std::vector<std::pair<std::string, Ring>> shapes{
-      {"cross", cross_ring()},
-      {"L", l_ring()},
-      {"star of 5", star_ring(5, .4)},
-      {"star of 40", star_ring(40, .7)},
-      {"comb of 8", comb_ring(8)},
-      {"spiral of 3", spiral_ring(3)},
-      {"bent sliver of aspect 1e6", {{0, 0}, {1, 0}, {1, 1e-6}, {.4, 5e-7}, {0, 1e-6}}}};
-  for (const auto& [name, ring] : shapes) {
-    const Polygon polygon(turned(ring, name == "cross" || name == "L" ? 0 : .3));
+  Random random(3);
+  const std::vector<std::pair<std::string, Polygon>> shapes{
+      {"cross", cross_of_squares()},
+      {"L", l_shape()},
+      {"star of 5", turned(star(5, .4), .3)},
+      {"star of 40", turned(star(40, .7), .3)},
+      {"comb of 8", turned(comb(8), .3)},
+      {"spiral of 3", turned(spiral(3, 12), .3)},
+      {"bent sliver of aspect 1e6",
+       turned(Polygon({{0, 0}, {1, 0}, {1, 1e-6}, {.4, 5e-7}, {0, 1e-6}}), .3)}};
+  for (const auto& [name, polygon] : shapes) {
     INFO(name);
     CHECK(roof_error(polygon, MotorcycleRoof(polygon), random, test::scaled(10000)) < 1e-12);
   }
 }
 
 TEST_CASE("turned crosses of equal arms always get a skeleton", "[skeleton]") {
-  test::Random random(4);
+  Random random(4);
   int retried = 0;
   const int cases = test::scaled(2000);
   for (int i = 0; i < cases; ++i) {
     const double arm = i % 2 == 0 ? 1 : random.uniform(.2, 3);
-    const Polygon polygon(turned(cross_ring(arm), random.uniform(0, 2 * M_PI)));
+    const Polygon polygon = turned(cross_of_squares(arm), random.uniform(0, 2 * M_PI));
     const Skeleton skeleton = lawful(polygon);
     if (skeleton.attempts > 1) ++retried;
     CHECK(std::abs(skeleton.roof_height - .5) < 1e-12);
@@ -282,7 +285,7 @@ TEST_CASE("turned crosses of equal arms always get a skeleton", "[skeleton]") {
 }
 
 TEST_CASE("a wrong skeleton breaks a law", "[skeleton]") {
-  const Polygon polygon(l_ring());
+  const Polygon polygon = l_shape();
   const Skeleton good = lawful(polygon);
   const auto broken = [&](auto spoil) {
     Skeleton bad = good;
@@ -299,7 +302,7 @@ TEST_CASE("a wrong skeleton breaks a law", "[skeleton]") {
   CHECK(broken([](Skeleton& s) { std::swap(s.arcs.back().left, s.arcs.back().right); }));
   CHECK(broken([](Skeleton& s) { s.faces[2][2] = 1000; }));
   CHECK(broken([](Skeleton& s) { s.roof_height = 1; }));
-  CHECK(broken_law(good, Polygon(cross_ring())).has_value());
+  CHECK(broken_law(good, cross_of_squares()).has_value());
 }
 
 TEST_CASE("every public ring gets a skeleton", "[skeleton]") {

@@ -259,7 +259,7 @@ TEST_CASE("every point of the region lies in exactly one cell", "[voronoi]") {
     for (const auto& cell : voronoi.mesh.cells) rings.push_back(cell_ring(voronoi.mesh, cell));
     const Ring local = region.local_vertices();
     const Box box = bounding_box(Polygon(local));
-    test::Random random(5);
+    samples::Random random(5);
     int inside = 0;
     for (int i = 0; i < test::scaled(500); ++i) {
       const Vec2 p(random.uniform(box.x0, box.x1), random.uniform(box.y0, box.y1));
@@ -412,7 +412,7 @@ TEST_CASE("the same seed gives the same bits, also far away", "[voronoi]") {
     const VoronoiOptions options{.cells = 25, .seed = 4, .lloyd = 10};
     const VoronoiMesh mesh = voronoi_mesh(here, options);
     const VoronoiMesh again = voronoi_mesh(here, options);
-    const Polygon there = test::shifted(here, {1e9, -1e9});
+    const Polygon there = samples::shifted(here, {1e9, -1e9});
     const VoronoiMesh far = voronoi_mesh(there, options);
     INFO(shape.name);
     for (const VoronoiMesh* other : {&again, &far}) {
@@ -445,7 +445,7 @@ TEST_CASE("what cannot be meshed is refused", "[voronoi]") {
   CHECK_THROWS_AS(voronoi_mesh(region, {middle, Vec2(1, .5)}, .1), std::invalid_argument);
   CHECK_THROWS_AS(voronoi_mesh(region, {Vec2(std::nan(""), .5)}, .1), std::invalid_argument);
   // Coordinates a quarter of a metre apart have no room for a hundred cells in a square metre.
-  const Polygon far = test::shifted(region, {0x1p50, 0});
+  const Polygon far = samples::shifted(region, {0x1p50, 0});
   CHECK_THROWS_AS(in_world(far, voronoi_mesh(far, {.cells = 100}).mesh), InvalidPolygon);
   // Two vertices that differ by 1e-20 next to zero, but not as seen from vertex 0.
   const Polygon lost({{1, 0}, {1, 1}, {1e-20, .5}, {0, .5}});

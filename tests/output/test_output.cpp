@@ -36,7 +36,7 @@ Model two_bodies() {
     RigidBody body;
     body.name = name;
     body.material = body.name == "two";
-    set_shape(body, test::shifted(test::quad_q(), model.origin + Vec2(body.material * 3, 0)),
+    set_shape(body, samples::shifted(test::quad_q(), model.origin + Vec2(body.material * 3, 0)),
               model);
     model.bodies.push_back(body);
   }
@@ -152,7 +152,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
   const Folder folder;
   const Model model = two_bodies();
   State state = state_of(model);
-  test::Random random(30);
+  samples::Random random(30);
   std::vector<std::vector<double>> rows;
   {
     HistoryWriter writer(folder.path(), model, {1});

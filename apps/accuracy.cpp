@@ -1,0 +1,418 @@
+// apothem accuracy: speed against error of every method on every case.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "accuracy_methods.hpp"
+#include "commands.hpp"
+#include "geometry/hard_pairs.hpp"
+#include "geometry/overlap.hpp"
+#include "geometry/samples.hpp"
+#include "geometry/skeleton.hpp"
+#include "output/files.hpp"
+#include "output/gnuplot.hpp"
+#include "scene/error.hpp"
+#include "scene/pair_file.hpp"
+
+namespace apothem {
+namespace {
+
+// Errors above this share of the scale are failures.
+constexpr double kWrong = 1e-2;
+// The goal for the force error, as a share of the own boundary length.
+constexpr double kGoal = 1e-12;
+
+struct Case {
+  std::string name;
+  std::vector<PreparedPair> pairs;
+  std::vector<std::optional<ExpectedContact>> expected;  // one per pair
+  int refused = 0;
+};
+
+class Cases {
+ public:
+  void add(const std::string& kind, const std::string& name, const std::vector<Vec2>& a,
+           const std::vector<Vec2>& b, const std::optional<ExpectedContact>& expected = {}) {
+    Case& to = named(kind);
+    const char* which = "a";
+    try {
+      Polygon polygon_a(a);
+      which = "b";
+      Polygon polygon_b(b);
+      which = "a or b";
+      to.pairs.emplace_back(name, std::move(polygon_a), std::move(polygon_b));
+      to.expected.push_back(expected);
+    } catch (const InvalidPolygon& error) {
+      refuse(to, name,
+             fmt::format("polygon {}, vertex {}: {}", which, error.vertex(), error.what()));
+    } catch (const SkeletonFailure& error) {
+      refuse(to, name, error.what());
+    }
+  }
+  [[nodiscard]] const std::vector<Case>& all() const { return cases_; }
+
+ private:
+  Case& named(const std::string& kind) {
+    for (Case& c : cases_) {
+      if (c.name == kind) return c;
+    }
+    return cases_.emplace_back(Case{kind, {}, {}, 0});
+  }
+  static void refuse(Case& in, const std::string& name, const std::string& why) {
+    ++in.refused;
+    fmt::print(stderr, "apothem: {}\n", SceneError(name, 0, "", "refused: " + why).what());
+  }
+
+  std::vector<Case> cases_;
+};
+
+// Pairs in general position that overlap.
+void add_generic(Cases& cases) {
+  const auto fill = [&](const std::string& kind, int count, const auto& shape) {
+    samples::Random random(7);
+    for (int i = 1; i <= count;) {
+      const Polygon a = shape(random);
+      const double angle = random.uniform(0, 2 * M_PI);
+      const double distance = random.uniform(.3, 1.2);
+      const Vec2 centre =
+          samples::world_centroid(a) + distance * Vec2(std::cos(angle), std::sin(angle));
+      const Polygon b = samples::posed(shape(random), centre, random.uniform(0, 2 * M_PI));
+      if (overlap_polygons(a, b, a.origin()).empty()) continue;
+      cases.add(kind, fmt::format("{}/{}", kind, i++), a.vertices(), b.vertices());
+    }
+  };
+  fill("generic-convex", 200, [](samples::Random& random) {
+    return samples::random_convex(random, random.integer(3, 8));
+  });
+  fill("generic-non-convex", 50, [](samples::Random& random) {
+    return samples::random_star_shaped(random, random.integer(6, 12), .35);
+  });
+}
+
+Cases cases_of(const AccuracyOptions& options) {
+  Cases cases;
+  for (const std::string& file : options.cases) {
+    for (const PolygonPair& pair : read_pair_file(file)) {
+      const std::string kind =
+          pair.kind.empty() ? std::filesystem::path(file).filename().string() : pair.kind;
+      cases.add(kind, pair.name, pair.a, pair.b, pair.expected);
+    }
+  }
+  if (!options.cases.empty()) return cases;
+  add_generic(cases);
+  for (const HardPair& pair : hard_pairs()) {
+    cases.add(pair.kind, pair.name, pair.a.vertices(), pair.b.vertices());
+  }
+  return cases;
+}
+
+// The error figures of docs/theory.md for one pair, against the reference.
+struct Errors {
+  double of_weight = 0;  // |dF| / W; W no smaller than the goal's share of the own length
+  double of_length = 0;  // |dF| / own boundary length
+  double scaled = 0;     // |dF| / |F| x depth / (eps X)
+  double moment = 0;     // |dM| / (own boundary length x X)
+};
+
+Errors errors(const PreparedPair& pair, const PairIntegral& result, const PairIntegral& exact) {
+  const double own = exact.own_length_a + exact.own_length_b;
+  const double length = own > 0 ? own : pair.size;  // pairs that only touch
+  const double error = (result.force - exact.force).norm();
+  Errors e;
+  e.of_weight = error / std::max(exact.weight, kGoal * length);
+  e.of_length = error / length;
+  if (exact.weight > 0) {
+    // Mean depth of the boundary inside. Where the tractions cancel, W stands for |F|.
+    const double depth =
+        exact.weight / own / std::max(pair.potential_a.steepest, pair.potential_b.steepest);
+    const double force = exact.force.norm();
+    e.scaled = error / (force > .1 * exact.weight ? force : exact.weight) * depth /
+               (std::numeric_limits<double>::epsilon() * pair.size);
+  }
+  e.moment = std::max(std::abs(result.moment_a - exact.moment_a),
+                      std::abs(result.moment_b - exact.moment_b)) /
+             (length * pair.size);
+  return e;
+}
+
+struct Worst {
+  double value = 0;
+  std::string pair;
+  void include(double x, const std::string& name) {
+    if (!(x > value)) return;
+    value = x;
+    pair = name;
+  }
+};
+
+struct Row {
+  std::string case_name;
+  std::string_view method;
+  size_t pairs = 0;
+  int refused = 0;
+  int failures = 0;
+  double nanoseconds = 0;
+  double median = 0, worst = 0;  // of W
+  Worst of_length, scaled;
+};
+
+std::string csv(const std::string& field) {
+  if (field.find_first_of(",\"\n") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char c : field) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+class Accuracy {
+ public:
+  explicit Accuracy(const AccuracyOptions& options) : options_(options) {}
+
+  int execute() {
+    const Cases cases = cases_of(options_);
+    if (std::all_of(cases.all().begin(), cases.all().end(),
+                    [](const Case& c) { return c.pairs.empty(); })) {
+      throw SceneError("accuracy", 0, "", "no pair is left to evaluate");
+    }
+    create_folder(options_.folder);
+    fmt::print("Errors of the force: of W, and of stiffness x own boundary length.\n");
+    fmt::print("{:<20} {:<16} {:>5} {:>12} {:>12} {:>12} {:>12} {:>8}\n", "case", "method", "pairs",
+               "ns per pair", "median of W", "worst of W", "of length", "failures");
+    for (const Case& c : cases.all()) {
+      if (!c.pairs.empty()) measure(c);
+    }
+    write_results(cases);
+    return compared_ > agreed_ ? exit_code::missed : exit_code::done;
+  }
+
+ private:
+  void measure(const Case& c) {
+    const AccuracyRun reference = run_method(kAccuracyMethods[0].name, c.pairs);
+    compare_with_expected(c, reference);
+    for (const AccuracyMethod& method : kAccuracyMethods) {
+      const bool is_reference = &method == kAccuracyMethods.data();
+      const AccuracyRun run = is_reference ? reference : run_method(method.name, c.pairs);
+      add_row(c, method.name, run, reference);
+    }
+    std::fflush(stdout);
+  }
+
+  void add_row(const Case& c, std::string_view method, const AccuracyRun& run,
+               const AccuracyRun& reference) {
+    Row row{c.name, method, c.pairs.size(), c.refused, 0, run.nanoseconds, 0, 0, {}, {}};
+    std::vector<double> of_weight;
+    for (size_t i = 0; i < c.pairs.size(); ++i) {
+      const std::string& name = c.pairs[i].name;
+      std::string status = run.outcomes[i].failure;
+      Errors e;
+      if (status.empty() && reference.outcomes[i].failure.empty()) {
+        e = errors(c.pairs[i], run.outcomes[i].integral, reference.outcomes[i].integral);
+        if (e.of_weight <= kWrong) {
+          of_weight.push_back(e.of_weight);
+          row.of_length.include(e.of_length, name);
+          row.scaled.include(e.scaled, name);
+        } else {
+          status = "wrong";
+        }
+      } else if (status.empty()) {
+        status = "no reference";
+      }
+      if (!status.empty() && status != "no reference") ++row.failures;
+      pairs_ +=
+          fmt::format("{},{},{},{},{},{},{},{}\n", csv(name), csv(c.name), method,
+                      status.empty() ? "ok" : status, e.of_weight, e.of_length, e.scaled, e.moment);
+    }
+    row.median = row.worst = std::nan("");
+    if (!of_weight.empty()) {
+      std::sort(of_weight.begin(), of_weight.end());
+      row.median = of_weight[of_weight.size() / 2];
+      row.worst = of_weight.back();
+    }
+    fmt::print("{:<20} {:<16} {:>5} {:>12.0f} {:>12.1e} {:>12.1e} {:>12.1e} {:>8}\n", row.case_name,
+               row.method, row.pairs, row.nanoseconds, row.median, row.worst, row.of_length.value,
+               row.failures);
+    rows_.push_back(row);
+  }
+
+  void compare_with_expected(const Case& c, const AccuracyRun& reference) {
+    for (size_t i = 0; i < c.pairs.size(); ++i) {
+      if (!c.expected[i]) continue;
+      const ExpectedContact& x = *c.expected[i];
+      const AccuracyOutcome& r = reference.outcomes[i];
+      const double size = c.pairs[i].size;
+      const double length = x.own_length > 0 ? x.own_length : size;
+      const double off = std::max({(r.integral.force - x.force).norm() / length,
+                                   std::abs(r.integral.moment_a - x.moment_a) / (length * size),
+                                   std::abs(r.integral.moment_b - x.moment_b) / (length * size),
+                                   std::abs(r.volume.energy - x.energy) / (size * size),
+                                   std::abs(r.volume.overlap_area - x.overlap_area) / (size * size),
+                                   r.failure.empty() ? 0 : HUGE_VAL});
+      ++compared_;
+      if (off <= x.tolerance) {
+        ++agreed_;
+        furthest_ = std::max(furthest_, off);
+      } else {
+        fmt::print(stderr, "apothem: {}\n",
+                   SceneError(c.pairs[i].name, 0, "",
+                              fmt::format("the expected values of the file are off by {:.2g}", off))
+                       .what());
+      }
+    }
+  }
+
+  void write_results(const Cases& cases) {
+    std::string table =
+        "case,method,pairs,refused,failures,time [ns],median_error [W],worst_error [W],"
+        "worst_error [own_length],worst_scaled_error [eps size/depth]\n";
+    for (const Row& r : rows_) {
+      table += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv(r.case_name), r.method, r.pairs,
+                           r.refused, r.failures, r.nanoseconds, r.median, r.worst,
+                           r.of_length.value, r.scaled.value);
+    }
+    write_file(options_.folder + "/accuracy.csv", table);
+    write_file(options_.folder + "/pairs.csv",
+               "pair,case,method,status,error [W],error [own_length],"
+               "scaled_error [eps size/depth],moment_error [own_length size]\n" +
+                   pairs_);
+    write_file(options_.folder + "/accuracy.gnuplot", plot_script());
+    fmt::print("\n");
+    for (const std::string_view method : {"edge", "overlap"}) print_goals(method);
+    if (compared_ > 0) {
+      fmt::print("expected values: {} of {} agree with the reference, to {:.1g}\n", agreed_,
+                 compared_, furthest_);
+    }
+    int refused = 0;
+    for (const Case& c : cases.all()) refused += c.refused;
+    if (refused > 0) fmt::print("refused pairs: {}\n", refused);
+    const Plotted plotted = plot_with_gnuplot(options_.folder, "accuracy.gnuplot", "accuracy.png");
+    fmt::print("results in {}: accuracy.csv, pairs.csv{}\n", options_.folder,
+               plotted == Plotted::yes ? ", accuracy.png" : "");
+    if (plotted == Plotted::no_gnuplot) {
+      fmt::print("no picture: install gnuplot-nox, then run gnuplot accuracy.gnuplot in {}\n",
+                 options_.folder);
+    }
+    if (plotted == Plotted::failed) {
+      throw std::runtime_error(options_.folder + "/accuracy.png: gnuplot failed, see its message");
+    }
+  }
+
+  void print_goals(std::string_view method) const {
+    Worst of_length, scaled;
+    int failures = 0;
+    for (const Row& r : rows_) {
+      if (r.method != method) continue;
+      of_length.include(r.of_length.value, r.of_length.pair);
+      scaled.include(r.scaled.value, r.scaled.pair);
+      failures += r.failures;
+    }
+    fmt::print(
+        "{}: worst |dF| / own boundary length {:.1e} ({}), worst scaled error {:.2g} ({}), {} "
+        "failures\n",
+        method, of_length.value, of_length.pair, scaled.value, scaled.pair, failures);
+  }
+
+  [[nodiscard]] std::string plot_script() const;
+
+  const AccuracyOptions& options_;
+  std::vector<Row> rows_;
+  std::string pairs_;
+  int compared_ = 0, agreed_ = 0;
+  double furthest_ = 0;
+};
+
+std::string Accuracy::plot_script() const {
+  std::string script = R"gp(# Speed against error of contact methods: gnuplot accuracy.gnuplot
+if (!exists("output")) output = 'accuracy.png'
+set terminal pngcairo size 1100,650 font 'DejaVu Sans,11' background 'white'
+set output output
+set datafile separator ','
+set title "Contact force of two polygons: error against time, one dot per method and case"
+set logscale xy
+set format '10^{%T}'
+set xlabel 'time per pair [ns]'
+set ylabel 'worst error of the force [k_n × own boundary length]' noenhanced
+set ytics add ("≤10^{-18}" 1e-18, 'failed' 1)
+set yrange [2e-19:8]
+set grid lc rgb '#cccccc' lt 1 lw .5
+set border 3
+set tics nomirror
+set key outside right center reverse Left spacing 1.5 samplen 1
+shown(e) = e > 1e-18 ? e : 1e-18
+error(m) = (strcol(2) eq m ? shown(column(9)) : NaN)
+failed(m) = (strcol(2) eq m && column(5) > 0 ? 1 : NaN)
+plot )gp";
+  script +=
+      fmt::format("{} with lines lc rgb '#000000' dt 2 lw 1.5 title 'goal: 10^{{-12}}'", kGoal);
+  // In the order of kAccuracyMethods.
+  constexpr std::array kColours{"#777777", "#4477aa", "#228833", "#ee6677", "#aa3377", "#ccbb44"};
+  for (size_t m = 0; m < kAccuracyMethods.size(); ++m) {
+    const std::string_view name = kAccuracyMethods[m].name;
+    int failures = 0;
+    for (const Row& r : rows_) failures += r.method == name ? r.failures : 0;
+    script += fmt::format(
+        ", \\\n  'accuracy.csv' every ::1 using 6:(error('{0}')) with points pt 7 ps 1.3 lc rgb "
+        "'{1}' title '{0}{2}', \\\n  '' every ::1 using 6:(failed('{0}')) with points pt 2 ps 1.5 "
+        "lw 2 lc rgb '{1}' notitle",
+        name, kColours[m], failures == 0 ? "" : fmt::format(" ({} failed)", failures));
+  }
+  return script + "\n";
+}
+
+// Force and moments to 17 digits, one pair per line.
+void write_cases(const std::string& file) {
+  std::string text =
+      "{\"about\": \"Hard pairs of polygons and their contact: distance potential, reference roof, "
+      "unit "
+      "stiffness, moments about the centroids, tolerance as a share of own_length. Expected values "
+      "by the 100-digit oracle. Written by: apothem accuracy --write-cases FILE\",\n\"pairs\": [\n";
+  std::vector<PreparedPair> pairs;
+  std::vector<std::string> kinds;
+  for (const HardPair& pair : hard_pairs()) {
+    pairs.emplace_back(pair.name, pair.a, pair.b);
+    kinds.push_back(pair.kind);
+  }
+  const auto ring = [](const Polygon& polygon) {
+    std::string list;
+    for (const Vec2& v : polygon.vertices()) {
+      list += fmt::format("{}[{},{}]", list.empty() ? "" : ",", v.x(), v.y());
+    }
+    return "[" + list + "]";
+  };
+  const AccuracyRun exact = run_method(kAccuracyMethods[0].name, pairs);
+  // Zeros are zero only to the oracle's last digit.
+  const auto clean = [](double x, double scale) { return std::abs(x) < 1e-60 * scale ? 0 : x; };
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const PreparedPair& pair = pairs[i];
+    const auto& [r, volume, failure] = exact.outcomes[i];
+    if (!failure.empty()) throw std::runtime_error(pair.name + ": the oracle " + failure);
+    // The round-off of phi that one ulp of the coordinates makes, where it is above the goal.
+    const double tolerance =
+        std::max(kGoal, std::numeric_limits<double>::epsilon() * pair.size *
+                            std::max(pair.potential_a.steepest, pair.potential_b.steepest));
+    text += fmt::format(
+        "{{\"name\": \"{}\", \"kind\": \"{}\",\n \"a\": {},\n \"b\": {},\n \"expected\": "
+        "{{\"force\": "
+        "[{},{}], \"moment_a\": {}, \"moment_b\": {}, \"weight\": {}, \"energy\": {}, "
+        "\"overlap_area\": {}, \"own_length\": {}, \"tolerance\": {:.2g}}}}}{}\n",
+        pair.name, kinds[i], ring(pair.a), ring(pair.b), clean(r.force.x(), r.weight),
+        clean(r.force.y(), r.weight), clean(r.moment_a, r.weight), clean(r.moment_b, r.weight),
+        r.weight, volume.energy, volume.overlap_area, r.own_length_a + r.own_length_b, tolerance,
+        i + 1 < pairs.size() ? "," : "");
+  }
+  write_file(file, text + "]}\n");
+  fmt::print("{}: {} pairs\n", file, pairs.size());
+}
+
+}  // namespace
+
+int accuracy_command(const AccuracyOptions& options) {
+  if (!options.write_cases.empty()) {
+    write_cases(options.write_cases);
+    return exit_code::done;
+  }
+  return Accuracy(options).execute();
+}
+
+}  // namespace apothem

@@ -1,0 +1,110 @@
+#include "scene/pair_file.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "geometry/polygon.hpp"
+#include "scene/json.hpp"
+#include "scene/polygon_file.hpp"
+
+namespace apothem {
+namespace {
+
+// Calls read(), whose complaints are then about that polygon of the pair.
+template <class Read>
+auto of_polygon(const char* polygon, const Read& read) {
+  try {
+    return read();
+  } catch (const InvalidPolygon& error) {
+    throw BadPairLine(error.what(), polygon, error.vertex());
+  }
+}
+
+ExpectedContact read_expected(const JsonReader& reader, const JsonValue& value) {
+  JsonObject object(reader, value);
+  const auto number = [&](const char* key, const char* unit) {
+    return reader.number(object.required(key, std::string("number in ") + unit), unit);
+  };
+  ExpectedContact expected{};
+  expected.force = reader.vec2(object.required("force", "[fx, fy] in m"), "m");
+  expected.moment_a = number("moment_a", "m^2");
+  expected.moment_b = number("moment_b", "m^2");
+  expected.weight = number("weight", "m");
+  expected.energy = number("energy", "m^2");
+  expected.overlap_area = number("overlap_area", "m^2");
+  expected.own_length = number("own_length", "m");
+  expected.tolerance =
+      reader.positive(object.required("tolerance", "share of own_length"), "own_length");
+  object.finish();
+  return expected;
+}
+
+std::vector<PolygonPair> read_json(const std::string& text, const std::string& file) {
+  const JsonReader reader(file);
+  const JsonValue document = parse_json(text, file);
+  JsonObject root(reader, document);
+  root.optional("about");
+  std::vector<PolygonPair> pairs;
+  for (const JsonValue& item : reader.array(root.required("pairs", "array of pairs"))) {
+    JsonObject object(reader, item);
+    PolygonPair& pair = pairs.emplace_back();
+    pair.name = reader.string(object.required("name", "string"));
+    if (const JsonValue* kind = object.optional("kind")) pair.kind = reader.string(*kind);
+    pair.a = reader.ring(object.required("a", "[[x,y],...] in m"));
+    pair.b = reader.ring(object.required("b", "[[x,y],...] in m"));
+    if (const JsonValue* expected = object.optional("expected")) {
+      pair.expected = read_expected(reader, *expected);
+    }
+    object.finish();
+  }
+  root.finish();
+  return pairs;
+}
+
+}  // namespace
+
+std::string pair_name(const std::string& line) {
+  std::istringstream words(line);
+  std::string name;
+  words >> name;
+  return name;
+}
+
+PolygonPair parse_pair(const std::string& line) {
+  std::istringstream words(line);
+  PolygonPair pair;
+  words >> pair.name;
+  pair.a = of_polygon("a", [&] { return read_ring(words); });
+  pair.b = of_polygon("b", [&] { return read_ring(words); });
+  of_polygon("", [&] { require_end(words); });
+  return pair;
+}
+
+std::vector<PolygonPair> read_pair_file(const std::string& file) {
+  const std::string text = read_text(file);
+  const size_t start = text.find_first_not_of(" \t\r\n");
+  if (start != std::string::npos && text[start] == '{') return read_json(text, file);
+  std::vector<PolygonPair> pairs;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (pair_name(line).empty()) continue;
+    try {
+      pairs.push_back(parse_pair(line));
+    } catch (const BadPairLine& error) {
+      const std::string place =
+          error.polygon().empty()
+              ? ""
+              : fmt::format(", polygon {}, vertex {}", error.polygon(), error.vertex());
+      throw SceneError(file, number, "",
+                       fmt::format("{}{}: {}; write name n x y ... m x y ...", pair_name(line),
+                                   place, error.what()));
+    }
+  }
+  if (pairs.empty()) throw SceneError(file, 0, "", "has no pair; write name n x y ... m x y ...");
+  return pairs;
+}
+
+}  // namespace apothem
