@@ -9,9 +9,28 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include "geometry/child_process.hpp"
 #include "geometry/edge_lines.hpp"
+
+// CGAL puts events of equal rank in the order of their addresses, so the skeleton of a symmetric
+// polygon depends on what the program did before. This overload takes the place of that order.
+namespace CGAL::CGAL_SS_i {
+
+template <class Skeleton, class Traits>
+bool operator<(const boost::intrusive_ptr<Event_2<Skeleton, Traits>>& a,
+               const boost::intrusive_ptr<Event_2<Skeleton, Traits>>& b) {
+  const auto rank = [](const Event_2<Skeleton, Traits>& event) {
+    const auto id = [](const auto& edge) { return handle_assigned(edge) ? edge->id() : -1; };
+    const auto& edges = event.triedge();
+    return std::tuple(static_cast<int>(event.type()), id(edges.e0()), id(edges.e1()),
+                      id(edges.e2()));
+  };
+  return rank(*a) < rank(*b);
+}
+
+}  // namespace CGAL::CGAL_SS_i
 
 namespace apothem {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "geometry/edge_integral.hpp"
@@ -16,6 +17,9 @@ inline const std::string kProgram = APOTHEM_PROGRAM;  // the program under test
 
 /// Fewer random cases under the sanitizers, which are 20 times slower.
 inline int scaled(int cases) { return std::max(1, cases / APOTHEM_TEST_DIVISOR); }
+
+/// APOTHEM_LONG in the environment asks for the full number of random cases where CI has a share.
+inline bool long_run() { return std::getenv("APOTHEM_LONG") != nullptr; }
 
 inline PairResult edge(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
   return edge_method(a, make_potential(a, choice), b, make_potential(b, choice));

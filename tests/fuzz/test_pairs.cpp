@@ -1,7 +1,6 @@
 // Random and adversarial pairs without a single failure. APOTHEM_LONG=1 in the environment runs the
 // million; each pair depends on its number alone, so a failing one can be repeated by itself.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <map>
 
 #include "geometry/overlap.hpp"
@@ -133,7 +132,7 @@ Vec2 move(samples::Random& random, const Polygon& a, const Polygon& b) {
 }  // namespace
 
 TEST_CASE("random and adversarial pairs", "[fuzz]") {
-  const bool all = std::getenv("APOTHEM_LONG") != nullptr;
+  const bool all = test::long_run();
   const std::vector<Shape> pool = shapes(all ? 600 : test::scaled(300) + 30);
   const int pairs = all ? 1'000'000 : test::scaled(20'000);
   int touching = 0;

@@ -270,18 +270,60 @@ TEST_CASE("known shapes: the roof is that of the motorcycle graph at 10 000 poin
   }
 }
 
-TEST_CASE("turned crosses of equal arms always get a skeleton", "[skeleton]") {
+// Arms around a regular polygon: all their ridges end at once.
+Polygon equal_arms(int arms, double length) {
+  Ring ring;
+  for (int i = 0; i < arms; ++i) {
+    const double angle = 2 * M_PI * i / arms, half = M_PI / arms;
+    const Vec2 out = length * Vec2(std::cos(angle), std::sin(angle));
+    const Vec2 corner(std::cos(angle - half), std::sin(angle - half));
+    const Vec2 other(std::cos(angle + half), std::sin(angle + half));
+    ring.insert(ring.end(), {corner, corner + out, other + out});
+  }
+  return Polygon(ring);
+}
+
+TEST_CASE("turned shapes of equal arms always get a skeleton", "[skeleton]") {
   Random random(4);
   int retried = 0;
-  const int cases = test::scaled(2000);
+  const int cases = test::long_run() ? 20000 : test::scaled(1000);
   for (int i = 0; i < cases; ++i) {
-    const double arm = i % 2 == 0 ? 1 : random.uniform(.2, 3);
-    const Polygon polygon = turned(cross_of_squares(arm), random.uniform(0, 2 * M_PI));
-    const Skeleton skeleton = lawful(polygon);
-    if (skeleton.attempts > 1) ++retried;
-    CHECK(std::abs(skeleton.roof_height - .5) < 1e-12);
+    const double angle = random.uniform(0, 2 * M_PI);
+    if (i % 4 == 0) {
+      lawful(turned(equal_arms(random.integer(3, 9), random.uniform(.2, 3)), angle));
+    } else if (i % 4 == 1) {
+      lawful(turned(star(random.integer(3, 12), random.uniform(.1, .9)), angle));
+    } else {
+      const double arm = i % 4 == 2 ? 1 : random.uniform(.2, 3);
+      const Skeleton skeleton = lawful(turned(cross_of_squares(arm), angle));
+      if (skeleton.attempts > 1) ++retried;
+      CHECK(std::abs(skeleton.roof_height - .5) < 1e-12);
+    }
   }
+  if (test::long_run()) WARN(retried << " crosses needed more than one attempt");
   CHECK(retried < std::max(2, cases / 10));
+}
+
+TEST_CASE("the same skeleton, whatever lies about in memory", "[skeleton]") {
+  Random random(44);
+  std::vector<std::vector<char>> litter;
+  for (int i = 0; i < test::scaled(100); ++i) {
+    const Polygon polygon = turned(cross_of_squares(), random.uniform(0, 6));
+    const Skeleton first = lawful(polygon);
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      for (int k = 0; k < 30; ++k) litter.emplace_back(random.integer(16, 2000));
+      for (int k = 0; k < 20; ++k) {
+        std::swap(litter[random.integer(0, static_cast<int>(litter.size()) - 1)], litter.back());
+        litter.pop_back();
+      }
+      const Skeleton again = straight_skeleton(polygon);
+      REQUIRE(again.faces == first.faces);
+      for (size_t n = 0; n < first.nodes.size(); ++n) {
+        REQUIRE(again.nodes[n].point == first.nodes[n].point);
+        REQUIRE(again.nodes[n].height == first.nodes[n].height);
+      }
+    }
+  }
 }
 
 TEST_CASE("a wrong skeleton breaks a law", "[skeleton]") {
