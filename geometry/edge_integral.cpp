@@ -75,7 +75,9 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
       return;
     }
     const double end = std::min(s + gap / fall, s1);
-    const double end_height = value(next, end);
+    // By the flatter of the two lines: along a needle the other one may be a million times steeper.
+    const bool flatter = std::abs(slope(next)) < std::abs(slope(line));
+    const double end_height = value(flatter ? next : line, end);
     if (end > s) piece(s, height, end, end_height);
     s = end;
     height = end_height;

@@ -201,8 +201,9 @@ TEST_CASE("both methods on the hard pairs", "[hard_pairs]") {
     edge.check(pair, pair.edge());
     overlap.check(pair, pair.overlap());
   }
-  // The edge kernel misses the goal of 1e-12 on needles of aspect 1e6 (docs/verification.md).
-  CHECK(edge.above_goal <= 2);
+  // The edge kernel misses the goal of 1e-12 on crossed needles of aspect 1e6
+  // (docs/verification.md).
+  CHECK(edge.above_goal <= 1);
   CHECK(overlap.above_goal == 0);
 }
 
