@@ -62,8 +62,7 @@ void add_contact(CLI::App& app, ContactOptions& o) {
       ->capture_default_str();
   sub->add_option("--field", o.field, "Depth in polygons that are not convex (default: roof)")
       ->check(CLI::IsMember({"roof", "distance"}));
-  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
-      ->capture_default_str();
+  sub->add_option("--reference", o.reference, "roof (default), inscribed_circle or a length in m");
   sub->add_option("--method", o.method, "Way to the numbers")
       ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
       ->capture_default_str();

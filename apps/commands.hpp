@@ -39,8 +39,8 @@ struct ContactOptions {
   std::string a, b;
   std::string batch;  ///< file of pairs instead of a and b
   std::string potential = "distance";
-  std::optional<std::string> field;  ///< distance potential only; by default its roof
-  std::string reference = "roof";
+  std::optional<std::string> field;      ///< distance potential only; by default its roof
+  std::optional<std::string> reference;  ///< distance potential only; by default the roof's height
   std::string method = "edge";
   double stiffness = 1;
   bool json = false;

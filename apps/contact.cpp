@@ -22,13 +22,17 @@ PotentialChoice potential_choice(const ContactOptions& options) {
   for (const NamedPotential& p : kPotentials) {
     if (options.potential == p.name) choice.kind = p.kind;
   }
+  if (options.reference && choice.kind == PotentialChoice::Kind::area) {
+    throw SceneError("--reference", 0, "",
+                     "the area potential has no reference length; leave it out");
+  }
   if (options.field && choice.kind == PotentialChoice::Kind::area) {
     throw SceneError("--field", 0, "", "the area potential has one field only; leave it out");
   }
   for (const NamedField& f : kFields) {
     if (options.field == f.name) choice.field = f.field;
   }
-  set_reference(choice, options.reference);
+  if (options.reference) set_reference(choice, *options.reference);
   return choice;
 }
 
