@@ -1,0 +1,304 @@
+#include "geometry/contact_patches.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace apothem {
+
+using namespace edge_detail;
+
+namespace {
+
+class Splitter {
+ public:
+  Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+           PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
+      : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
+
+  /// False if a coordinate is not finite.
+  bool find_runs() {
+    runs_.clear();
+    work_.halves.clear();
+    work_.crossed.clear();
+    const double dx = offset_.x();
+    const double dy = offset_.y();
+    const HeightRows height = height_rows(a_, b_, work_.edge.values);
+    if (b_.convex() && heights(a_, b_, dx, dy, height.of_a)) return true;
+    if (a_.convex() && heights(b_, a_, -dx, -dy, height.of_b)) return true;
+    const bool finite = trace(true, height.of_a, height.spare);
+    of_a_ = size();
+    return trace(false, height.of_b, height.spare) && finite;
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
+
+  void group() {
+    work_.parent.resize(runs_.size());
+    for (int r = 0; r < size(); ++r) work_.parent[r] = r;
+    work_.joined.assign(2 * runs_.size(), 0);
+    join_at_vertices(0, of_a_, a_.size);
+    join_at_vertices(of_a_, size(), b_.size);
+    join_at_crossings();
+    join_loose_ends();
+  }
+
+  /// Numbers the patches in the order of their first run and returns how many there are.
+  int number() {
+    int count = 0;
+    for (int r = 0; r < size(); ++r) {
+      const int first = root(r);
+      runs_[r].patch = first == r ? count++ : runs_[first].patch;
+    }
+    return count;
+  }
+
+  void sum(int count, std::vector<PairIntegral>& patches) {
+    work_.of_a.assign(count, {});
+    work_.of_b.assign(count, {});
+    for (int r = 0; r < size(); ++r) {
+      (runs_[r].of_a ? work_.of_a : work_.of_b)[runs_[r].patch].add(work_.halves[r]);
+    }
+    patches.resize(count);
+    for (int p = 0; p < count; ++p) patches[p] = combine(work_.of_a[p], work_.of_b[p], arm_);
+    add_extents(patches);
+  }
+
+ private:
+  // The runs of a's edges in b, or of b's in a.
+  bool trace(bool of_a, const double* rows, double* spare) {
+    const PlacedPotential& x = of_a ? a_ : b_;
+    const PlacedPotential& y = of_a ? b_ : a_;
+    const double dx = of_a ? offset_.x() : -offset_.x();
+    const double dy = of_a ? offset_.y() : -offset_.y();
+    if (y.roof) {
+      const PlacedRoof<double> roof = placed_roof(y);
+      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
+               work_.edge.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+               SegmentMoments<double> moments;
+               work_.edge.roof.runs([&](double u1, double v1, double u2,
+                                        double v2) { add_piece(y, u1, v1, u2, v2, moments); },
+                                    [&](double s0, int edge0, double s1, int edge1) {
+                                      add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
+                                      moments = {};
+                                    });
+             }) == 0;
+    }
+    if (y.distance) {
+      const PlacedDistance<double> field = placed_distance(y);
+      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
+               SegmentMoments<double> moments;
+               work_.edge.distance.runs(field, edge.px, edge.py, edge.ex, edge.ey, moments,
+                                        [&](double s0, int edge0, double s1, int edge1) {
+                                          add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
+                                          moments = {};
+                                        });
+             }) == 0;
+    }
+    for (int e = 0; e < x.size; ++e) {
+      const PlacedEdge edge(x, y, e, dx, dy);
+      const Row row = row_of(edge, e, y, rows, spare);
+      double s0, s1;
+      if (!clip(row, s0, s1)) continue;
+      SegmentMoments<double> moments;
+      walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
+        moments.add(u1, v1, u2, v2);
+      });
+      add_run(of_a, e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false),
+              moments);
+    }
+    return true;
+  }
+
+  // The line that clips an edge at s, or -1 where the edge itself ends.
+  static int clipped_by(const Row& row, double s, bool entering) {
+    for (int i = 0; i < row.size; ++i) {
+      const double a = row.a[i];
+      const double b = row.b[i];
+      if ((a < 0) == entering && (b < 0) != entering && a / (a - b) == s) return i;
+    }
+    return -1;
+  }
+
+  void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
+               const SegmentMoments<double>& moments) {
+    Half& half = work_.halves.emplace_back();
+    accumulate(edge, moments, s1 - s0, half);
+    const PairIntegral pair = of_a ? combine(half, {}, arm_) : combine({}, half, arm_);
+    const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // from the frame of the other one
+    const Vec2 base = Vec2(edge.qx, edge.qy) + shift;
+    const Vec2 along(edge.ex, edge.ey);
+    runs_.push_back({of_a, e, 0, edge.share(s0), edge.share(s1), base + s0 * along,
+                     base + s1 * along, pair.force, pair.moment_a, pair.moment_b, pair.weight,
+                     pair.centre, half.length, half.largest});
+    work_.crossed.push_back(edge0);
+    work_.crossed.push_back(edge1);
+  }
+
+  int root(int run) {
+    std::vector<int>& parent = work_.parent;
+    while (parent[run] != run) run = parent[run] = parent[parent[run]];
+    return run;
+  }
+
+  // The smaller root wins: it is the patch's first run.
+  void join(int end, int other) {
+    work_.joined[end] = work_.joined[other] = 1;
+    const auto [low, high] = std::minmax(root(end / 2), root(other / 2));
+    work_.parent[high] = low;
+  }
+
+  // Runs first ... last - 1 are one polygon's in the order of its edges, of which there are
+  // `edges`.
+  void join_at_vertices(int first, int last, int edges) {
+    for (int r = first; r < last; ++r) {
+      const int next = r + 1 < last ? r + 1 : first;
+      const int edge = runs_[r].edge + 1 < edges ? runs_[r].edge + 1 : 0;
+      if (runs_[next].edge == edge && work_.crossed[2 * r + 1] < 0 && work_.crossed[2 * next] < 0) {
+        join(2 * r + 1, 2 * next);
+      }
+    }
+  }
+
+  void join_at_crossings() {
+    auto& crossings = work_.crossings;
+    crossings.clear();
+    for (int end = 0; end < 2 * size(); ++end) {
+      const BoundaryRun& run = runs_[end / 2];
+      const int other = work_.crossed[end];
+      if (other < 0) continue;
+      crossings.push_back({run.of_a ? run.edge : other, run.of_a ? other : run.edge, end});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const auto& c, const auto& d) {
+      return std::tie(c.edge_a, c.edge_b, c.end) < std::tie(d.edge_a, d.edge_b, d.end);
+    });
+    for (size_t i = 0; i + 1 < crossings.size(); ++i) {
+      const auto& c = crossings[i];
+      const auto& d = crossings[i + 1];
+      if (c.edge_a != d.edge_a || c.edge_b != d.edge_b) continue;
+      if (runs_[c.end / 2].of_a == runs_[d.end / 2].of_a) continue;
+      join(c.end, d.end);
+      ++i;
+    }
+  }
+
+  // What is lost between two loose ends lies on both boundaries but for round-off, so the middle
+  // between them does; between the ends of different patches it does not.
+  void join_loose_ends() {
+    auto& bridges = work_.bridges;
+    bridges.clear();
+    for (int end = 0; end < 2 * size(); ++end) {
+      if (work_.joined[end]) continue;
+      for (int other = end + 1; other < 2 * size(); ++other) {
+        if (work_.joined[other]) continue;
+        const Vec2 middle = (point(end) + point(other)) / 2;
+        const double deviation = std::max(distance2(a_, middle + a_.reference),
+                                          distance2(b_, middle + arm_ + b_.reference));
+        bridges.push_back({deviation, (point(end) - point(other)).squaredNorm(), end, other});
+      }
+    }
+    std::sort(bridges.begin(), bridges.end(), [](const auto& c, const auto& d) {
+      return std::tie(c.deviation, c.length, c.end, c.other) <
+             std::tie(d.deviation, d.length, d.end, d.other);
+    });
+    for (const auto& bridge : bridges) {
+      if (!work_.joined[bridge.end] && !work_.joined[bridge.other]) join(bridge.end, bridge.other);
+    }
+  }
+
+  [[nodiscard]] const Vec2& point(int end) const {
+    return end % 2 == 0 ? runs_[end / 2].start : runs_[end / 2].end;
+  }
+
+  // Square of a point's distance from the boundary.
+  static double distance2(const PlacedPotential& p, const Vec2& point) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < p.size; ++i) {
+      const Vec2 from = point - Vec2(p.x[i], p.y[i]);
+      const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
+      const double share = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (from - share * edge).squaredNorm());
+    }
+    return nearest;
+  }
+
+  void add_extents(std::vector<PairIntegral>& patches) {
+    auto& extents = work_.extents;
+    extents.assign(patches.size(), {});
+    for (const BoundaryRun& run : runs_) {
+      const Vec2& force = patches[run.patch].force;
+      const double size = force.norm();
+      if (!(size > 0)) continue;
+      for (const Vec2& p : {run.start, run.end}) {
+        extents[run.patch].include(force.dot(p) / size, cross(force, p) / size);
+      }
+    }
+    for (size_t i = 0; i < patches.size(); ++i) {
+      if (!(extents[i].n1 >= extents[i].n0)) continue;  // no resultant
+      patches[i].penetration = extents[i].n1 - extents[i].n0;
+      patches[i].breadth = extents[i].t1 - extents[i].t0;
+    }
+  }
+
+  const PlacedPotential& a_;
+  const PlacedPotential& b_;
+  const Vec2 offset_, arm_;
+  PatchWorkspace& work_;
+  std::vector<BoundaryRun>& runs_;
+  int of_a_ = 0;  // so many of the runs are a's
+};
+
+}  // namespace
+
+void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                     PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                     std::vector<PairIntegral>& patches) {
+  patches.clear();
+  Splitter splitter(a, b, offset, workspace, runs);
+  const bool finite = splitter.find_runs();
+  if (!finite) runs.clear();
+  if (!finite || (a.convex() && b.convex())) {  // one patch at most
+    const PairIntegral pair = pair_integral(a, b, offset, workspace.edge);
+    if (pair.touching()) {
+      patches.push_back(pair);
+    } else {
+      runs.clear();
+    }
+    return;
+  }
+  double weight = 0;
+  for (const BoundaryRun& run : runs) weight += run.weight;
+  if (weight <= 0) {
+    runs.clear();
+    return;
+  }
+  splitter.group();
+  splitter.sum(splitter.number(), patches);
+}
+
+void shared_length(std::span<const BoundaryRun> before, int patches_before,
+                   std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table) {
+  table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
+  const auto behind = [](const BoundaryRun& r, const BoundaryRun& s) {  // on an earlier edge
+    return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
+  };
+  size_t first = 0;  // of `now` on the edge of `old`, or after it
+  for (const BoundaryRun& old : before) {
+    while (first < now.size() && behind(now[first], old)) ++first;
+    for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {
+      const BoundaryRun& run = now[i];
+      const double overlap = std::min(old.to, run.to) - std::max(old.from, run.from);
+      if (!(overlap >= 0)) continue;
+      const BoundaryRun& longer = old.to - old.from > run.to - run.from ? old : run;
+      const double share = longer.to - longer.from;
+      double& entry = table[static_cast<size_t>(old.patch) * patches_now + run.patch];
+      if (overlap > 0) {
+        entry += overlap / share * longer.length;
+      } else if (old.from == old.to || run.from == run.to) {
+        entry += std::numeric_limits<double>::min();
+      }
+    }
+  }
+}
+
+}  // namespace apothem
