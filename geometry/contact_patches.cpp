@@ -144,8 +144,9 @@ class Splitter {
   // The smaller root wins: it is the patch's first run.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
-    const auto [low, high] = std::minmax(root(end / 2), root(other / 2));
-    work_.parent[high] = low;
+    const int first = root(end / 2);
+    const int second = root(other / 2);
+    work_.parent[std::max(first, second)] = std::min(first, second);
   }
 
   // Runs first ... last - 1 are one polygon's in the order of its edges, of which there are

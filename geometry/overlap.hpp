@@ -34,4 +34,8 @@ std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b,
 PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                           const Potential& potential_b, Arithmetic arithmetic = Arithmetic::exact);
 
+/// The same for each component of the overlap by itself, with exact constructions.
+std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
+                                        const Polygon& b, const Potential& potential_b);
+
 }  // namespace apothem
