@@ -4,6 +4,8 @@
 #include <limits>
 #include <tuple>
 
+#include "geometry/placement.hpp"
+
 namespace apothem {
 
 using namespace edge_detail;
@@ -275,6 +277,22 @@ void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const V
   }
   splitter.group();
   splitter.sum(splitter.number(), patches);
+}
+
+PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                         const Potential& potential_b) {
+  const PlacedPair placed(a, potential_a, b, potential_b);
+  PatchWorkspace workspace;
+  PatchResult result;
+  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
+                  result.patches);
+  for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
+  for (BoundaryRun& run : result.runs) {
+    placed.about_centroids(run);
+    run.start -= placed.centroid_a;
+    run.end -= placed.centroid_a;
+  }
+  return result;
 }
 
 void shared_length(std::span<const BoundaryRun> before, int patches_before,

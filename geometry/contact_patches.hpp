@@ -65,6 +65,14 @@ void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const V
                      PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
                      std::vector<PairIntegral>& patches);
 
+/// Runs and patches of two polygons where they stand; moments and positions as edge_method's.
+struct PatchResult {
+  std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
+};
+PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                         const Potential& potential_b);
+
 /// How much boundary the patches of a pair share with those of an earlier step: entry
 /// i * patches_now + j of the table is the length (m, both polygons' edges) that lies in the
 /// earlier patch i and in the present patch j. A run without length that lies in another one counts

@@ -5,6 +5,7 @@
 #include "geometry/distance_volume.hpp"
 #include "geometry/edge_trace.hpp"
 #include "geometry/lower_envelope.hpp"
+#include "geometry/placement.hpp"
 
 namespace apothem {
 
@@ -224,73 +225,15 @@ Vec2 loading_point(const PairIntegral& pair) {
   return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
 }
 
-namespace {
-
-// Arrays behind a PlacedPotential, for a polygon that does not move: relative to `origin`, moments
-// about vertex 0.
-struct Placement {
-  Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
-    const auto add = [&](const Vec2& p) {
-      x.push_back(p.x());
-      y.push_back(p.y());
-    };
-    for (const Vec2& v : polygon.vertices()) add(v - origin);
-    add(polygon[0] - origin);
-    for (const Vec2& g : potential.gradients) {
-      gx.push_back(g.x());
-      gy.push_back(g.y());
-    }
-    if (potential.roof) {
-      // The boundary exactly as given, the inner nodes by their place in the polygon.
-      node_x.assign(x.begin(), x.end() - 1);
-      node_y.assign(y.begin(), y.end() - 1);
-      const Vec2 shift = polygon.origin() - origin;
-      for (size_t i = polygon.vertices().size(); i < potential.roof->points.size(); ++i) {
-        node_x.push_back(potential.roof->points[i].x() + shift.x());
-        node_y.push_back(potential.roof->points[i].y() + shift.y());
-      }
-    }
-    double radius = 0;
-    for (size_t i = 1; i < x.size(); ++i)
-      radius = std::max(radius, std::hypot(x[i] - x[0], y[i] - y[0]));
-    view = {x.data(),
-            y.data(),
-            gx.data(),
-            gy.data(),
-            polygon.size(),
-            potential.capped(),
-            potential.roof ? &*potential.roof : nullptr,
-            node_x.data(),
-            node_y.data(),
-            potential.distance ? &*potential.distance : nullptr,
-            Vec2(x[0], y[0]),
-            radius};
-  }
-  std::vector<double> x, y, gx, gy, node_x, node_y;
-  PlacedPotential view;
-};
-
-}  // namespace
-
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b) {
-  Box box = bounding_box(a);
-  const Box box_b = bounding_box(b);
-  box.include(box_b.x0, box_b.y0);
-  box.include(box_b.x1, box_b.y1);
-  const Vec2 origin = local_origin(box);
-  const Placement placed_a(a, potential_a, origin);
-  const Placement placed_b(b, potential_b, origin);
+  const PlacedPair placed(a, potential_a, b, potential_b);
   EdgeWorkspace workspace;
   PairResult result;
   PairIntegral& pair = result.integral;
-  pair = pair_integral(placed_a.view, placed_b.view, Vec2::Zero(), workspace);
-  const Vec2 centroid_a = area_moments(a).centroid;  // relative to vertex 0
-  const Vec2 centroid_b = area_moments(b).centroid;
-  pair.moment_a -= cross(centroid_a, pair.force);
-  pair.moment_b += cross(centroid_b, pair.force);
-  pair.centre -= centroid_a;
-  result.volume = pair_volume(placed_a.view, placed_b.view, Vec2::Zero());
+  pair = pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
+  placed.about_centroids(pair);
+  result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
   return result;
 }
 
