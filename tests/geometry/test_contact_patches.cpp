@@ -4,6 +4,8 @@
 #include <set>
 
 #include "contact/placed_shapes.hpp"
+#include "fuzz/hard_pairs.hpp"
+#include "fuzz/pair_check.hpp"
 #include "geometry/overlap.hpp"
 #include "shapes.hpp"
 #include "support.hpp"
@@ -130,17 +132,20 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
   test::Random random(71);
   const auto shape = [&]() -> Polygon {
     const double turn = random.uniform(0, 6);
-    switch (random.integer(0, 5)) {
+    switch (random.integer(0, 7)) {
       case 0:
         return Polygon(test::turned(test::cross_ring(random.uniform(.5, 3)), turn));
       case 1:
         return Polygon(test::turned(test::l_ring(), turn));
       case 2:
         return Polygon(
-            test::turned(test::star_ring(random.integer(3, 7), random.uniform(.3, .8)), turn));
+            test::turned(test::star_ring(random.integer(3, 9), random.uniform(.3, .8)), turn));
       case 3:
-        return Polygon(test::turned(test::comb_ring(random.integer(2, 4)), turn));
+        return Polygon(test::turned(test::comb_ring(2), turn));
       case 4:
+      case 5:
+        return Polygon(test::turned(test::comb_ring(random.integer(3, 5)), turn));
+      case 6:
         return test::random_polygon(random, random.integer(4, 14));
       default:
         return random.convex(random.integer(3, 8));
@@ -159,7 +164,7 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
     const Polygon a = shape();
     const Polygon b = shape();
     if (a.is_convex() && b.is_convex()) continue;
-    const Polygon moved = test::shifted(b, {random.uniform(-2, 2), random.uniform(-2, 2)});
+    const Polygon moved = test::shifted(b, {random.uniform(-3, 3), random.uniform(-3, 3)});
     const Potential potential_a = make_potential(a, choice);
     const Potential potential_b = make_potential(moved, choice);
     const std::vector<PairResult> exact = overlap_patches(a, potential_a, moved, potential_b);
@@ -214,7 +219,7 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     pair.add(potential_b);
     pair.place(0, 0, 0, random.uniform(0, 6));
     pair.place(1, 0, 0, random.uniform(0, 6));
-    const Vec2 offset(random.uniform(-2, 2), random.uniform(-2, 2));
+    const Vec2 offset(random.uniform(-3, 3), random.uniform(-3, 3));
     EdgeWorkspace memory;
     const PairIntegral whole = pair_integral(pair.view(0), pair.view(1), offset, memory);
     PatchResult s;
@@ -234,4 +239,49 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     REQUIRE(worst_sum(s, whole, extent(a, b),
                       std::max(potential_a.steepest, potential_b.steepest)) < 50);
   }
+}
+
+TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", "[patches]") {
+  const std::vector<test::Shape> pool = test::shapes(test::scaled(300) + 30);
+  constexpr double kWorthTheName = 1e-6;  // INT phi ds, m
+  int touching = 0, several = 0, differ = 0, wrong = 0;
+  double worst_sums = 0;
+  for (int i = 0; i < test::scaled(20000); ++i) {
+    const auto [a, b, moved] = test::hard_pair(pool, static_cast<unsigned>(i));
+    const PairIntegral pair = edge_method(a.polygon, a.potential, moved, b.potential).integral;
+    const PatchResult s = edge_patches(a.polygon, a.potential, moved, b.potential);
+    REQUIRE(pair.touching() == !s.patches.empty());
+    if (!pair.touching()) continue;
+    ++touching;
+    worst_sums =
+        std::max(worst_sums, worst_sum(s, pair, extent(a.polygon, moved),
+                                       std::max(a.potential.steepest, b.potential.steepest)));
+    int found = 0;
+    for (const PairIntegral& p : s.patches) found += p.weight > kWorthTheName;
+    const auto components = [&](const Vec2& shift) {
+      int count = 0;
+      for (const PairResult& x :
+           overlap_patches(a.polygon, a.potential, test::shifted(moved, shift), b.potential)) {
+        count += x.integral.weight > kWorthTheName;
+      }
+      return count;
+    };
+    const int expected = components(Vec2::Zero());
+    several += expected > 1;
+    if (found == expected) continue;
+    // On the edge between two answers: that of a position nearby will do.
+    ++differ;
+    bool nearby = false;
+    for (int k = 0; k < 16; ++k) {
+      const double angle = M_PI * (k + .5) / 8;
+      nearby |= components(1e-10 * Vec2(std::cos(angle), std::sin(angle))) == found;
+    }
+    if (!nearby) {
+      ++wrong;
+      FAIL_CHECK(found << " patches for " << expected << " components\n"
+                       << test::as_line(std::to_string(i), a.polygon, moved));
+    }
+  }
+  WARN(touching << " touching, " << several << " several, " << differ << " differ, sums "
+                << worst_sums);
 }
