@@ -13,6 +13,7 @@
 
 #include "contact/placed_shapes.hpp"
 #include "dynamics/simulation.hpp"
+#include "geometry/contact_patches.hpp"
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
 #include "scene/scene.hpp"
@@ -156,6 +157,61 @@ void quad_pair_oracle(benchmark::State& state) {
   measure(state, touching_pairs(), [](const Pair& p) { return exact_method(p.a, p.b, {}); });
 }
 
+// Crosses of five unit squares, arm on arm: pair_integral, and split into patches.
+struct CrossPairs {
+  static constexpr int kPairs = 64;
+  CrossPairs() {
+    const Polygon cross({{.5, -1.5},
+                         {.5, -.5},
+                         {1.5, -.5},
+                         {1.5, .5},
+                         {.5, .5},
+                         {.5, 1.5},
+                         {-.5, 1.5},
+                         {-.5, .5},
+                         {-1.5, .5},
+                         {-1.5, -.5},
+                         {-.5, -.5},
+                         {-.5, -1.5}});
+    potential = translated(make_potential(cross), area_moments(cross).centroid);
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+    for (int i = 0; i < kPairs; ++i) {
+      for (int k = 0; k < 2; ++k) shapes.place(shapes.add(potential), 0, 0, turn(random));
+      const double direction = turn(random);
+      offsets.emplace_back(1.9 * std::cos(direction), 1.9 * std::sin(direction));
+    }
+  }
+  Potential potential;
+  PlacedShapes shapes;
+  std::vector<Vec2> offsets;
+};
+void cross_pair_edge(benchmark::State& state) {
+  const CrossPairs pairs;
+  EdgeWorkspace workspace;
+  int i = 0;
+  for (auto _ : state) {
+    const int k = i++ % CrossPairs::kPairs;
+    benchmark::DoNotOptimize(pair_integral(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1),
+                                           pairs.offsets[k], workspace));
+  }
+}
+void cross_pair_patches(benchmark::State& state) {
+  const CrossPairs pairs;
+  PatchWorkspace workspace;
+  std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
+  int i = 0;
+  double count = 0;
+  for (auto _ : state) {
+    const int k = i++ % CrossPairs::kPairs;
+    contact_patches(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1), pairs.offsets[k],
+                    workspace, runs, patches);
+    count += static_cast<double>(patches.size());
+  }
+  state.counters["patches"] = count / static_cast<double>(state.iterations());
+}
+
 void impact_steps(benchmark::State& state) {
   const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impact-asymmetric.json");
   std::optional<Simulation> simulation;
@@ -203,6 +259,8 @@ BENCHMARK(quad_pair_near_miss);
 BENCHMARK(quad_pair_overlap_inexact);
 BENCHMARK(quad_pair_overlap_exact);
 BENCHMARK(quad_pair_oracle);
+BENCHMARK(cross_pair_edge);
+BENCHMARK(cross_pair_patches);
 BENCHMARK(impact_steps);
 BENCHMARK(pack_step)->Arg(300)->Arg(3000);
 

@@ -185,24 +185,29 @@ class Splitter {
     }
   }
 
-  // What is lost between two loose ends lies on both boundaries but for round-off, so the middle
-  // between them does; between the ends of different patches it does not.
+  // What is lost between the end of a run and the start of the next one lies on both boundaries but
+  // for round-off, so the middle between them does; between the ends of different patches it does
+  // not. The length decides only among those whose middles are on both. Two starts, or two ends,
+  // are joined only for being at the same place.
   void join_loose_ends() {
+    constexpr double kLength = 1e-6;
     auto& bridges = work_.bridges;
     bridges.clear();
     for (int end = 0; end < 2 * size(); ++end) {
       if (work_.joined[end]) continue;
       for (int other = end + 1; other < 2 * size(); ++other) {
         if (work_.joined[other]) continue;
-        const Vec2 middle = (point(end) + point(other)) / 2;
-        const double deviation = std::max(distance2(a_, middle + a_.reference),
-                                          distance2(b_, middle + arm_ + b_.reference));
-        bridges.push_back({deviation, (point(end) - point(other)).squaredNorm(), end, other});
+        double cost2 = (point(end) - point(other)).squaredNorm();
+        if (end % 2 != other % 2) {
+          const Vec2 middle = (point(end) + point(other)) / 2;
+          cost2 = std::max({kLength * kLength * cost2, distance2(a_, middle + a_.reference),
+                            distance2(b_, middle + arm_ + b_.reference)});
+        }
+        bridges.push_back({cost2, end, other});
       }
     }
     std::sort(bridges.begin(), bridges.end(), [](const auto& c, const auto& d) {
-      return std::tie(c.deviation, c.length, c.end, c.other) <
-             std::tie(d.deviation, d.length, d.end, d.other);
+      return std::tie(c.cost2, c.end, c.other) < std::tie(d.cost2, d.end, d.other);
     });
     for (const auto& bridge : bridges) {
       if (!work_.joined[bridge.end] && !work_.joined[bridge.other]) join(bridge.end, bridge.other);

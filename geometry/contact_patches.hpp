@@ -39,7 +39,7 @@ struct PatchWorkspace {
     int end;  ///< 2 run for a run's start, 2 run + 1 for its end
   };
   struct Bridge {
-    double deviation, length;
+    double cost2;
     int end, other;  ///< as above
   };
   EdgeWorkspace edge;

@@ -209,7 +209,6 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
 
 TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[patches]") {
   test::Random random(72);
-  PlacedShapes shapes;
   for (int i = 0; i < test::scaled(2000); ++i) {
     const Polygon a = random.convex(random.integer(3, 12));
     const Polygon b = random.convex(random.integer(3, 12));
@@ -248,8 +247,19 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
   double worst_sums = 0;
   for (int i = 0; i < test::scaled(20000); ++i) {
     const auto [a, b, moved] = test::hard_pair(pool, static_cast<unsigned>(i));
-    const PairIntegral pair = edge_method(a.polygon, a.potential, moved, b.potential).integral;
-    const PatchResult s = edge_patches(a.polygon, a.potential, moved, b.potential);
+    // Both turned alike: coincidences then hold up to round-off.
+    const double turn = i % 2 ? i : 0;
+    PlacedShapes placed;
+    for (const Potential* p : {&a.potential, &b.potential}) {
+      placed.place(placed.add(*p), 0, 0, turn);
+    }
+    const Vec2 from = a.polygon.origin() - moved.origin();
+    const Vec2 offset(std::cos(turn) * from.x() - std::sin(turn) * from.y(),
+                      std::sin(turn) * from.x() + std::cos(turn) * from.y());
+    const PairIntegral pair =
+        pair_integral(placed.view(0), placed.view(1), offset, workspace().edge);
+    PatchResult s;
+    contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches);
     REQUIRE(pair.touching() == !s.patches.empty());
     if (!pair.touching()) continue;
     ++touching;
@@ -284,4 +294,142 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
   }
   WARN(touching << " touching, " << several << " several, " << differ << " differ, sums "
                 << worst_sums);
+}
+
+TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[patches]") {
+  const std::vector<test::Shape> pool = test::shapes(60);
+  test::Random random(73);
+  int patches = 0;
+  for (int i = 0; i < test::scaled(5000); ++i) {
+    const test::Shape& a = pool[random.integer(0, 59)];
+    const test::Shape& b = pool[random.integer(0, 59)];
+    const Polygon moved = test::shifted(b.polygon, {random.uniform(-1, 1), random.uniform(-1, 1)});
+    const PatchResult ab = edge_patches(a.polygon, a.potential, moved, b.potential);
+    const PatchResult ba = edge_patches(moved, b.potential, a.polygon, a.potential);
+    REQUIRE(ab.patches.size() == ba.patches.size());
+    REQUIRE(ab.runs.size() == ba.runs.size());
+    for (const PairIntegral& p : ab.patches) {
+      ++patches;
+      REQUIRE(std::any_of(ba.patches.begin(), ba.patches.end(), [&](const PairIntegral& q) {
+        return p.force == -q.force && p.moment_a == q.moment_b && p.moment_b == q.moment_a &&
+               p.weight == q.weight && p.own_length_a == q.own_length_b;
+      }));
+    }
+  }
+  CHECK(patches > test::scaled(2000));
+}
+
+TEST_CASE("patches keep their identity from step to step", "[patches]") {
+  struct Motion {
+    Polygon moving, fixed;
+    Vec2 from, to;  // of the centroid
+    double turn;
+  };
+  const Motion motions[]{
+      // A cross comes into the notch, turns and shifts; a star rolls over the teeth of a comb.
+      {Polygon(test::turned(test::cross_ring(.1), .1)), notch(), {.45, 1.6}, {.55, .3}, .7},
+      {Polygon(test::star_ring(7, .5)), Polygon(test::comb_ring(4)), {-.4, 3.6}, {7, 3.5}, -9},
+      {Polygon(test::comb_ring(3)), Polygon(test::comb_ring(4)), {2.3, 4.4}, {4.7, 3.9}, .2},
+  };
+  for (const Motion& motion : motions) {
+    const PotentialChoice choice;
+    const Potential moving =
+        translated(make_potential(motion.moving, choice), area_moments(motion.moving).centroid);
+    const Potential fixed =
+        translated(make_potential(motion.fixed, choice), area_moments(motion.fixed).centroid);
+    const Vec2 stand = test::world_centroid(motion.fixed);
+    PlacedShapes placed;
+    placed.add(moving);
+    placed.add(fixed);
+    placed.place(1, 0, 0, 0);
+    constexpr int kSteps = 1000;
+    PatchResult last, now;
+    std::vector<double> table;
+    int kept = 0, changes = 0, most = 0;
+    for (int step = 0; step <= kSteps; ++step) {
+      const double s = static_cast<double>(step) / kSteps;
+      placed.place(0, 0, 0, s * motion.turn);
+      const Vec2 offset = motion.from + s * (motion.to - motion.from) - stand;
+      std::swap(last, now);
+      contact_patches(placed.view(0), placed.view(1), offset, workspace(), now.runs, now.patches);
+      const int before = static_cast<int>(last.patches.size());
+      const int after = static_cast<int>(now.patches.size());
+      most = std::max(most, after);
+      if (step == 0) continue;
+      shared_length(last.runs, before, now.runs, after, table);
+      if (before != after) {
+        ++changes;
+        continue;
+      }
+      // As many as before: each goes on as one, and is still about where it was.
+      for (int i = 0; i < before; ++i) {
+        int heirs = 0, parents = 0;
+        for (int j = 0; j < after; ++j) {
+          heirs += table[i * after + j] > 0;
+          parents += table[j * after + i] > 0;
+          if (table[i * after + j] > 0) {
+            ++kept;
+            CHECK((last.patches[i].centre - now.patches[j].centre).norm() < .1);
+          }
+        }
+        INFO("step " << step << ", patch " << i << " of " << before);
+        CHECK(heirs == 1);
+        CHECK(parents == 1);
+      }
+    }
+    WARN(kept << " kept, " << changes << " changes, at most " << most << " patches");
+    CHECK(most > 1);
+    CHECK(changes > 1);
+    CHECK(kept > 500);
+  }
+}
+
+TEST_CASE("shared length", "[patches]") {
+  const Vec2 o = Vec2::Zero();
+  const std::vector<BoundaryRun> before{{true, 0, 0, .1, .5, o, o, o, 0, 0, 0, o, .8},
+                                        {true, 0, 1, .7, .9, o, o, o, 0, 0, 0, o, .4},
+                                        {false, 2, 0, 0, 1, o, o, o, 0, 0, 0, o, 3}};
+  const std::vector<BoundaryRun> now{{true, 0, 0, .4, .8, o, o, o, 0, 0, 0, o, .8},
+                                     {true, 1, 0, .4, .8, o, o, o, 0, 0, 0, o, .8},
+                                     {false, 2, 1, .5, .5, o, o, o, 0, 0, 0, o, 0},
+                                     {false, 2, 1, .75, 1, o, o, o, 0, 0, 0, o, .75}};
+  std::vector<double> table;
+  shared_length(before, 2, now, 2, table);
+  REQUIRE(table.size() == 4);
+  CHECK(table[0] == Approx(.2));  // merged: .4 to .5 of an edge of 2 m
+  CHECK(table[2] == Approx(.2));
+  CHECK(table[1] == Approx(.75));
+  CHECK(table[3] == 0);
+  shared_length(before, 2, std::vector<BoundaryRun>{now[2]}, 2, table);
+  CHECK(table[1] > 0);  // without length, but inside
+  shared_length({}, 0, now, 2, table);
+  CHECK(table.empty());
+}
+
+TEST_CASE("patches of coordinates that are not finite", "[patches]") {
+  const Potential potential = make_potential(notch());
+  PlacedShapes placed;
+  placed.add(potential);
+  placed.add(potential);
+  placed.place(0, 0, 0, 0);
+  placed.place(1, 0, 0, std::nan(""));
+  PatchResult s;
+  contact_patches(placed.view(0), placed.view(1), {.1, .1}, workspace(), s.runs, s.patches);
+  REQUIRE(s.patches.size() == 1);
+  CHECK(s.patches[0].touching());
+  CHECK(!std::isfinite(s.patches[0].weight));
+  placed.place(1, 0, 0, 0);
+  contact_patches(placed.view(0), placed.view(1), {std::nan(""), 0}, workspace(), s.runs,
+                  s.patches);
+  REQUIRE(s.patches.size() == 1);
+  CHECK(s.patches[0].touching());
+}
+
+TEST_CASE("a polygon inside the other is one patch", "[patches]") {
+  std::vector<Vec2> ring = test::turned(test::cross_ring(1), .3);
+  for (Vec2& v : ring) v *= .2;
+  const PatchResult inside = split(Polygon(ring), Polygon(test::cross_ring(3)));
+  REQUIRE(inside.patches.size() == 1);
+  CHECK(inside.runs.size() == 12);
+  for (const BoundaryRun& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
 }
