@@ -186,24 +186,23 @@ class Splitter {
   }
 
   // What is lost between the end of a run and the start of the next one lies on both boundaries but
-  // for round-off, so the middle between them does; between the ends of different patches it does
-  // not. The length decides only among those whose middles are on both. Two starts, or two ends,
-  // are joined only for being at the same place.
+  // for round-off: the straight line between them does, or one of the two boundaries stays near the
+  // other all the way. Between the ends of different patches neither is so. The length decides only
+  // among those. Two starts, or two ends, are joined only for being at the same place.
   void join_loose_ends() {
-    constexpr double kLength = 1e-6;
     auto& bridges = work_.bridges;
     bridges.clear();
+    for (int end = 1; end < 2 * size(); end += 2) {
+      if (work_.joined[end]) continue;
+      for (int start = 0; start < 2 * size(); start += 2) {
+        if (!work_.joined[start]) bridges.push_back({gap2(point(end), point(start)), end, start});
+      }
+    }
     for (int end = 0; end < 2 * size(); ++end) {
       if (work_.joined[end]) continue;
-      for (int other = end + 1; other < 2 * size(); ++other) {
+      for (int other = end + 2; other < 2 * size(); other += 2) {
         if (work_.joined[other]) continue;
-        double cost2 = (point(end) - point(other)).squaredNorm();
-        if (end % 2 != other % 2) {
-          const Vec2 middle = (point(end) + point(other)) / 2;
-          cost2 = std::max({kLength * kLength * cost2, distance2(a_, middle + a_.reference),
-                            distance2(b_, middle + arm_ + b_.reference)});
-        }
-        bridges.push_back({cost2, end, other});
+        bridges.push_back({(point(end) - point(other)).squaredNorm(), end, other});
       }
     }
     std::sort(bridges.begin(), bridges.end(), [](const auto& c, const auto& d) {
@@ -218,17 +217,61 @@ class Splitter {
     return end % 2 == 0 ? runs_[end / 2].start : runs_[end / 2].end;
   }
 
-  // Square of a point's distance from the boundary.
-  static double distance2(const PlacedPotential& p, const Vec2& point) {
-    double nearest = std::numeric_limits<double>::infinity();
+  // How far what may be lost between an end and a start is from lying on both boundaries, squared.
+  [[nodiscard]] double gap2(const Vec2& end, const Vec2& start) const {
+    const Vec2 middle = (end + start) / 2;
+    const double straight =
+        std::max({kLength2 * (end - start).squaredNorm(), nearest(a_, shift_a(), middle).distance2,
+                  nearest(b_, shift_b(), middle).distance2});
+    const double along_a = walk2(a_, shift_a(), b_, shift_b(), end, start, straight);
+    return walk2(b_, shift_b(), a_, shift_a(), end, start, along_a);
+  }
+
+  // The same for the boundary of x from end to start; `most` if it is no less.
+  static double walk2(const PlacedPotential& x, const Vec2& shift_x, const PlacedPotential& y,
+                      const Vec2& shift_y, const Vec2& end, const Vec2& start, double most) {
+    const Place from = nearest(x, shift_x, end);
+    const Place to = nearest(x, shift_x, start);
+    if (from.edge == to.edge && from.share <= to.share) return most;  // straight
+    Vec2 last = end;
+    double length = 0, worst = 0;
+    const auto go_to = [&](const Vec2& next) {
+      length += (next - last).norm();
+      worst = std::max({worst, kLength2 * length * length,
+                        nearest(y, shift_y, (last + next) / 2).distance2,
+                        nearest(y, shift_y, next).distance2});
+      last = next;
+    };
+    int edge = from.edge;
+    do {
+      if (++edge == x.size) edge = 0;
+      go_to(Vec2(x.x[edge], x.y[edge]) - shift_x);
+      if (!(worst < most)) return most;
+    } while (edge != to.edge);
+    go_to(start);
+    return std::min(worst, most);
+  }
+
+  struct Place {
+    int edge;
+    double share, distance2;
+  };
+  // The point of a boundary nearest to one given relative to a's reference point, as all are here.
+  static Place nearest(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
+    Place place{0, 0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i < p.size; ++i) {
-      const Vec2 from = point - Vec2(p.x[i], p.y[i]);
+      const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
       const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
       const double share = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-      nearest = std::min(nearest, (from - share * edge).squaredNorm());
+      const double distance2 = (from - share * edge).squaredNorm();
+      if (distance2 < place.distance2) place = {i, share, distance2};
     }
-    return nearest;
+    return place;
   }
+
+  // From there to the frames of a and b.
+  [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
+  [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
 
   void add_extents(std::vector<PairIntegral>& patches) {
     auto& extents = work_.extents;
@@ -247,6 +290,8 @@ class Splitter {
       patches[i].breadth = extents[i].t1 - extents[i].t0;
     }
   }
+
+  static constexpr double kLength2 = 1e-12;
 
   const PlacedPotential& a_;
   const PlacedPotential& b_;
