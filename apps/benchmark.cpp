@@ -12,6 +12,7 @@
 
 #include "contact/placed_shapes.hpp"
 #include "dynamics/simulation.hpp"
+#include "geometry/contact_patches.hpp"
 #include "geometry/exact_integral.hpp"
 #include "geometry/overlap.hpp"
 #include "geometry/samples.hpp"
@@ -138,44 +139,51 @@ void quad_pair_oracle(benchmark::State& state) {
   measure(state, touching_pairs(), [](const Pair& p) { return exact_method(p.a, p.b, {}); });
 }
 
-// Two crosses of five unit squares that overlap; 0: the roof, 1: the distance field.
-void cross_pair_edge(benchmark::State& state) {
-  const double a = .5, b = 1.5;
-  const Polygon cross({{-a, -b},
-                       {a, -b},
-                       {a, -a},
-                       {b, -a},
-                       {b, a},
-                       {a, a},
-                       {a, b},
-                       {-a, b},
-                       {-a, a},
-                       {-b, a},
-                       {-b, -a},
-                       {-a, -a}});
-  const PotentialChoice choice{.field = state.range(0) == 0 ? PotentialChoice::Field::roof
-                                                            : PotentialChoice::Field::distance,
-                               .reference = PotentialChoice::Reference::inscribed_circle};
-  const Potential potential =
-      translated(make_potential(cross, choice), area_moments(cross).centroid);
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
-  constexpr int kPoses = 256;
+// Crosses of five unit squares, arm on arm. Field 0: the roof, 1: the distance field.
+struct CrossPairs {
+  static constexpr int kPairs = 64;
+  explicit CrossPairs(PotentialChoice::Field field) {
+    const Polygon cross = samples::cross_of_squares();
+    const PotentialChoice choice{.field = field,
+                                 .reference = PotentialChoice::Reference::inscribed_circle};
+    potential = translated(make_potential(cross, choice), area_moments(cross).centroid);
+    samples::Random random(3);
+    for (int i = 0; i < kPairs; ++i) {
+      for (int k = 0; k < 2; ++k) {
+        shapes.place(shapes.add(potential), 0, 0, random.uniform(0, 2 * M_PI));
+      }
+      const double direction = random.uniform(0, 2 * M_PI);
+      offsets.emplace_back(1.9 * std::cos(direction), 1.9 * std::sin(direction));
+    }
+  }
+  Potential potential;
   PlacedShapes shapes;
   std::vector<Vec2> offsets;
-  for (int i = 0; i < 2 * kPoses; ++i) {
-    shapes.add(potential);
-    shapes.place(i, 0, 0, turn(random));
-    const double direction = turn(random);
-    offsets.push_back(2 * Vec2(std::cos(direction), std::sin(direction)));
-  }
+};
+void cross_pair_edge(benchmark::State& state) {
+  const CrossPairs pairs(PotentialChoice::Field(state.range(0)));
   EdgeWorkspace workspace;
   int i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        pair_integral(shapes.view(2 * i), shapes.view(2 * i + 1), offsets[i], workspace));
-    i = i + 1 == kPoses ? 0 : i + 1;
+    const int k = i++ % CrossPairs::kPairs;
+    benchmark::DoNotOptimize(pair_integral(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1),
+                                           pairs.offsets[k], workspace));
   }
+}
+void cross_pair_patches(benchmark::State& state) {
+  const CrossPairs pairs(PotentialChoice::Field(state.range(0)));
+  PatchWorkspace workspace;
+  std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
+  int i = 0;
+  double count = 0;
+  for (auto _ : state) {
+    const int k = i++ % CrossPairs::kPairs;
+    contact_patches(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1), pairs.offsets[k],
+                    workspace, runs, patches);
+    count += static_cast<double>(patches.size());
+  }
+  state.counters["patches"] = count / static_cast<double>(state.iterations());
 }
 
 void impact_steps(benchmark::State& state) {
@@ -226,6 +234,7 @@ BENCHMARK(quad_pair_overlap_inexact);
 BENCHMARK(quad_pair_overlap_exact);
 BENCHMARK(quad_pair_oracle);
 BENCHMARK(cross_pair_edge)->ArgName("distance_field")->Arg(0)->Arg(1);
+BENCHMARK(cross_pair_patches)->ArgName("distance_field")->Arg(0)->Arg(1);
 BENCHMARK(impact_steps);
 BENCHMARK(pack_step)->Arg(300)->Arg(3000);
 

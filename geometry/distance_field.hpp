@@ -75,6 +75,17 @@ class DistanceTrace {
   template <class Inside>
   SegmentMoments<Real> integrate(const PlacedDistance<Real>& field, const Real& px, const Real& py,
                                  const Real& ex, const Real& ey, const Inside& inside) {
+    SegmentMoments<Real> moments;
+    runs(field, px, py, ex, ey, moments,
+         [&](const Real& s0, int, const Real& s1, int) { inside(s0, s1); });
+    return moments;
+  }
+
+  /// Adds the moments to `moments` part by part and calls run(s0, edge0, s1, edge1) after each,
+  /// with the polygon's edges that the line crosses there, -1 at the ends of the segment.
+  template <class Run>
+  void runs(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
+            const Real& ey, SegmentMoments<Real>& moments, const Run& run) {
     using std::sqrt;
     px_ = px, py_ = py, ex_ = ex, ey_ = ey;
     k_ = sqrt(ex * ex + ey * ey) * field.slope;
@@ -87,7 +98,6 @@ class DistanceTrace {
     }
     std::sort(crossings_.begin(), crossings_.end(),
               [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
-    SegmentMoments<Real> moments;
     for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const Crossing& a = crossings_[i];
       const Crossing& b = crossings_[i + 1];
@@ -96,9 +106,8 @@ class DistanceTrace {
       const Real s1 = std::min(b.s, Real(1));
       trace(field, s0, s1, a.edge, b.edge);
       add_pieces(moments);
-      inside(s0, s1);
+      run(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
     }
-    return moments;
   }
 
  private:

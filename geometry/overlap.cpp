@@ -248,4 +248,19 @@ PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const 
       .integral;
 }
 
+std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
+                                        const Polygon& b, const Potential& potential_b) {
+  std::vector<PairResult> patches;
+  for (ExactRegion& region : exact_overlap(a, b)) {
+    const Exact::Point_2& corner = region.outline[0];
+    const Vec2 origin(CGAL::to_double(corner.x()), CGAL::to_double(corner.y()));
+    std::vector<ExactRegion> alone;
+    alone.push_back(std::move(region));
+    patches.push_back(integrate(rounded<double>(std::move(alone), origin),
+                                envelope(a, potential_a, origin),
+                                envelope(b, potential_b, origin)));
+  }
+  return patches;
+}
+
 }  // namespace apothem

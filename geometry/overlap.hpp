@@ -41,4 +41,8 @@ PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const 
                               const Polygon& a, const Potential& potential_a, const Polygon& b,
                               const Potential& potential_b);
 
+/// The same for each component of the overlap by itself, with exact constructions.
+std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
+                                        const Polygon& b, const Potential& potential_b);
+
 }  // namespace apothem

@@ -48,7 +48,7 @@ class RoofTrace {
       const Real& start = roof.values[a];
       const Real& end = roof.values[b];
       lines_.cross(a, b, [&](const Real& s, const Real& w) {
-        crossings_.push_back({s, start + w * (end - start), k < roof.boundary});
+        crossings_.push_back({s, start + w * (end - start), k < roof.boundary ? k : -1});
       });
     };
     lines_.place(0, roof.boundary);
@@ -63,24 +63,44 @@ class RoofTrace {
   /// Calls piece(s, phi, s_next, phi_next) for every linear piece inside the polygon, s in [0, 1].
   template <class Piece>
   void pieces(const Piece& piece) const {
+    runs(piece, [](const Real&, int, const Real&, int) {});
+  }
+
+  /// The same, and run(s, edge, s_next, edge_next) after the last piece of every part inside the
+  /// polygon, with the polygon's edges that the line crosses there, -1 at the ends of the segment.
+  template <class Piece, class Run>
+  void runs(const Piece& piece, const Run& run) const {
     bool inside = false;
+    bool open = false;
+    const Crossing* first = nullptr;
+    const auto close = [&](const Crossing& last) {
+      run(std::max(first->s, Real(0)), first->s < 0 ? -1 : first->edge, std::min(last.s, Real(1)),
+          last.s > 1 ? -1 : last.edge);
+      open = false;
+    };
     for (size_t i = 0; i + 1 < crossings_.size(); ++i) {
       const Crossing& a = crossings_[i];
       const Crossing& b = crossings_[i + 1];
-      inside ^= a.boundary;
+      if (a.edge >= 0) {
+        if (open) close(a);
+        inside = !inside;
+        first = &a;
+      }
       if (!inside || b.s <= 0 || a.s >= 1 || !(b.s > a.s)) continue;
       const auto at = [&](const Real& s) -> Real {
         return a.value + (s - a.s) / (b.s - a.s) * (b.value - a.value);
       };
       piece(std::max(a.s, Real(0)), a.s < 0 ? at(0) : a.value, std::min(b.s, Real(1)),
             b.s > 1 ? at(1) : b.value);
+      open = true;
     }
+    if (open) close(crossings_.back());
   }
 
  private:
   struct Crossing {
     Real s, value;
-    bool boundary;
+    int edge;  // of the polygon, or -1
   };
   LineCrossings<Real> lines_;
   std::vector<Crossing> crossings_;
