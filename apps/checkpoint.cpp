@@ -8,6 +8,18 @@
 #include "output/files.hpp"
 #include "scene/json.hpp"
 
+namespace nlohmann {
+
+template <>
+struct adl_serializer<apothem::Vec2> {
+  static void to_json(json& j, const apothem::Vec2& v) { j = json::array({v.x(), v.y()}); }
+  static void from_json(const json& j, apothem::Vec2& v) {
+    v = apothem::Vec2(j.at(0).get<double>(), j.at(1).get<double>());
+  }
+};
+
+}  // namespace nlohmann
+
 namespace apothem {
 
 // nlohmann's macro lists each member once for both directions; numbers read back to the same
@@ -18,6 +30,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Balance, initial_energy, initial, impulse, ex
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Peak, value, time, a, b)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Extremes, penetration, force, energy_error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Counts, searches, candidate_pairs, touching_pairs, touching_now)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BoxPair, first, second)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairMemory, pair, patches, runs, springs)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchMemory, spring, tangent, normal, moment_a, moment_b,
+                                   damping, damping_a, damping_b)
+// What matching patches needs; the next step makes the rest anew.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BoundaryRun, of_a, edge, patch, from, to, length)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSpring, of_a, edge, spring)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TangentialMemory, pairs, patches, runs, springs, energy,
+                                   friction_loss, damping_loss)
 
 namespace {
 
@@ -37,6 +58,8 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
                       {"base_time", s.base_time},
                       {"base_step", s.base_step},
                       {"energy_in_play", s.energy_in_play},
+                      {"tangential", s.tangential},
+                      {"mass_damping_loss", s.mass_damping_loss},
                       {"state", s.state},
                       {"balance", s.balance},
                       {"extremes", s.extremes},
@@ -66,6 +89,8 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
     json.at("base_time").get_to(s.base_time);
     json.at("base_step").get_to(s.base_step);
     json.at("energy_in_play").get_to(s.energy_in_play);
+    json.at("tangential").get_to(s.tangential);
+    json.at("mass_damping_loss").get_to(s.mass_damping_loss);
     json.at("state").get_to(s.state);
     json.at("balance").get_to(s.balance);
     json.at("extremes").get_to(s.extremes);

@@ -1,16 +1,62 @@
-// The normal contact law of a scene: which potential, how stiff.
+// The contact law of a scene: which potential, how stiff, how rough, how much is damped.
 #pragma once
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "geometry/potential.hpp"
 
 namespace apothem {
 
+struct Friction {
+  double coefficient = 0;           ///< mu; 0: none
+  double tangential_stiffness = 0;  ///< k_s, Pa
+};
+
+/// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
+enum class FrictionLaw { resultant, per_edge };
+
+/// Friction between two parties, each a body or every body of a material.
+struct ContactRule {
+  struct Party {
+    bool is_body;
+    int index;
+  };
+  std::array<Party, 2> between;
+  Friction friction;
+};
+
 struct ContactLaw {
   PotentialChoice potential;
   double normal_stiffness = 0;  ///< k_n, Pa; there is no default, the scene must say it
+  Friction friction = {};
+  FrictionLaw friction_law = FrictionLaw::resultant;
+  std::vector<ContactRule> rules = {};  ///< instead of `friction`; later ones win
+  double normal_damping = 0;            ///< ratio of critical, of the normal force; 0: none
+  double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
+};
+
+/// The friction laws a scene can name.
+struct NamedFrictionLaw {
+  std::string_view name;
+  FrictionLaw law;
+};
+inline constexpr std::array kFrictionLaws{
+    NamedFrictionLaw{"resultant", FrictionLaw::resultant},  // Eqs. 10-14
+    NamedFrictionLaw{"per_edge", FrictionLaw::per_edge},    // Eq. 9
+};
+
+/// The damping models a scene can name, each with its one number.
+struct NamedDamping {
+  std::string_view name;
+  std::string_view key;   ///< of the number
+  std::string_view unit;  ///< of the number
+  double ContactLaw::*value;
+};
+inline constexpr std::array kDampingModels{
+    NamedDamping{"normal_viscous", "ratio", "", &ContactLaw::normal_damping},
+    NamedDamping{"mass", "rate", "1/s", &ContactLaw::mass_damping},
 };
 
 /// The potentials a scene can name. A new one is one line here and its edge list in geometry.

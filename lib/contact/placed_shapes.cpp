@@ -10,6 +10,7 @@ int PlacedShapes::add(const Potential& potential) {
               potential.size(),
               potential.capped(),
               0,
+              potential.steepest,
               potential.top_points.front(),
               potential.roof ? &*potential.roof : nullptr,
               node_x_.size(),

@@ -38,6 +38,8 @@ class PlacedShapes {
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   /// Largest distance of a vertex from the reference point, m.
   [[nodiscard]] double radius(int i) const { return shapes_[i].radius; }
+  /// Steepest slope of its potential, 1/m.
+  [[nodiscard]] double slope(int i) const { return shapes_[i].slope; }
 
  private:
   struct Shape {
@@ -46,6 +48,7 @@ class PlacedShapes {
     int size;
     bool capped;
     double radius;
+    double slope;
     Vec2 top;          // of the potential, body frame
     const Roof* roof;  // if not convex, or
     size_t nodes;      // (first of its placed nodes)

@@ -50,9 +50,7 @@ void Ledger::half_step(const State& state, double half_step, const std::vector<d
         body.held[1] ? -(state.force[k + 1] + body.mass * g.y()) : 0,
         body.held[2] ? -state.force[k + 2] : 0);
   }
-  balance_.impulse.x += half_step * outer.x;
-  balance_.impulse.y += half_step * outer.y;
-  balance_.impulse.angular += half_step * outer.angular;
+  add_impulse({half_step * outer.x, half_step * outer.y, half_step * outer.angular});
   for (const int i : driven_) {
     for (size_t k = 3 * static_cast<size_t>(i), end = k + 3; k < end; ++k) {
       balance_.external_work -= state.force[k] * moved[k] / 2;
@@ -77,8 +75,17 @@ Energies Ledger::terms(const State& state, double contact_energy) const {
   return e;
 }
 
-Energies Ledger::energies(const State& state, double contact_energy) const {
+void Ledger::add_impulse(const Impulse& impulse) {
+  balance_.impulse.x += impulse.x;
+  balance_.impulse.y += impulse.y;
+  balance_.impulse.angular += impulse.angular;
+}
+
+Energies Ledger::energies(const State& state, double contact_energy,
+                          const Dissipation& dissipation) const {
   Energies e = terms(state, contact_energy);
+  e.friction_loss = dissipation.friction;
+  e.damping_loss = dissipation.damping;
   e.total_error = total(e) - balance_.initial_energy;
   return e;
 }

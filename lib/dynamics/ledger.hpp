@@ -11,6 +11,11 @@ struct Impulse {
   double x = 0, y = 0, angular = 0;
 };
 
+/// Energy that is gone for good since time 0, J.
+struct Dissipation {
+  double friction = 0, damping = 0;
+};
+
 /// What a checkpoint needs to continue the ledger.
 struct Balance {
   double initial_energy = 0;
@@ -28,7 +33,11 @@ class Ledger {
   /// forces change.
   void half_step(const State& state, double half_step, const std::vector<double>& moved);
 
-  [[nodiscard]] Energies energies(const State& state, double contact_energy) const;
+  /// An impulse from outside that no force in `state` tells of.
+  void add_impulse(const Impulse& impulse);
+
+  [[nodiscard]] Energies energies(const State& state, double contact_energy,
+                                  const Dissipation& dissipation) const;
   [[nodiscard]] Momenta momenta(const State& state) const;
 
   [[nodiscard]] const Balance& balance() const { return balance_; }

@@ -99,6 +99,11 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     }
     shapes_.place(i, start[0], start[1], start[2]);
   }
+  if (TangentialContact::needed(model.contact)) {
+    std::vector<int> material;
+    for (const RigidBody& body : model.bodies) material.push_back(body.material);
+    tangential_.emplace(model.contact, model.thickness, material, inverse_masses_);
+  }
   stiffness_.resize(model.bodies.size());
   largest_stride_ = kLargestStride * inradius;
   energy_noise_ = energy_noise(model);
@@ -153,8 +158,17 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
 }
 
 Snapshot Simulation::snapshot() const {
-  return {state_,  ledger_->balance(), limit_, dt_, base_time_, base_step_, extremes_,
-          counts_, energy_in_play_};
+  return {state_,
+          ledger_->balance(),
+          limit_,
+          dt_,
+          base_time_,
+          base_step_,
+          extremes_,
+          counts_,
+          energy_in_play_,
+          tangential_ ? tangential_->memory() : TangentialMemory{},
+          mass_damping_loss_};
 }
 
 void Simulation::restore(const Snapshot& s) {
@@ -167,6 +181,8 @@ void Simulation::restore(const Snapshot& s) {
   extremes_ = s.extremes;
   counts_ = s.counts;
   energy_in_play_ = s.energy_in_play;
+  mass_damping_loss_ = s.mass_damping_loss;
+  if (tangential_) tangential_->restore(s.tangential);
   for (int i = 0; i < shapes_.size(); ++i) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
     shapes_.place(i, x[0], x[1], x[2]);
@@ -179,6 +195,7 @@ void Simulation::restore(const Snapshot& s) {
 void Simulation::step() {
   const bool timed = state_.step % kTimedEvery == 0;
   Stopwatch clock(timed, timed_seconds_);
+  if (model_.contact.mass_damping > 0) damp(dt_ / 2);
   kick(dt_ / 2);
   drift();
   clock.lap(Phase::integrate);
@@ -190,6 +207,7 @@ void Simulation::step() {
     std::copy(rate.begin(), rate.end(), state_.velocity.begin() + 3 * i);
   }
   ledger_->half_step(state_, dt_ / 2, moved_);
+  if (model_.contact.mass_damping > 0) damp(dt_ / 2);
   tighten_step();
   again.lap(Phase::integrate);
   timed_steps_ += timed;
@@ -200,6 +218,27 @@ void Simulation::kick(double h) {
   for (size_t k = 0; k < n; ++k) {
     state_.velocity[k] += h * (inverse_mass_[k] * state_.force[k] + acceleration_[k]);
   }
+}
+
+// C = alpha M for free bodies: v' = -alpha v solved exactly over h, so that any alpha is stable.
+void Simulation::damp(double h) {
+  const double rest = std::exp(-model_.contact.mass_damping * h);
+  Impulse impulse;
+  for (const int i : moving_) {
+    const RigidBody& body = model_.bodies[i];
+    if (body.motion != Motion::free) continue;
+    double* v = &state_.velocity[3 * static_cast<size_t>(i)];
+    const double* x = &state_.position[3 * static_cast<size_t>(i)];
+    const double kinetic =
+        (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
+    mass_damping_loss_ += kinetic * (1 - rest * rest);
+    const double lost = rest - 1;
+    impulse.x += lost * body.mass * v[0];
+    impulse.y += lost * body.mass * v[1];
+    impulse.angular += lost * (body.mass * (x[0] * v[1] - x[1] * v[0]) + body.inertia * v[2]);
+    for (int k = 0; k < 3; ++k) v[k] *= rest;
+  }
+  ledger_->add_impulse(impulse);
 }
 
 void Simulation::drift() {
@@ -258,6 +297,10 @@ void Simulation::find_forces(bool timed) {
   search_if_stale();
   clock.lap(Phase::search);
   contact_.evaluate(shapes_, state_.position, search_.pairs());
+  if (tangential_) {
+    tangential_->update(shapes_, state_.position, state_.velocity, ledger_ ? dt_ : 0,
+                        search_.pairs(), contact_.integrals());
+  }
   clock.lap(Phase::contact);
   gather();
   clock.lap(Phase::gather);
@@ -340,6 +383,7 @@ void Simulation::gather() {
           strip_mobility(inverse_masses_[b], std::abs(k_n * pair.moment_b) / force, pair.breadth);
     }
   }
+  if (tangential_) gather_tangential();
   counts_.candidate_pairs += static_cast<std::int64_t>(pairs.size());
   counts_.touching_pairs += touching;
   counts_.touching_now = touching;
@@ -348,6 +392,25 @@ void Simulation::gather() {
     if (stiffness_[i] > worst_stiffness_) {
       worst_stiffness_ = stiffness_[i];
       worst_body_ = static_cast<int>(i);
+    }
+  }
+}
+
+void Simulation::gather_tangential() {
+  for (const TangentialForce& t : tangential_->forces()) {
+    const auto [a, b] = search_.pairs()[t.pair];
+    double* fa = &state_.force[3 * static_cast<size_t>(a)];
+    double* fb = &state_.force[3 * static_cast<size_t>(b)];
+    fa[0] += t.force.x();
+    fa[1] += t.force.y();
+    fa[2] += t.moment_a;
+    fb[0] -= t.force.x();
+    fb[1] -= t.force.y();
+    fb[2] += t.moment_b;
+    const bool both = inverse_mass_[3 * a] + inverse_mass_[3 * a + 2] > 0 &&
+                      inverse_mass_[3 * b] + inverse_mass_[3 * b + 2] > 0;
+    for (const int i : {a, b}) {
+      stiffness_[i] += (both ? 2 : 1) * t.stiffness * strip_mobility(inverse_masses_[i], t.arm, 0);
     }
   }
 }
@@ -374,11 +437,17 @@ void Simulation::tighten_step() {
 }
 
 double Simulation::contact_energy() const {
-  return model_.stiffness() * contact_.energy(shapes_, state_.position, search_.pairs());
+  return model_.stiffness() * contact_.energy(shapes_, state_.position, search_.pairs()) +
+         (tangential_ ? tangential_->energy() : 0);
 }
 
 Energies Simulation::energies() {
-  const Energies e = ledger_->energies(state_, contact_energy());
+  Dissipation dissipation{0, mass_damping_loss_};
+  if (tangential_) {
+    dissipation.friction = tangential_->memory().friction_loss;
+    dissipation.damping += tangential_->memory().damping_loss;
+  }
+  const Energies e = ledger_->energies(state_, contact_energy(), dissipation);
   energy_in_play_ = std::max(energy_in_play_, e.kinetic + e.contact + std::abs(e.external_work));
   extremes_.energy_error = std::max(extremes_.energy_error, std::abs(e.total_error));
   if (!(std::abs(e.total_error) <= kLargestEnergyError * energy_in_play_ + energy_noise_)) {

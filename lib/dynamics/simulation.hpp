@@ -14,6 +14,7 @@
 
 #include "contact/normal.hpp"
 #include "contact/pair_search.hpp"
+#include "contact/tangential.hpp"
 #include "dynamics/ledger.hpp"
 #include "dynamics/time_step.hpp"
 #include "model/model.hpp"
@@ -78,6 +79,8 @@ struct Snapshot {
   Extremes extremes;
   Counts counts;
   double energy_in_play = 0;
+  TangentialMemory tangential = {};
+  double mass_damping_loss = 0;
 };
 
 class Simulation {
@@ -114,10 +117,12 @@ class Simulation {
   void choose_step(const TimeSettings& time, int frames);
   void kick(double h);
   void drift();
+  void damp(double h);
   void find_forces(bool timed);
   void search_if_stale();
   [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void gather();
+  void gather_tangential();
   void tighten_step();
   [[nodiscard]] double contact_energy() const;
   [[nodiscard]] std::string at_time() const;
@@ -132,6 +137,7 @@ class Simulation {
   PlacedShapes shapes_;
   PairSearch search_;
   NormalContact contact_;
+  std::optional<TangentialContact> tangential_;  // only where there is friction or damping
   std::optional<Ledger> ledger_;
   std::vector<double> moved_;
 
@@ -151,6 +157,7 @@ class Simulation {
   Counts counts_;
   double energy_in_play_ = 0;
   double energy_noise_ = 0;
+  double mass_damping_loss_ = 0;
   std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
   std::array<double, kPhaseNames.size()> timed_seconds_{};
   std::int64_t timed_steps_ = 0;

@@ -32,6 +32,7 @@ class SceneReader {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     bodies(list);
+    contact_rules();
     time(top.required("time", "{\"end\": ...} in s"));
     const JsonValue* output_value = top.optional("output");
     const JsonValue* expect_value = top.optional("expect");
@@ -95,7 +96,75 @@ class SceneReader {
         in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
     if (const JsonValue* v = object.optional("field")) field(*v);
     if (const JsonValue* v = object.optional("reference")) reference(*v);
+    if (const JsonValue* v = object.optional("friction")) law.friction = friction(*v, true);
+    if (const JsonValue* v = object.optional("damping")) damping(*v);
+    contact_pairs_ = object.optional("pairs");
     object.finish();
+  }
+
+  // Of the whole scene, or of a pair, which may leave the stiffness to the scene.
+  Friction friction(const JsonValue& value, bool of_scene) {
+    ContactLaw& law = model_.contact;
+    JsonObject object(in_, value);
+    Friction friction = law.friction;
+    const JsonValue& mu = object.required("coefficient", "mu, 0 or more");
+    friction.coefficient = in_.number(mu, "");
+    if (!(friction.coefficient >= 0)) in_.fail(mu, "must be 0 or more");
+    if (const JsonValue* v = object.optional("tangential_stiffness")) {
+      friction.tangential_stiffness = in_.positive(*v, "Pa");
+    } else if (friction.coefficient > 0 && !(friction.tangential_stiffness > 0)) {
+      object.required("tangential_stiffness", "k_s in Pa");
+    }
+    if (of_scene) {
+      if (const JsonValue* v = object.optional("law")) {
+        std::vector<std::string> names;
+        for (const NamedFrictionLaw& l : kFrictionLaws) names.emplace_back(l.name);
+        law.friction_law = kFrictionLaws[in_.choice(*v, names)].law;
+      }
+    }
+    object.finish();
+    return friction;
+  }
+
+  void damping(const JsonValue& value) {
+    JsonObject object(in_, value);
+    std::vector<std::string> names;
+    for (const NamedDamping& d : kDampingModels) names.emplace_back(d.name);
+    const NamedDamping& model =
+        kDampingModels[in_.choice(object.required("model", "normal_viscous or mass"), names)];
+    const std::string key(model.key);
+    const std::string unit(model.unit);
+    model_.contact.*model.value =
+        in_.positive(object.required(key, "a positive number " + unit), unit);
+    object.finish();
+  }
+
+  // After the bodies, whose names it may use.
+  void contact_rules() {
+    if (contact_pairs_ == nullptr) return;
+    for (const JsonValue& value : in_.array(*contact_pairs_)) {
+      JsonObject object(in_, value);
+      const JsonValue& between = object.required("between", "two names of materials or bodies");
+      const std::vector<JsonValue>& names = in_.array(between);
+      if (names.size() != 2) in_.fail(between, "must hold two names of materials or bodies");
+      const ContactRule::Party a = party(names[0]);
+      const ContactRule::Party b = party(names[1]);
+      const Friction rule = friction(object.required("friction", "{\"coefficient\": ...}"), false);
+      model_.contact.rules.push_back({{a, b}, rule});
+      object.finish();
+    }
+  }
+
+  // A name that is both a body's and a material's means the body.
+  ContactRule::Party party(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    for (size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (model_.bodies[i].name == name) return {true, static_cast<int>(i)};
+    }
+    for (size_t i = 0; i < model_.materials.size(); ++i) {
+      if (model_.materials[i].name == name) return {false, static_cast<int>(i)};
+    }
+    in_.fail(value, fmt::format("\"{}\" is neither a body nor a material", name));
   }
 
   void field(const JsonValue& value) {
@@ -416,6 +485,7 @@ class SceneReader {
   Scene& scene_;
   Model& model_;
   JsonReader in_;
+  const JsonValue* contact_pairs_ = nullptr;
 };
 
 }  // namespace

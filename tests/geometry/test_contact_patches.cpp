@@ -344,7 +344,7 @@ TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[
       }));
     }
   }
-  CHECK(patches > (test::long_run() ? 2000 : test::scaled(400)));
+  CHECK(patches > test::scaled(2000));
 }
 
 TEST_CASE("patches keep their identity from step to step", "[patches]") {
