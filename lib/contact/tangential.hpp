@@ -88,6 +88,8 @@ class TangentialContact {
   [[nodiscard]] double energy() const { return now_.energy; }
   [[nodiscard]] const TangentialMemory& memory() const { return now_; }
   void restore(const TangentialMemory& memory) { now_ = memory; }
+  /// What has been lost so far does not count.
+  void start_ledger() { now_.friction_loss = now_.damping_loss = 0; }
 
  private:
   struct Motion {

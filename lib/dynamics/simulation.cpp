@@ -109,7 +109,8 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   energy_noise_ = energy_noise(model);
   choose_step(time, frames);
   try {
-    find_forces(false);
+    find_forces(false, state_.velocity, 0);
+    if (time.settled) settle();
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", worst_body_);
   }
@@ -199,7 +200,7 @@ void Simulation::step() {
   kick(dt_ / 2);
   drift();
   clock.lap(Phase::integrate);
-  find_forces(timed);
+  find_forces(timed, state_.velocity, dt_);
   Stopwatch again(timed, timed_seconds_);
   kick(dt_ / 2);
   for (const int i : driven_) {
@@ -287,7 +288,7 @@ void Simulation::drift() {
   }
 }
 
-void Simulation::find_forces(bool timed) {
+void Simulation::find_forces(bool timed, const std::vector<double>& slip, double dt) {
   Stopwatch clock(timed, timed_seconds_);
   for (const int i : moving_) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
@@ -298,8 +299,7 @@ void Simulation::find_forces(bool timed) {
   clock.lap(Phase::search);
   contact_.evaluate(shapes_, state_.position, search_.pairs());
   if (tangential_) {
-    tangential_->update(shapes_, state_.position, state_.velocity, ledger_ ? dt_ : 0,
-                        search_.pairs(), contact_.integrals());
+    tangential_->update(shapes_, state_.position, slip, dt, search_.pairs(), contact_.integrals());
   }
   clock.lap(Phase::contact);
   gather();

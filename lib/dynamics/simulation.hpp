@@ -118,7 +118,9 @@ class Simulation {
   void kick(double h);
   void drift();
   void damp(double h);
-  void find_forces(bool timed);
+  /// `slip`: velocities that friction follows over dt.
+  void find_forces(bool timed, const std::vector<double>& slip, double dt);
+  void settle();
   void search_if_stale();
   [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void gather();

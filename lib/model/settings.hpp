@@ -11,6 +11,7 @@ struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
   double safety = 0.1;                    ///< automatic step = safety x stability limit
+  bool settled = false;                   ///< start in equilibrium (dynamics/settle.cpp)
   double longest_step = 1e300;            ///< s; of an automatic step: the interval of the history
 };
 

@@ -388,6 +388,9 @@ class SceneReader {
         if (*time.fixed_step > time.end) in_.fail(*v, "is longer than the whole run");
       }
     }
+    if (const JsonValue* v = object.optional("start")) {
+      time.settled = in_.choice(*v, {"as_given", "settled"}) == 1;
+    }
     if (const JsonValue* v = object.optional("safety")) {
       time.safety = in_.positive(*v, "parts of the stability limit");
       if (time.safety > 0.8) {
