@@ -63,7 +63,13 @@ int check_command(const CheckOptions& options) {
        fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));
   uses("prescribed motion", prescribed > 0, "");
   uses("held coordinates", held > 0, "");
-  uses("friction", false, "no tangential state is kept");
+  const ContactLaw& law = model.contact;
+  uses("tangential contact", TangentialContact::needed(law),
+       TangentialContact::needed(law)
+           ? fmt::format("friction of {:g}, {} rules by pair, damping ratio {:g}",
+                         law.friction.coefficient, law.rules.size(), law.normal_damping)
+           : "no tangential state is kept");
+  uses("mass damping", law.mass_damping > 0, fmt::format("{:g} 1/s", law.mass_damping));
   uses("finite elements", false, "all bodies are rigid");
   uses("damping", false, "");
   return exit_code::done;

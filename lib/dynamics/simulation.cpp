@@ -462,13 +462,20 @@ Energies Simulation::energies() {
 std::vector<ContactRecord> Simulation::contacts() const {
   std::vector<ContactRecord> records;
   const std::vector<BoxPair>& pairs = search_.pairs();
+  size_t next = 0;  // of the tangential forces
   for (size_t p = 0; p < pairs.size(); ++p) {
     const PairIntegral& pair = contact_.integrals()[p];
     if (!pair.touching()) continue;
+    Vec2 tangential = Vec2::Zero();
+    if (tangential_ && next < tangential_->forces().size() &&
+        tangential_->forces()[next].pair == static_cast<int>(p)) {
+      tangential = tangential_->forces()[next++].force;
+    }
     const auto [a, b] = pairs[p];
     const Vec2 reference(state_.position[3 * a], state_.position[3 * a + 1]);
-    records.push_back({a, b, reference + loading_point(pair), model_.stiffness() * pair.force,
-                       pair.penetration, pair.largest_phi});
+    records.push_back({a, b, reference + loading_point(pair),
+                       model_.stiffness() * pair.force + tangential, pair.penetration,
+                       pair.largest_phi});
   }
   return records;
 }

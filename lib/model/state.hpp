@@ -44,7 +44,7 @@ struct Momenta {
 struct ContactRecord {
   int a, b;            ///< bodies
   Vec2 point;          ///< loading point, relative to the model's origin, m
-  Vec2 force;          ///< on a, N
+  Vec2 force;          ///< on a, with friction and damping, N
   double penetration;  ///< extent of the overlap along the force, m
   double phi;          ///< largest potential met along the edges
 };

@@ -1,0 +1,237 @@
+// Friction and damping in the step loop: theory of sliding, ledgers, patches.
+#include <catch2/catch.hpp>
+
+#include "dynamics/simulation.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+
+namespace {
+
+constexpr double kG = 9.81;
+
+Model make_model(double coefficient, double tangential_stiffness = 1.25e9) {
+  Model model;
+  model.materials = {{"rock", 2500}};
+  model.contact.normal_stiffness = 2e9;
+  model.contact.friction = {coefficient, tangential_stiffness};
+  return model;
+}
+
+void add(Model& model, const std::string& name, const Polygon& polygon,
+         Motion motion = Motion::free) {
+  RigidBody body;
+  body.name = name;
+  body.motion = motion;
+  set_shape(body, polygon, model);
+  model.bodies.push_back(body);
+}
+
+// A block on a slope of that angle, the slope along x: gravity is tilted.
+Model incline(double angle, double coefficient, double speed, double tangential_stiffness) {
+  Model model = make_model(coefficient, tangential_stiffness);
+  model.gravity = {-kG * std::sin(angle), -kG * std::cos(angle)};
+  add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
+  add(model, "block", samples::block(-.25, 0, .25, .125));
+  model.bodies[1].velocity = {speed, 0};
+  return model;
+}
+
+double speed_after(Simulation& simulation, double until) {
+  while (simulation.state().time < until) simulation.step();
+  return simulation.state().velocity[3];
+}
+
+// Velocity 0.4 s after the block has turned, minus theory.
+double reversal_error(double tangential_stiffness) {
+  const double angle = .5, coefficient = .3, speed = 3;
+  const Model model = incline(angle, coefficient, speed, tangential_stiffness);
+  const double up = kG * (std::sin(angle) + coefficient * std::cos(angle));
+  const double down = kG * (std::sin(angle) - coefficient * std::cos(angle));
+  const double end = speed / up + .4;
+  Simulation simulation(model, {.end = end, .settled = true}, 1, 1);
+  return speed_after(simulation, end) + down * (simulation.state().time - speed / up);
+}
+
+// Two free polygons that hit and rub.
+Model collision(double coefficient) {
+  Model model = make_model(coefficient);
+  add(model, "T", samples::posed(test::triangle_t(), {.15, 1.3}, .4));
+  add(model, "Q", samples::posed(test::quad_q(), {0, 0}, 0));
+  model.bodies[0].velocity = {.3, -2};
+  model.bodies[0].spin = 1;
+  model.bodies[1].velocity = {.1, .5};
+  model.bodies[1].spin = -.7;
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("sliding from equilibrium follows theory", "[friction]") {
+  for (const auto& [angle, coefficient, speed] :
+       {std::tuple(.5, .2, 4.), std::tuple(.4, .7, 5.), std::tuple(.3, .5, -2.)}) {
+    const Model model = incline(angle, coefficient, speed, 1.25e9);
+    const double slowing =
+        kG * (std::copysign(coefficient * std::cos(angle), speed) + std::sin(angle));
+    Simulation simulation(model, {.end = .3, .settled = true}, 1, 1);
+    while (simulation.state().time < .3) {
+      simulation.step();
+      const State& state = simulation.state();
+      REQUIRE(std::abs(state.velocity[3] - (speed - slowing * state.time)) < 1e-8);
+    }
+    CHECK(std::abs(simulation.energies().total_error) <
+          1e-8 * model.bodies[1].mass * speed * speed / 2);
+  }
+}
+
+TEST_CASE("the error of a reversal falls as the root of the stiffness", "[friction]") {
+  const double soft = reversal_error(1.25e7), stiff = reversal_error(1.25e9);
+  INFO(soft << " " << stiff);
+  CHECK(std::abs(soft) < .05);
+  CHECK(std::abs(soft / stiff) == Approx(10).epsilon(.15));
+}
+
+TEST_CASE("a block starts to slide at atan(mu)", "[friction]") {
+  const double coefficient = .5;
+  for (const auto& [share, slides] : {std::pair(.999, false), std::pair(1.001, true)}) {
+    Model model = incline(std::atan(coefficient) * share, coefficient, 0, 1.25e9);
+    model.contact.normal_damping = .3;
+    Simulation simulation(model, {.end = 1}, 1, 1);
+    const double early = speed_after(simulation, .5);
+    const double late = speed_after(simulation, 1);
+    INFO(early << " " << late);
+    CHECK((std::abs(late) > 1e-4) == slides);
+    if (slides) {
+      const double pull = kG * (std::sin(std::atan(coefficient) * share) -
+                                coefficient * std::cos(std::atan(coefficient) * share));
+      CHECK(late - early == Approx(-pull * .5).epsilon(.01));
+    }
+  }
+}
+
+TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with order 2",
+          "[friction]") {
+  double errors[2];
+  for (const int k : {0, 1}) {
+    const Model model = collision(.4);
+    Simulation simulation(model, {.end = 1, .safety = k == 0 ? .1 : .05}, 1, 1);
+    const double before = simulation.energies().kinetic;
+    double worst = 0;
+    while (simulation.state().time < 1) {
+      simulation.step();
+      worst = std::max(worst, std::abs(simulation.energies().total_error));
+    }
+    const Momenta p = simulation.momenta();
+    const double scale = model.bodies[0].mass * 2;
+    CHECK(std::abs(p.x_error) < 1e-12 * scale);
+    CHECK(std::abs(p.y_error) < 1e-12 * scale);
+    CHECK(std::abs(p.angular_error) < 1e-10 * scale);
+    const Energies e = simulation.energies();
+    CHECK(e.friction_loss > 1e-3 * before);
+    CHECK(std::abs(e.total_error) < 1e-6 * before);
+    errors[k] = worst;
+  }
+  INFO(errors[0] << " " << errors[1]);
+  CHECK(errors[1] < errors[0] / 3);
+}
+
+TEST_CASE("a spring that only sticks loses nothing and adds nothing", "[friction]") {
+  Model model = incline(0, 50, .001, 1e8);
+  Simulation simulation(model, {.end = .3, .safety = .05}, 1, 1);
+  double worst = 0;
+  // From zero overlap: what is lost before the contact presses is lost honestly.
+  while (simulation.state().time < .02) simulation.step();
+  const double lost = simulation.energies().friction_loss;
+  const double kinetic = model.bodies[1].mass * 1e-6 / 2;
+  while (simulation.state().time < .3) {
+    simulation.step();
+    const Energies e = simulation.energies();
+    worst = std::max(worst, std::abs(e.friction_loss - lost));
+  }
+  CHECK(worst <= 1e-3 * kinetic);
+  CHECK(std::abs(simulation.energies().total_error) < 1e-3 * kinetic);
+}
+
+TEST_CASE("a block squeezed in one U-shaped body rubs on both sides", "[friction]") {
+  const double d = 1e-4, mu = .3;
+  Model model = make_model(mu);
+  model.gravity = {0, -200};
+  const double w = .5 - d;
+  add(model, "U", Polygon({{-2, -3}, {2, -3}, {2, 3}, {w, 3}, {w, -2}, {-w, -2}, {-w, 3}, {-2, 3}}),
+      Motion::fixed);
+  add(model, "block", samples::block(-.5, -.5, .5, .5));
+  Simulation simulation(model, {.end = .05}, 1, 1);
+  while (simulation.state().time < .05) simulation.step();
+  // Flat on flat: N = k d (W/r_U + (W - d)/r_block) on each side, by the roof height of the U.
+  const double normal =
+      2e9 * d * (1 / model.bodies[0].inradius + (1 - d) / model.bodies[1].inradius);
+  CHECK(simulation.state().force[3] == Approx(0).margin(1e-3 * normal));
+  CHECK(simulation.state().force[4] == Approx(2 * mu * normal).epsilon(1e-6));
+}
+
+TEST_CASE("springs follow patches that split and merge", "[friction]") {
+  // A comb slides over a comb: teeth meet gaps and teeth again.
+  Model model = make_model(.3);
+  model.gravity = {0, -kG};
+  add(model, "lower", samples::comb(6), Motion::fixed);
+  std::vector<Vec2> ring = samples::comb(3).vertices();
+  for (Vec2& v : ring) v = {v.x() + .3, 6 - v.y()};
+  add(model, "upper", Polygon(ring));
+  model.bodies[1].velocity = {3, 0};
+  model.bodies[1].held = {false, false, true};
+  Simulation simulation(model, {.end = .8, .safety = .05}, 1, 1);
+  const double before = simulation.energies().kinetic;
+  double worst = 0;
+  while (simulation.state().time < .8) {
+    simulation.step();
+    worst = std::max(worst, std::abs(simulation.energies().total_error));
+  }
+  INFO(worst / before << " after " << simulation.state().position[3]);
+  CHECK(simulation.energies().friction_loss > 0);
+  CHECK(worst < 1e-4 * before);
+}
+
+TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
+  Model model = incline(.3, .8, 2, 1.25e9);
+  const auto slowing = [&] {
+    Simulation simulation(model, {.end = .1, .settled = true}, 1, 1);
+    return (2 - speed_after(simulation, .1)) / simulation.state().time;
+  };
+  CHECK(slowing() == Approx(kG * (std::sin(.3) + .8 * std::cos(.3))).epsilon(1e-6));
+  model.contact.rules.push_back({{{{true, 1}, {false, 0}}}, {.1, 1.25e9}});
+  CHECK(slowing() == Approx(kG * (std::sin(.3) + .1 * std::cos(.3))).epsilon(1e-6));
+  model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, {0, 0}});
+  CHECK(slowing() == Approx(kG * std::sin(.3)).epsilon(1e-6));
+
+  CHECK(!TangentialContact::needed(make_model(0).contact));
+  CHECK(TangentialContact::needed(make_model(.1).contact));
+}
+
+TEST_CASE("mass damping takes what it says", "[friction]") {
+  Model model = collision(0);
+  model.contact.mass_damping = 3;
+  Simulation simulation(model, {.end = .2}, 1, 1);
+  const double before = simulation.energies().kinetic;
+  while (simulation.state().time < .2) simulation.step();
+  const Energies e = simulation.energies();
+  const double time = simulation.state().time;
+  CHECK(e.kinetic == Approx(before * std::exp(-6 * time)).epsilon(1e-12));
+  CHECK(e.damping_loss == Approx(before - e.kinetic).epsilon(1e-12));
+  CHECK(std::abs(simulation.momenta().y_error) < 1e-9);
+}
+
+TEST_CASE("a snapshot carries the springs", "[friction]") {
+  const Model model = collision(.4);
+  const TimeSettings time{.end = 1};
+  Simulation whole(model, time, 1, 1);
+  Simulation first(model, time, 1, 1);
+  while (first.snapshot().tangential.pairs.empty() || first.state().step % 7 != 0) first.step();
+  for (int i = 0; i < 20; ++i) first.step();
+  Simulation second(model, time, 1, 1);
+  second.restore(first.snapshot());
+  while (second.state().time < 1) second.step();
+  while (whole.state().time < 1) whole.step();
+  CHECK(second.state().position == whole.state().position);
+  CHECK(second.state().velocity == whole.state().velocity);
+  CHECK(second.energies().friction_loss == whole.energies().friction_loss);
+}
