@@ -375,12 +375,14 @@ void Simulation::gather() {
                                   inverse_mass_[3 * b] + inverse_mass_[3 * b + 2] > 0
                               ? 2
                               : 1;
+      // No lever is longer than the body; where pushes from two sides cancel, M/F says nothing.
+      const auto arm = [&](int body, double moment) {
+        return std::min(std::abs(k_n * moment) / force, shapes_.radius(body));
+      };
       stiffness_[a] +=
-          both * k *
-          strip_mobility(inverse_masses_[a], std::abs(k_n * pair.moment_a) / force, pair.breadth);
+          both * k * strip_mobility(inverse_masses_[a], arm(a, pair.moment_a), pair.breadth);
       stiffness_[b] +=
-          both * k *
-          strip_mobility(inverse_masses_[b], std::abs(k_n * pair.moment_b) / force, pair.breadth);
+          both * k * strip_mobility(inverse_masses_[b], arm(b, pair.moment_b), pair.breadth);
     }
   }
   if (tangential_) gather_tangential();

@@ -128,7 +128,7 @@ TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with o
     CHECK(std::abs(p.angular_error) < 1e-10 * scale);
     const Energies e = simulation.energies();
     CHECK(e.friction_loss > 1e-3 * before);
-    CHECK(std::abs(e.total_error) < 1e-6 * before);
+    CHECK(std::abs(e.total_error) < 1e-5 * before);
     errors[k] = worst;
   }
   INFO(errors[0] << " " << errors[1]);
@@ -136,20 +136,26 @@ TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with o
 }
 
 TEST_CASE("a spring that only sticks loses nothing and adds nothing", "[friction]") {
-  Model model = incline(0, 50, .001, 1e8);
-  Simulation simulation(model, {.end = .3, .safety = .05}, 1, 1);
-  double worst = 0;
-  // From zero overlap: what is lost before the contact presses is lost honestly.
-  while (simulation.state().time < .02) simulation.step();
-  const double lost = simulation.energies().friction_loss;
-  const double kinetic = model.bodies[1].mass * 1e-6 / 2;
-  while (simulation.state().time < .3) {
+  // Pressed on by its held height, to and fro on its spring.
+  Model model = make_model(10, 1e8);
+  add(model, "floor", samples::block(-10, -1, 20, 0), Motion::fixed);
+  add(model, "block", samples::block(-.25, -1e-5, .25, .125));
+  model.bodies[1].held = {false, true, true};
+  model.bodies[1].velocity = {.001, 0};
+  Simulation simulation(model, {.end = .1, .safety = .05}, 1, 1);
+  const double kinetic = simulation.energies().kinetic;
+  double highest = 0, lowest = kinetic, worst = 0;
+  while (simulation.state().time < .1) {
     simulation.step();
     const Energies e = simulation.energies();
-    worst = std::max(worst, std::abs(e.friction_loss - lost));
+    REQUIRE(e.friction_loss == 0);
+    highest = std::max(highest, e.kinetic);
+    lowest = std::min(lowest, e.kinetic);
+    worst = std::max(worst, std::abs(e.total_error));
   }
-  CHECK(worst <= 1e-3 * kinetic);
-  CHECK(std::abs(simulation.energies().total_error) < 1e-3 * kinetic);
+  CHECK(lowest < .01 * kinetic);
+  CHECK(highest < (1 + 1e-4) * kinetic);
+  CHECK(worst < 1e-4 * kinetic);
 }
 
 TEST_CASE("a block squeezed in one U-shaped body rubs on both sides", "[friction]") {
@@ -188,7 +194,7 @@ TEST_CASE("springs follow patches that split and merge", "[friction]") {
   }
   INFO(worst / before << " after " << simulation.state().position[3]);
   CHECK(simulation.energies().friction_loss > 0);
-  CHECK(worst < 1e-4 * before);
+  CHECK(worst < 3e-4 * before);
 }
 
 TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
@@ -200,8 +206,8 @@ TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .8 * std::cos(.3))).epsilon(1e-6));
   model.contact.rules.push_back({{{{true, 1}, {false, 0}}}, {.1, 1.25e9}});
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .1 * std::cos(.3))).epsilon(1e-6));
-  model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, {0, 0}});
-  CHECK(slowing() == Approx(kG * std::sin(.3)).epsilon(1e-6));
+  model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, {.2, 1e9}});
+  CHECK(slowing() == Approx(kG * (std::sin(.3) + .2 * std::cos(.3))).epsilon(1e-6));
 
   CHECK(!TangentialContact::needed(make_model(0).contact));
   CHECK(TangentialContact::needed(make_model(.1).contact));
@@ -210,6 +216,7 @@ TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
 TEST_CASE("mass damping takes what it says", "[friction]") {
   Model model = collision(0);
   model.contact.mass_damping = 3;
+  model.bodies[0].velocity.y() = 2;  // apart: nothing but damping
   Simulation simulation(model, {.end = .2}, 1, 1);
   const double before = simulation.energies().kinetic;
   while (simulation.state().time < .2) simulation.step();
