@@ -4,7 +4,8 @@
 // rotation) comes to rest.
 //
 // Dynamic relaxation with kinetic damping: explicit steps, and all bodies stop whenever the kinetic
-// energy has passed a maximum (Cundall 1982; Barnes 1988).
+// energy has passed a maximum (Cundall 1982; Barnes 1988). A little drag ends the cycles in which a
+// stiff mode can escape this.
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 namespace apothem {
 namespace {
 
+constexpr double kDrag = 0.05;       // of the velocity, per step
 constexpr double kStep = 0.5;        // of the stability limit
 constexpr double kResidual = 1e-12;  // of gravity and contact forces
 constexpr double kNoise = 0x1p-47;   // of a position; its contacts answer with their stiffness
@@ -78,7 +80,7 @@ void Simulation::settle() {
         worst = i;
       }
       for (size_t k = 0; k < 3; ++k) {
-        state_.velocity[at + k] += dt * a[k];
+        state_.velocity[at + k] += dt * a[k] - kDrag * state_.velocity[at + k];
         kinetic +=
             state_.velocity[at + k] * state_.velocity[at + k] * (k < 2 ? body.mass : body.inertia);
       }
