@@ -8,6 +8,7 @@
 
 #include "folder.hpp"
 #include "program.hpp"
+#include "public_rings.hpp"
 #include "shapes.hpp"
 
 using namespace apothem;
@@ -200,25 +201,14 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
 }
 
 TEST_CASE("every public ring is described or refused", "[program][polygon]") {
-  const char* polygons = std::getenv("APOTHEM_POLYGONS");
-  if (polygons == nullptr) {
-    WARN("skipped: the environment variable APOTHEM_POLYGONS names no folder with rings.txt");
-    return;
-  }
   const Folder folder;
   std::string text;
   std::vector<std::string> names;
-  std::ifstream file(std::string(polygons) + "/rings.txt");
-  REQUIRE(file);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string name;
-    int n = 0;
-    words >> name >> n;
-    if (n > 300) continue;  // minutes
-    names.push_back(name);
-    text += line + '\n';
+  for (const test::PublicRing& ring : test::public_rings(300)) {
+    names.push_back(ring.name);
+    text += ring.line + '\n';
   }
+  if (names.empty()) return;
   const Result r = run({"polygon", "--batch", folder.write("rings.txt", text)}, folder);
   CHECK((r.code == 0 || r.code == 2));
   const std::vector<Json> list = objects(r.out);

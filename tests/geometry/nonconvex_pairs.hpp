@@ -100,4 +100,17 @@ inline double closed_path_work(const Polygon& a, const Polygon& b, const Potenti
   return worst;
 }
 
+// Crosses, stars and combs on closed paths, held to the limits of convex pairs.
+inline void check_closed_paths(const PotentialChoice& choice) {
+  for (const auto& [a, b] : {std::pair(cross_shape(), cross_shape()),
+                             std::pair(star(5, .45), star(6, .5)), std::pair(comb(3), comb(2))}) {
+    for (const auto& [steps, limit] :
+         {std::pair(800, 2e-6), std::pair(3200, 4e-8), std::pair(12800, 1e-9)}) {
+      const double worst = closed_path_work(a, b, choice, steps);
+      INFO(steps << " steps: " << worst);
+      CHECK(worst < limit);
+    }
+  }
+}
+
 }  // namespace apothem::test

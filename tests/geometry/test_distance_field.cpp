@@ -275,16 +275,7 @@ TEST_CASE("force of the distance field is minus the gradient of the energy", "[d
 }
 
 TEST_CASE("work of the distance field on closed paths", "[distance-field]") {
-  for (const auto& [a, b] : {std::pair(test::cross_shape(), test::cross_shape()),
-                             std::pair(test::star(5, .45), test::star(6, .5)),
-                             std::pair(test::comb(3), test::comb(2))}) {
-    for (const auto& [steps, limit] :
-         {std::pair(800, 2e-6), std::pair(3200, 4e-8), std::pair(12800, 1e-9)}) {
-      const double worst = test::closed_path_work(a, b, field_choice(), steps);
-      INFO(steps << " steps: " << worst);
-      CHECK(worst < limit);
-    }
-  }
+  test::check_closed_paths(field_choice());
 }
 
 TEST_CASE("swapping the bodies of a distance-field pair, to the last bit", "[distance-field]") {

@@ -105,18 +105,7 @@ TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
   }
 }
 
-TEST_CASE("work of non-convex contact on closed paths", "[roof]") {
-  for (const auto& [a, b] : {std::pair(test::cross_shape(), test::cross_shape()),
-                             std::pair(test::star(5, .45), test::star(6, .5)),
-                             std::pair(test::comb(3), test::comb(2))}) {
-    for (const auto& [steps, limit] :
-         {std::pair(800, 2e-6), std::pair(3200, 4e-8), std::pair(12800, 1e-9)}) {
-      const double worst = test::closed_path_work(a, b, {}, steps);
-      INFO(steps << " steps: " << worst);
-      CHECK(worst < limit);
-    }
-  }
-}
+TEST_CASE("work of non-convex contact on closed paths", "[roof]") { test::check_closed_paths({}); }
 
 TEST_CASE("swap and shift of non-convex pairs, to the last bit", "[roof]") {
   Random random(44);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "geometry/predicates.hpp"
+#include "public_rings.hpp"
 #include "support.hpp"
 
 using namespace apothem;
@@ -348,21 +349,7 @@ TEST_CASE("a wrong skeleton breaks a law", "[skeleton]") {
 }
 
 TEST_CASE("every public ring gets a skeleton", "[skeleton]") {
-  const char* folder = std::getenv("APOTHEM_POLYGONS");
-  if (folder == nullptr) {
-    WARN("skipped: the environment variable APOTHEM_POLYGONS names no folder with rings.txt");
-    return;
-  }
-  std::ifstream file(std::string(folder) + "/rings.txt");
-  REQUIRE(file);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string name;
-    size_t n = 0;
-    words >> name >> n;
-    Ring ring(n);
-    for (Vec2& v : ring) words >> v.x() >> v.y();
-    if (n > 2500) continue;  // minutes
+  for (const auto& [name, line, ring] : test::public_rings(2500)) {  // minutes
     for (const Variant& variant : variants(ring)) {
       INFO(name << ", " << variant.name);
       std::optional<Polygon> polygon;

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "public_rings.hpp"
 #include "support.hpp"
 
 using namespace apothem;
@@ -453,22 +454,8 @@ TEST_CASE("what cannot be meshed is refused", "[voronoi]") {
 }
 
 TEST_CASE("every public ring can be meshed", "[voronoi]") {
-  const char* folder = std::getenv("APOTHEM_POLYGONS");
-  if (folder == nullptr) {
-    WARN("skipped: the environment variable APOTHEM_POLYGONS names no folder with rings.txt");
-    return;
-  }
-  std::ifstream file(std::string(folder) + "/rings.txt");
-  REQUIRE(file);
   int meshed = 0;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string name;
-    size_t n = 0;
-    words >> name >> n;
-    Ring ring(n);
-    for (Vec2& v : ring) words >> v.x() >> v.y();
-    if (n > 200) continue;
+  for (const auto& [name, line, ring] : test::public_rings(200)) {
     std::optional<Polygon> region;
     try {
       region.emplace(ring);
