@@ -64,14 +64,16 @@ int check_command(const CheckOptions& options) {
   uses("prescribed motion", prescribed > 0, "");
   uses("held coordinates", held > 0, "");
   const ContactLaw& law = model.contact;
-  uses("tangential contact", TangentialContact::needed(law),
-       TangentialContact::needed(law)
-           ? fmt::format("friction of {:g}, {} rules by pair, damping ratio {:g}",
-                         law.friction.coefficient, law.rules.size(), law.normal_damping)
+  const bool rough = law.friction.coefficient > 0 || !law.rules.empty();
+  uses("friction", rough,
+       rough
+           ? fmt::format("mu = {:g}, {} rules by pair", law.friction.coefficient, law.rules.size())
            : "no tangential state is kept");
-  uses("mass damping", law.mass_damping > 0, fmt::format("{:g} 1/s", law.mass_damping));
+  uses("damping", law.normal_damping > 0 || law.mass_damping > 0,
+       law.normal_damping > 0 ? fmt::format("normal viscous, ratio {:g}", law.normal_damping)
+       : law.mass_damping > 0 ? fmt::format("mass, {:g} 1/s", law.mass_damping)
+                              : "");
   uses("finite elements", false, "all bodies are rigid");
-  uses("damping", false, "");
   return exit_code::done;
 }
 
