@@ -227,6 +227,25 @@ TEST_CASE("mass damping takes what it says", "[friction]") {
   CHECK(std::abs(simulation.momenta().y_error) < 1e-9);
 }
 
+TEST_CASE("normal damping takes energy, and the ledger closes with order 2", "[friction]") {
+  double errors[2];
+  for (const int k : {0, 1}) {
+    Model model = incline(0, .3, .2, 1.25e9);
+    model.contact.normal_damping = .3;
+    model.bodies[1].position.y() += 1e-4;
+    Simulation simulation(model, {.end = .05, .safety = k == 0 ? .1 : .05}, 1, 1);
+    double worst = 0;
+    while (simulation.state().time < .05) {
+      simulation.step();
+      worst = std::max(worst, std::abs(simulation.energies().total_error));
+    }
+    CHECK(simulation.energies().damping_loss > 0);
+    errors[k] = worst;
+  }
+  INFO(errors[0] << " " << errors[1]);
+  CHECK(errors[1] < errors[0] / 3);
+}
+
 TEST_CASE("a snapshot carries the springs", "[friction]") {
   const Model model = collision(.4);
   const TimeSettings time{.end = 1};
