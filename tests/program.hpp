@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -26,6 +27,7 @@ struct Result {
 struct Limits {
   rlim_t file_size = RLIM_INFINITY;
   double interrupt_after = 0;  // s
+  std::string once_exists{};   // the interrupt waits for this file
 };
 
 inline Result run(std::vector<std::string> arguments, const Folder& folder,
@@ -47,6 +49,10 @@ inline Result run(std::vector<std::string> arguments, const Folder& folder,
     _exit(127);
   }
   if (limits.interrupt_after > 0) {
+    for (int i = 0; i < 6000 && !limits.once_exists.empty(); ++i) {
+      if (std::filesystem::exists(limits.once_exists)) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     std::this_thread::sleep_for(std::chrono::duration<double>(limits.interrupt_after));
     kill(child, SIGINT);
   }

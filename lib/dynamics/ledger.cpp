@@ -58,13 +58,22 @@ void Ledger::half_step(const State& state, double half_step, const std::vector<d
   }
 }
 
-Energies Ledger::terms(const State& state, double contact_energy) const {
-  Energies e;
+double Ledger::kinetic(const State& state) const {
+  double sum = 0;
   for (const int i : free_) {
     const RigidBody& body = model_.bodies[i];
     const double* v = &state.velocity[3 * static_cast<size_t>(i)];
+    sum += (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
+  }
+  return sum;
+}
+
+Energies Ledger::terms(const State& state, double contact_energy) const {
+  Energies e;
+  e.kinetic = kinetic(state);
+  for (const int i : free_) {
+    const RigidBody& body = model_.bodies[i];
     const double* x = &state.position[3 * static_cast<size_t>(i)];
-    e.kinetic += (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
     // What rounding keeps out of the position counts: the fall may be far smaller than the height.
     const double* r = &state.remainder[3 * static_cast<size_t>(i)];
     e.gravity -= body.mass * (model_.gravity.x() * ((x[0] - body.position.x()) + r[0]) +

@@ -38,6 +38,8 @@ class Ledger {
 
   [[nodiscard]] Energies energies(const State& state, double contact_energy,
                                   const Dissipation& dissipation) const;
+  /// Of the free bodies, J.
+  [[nodiscard]] double kinetic(const State& state) const;
   [[nodiscard]] Momenta momenta(const State& state) const;
 
   [[nodiscard]] const Balance& balance() const { return balance_; }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSkin = 0.1;  // of the mean body size
 constexpr std::int64_t kTimedEvery = 64;
+constexpr std::int64_t kWatchedEvery = 64;  // steps between looks at the energy in play
 constexpr double kDeepestPhi = 0.95;  // beyond it an edge is about to cross the other's centre
 constexpr double kOvershoot = 1.05;   // of a step just below the limit: see tighten_step
 constexpr double kLargestEnergyError = 0.1;  // of the energy in play
@@ -212,6 +213,10 @@ void Simulation::step() {
   tighten_step();
   again.lap(Phase::integrate);
   timed_steps_ += timed;
+  // Energies may be asked for at the top of a bounce, where all there was is in the height.
+  if (state_.step % kWatchedEvery == 0) {
+    energy_in_play_ = std::max(energy_in_play_, ledger_->kinetic(state_));
+  }
 }
 
 void Simulation::kick(double h) {
