@@ -1,0 +1,381 @@
+#include "fem/finite_elements.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/mass.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr int kChunk = 512;
+constexpr int kMostCorners = 64;
+
+using Pair = double __attribute__((vector_size(16)));
+using FourWide = double __attribute__((vector_size(32)));
+
+struct Blocks {
+  const double* data;
+  const std::uint16_t* local;
+  int elements, corners;
+  const ElementSet& set;
+  const double* u;
+  const double* v;
+  double* f;
+};
+
+// The places (x, y) of eight nodes: eight loads of 16 bytes and a transposition, faster than a
+// gather instruction.
+APOTHEM_INLINE Pair load(const double* from, std::uint16_t node) {
+  return *reinterpret_cast<const Pair*>(from + 2 * node);
+}
+APOTHEM_INLINE Point<Pack> gather(const double* from, const std::uint16_t* n) {
+  const FourWide a = __builtin_shufflevector(load(from, n[0]), load(from, n[1]), 0, 1, 2, 3);
+  const FourWide b = __builtin_shufflevector(load(from, n[2]), load(from, n[3]), 0, 1, 2, 3);
+  const FourWide c = __builtin_shufflevector(load(from, n[4]), load(from, n[5]), 0, 1, 2, 3);
+  const FourWide d = __builtin_shufflevector(load(from, n[6]), load(from, n[7]), 0, 1, 2, 3);
+  const Pack::Vector low = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  const Pack::Vector high = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7);
+  return {Pack(__builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14)),
+          Pack(__builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15))};
+}
+
+APOTHEM_INLINE void add_pair(double* to, std::uint16_t node, Pair value) {
+  *reinterpret_cast<Pair*>(to + 2 * node) += value;
+}
+// One lane after the other: two lanes may share a node.
+APOTHEM_INLINE void add(const Point<Pack>& f, double* to, const std::uint16_t* node) {
+  const Pack::Vector low = __builtin_shufflevector(f.x.v, f.y.v, 0, 8, 1, 9, 2, 10, 3, 11);
+  const Pack::Vector high = __builtin_shufflevector(f.x.v, f.y.v, 4, 12, 5, 13, 6, 14, 7, 15);
+  add_pair(to, node[0], __builtin_shufflevector(low, low, 0, 1));
+  add_pair(to, node[1], __builtin_shufflevector(low, low, 2, 3));
+  add_pair(to, node[2], __builtin_shufflevector(low, low, 4, 5));
+  add_pair(to, node[3], __builtin_shufflevector(low, low, 6, 7));
+  add_pair(to, node[4], __builtin_shufflevector(high, high, 0, 1));
+  add_pair(to, node[5], __builtin_shufflevector(high, high, 2, 3));
+  add_pair(to, node[6], __builtin_shufflevector(high, high, 4, 5));
+  add_pair(to, node[7], __builtin_shufflevector(high, high, 6, 7));
+}
+
+APOTHEM_INLINE double sum_of_lanes(const Pack& p, int lanes) {
+  double sum = 0;
+  for (int i = 0; i < lanes; ++i) sum += p.v[i];
+  return sum;
+}
+
+// Forces into blocks.f, returning the power of damping; or the energy alone.
+template <class Element, class Law, bool damped, bool forces>
+APOTHEM_INLINE double work_through(const Blocks& blocks) {
+  const ElementSet& set = blocks.set;
+  const Response<Law, damped> response(Law(set.material), set.material, set.stiffness_damping,
+                                       set.thickness);
+  const int corners = Element::kCorners > 0 ? Element::kCorners : blocks.corners;
+  constexpr int kMost = Element::kCorners > 0 ? Element::kCorners : kMostCorners;
+  const ptrdiff_t stored = static_cast<ptrdiff_t>(Element::stored(corners)) * kLanes;
+  double sum = 0;
+  for (int first = 0, block = 0; first < blocks.elements; first += kLanes, ++block) {
+    const Stored<Pack> data{blocks.data + block * stored};
+    const std::uint16_t* local = blocks.local + static_cast<ptrdiff_t>(block) * corners * kLanes;
+    Point<Pack> u[kMost], v[damped ? kMost : 1], f[forces ? kMost : 1];
+    for (int i = 0; i < corners; ++i) u[i] = gather(blocks.u, local + i * kLanes);
+    if constexpr (damped && forces) {
+      for (int i = 0; i < corners; ++i) v[i] = gather(blocks.v, local + i * kLanes);
+    }
+    Pack value(0.);
+    if constexpr (forces) {
+      Element::force(data, response, corners, u, v, f, value);
+      for (int i = 0; i < corners; ++i) add(f[i], blocks.f, local + i * kLanes);
+    } else {
+      value = Element::energy(data, response, corners, u);
+    }
+    if constexpr (damped || !forces) {
+      sum += sum_of_lanes(value, std::min(kLanes, blocks.elements - first));
+    }
+  }
+  return sum;
+}
+
+template <class Element, class Law, bool damped, bool forces>
+[[gnu::target("avx512f")]] double with_avx512(const Blocks& blocks) {
+  return work_through<Element, Law, damped, forces>(blocks);
+}
+template <class Element, class Law, bool damped, bool forces>
+[[gnu::target("avx2")]] double with_avx2(const Blocks& blocks) {
+  return work_through<Element, Law, damped, forces>(blocks);
+}
+template <class Element, class Law, bool damped, bool forces>
+double with_sse2(const Blocks& blocks) {
+  return work_through<Element, Law, damped, forces>(blocks);
+}
+
+enum class Machine { sse2, avx2, avx512 };
+Machine machine() {
+  if (__builtin_cpu_supports("avx512f")) return Machine::avx512;
+  return __builtin_cpu_supports("avx2") ? Machine::avx2 : Machine::sse2;
+}
+
+template <bool damped, bool forces>
+double dispatch(const Blocks& blocks) {
+  static const Machine here = machine();
+  return with_element(blocks.set.kind, [&]<class Element>(Element) {
+    return with_law(blocks.set.material, [&]<class Law>(const Law&) {
+      switch (here) {
+        case Machine::avx512:
+          return with_avx512<Element, Law, damped, forces>(blocks);
+        case Machine::avx2:
+          return with_avx2<Element, Law, damped, forces>(blocks);
+        default:
+          return with_sse2<Element, Law, damped, forces>(blocks);
+      }
+    });
+  });
+}
+
+std::vector<Vec2> places(const Mesh& mesh, int element) {
+  std::vector<Vec2> x;
+  for (const int node : mesh.element(element)) x.push_back(mesh.nodes[node]);
+  return x;
+}
+
+}  // namespace
+
+FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
+    : sets_(sets.begin(), sets.end()) {
+  for (int i = 0; i < static_cast<int>(sets_.size()); ++i) add_set(i, sets_[i]);
+  find_shared_nodes();
+  chunk_sums_.resize(chunks_.size());
+  size_t most = 0;
+  for (const Chunk& c : chunks_) most = std::max(most, c.nodes_end - c.nodes);
+  Scratch scratch;
+  for (Aligned* a : {&scratch.u, &scratch.v, &scratch.f}) a->assign(2 * (most + 1), 0);
+  scratch_.assign(std::max(threads, 1), scratch);
+}
+
+void FiniteElements::add_set(int index, const ElementSet& set) {
+  const Mesh& mesh = *set.mesh;
+  elements_ += mesh.element_count();
+  damped_ = damped_ || set.stiffness_damping > 0;
+  mass_.resize(std::max(mass_.size(), set.first_node + mesh.nodes.size()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const std::vector<double> areas = corner_areas(places(mesh, e));
+    for (size_t i = 0; i < areas.size(); ++i) {
+      mass_[set.first_node + mesh.element(e)[i]] += set.density * set.thickness * areas[i];
+    }
+  }
+  std::vector<int> members;
+  for (int e = 0; e < mesh.element_count(); e += kChunk) {
+    members.clear();
+    for (int k = e; k < std::min(e + kChunk, mesh.element_count()); ++k) members.push_back(k);
+    // Those with the same number of corners in one run.
+    std::stable_sort(members.begin(), members.end(),
+                     [&](int a, int b) { return mesh.element(a).size() < mesh.element(b).size(); });
+    add_chunk(index, set, members);
+  }
+}
+
+void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const int> elements) {
+  const Mesh& mesh = *set.mesh;
+  Chunk chunk{index, runs_.size(), 0, nodes_.size(), 0};
+  std::vector<int> nodes;
+  for (const int e : elements) {
+    for (const int node : mesh.element(e)) nodes.push_back(set.first_node + node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const auto local_of = [&](int node) {
+    return static_cast<std::uint16_t>(
+        std::lower_bound(nodes.begin(), nodes.end(), set.first_node + node) - nodes.begin());
+  };
+  for (size_t begin = 0; begin < elements.size();) {
+    const int corners = static_cast<int>(mesh.element(elements[begin]).size());
+    size_t end = begin;
+    while (end < elements.size() &&
+           static_cast<int>(mesh.element(elements[end]).size()) == corners) {
+      ++end;
+    }
+    const int count = static_cast<int>(end - begin);
+    const size_t blocks = (end - begin + kLanes - 1) / kLanes;
+    runs_.push_back({corners, count, data_.size(), local_.size(), static_cast<int>(order_.size())});
+    order_.insert(order_.end(), elements.begin() + static_cast<ptrdiff_t>(begin),
+                  elements.begin() + static_cast<ptrdiff_t>(end));
+    const int stored =
+        with_element(set.kind, [&]<class Element>(Element) { return Element::stored(corners); });
+    data_.resize(data_.size() + blocks * stored * kLanes);
+    // Lanes without an element repeat the last one and move a node that is nobody's.
+    local_.resize(local_.size() + blocks * corners * kLanes,
+                  static_cast<std::uint16_t>(nodes.size()));
+    for (size_t k = 0; k < blocks * kLanes; ++k) {
+      const size_t block = k / kLanes, lane = k % kLanes;
+      const int e = elements[std::min(begin + k, end - 1)];
+      with_element(set.kind, [&]<class Element>(Element) {
+        Element::prepare(places(mesh, e), set.material, set.thickness,
+                         &data_[runs_.back().data + block * stored * kLanes + lane]);
+      });
+      if (begin + k >= end) continue;
+      for (int i = 0; i < corners; ++i) {
+        local_[runs_.back().local + (block * corners + i) * kLanes + lane] =
+            local_of(mesh.element(e)[i]);
+      }
+    }
+    begin = end;
+  }
+  nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
+  chunk.runs_end = runs_.size();
+  chunk.nodes_end = nodes_.size();
+  chunks_.push_back(chunk);
+}
+
+void FiniteElements::find_shared_nodes() {
+  std::vector<int> users(mass_.size(), 0);
+  for (const int node : nodes_) ++users[node];
+  std::vector<int> next(mass_.size(), -1);
+  slots_.push_back(0);
+  for (int node = 0; node < node_count(); ++node) {
+    if (users[node] < 2) continue;
+    shared_.push_back(node);
+    next[node] = slots_.back();
+    slots_.push_back(slots_.back() + users[node]);
+  }
+  halo_.resize(2 * static_cast<size_t>(slots_.back()));
+  for (const int node : nodes_) target_.push_back(next[node] < 0 ? node : -1 - next[node]++);
+}
+
+double FiniteElements::run(Task task, std::span<const double> u, std::span<const double> v,
+                           std::span<double> f) {
+  const int count = static_cast<int>(chunks_.size());
+  const bool moving = task == Task::force && damped_;
+#pragma omp parallel num_threads(static_cast <int>(scratch_.size())) if (scratch_.size() > 1)
+  {
+    Scratch& s = scratch_[omp_get_thread_num()];
+#pragma omp for schedule(static)
+    for (int c = 0; c < count; ++c) {
+      const Chunk& chunk = chunks_[c];
+      const ElementSet& set = sets_[chunk.set];
+      const size_t n = chunk.nodes_end - chunk.nodes;
+      const int* nodes = &nodes_[chunk.nodes];
+      for (size_t i = 0; i < n; ++i) {
+        s.u[2 * i] = u[2 * static_cast<size_t>(nodes[i])];
+        s.u[2 * i + 1] = u[2 * static_cast<size_t>(nodes[i]) + 1];
+      }
+      s.u[2 * n] = s.u[2 * n + 1] = 0;
+      if (moving) {
+        for (size_t i = 0; i < n; ++i) {
+          s.v[2 * i] = v[2 * static_cast<size_t>(nodes[i])];
+          s.v[2 * i + 1] = v[2 * static_cast<size_t>(nodes[i]) + 1];
+        }
+        s.v[2 * n] = s.v[2 * n + 1] = 0;
+      }
+      std::fill(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * (n + 1)), 0.);
+      double sum = 0;
+      for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
+        const Run& part = runs_[r];
+        const Blocks blocks{
+            &data_[part.data], &local_[part.local], part.elements, part.corners, set,
+            s.u.data(),        s.v.data(),          s.f.data()};
+        if (task == Task::energy) {
+          sum += dispatch<false, false>(blocks);
+        } else {
+          sum += set.stiffness_damping > 0 ? dispatch<true, true>(blocks)
+                                           : dispatch<false, true>(blocks);
+        }
+      }
+      chunk_sums_[c] = sum;
+      if (task == Task::energy) continue;
+      const int* target = &target_[chunk.nodes];
+      for (size_t i = 0; i < n; ++i) {
+        double* to = target[i] >= 0 ? &f[2 * static_cast<size_t>(target[i])]
+                                    : &halo_[2 * static_cast<size_t>(-1 - target[i])];
+        to[0] = -s.f[2 * i];
+        to[1] = -s.f[2 * i + 1];
+      }
+    }
+    if (task == Task::force) {
+#pragma omp for schedule(static)
+      for (int i = 0; i < static_cast<int>(shared_.size()); ++i) {
+        double x = 0, y = 0;
+        for (int k = slots_[i]; k < slots_[i + 1]; ++k) {
+          x += halo_[2 * static_cast<size_t>(k)];
+          y += halo_[2 * static_cast<size_t>(k) + 1];
+        }
+        f[2 * static_cast<size_t>(shared_[i])] = x;
+        f[2 * static_cast<size_t>(shared_[i]) + 1] = y;
+      }
+    }
+  }
+  double sum = 0;
+  for (const double part : chunk_sums_) sum += part;
+  return sum;
+}
+
+double FiniteElements::force(std::span<const double> u, std::span<const double> v,
+                             std::span<double> f) {
+  return run(Task::force, u, v, f);
+}
+
+double FiniteElements::strain_energy(std::span<const double> u) {
+  return run(Task::energy, u, {}, {});
+}
+
+// f(element's struct, its numbers, run, set, number in its mesh, displacements of its corners)
+template <class F>
+void FiniteElements::each_element(std::span<const double> u, F&& f) const {
+  std::vector<Point<double>> corners;
+  for (const Chunk& chunk : chunks_) {
+    const ElementSet& set = sets_[chunk.set];
+    for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
+      const Run& part = runs_[r];
+      for (int k = 0; k < part.elements; ++k) {
+        const int element = order_[part.first + k];
+        corners.clear();
+        for (const int node : set.mesh->element(element)) {
+          const size_t at = 2 * static_cast<size_t>(set.first_node + node);
+          corners.push_back({u[at], u[at + 1]});
+        }
+        with_element(set.kind, [&]<class Element>(Element e) {
+          const size_t block = static_cast<size_t>(Element::stored(part.corners)) * kLanes;
+          const Stored<double> data{&data_[part.data + (k / kLanes) * block + k % kLanes]};
+          f(e, data, part.corners, chunk.set, element, corners.data());
+        });
+      }
+    }
+  }
+}
+
+std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) const {
+  std::vector<CauchyStress> result(elements_);
+  std::vector<int> first{0};
+  for (const ElementSet& set : sets_) first.push_back(first.back() + set.mesh->element_count());
+  each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int set,
+                                     int element, const Point<double>* w) {
+    const Elastic& material = sets_[set].material;
+    with_law(material, [&](const auto& law) {
+      const Tensor<double> h = Element::mean_gradient(data, corners, w);
+      const Tensor<double> p = law.stress(h);
+      const double stretch = law.thickness_stretch(h);
+      const double j = (1 + h.xx + h.yy + determinant(h)) * stretch;
+      CauchyStress s;
+      s.xx = (p.xx * (1 + h.xx) + p.xy * h.xy) / j;
+      s.yy = (p.yx * h.yx + p.yy * (1 + h.yy)) / j;
+      s.xy = (p.xx * h.yx + p.xy * (1 + h.yy)) / j;
+      s.zz = law.transverse_stress(h) * stretch * stretch / j;
+      s.energy_density = law.energy(h);
+      result[first[set] + element] = s;
+    });
+  });
+  return result;
+}
+
+FiniteElements::Collapse FiniteElements::smallest_ratio(std::span<const double> u) const {
+  Collapse worst{HUGE_VAL, -1, -1};
+  each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int set,
+                                     int element, const Point<double>* w) {
+    const Tensor<double> h = Element::mean_gradient(data, corners, w);
+    const double ratio = 1 + h.xx + h.yy + determinant(h);
+    if (!(ratio >= worst.ratio)) worst = {ratio, set, element};
+  });
+  return worst;
+}
+
+}  // namespace apothem

@@ -1,0 +1,182 @@
+// Elastic materials (theory: Sec. 5.1; T. Belytschko et al., Nonlinear Finite Elements, 2014,
+// Sec. 5.4). A new law is a struct with the functions of StVenantKirchhoff, a name in kElasticLaws
+// and a line in with_law.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "fem/tensor.hpp"
+
+namespace apothem {
+
+enum class ElasticLaw { st_venant_kirchhoff, neo_hookean };
+inline constexpr std::array kElasticLaws{"st_venant_kirchhoff", "neo_hookean"};
+
+enum class Plane { stress, strain };
+inline constexpr std::array kPlanes{"stress", "strain"};
+
+/// An isotropic elastic material. Pa and 1.
+struct Elastic {
+  ElasticLaw law = ElasticLaw::st_venant_kirchhoff;
+  Plane plane = Plane::stress;
+  double young = 0;
+  double poisson = 0;
+
+  [[nodiscard]] double shear() const { return young / (2 * (1 + poisson)); }
+  /// Lame's first constant.
+  [[nodiscard]] double lame() const {
+    return young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  }
+  /// Of a stress in one direction of the plane alone.
+  [[nodiscard]] double uniaxial() const {
+    return plane == Plane::stress ? young : young / (1 - poisson * poisson);
+  }
+  /// Stress per strain in one direction of the plane while the other one is held.
+  [[nodiscard]] double constrained() const {
+    return plane == Plane::stress ? young / (1 - poisson * poisson) : lame() + 2 * shear();
+  }
+  /// Stress per strain across.
+  [[nodiscard]] double coupled() const {
+    return plane == Plane::stress ? young * poisson / (1 - poisson * poisson) : lame();
+  }
+};
+
+/// Linear isotropic elasticity in the plane, between strains and stresses of any definition.
+struct Hooke {
+  double constrained, coupled, twice_shear;
+  explicit Hooke(const Elastic& e)
+      : constrained(e.constrained()), coupled(e.coupled()), twice_shear(2 * e.shear()) {}
+  template <class N>
+  APOTHEM_INLINE Symmetric<N> operator()(const Symmetric<N>& e) const {
+    const N c(constrained), d(coupled), g(twice_shear);
+    return {c * e.xx + d * e.yy, d * e.xx + c * e.yy, g * e.xy};
+  }
+};
+
+/// S = C : E, in both planes.
+struct StVenantKirchhoff {
+  Hooke hooke;
+  double transverse;   // E_33 = -transverse (E_11 + E_22)
+  double lame_across;  // S_33 = lame_across (E_11 + E_22)
+  explicit StVenantKirchhoff(const Elastic& e)
+      : hooke(e),
+        transverse(e.plane == Plane::stress ? e.poisson / (1 - e.poisson) : 0),
+        lame_across(e.plane == Plane::stress ? 0 : e.lame()) {}
+  /// First Piola-Kirchhoff stress, Pa, of the displacement gradient.
+  template <class N>
+  APOTHEM_INLINE Tensor<N> stress(const Tensor<N>& h) const {
+    return first_piola(h, hooke(green_strain(h)));
+  }
+  /// Strain energy per reference volume, J/m^3.
+  template <class N>
+  APOTHEM_INLINE N energy(const Tensor<N>& h) const {
+    const Symmetric<N> e = green_strain(h);
+    return N(0.5) * product(hooke(e), e);
+  }
+  /// Thickness over reference thickness.
+  template <class N>
+  APOTHEM_INLINE N thickness_stretch(const Tensor<N>& h) const {
+    const Symmetric<N> e = green_strain(h);
+    return square_root(N(1) - N(2 * transverse) * (e.xx + e.yy));
+  }
+  /// Second Piola-Kirchhoff stress across the plane, Pa.
+  template <class N>
+  APOTHEM_INLINE N transverse_stress(const Tensor<N>& h) const {
+    const Symmetric<N> e = green_strain(h);
+    return N(lame_across) * (e.xx + e.yy);
+  }
+};
+
+/// psi = mu/2 (tr F^T F - 3) - mu ln J + lambda/2 (J - 1)^2; for small strains Hooke's law. In
+/// plane stress the thickness makes the stress across it vanish, in closed form.
+template <Plane plane>
+struct NeoHookean {
+  double mu, lambda;
+  explicit NeoHookean(const Elastic& e) : mu(e.shear()), lambda(e.lame()) {}
+
+  template <class N>
+  APOTHEM_INLINE Tensor<N> stress(const Tensor<N>& h) const {
+    // F - F^-T = ((j - 1) F + F - cof F) / j, without cancellation; j = det F in the plane.
+    const N grown = h.xx + h.yy + determinant(h);
+    const N j = N(1) + grown;
+    const Tensor<N> cofactor{N(1) + h.yy, -h.yx, -h.xy, N(1) + h.xx};
+    const N part = N(mu) / j;
+    const N skew = h.xx - h.yy, twist = h.xy + h.yx;
+    const Tensor<N> f_minus_cofactor{skew, twist, twist, -skew};
+    const Tensor<N> f{N(1) + h.xx, h.xy, h.yx, N(1) + h.yy};
+    const N swelling = N(lambda) * volume_change(grown, j) * thickness(grown, j);
+    return part * (f_minus_cofactor + grown * f) + swelling * cofactor;
+  }
+  template <class N>
+  APOTHEM_INLINE N energy(const Tensor<N>& h) const;
+  template <class N>
+  APOTHEM_INLINE N thickness_stretch(const Tensor<N>& h) const {
+    const N grown = h.xx + h.yy + determinant(h);
+    return thickness(grown, N(1) + grown);
+  }
+  template <class N>
+  APOTHEM_INLINE N transverse_stress(const Tensor<N>& h) const {
+    if constexpr (plane == Plane::stress) return N(0);
+    const N grown = h.xx + h.yy + determinant(h);
+    return N(lambda) * grown * (N(1) + grown);  // thickness 1: mu (1 - 1) + lambda (J - 1) J
+  }
+
+ private:
+  // d psi/d lambda_3 = 0: (mu + lambda j^2) t^2 - lambda j t - mu = 0.
+  template <class N>
+  APOTHEM_INLINE N thickness(const N& grown, const N& j) const {
+    if constexpr (plane == Plane::strain) return N(1);
+    return N(1) + thinning(grown, j);
+  }
+  // t - 1, without cancellation: the root of (mu + lambda j^2) d^2 + (2 mu + lambda j (2j - 1)) d
+  // + lambda j (j - 1) = 0 near 0.
+  template <class N>
+  APOTHEM_INLINE N thinning(const N& grown, const N& j) const {
+    const N m(mu), l = N(lambda) * j;
+    const N a = m + l * j;
+    const N b = N(2) * m + l * (j + grown);
+    const N c = l * grown;
+    return N(-2) * c / (b + square_root(b * b - N(4) * a * c));
+  }
+  // J - 1 with the thickness.
+  template <class N>
+  APOTHEM_INLINE N volume_change(const N& grown, const N& j) const {
+    if constexpr (plane == Plane::strain) return grown;
+    return grown + j * thinning(grown, j);
+  }
+};
+
+template <class N>
+inline N logarithm(const N& x) {
+  using std::log;
+  return log(x);
+}
+template <>
+APOTHEM_INLINE Pack logarithm(const Pack& x) {
+  Pack r;
+  for (int i = 0; i < kLanes; ++i) r.v[i] = std::log(x.v[i]);
+  return r;
+}
+
+template <Plane plane>
+template <class N>
+APOTHEM_INLINE N NeoHookean<plane>::energy(const Tensor<N>& h) const {
+  const N grown = h.xx + h.yy + determinant(h);
+  const N j = N(1) + grown;
+  const N t = thickness(grown, j), t1 = t - N(1);
+  const N v = volume_change(grown, j);
+  const N square = h.xx * h.xx + h.xy * h.xy + h.yx * h.yx + h.yy * h.yy;
+  return N(0.5 * mu) * (N(2) * (h.xx + h.yy) + square + t1 * (t + N(1))) -
+         N(mu) * logarithm(N(1) + v) + N(0.5 * lambda) * v * v;
+}
+
+/// Calls f with the law's struct.
+template <class F>
+decltype(auto) with_law(const Elastic& e, F&& f) {
+  if (e.law == ElasticLaw::st_venant_kirchhoff) return std::forward<F>(f)(StVenantKirchhoff(e));
+  if (e.plane == Plane::stress) return std::forward<F>(f)(NeoHookean<Plane::stress>(e));
+  return std::forward<F>(f)(NeoHookean<Plane::strain>(e));
+}
+
+}  // namespace apothem
