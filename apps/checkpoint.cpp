@@ -24,7 +24,10 @@ namespace apothem {
 
 // nlohmann's macro lists each member once for both directions; numbers read back to the same
 // double.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, velocity, force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, velocity, force,
+                                   displacement, node_velocity, node_force)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeformableBalance, load_work, mass_damping_loss,
+                                   summed_damping_loss, damping_power)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Balance, initial_energy, initial, impulse, external_work)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Peak, value, time, a, b)
@@ -60,6 +63,7 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
                       {"energy_in_play", s.energy_in_play},
                       {"tangential", s.tangential},
                       {"mass_damping_loss", s.mass_damping_loss},
+                      {"deformables", s.deformables},
                       {"state", s.state},
                       {"balance", s.balance},
                       {"extremes", s.extremes},
@@ -91,6 +95,7 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
     json.at("energy_in_play").get_to(s.energy_in_play);
     json.at("tangential").get_to(s.tangential);
     json.at("mass_damping_loss").get_to(s.mass_damping_loss);
+    json.at("deformables").get_to(s.deformables);
     json.at("state").get_to(s.state);
     json.at("balance").get_to(s.balance);
     json.at("extremes").get_to(s.extremes);
@@ -104,8 +109,11 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
   }
   const State& state = c.snapshot.state;
   const size_t size = like.position.size();
+  const size_t nodes = like.displacement.size();
   if (state.position.size() != size || state.remainder.size() != size ||
-      state.velocity.size() != size || state.force.size() != size || !(c.snapshot.step_size > 0)) {
+      state.velocity.size() != size || state.force.size() != size ||
+      state.displacement.size() != nodes || state.node_velocity.size() != nodes ||
+      state.node_force.size() != nodes || !(c.snapshot.step_size > 0)) {
     throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
   }
   constexpr std::array histories{"history.csv", "energy.csv", "momentum.csv"};

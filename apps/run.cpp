@@ -172,7 +172,7 @@ class Run {
     start_ = Clock::now();
     int code = exit_code::done;
     try {
-      HistoryWriter history(folder_, scene_.model, scene_.output.track, from.history_sizes);
+      HistoryWriter history(folder_, scene_.model, scene_.output, from.history_sizes);
       FrameWriter frames(folder_, scene_.model, from.frame_times);
       code = loop(history, frames, from);
     } catch (const Unstable& error) {
@@ -209,10 +209,13 @@ class Run {
       if (row) last_row = simulation_.state().step;
       if (picture) last_picture = simulation_.state().step;
       const Clock::time_point before = Clock::now();
-      if (row) history.add(simulation_.state(), simulation_.energies(), simulation_.momenta());
+      if (row) {
+        history.add(simulation_.state(), simulation_.energies(), simulation_.momenta(),
+                    simulation_.node_mass());
+      }
       if (picture) {
         history.flush();
-        frames.write(simulation_.state(), simulation_.contacts());
+        frames.write(simulation_.state(), simulation_.contacts(), simulation_.stresses());
       }
       output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
     };

@@ -10,7 +10,9 @@ double total(const Energies& e) {
 
 }  // namespace
 
-Ledger::Ledger(const Model& model, const State& state, double contact_energy) : model_(model) {
+Ledger::Ledger(const Model& model, const State& state, double contact_energy, const Energies& nodes,
+               const Impulse& momentum_of_nodes)
+    : model_(model) {
   for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
     const RigidBody& body = model.bodies[i];
     if (body.motion == Motion::free) {
@@ -21,8 +23,8 @@ Ledger::Ledger(const Model& model, const State& state, double contact_energy) : 
       if (body.motion == Motion::prescribed) driven_.push_back(i);
     }
   }
-  balance_.initial_energy = total(terms(state, contact_energy));
-  balance_.initial = momentum(state);
+  balance_.initial_energy = total(terms(state, contact_energy, nodes));
+  balance_.initial = momentum(state, momentum_of_nodes);
 }
 
 void Ledger::half_step(const State& state, double half_step, const std::vector<double>& moved) {
@@ -68,9 +70,9 @@ double Ledger::kinetic(const State& state) const {
   return sum;
 }
 
-Energies Ledger::terms(const State& state, double contact_energy) const {
-  Energies e;
-  e.kinetic = kinetic(state);
+Energies Ledger::terms(const State& state, double contact_energy, const Energies& nodes) const {
+  Energies e = nodes;
+  e.kinetic += kinetic(state);
   for (const int i : free_) {
     const RigidBody& body = model_.bodies[i];
     const double* x = &state.position[3 * static_cast<size_t>(i)];
@@ -80,7 +82,7 @@ Energies Ledger::terms(const State& state, double contact_energy) const {
                               model_.gravity.y() * ((x[1] - body.position.y()) + r[1]));
   }
   e.contact = contact_energy;
-  e.external_work = balance_.external_work;
+  e.external_work += balance_.external_work;
   return e;
 }
 
@@ -90,17 +92,17 @@ void Ledger::add_impulse(const Impulse& impulse) {
   balance_.impulse.angular += impulse.angular;
 }
 
-Energies Ledger::energies(const State& state, double contact_energy,
-                          const Dissipation& dissipation) const {
-  Energies e = terms(state, contact_energy);
+Energies Ledger::energies(const State& state, double contact_energy, const Dissipation& dissipation,
+                          const Energies& nodes) const {
+  Energies e = terms(state, contact_energy, nodes);
   e.friction_loss = dissipation.friction;
-  e.damping_loss = dissipation.damping;
+  e.damping_loss += dissipation.damping;
   e.total_error = total(e) - balance_.initial_energy;
   return e;
 }
 
-Impulse Ledger::momentum(const State& state) const {
-  Impulse p;
+Impulse Ledger::momentum(const State& state, const Impulse& of_nodes) const {
+  Impulse p = of_nodes;
   for (const int i : free_) {
     const RigidBody& body = model_.bodies[i];
     const double* v = &state.velocity[3 * static_cast<size_t>(i)];
@@ -112,8 +114,8 @@ Impulse Ledger::momentum(const State& state) const {
   return p;
 }
 
-Momenta Ledger::momenta(const State& state) const {
-  const Impulse p = momentum(state);
+Momenta Ledger::momenta(const State& state, const Impulse& of_nodes) const {
+  const Impulse p = momentum(state, of_nodes);
   return {p.x,
           p.y,
           p.angular,

@@ -26,7 +26,9 @@ struct Balance {
 
 class Ledger {
  public:
-  Ledger(const Model& model, const State& state, double contact_energy);
+  /// `nodes`: the part of deformable bodies.
+  Ledger(const Model& model, const State& state, double contact_energy, const Energies& nodes,
+         const Impulse& momentum_of_nodes);
 
   /// Half a step's impulses on the free bodies, and the work of prescribed bodies over `moved`
   /// (their displacement in this step), with the forces in `state`. Called before and after the
@@ -37,17 +39,18 @@ class Ledger {
   void add_impulse(const Impulse& impulse);
 
   [[nodiscard]] Energies energies(const State& state, double contact_energy,
-                                  const Dissipation& dissipation) const;
-  /// Of the free bodies, J.
+                                  const Dissipation& dissipation, const Energies& nodes) const;
+  /// Of the free rigid bodies, J.
   [[nodiscard]] double kinetic(const State& state) const;
-  [[nodiscard]] Momenta momenta(const State& state) const;
+  [[nodiscard]] Momenta momenta(const State& state, const Impulse& of_nodes) const;
 
   [[nodiscard]] const Balance& balance() const { return balance_; }
   void restore(const Balance& balance) { balance_ = balance; }
 
  private:
-  [[nodiscard]] Energies terms(const State& state, double contact_energy) const;
-  [[nodiscard]] Impulse momentum(const State& state) const;
+  [[nodiscard]] Energies terms(const State& state, double contact_energy,
+                               const Energies& nodes) const;
+  [[nodiscard]] Impulse momentum(const State& state, const Impulse& of_nodes) const;
 
   const Model& model_;
   std::vector<int> free_, held_, driven_, not_free_;

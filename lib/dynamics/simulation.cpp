@@ -37,6 +37,9 @@ double energy_noise(const Model& model) {
     }
     if (body.motion == Motion::free) weight += body.mass * model.gravity.norm();
   }
+  for (const DeformableBody& body : model.deformables) {
+    for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
+  }
   const double shift = 1e-12 * scene.extent();
   return weight * shift + model.stiffness() * shift * shift;
 }
@@ -105,6 +108,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     for (const RigidBody& body : model.bodies) material.push_back(body.material);
     tangential_.emplace(model.contact, model.thickness, material, inverse_masses_);
   }
+  if (!model.deformables.empty()) deformables_.emplace(model, state_, threads);
   stiffness_.resize(model.bodies.size());
   largest_stride_ = kLargestStride * inradius;
   energy_noise_ = energy_noise(model);
@@ -116,11 +120,16 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     throw Unrunnable(error.what(), "bodies", worst_body_);
   }
   const double energy = contact_energy();
-  ledger_.emplace(model_, state_, energy);
+  ledger_.emplace(model_, state_, energy,
+                  deformables_ ? deformables_->energies(state_, dt_) : Energies{},
+                  deformables_ ? deformables_->momentum(state_) : Impulse{});
 }
 
 void Simulation::choose_step(const TimeSettings& time, int frames) {
   limit_ = contact_step_limit(model_);
+  const double contact_target = time.safety * limit_.step;
+  const StepLimit elements = deformables_ ? deformables_->limit() : StepLimit{HUGE_VAL, ""};
+  if (elements.step < limit_.step) limit_ = elements;
   stability_limit_ = limit_.step;
   automatic_ = !time.fixed_step;
   safety_ = time.safety;
@@ -144,7 +153,11 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
     require_progress();
     return;
   }
-  double target = safety_ * limit_.step;
+  double target = contact_target;
+  if (time.element_safety * elements.step < target) {
+    target = time.element_safety * elements.step;
+    limit_ = elements;
+  }
   const StepLimit motion = motion_step_limit(model_);
   if (motion.step < target) {
     limit_ = motion;
@@ -170,7 +183,8 @@ Snapshot Simulation::snapshot() const {
           counts_,
           energy_in_play_,
           tangential_ ? tangential_->memory() : TangentialMemory{},
-          mass_damping_loss_};
+          mass_damping_loss_,
+          deformables_ ? deformables_->balance() : DeformableBalance{}};
 }
 
 void Simulation::restore(const Snapshot& s) {
@@ -185,6 +199,7 @@ void Simulation::restore(const Snapshot& s) {
   energy_in_play_ = s.energy_in_play;
   mass_damping_loss_ = s.mass_damping_loss;
   if (tangential_) tangential_->restore(s.tangential);
+  if (deformables_) deformables_->restore(s.deformables);
   for (int i = 0; i < shapes_.size(); ++i) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
     shapes_.place(i, x[0], x[1], x[2]);
@@ -198,9 +213,14 @@ void Simulation::step() {
   const bool timed = state_.step % kTimedEvery == 0;
   Stopwatch clock(timed, timed_seconds_);
   if (model_.contact.mass_damping > 0) damp(dt_ / 2);
+  if (deformables_) deformables_->damp(state_, dt_ / 2);
   kick(dt_ / 2);
   drift();
   clock.lap(Phase::integrate);
+  if (deformables_) {
+    deformables_->find_forces(state_, dt_);
+    clock.lap(Phase::elements);
+  }
   find_forces(timed, state_.velocity, dt_);
   Stopwatch again(timed, timed_seconds_);
   kick(dt_ / 2);
@@ -210,12 +230,26 @@ void Simulation::step() {
   }
   ledger_->half_step(state_, dt_ / 2, moved_);
   if (model_.contact.mass_damping > 0) damp(dt_ / 2);
+  if (deformables_) {
+    deformables_->damp(state_, dt_ / 2);
+    ledger_->add_impulse(deformables_->take_impulse());
+  }
   tighten_step();
   again.lap(Phase::integrate);
   timed_steps_ += timed;
+  if (state_.step % kWatchedEvery == 0) watch();
+}
+
+void Simulation::watch() {
   // Energies may be asked for at the top of a bounce, where all there was is in the height.
-  if (state_.step % kWatchedEvery == 0) {
-    energy_in_play_ = std::max(energy_in_play_, ledger_->kinetic(state_));
+  energy_in_play_ = std::max(energy_in_play_, ledger_->kinetic(state_));
+  if (!deformables_) return;
+  const std::string element = deformables_->inverted(state_);
+  if (!element.empty()) {
+    throw Unstable(
+        fmt::format("{} has turned inside out {}: the load is more than the material "
+                    "can bear, or the step is too long; reduce the load or time.safety",
+                    element, at_time()));
   }
 }
 
@@ -224,6 +258,7 @@ void Simulation::kick(double h) {
   for (size_t k = 0; k < n; ++k) {
     state_.velocity[k] += h * (inverse_mass_[k] * state_.force[k] + acceleration_[k]);
   }
+  if (deformables_) deformables_->kick(state_, h);
 }
 
 // C = alpha M for free bodies: v' = -alpha v solved exactly over h, so that any alpha is stable.
@@ -284,6 +319,7 @@ void Simulation::drift() {
   for (const int i : driven_) {
     for (int k = 0; k < 3; ++k) state_.position[3 * i + k] += moved_[3 * i + k];
   }
+  if (deformables_) deformables_->drift(state_, dt_);
   if (stride * dt_ > largest_stride_ && shapes_.size() > 1) {
     throw Unstable(
         fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
@@ -454,8 +490,10 @@ Energies Simulation::energies() {
     dissipation.friction = tangential_->memory().friction_loss;
     dissipation.damping += tangential_->memory().damping_loss;
   }
-  const Energies e = ledger_->energies(state_, contact_energy(), dissipation);
-  energy_in_play_ = std::max(energy_in_play_, e.kinetic + e.contact + std::abs(e.external_work));
+  const Energies nodes = deformables_ ? deformables_->energies(state_, dt_) : Energies{};
+  const Energies e = ledger_->energies(state_, contact_energy(), dissipation, nodes);
+  energy_in_play_ =
+      std::max(energy_in_play_, e.kinetic + e.strain + e.contact + std::abs(e.external_work));
   extremes_.energy_error = std::max(extremes_.energy_error, std::abs(e.total_error));
   if (!(std::abs(e.total_error) <= kLargestEnergyError * energy_in_play_ + energy_noise_)) {
     throw Unstable(
@@ -485,6 +523,20 @@ std::vector<ContactRecord> Simulation::contacts() const {
                        pair.largest_phi});
   }
   return records;
+}
+
+Momenta Simulation::momenta() const {
+  return ledger_->momenta(state_, deformables_ ? deformables_->momentum(state_) : Impulse{});
+}
+
+std::vector<CauchyStress> Simulation::stresses() const {
+  return deformables_ ? deformables_->elements().stresses(state_.displacement)
+                      : std::vector<CauchyStress>{};
+}
+
+const std::vector<double>& Simulation::node_mass() const {
+  static const std::vector<double> none;
+  return deformables_ ? deformables_->elements().mass() : none;
 }
 
 std::array<double, kPhaseNames.size()> Simulation::phase_seconds() const {

@@ -15,6 +15,7 @@
 #include "contact/normal.hpp"
 #include "contact/pair_search.hpp"
 #include "contact/tangential.hpp"
+#include "dynamics/deformables.hpp"
 #include "dynamics/ledger.hpp"
 #include "dynamics/time_step.hpp"
 #include "model/model.hpp"
@@ -45,8 +46,9 @@ class Unstable : public std::runtime_error {
 };
 
 /// Parts of the step, for the timings in run.json.
-enum class Phase { integrate, place, search, contact, gather };
-inline constexpr std::array kPhaseNames{"integrate", "place", "search", "contact", "gather"};
+enum class Phase { integrate, elements, place, search, contact, gather };
+inline constexpr std::array kPhaseNames{"integrate", "elements", "place",
+                                        "search",    "contact",  "gather"};
 
 struct Peak {
   double value = 0;
@@ -81,6 +83,7 @@ struct Snapshot {
   double energy_in_play = 0;
   TangentialMemory tangential = {};
   double mass_damping_loss = 0;
+  DeformableBalance deformables = {};
 };
 
 class Simulation {
@@ -104,8 +107,12 @@ class Simulation {
   [[nodiscard]] double stability_limit() const { return stability_limit_; }
   /// Energies now. Throws Unstable if more than a tenth of the energy in play is unaccounted for.
   Energies energies();
-  [[nodiscard]] Momenta momenta() const { return ledger_->momenta(state_); }
+  [[nodiscard]] Momenta momenta() const;
   [[nodiscard]] std::vector<ContactRecord> contacts() const;
+  /// Mean stress of the elements of all deformable bodies.
+  [[nodiscard]] std::vector<CauchyStress> stresses() const;
+  /// Of their nodes, kg.
+  [[nodiscard]] const std::vector<double>& node_mass() const;
   [[nodiscard]] const Extremes& extremes() const { return extremes_; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   /// Seconds per phase over the whole run, extrapolated from the steps that were timed.
@@ -125,6 +132,7 @@ class Simulation {
   [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void gather();
   void gather_tangential();
+  void watch();
   void tighten_step();
   [[nodiscard]] double contact_energy() const;
   [[nodiscard]] std::string at_time() const;
@@ -140,6 +148,7 @@ class Simulation {
   PairSearch search_;
   NormalContact contact_;
   std::optional<TangentialContact> tangential_;  // only where there is friction or damping
+  std::optional<Deformables> deformables_;       // only where there are finite elements
   std::optional<Ledger> ledger_;
   std::vector<double> moved_;
 

@@ -159,8 +159,10 @@ void FiniteElements::add_set(int index, const ElementSet& set) {
   damped_ = damped_ || set.stiffness_damping > 0;
   mass_.resize(std::max(mass_.size(), set.first_node + mesh.nodes.size()), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const std::vector<double> areas = corner_areas(places(mesh, e));
+    const std::vector<Vec2> x = places(mesh, e);
+    const std::vector<double> areas = corner_areas(x);
     for (size_t i = 0; i < areas.size(); ++i) {
+      shortest_edge_ = std::min(shortest_edge_, (x[i] - x[i > 0 ? i - 1 : x.size() - 1]).norm());
       mass_[set.first_node + mesh.element(e)[i]] += set.density * set.thickness * areas[i];
     }
   }

@@ -12,11 +12,13 @@
 #pragma once
 
 #include <boost/align/aligned_allocator.hpp>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "fem/element.hpp"
+#include "fem/stress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace apothem {
@@ -32,12 +34,6 @@ struct ElementSet {
   double stiffness_damping = 0;  ///< Rayleigh's beta, s
 };
 
-/// Cauchy stress, Pa, with the one across the plane.
-struct CauchyStress {
-  double xx = 0, yy = 0, xy = 0, zz = 0;
-  double energy_density = 0;  ///< strain energy per reference volume, J/m^3
-};
-
 class FiniteElements {
  public:
   /// Nodal arrays of all functions: x, y of each node, one body after another.
@@ -48,6 +44,8 @@ class FiniteElements {
   /// Lumped, kg.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
   [[nodiscard]] bool damped() const { return damped_; }
+  /// Of all elements in the reference configuration, m.
+  [[nodiscard]] double shortest_edge() const { return shortest_edge_; }
 
   /// Minus the internal forces, N, of displacements (m) and, where there is damping, velocities
   /// (m/s). Returns the power that damping takes, W. No allocation.
@@ -95,6 +93,7 @@ class FiniteElements {
   std::vector<ElementSet> sets_;
   int elements_ = 0;
   bool damped_ = false;
+  double shortest_edge_ = HUGE_VAL;
   std::vector<double> mass_;
   std::vector<Chunk> chunks_;
   std::vector<Run> runs_;

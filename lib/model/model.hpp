@@ -9,32 +9,16 @@
 
 #include "contact/law.hpp"
 #include "geometry/potential.hpp"
+#include "model/deformable.hpp"
 
 namespace apothem {
 
 struct Material {
   std::string name;
-  double density;  ///< kg/m^3
-};
-
-/// Prescribed motion: velocity and spin piecewise linear in time, constant before the first and
-/// after the last point.
-struct MotionHistory {
-  struct VelocityPoint {
-    double time;
-    Vec2 velocity;
-  };
-  struct SpinPoint {
-    double time;
-    double spin;
-  };
-  std::vector<VelocityPoint> velocity;  ///< may be empty: no translation
-  std::vector<SpinPoint> spin;          ///< may be empty: no rotation
-
-  /// Velocity (vx, vy, spin) at `time`.
-  [[nodiscard]] std::array<double, 3> rate(double time) const;
-  /// Displacement and rotation since time 0, integrated exactly.
-  [[nodiscard]] std::array<double, 3> displacement(double time) const;
+  double density;                ///< kg/m^3
+  Elastic elastic = {};          ///< of deformable bodies
+  double mass_damping = 0;       ///< Rayleigh's alpha, 1/s
+  double stiffness_damping = 0;  ///< Rayleigh's beta, s
 };
 
 enum class Motion { free, fixed, prescribed };
@@ -69,6 +53,10 @@ struct Model {
   std::vector<Material> materials;
   ContactLaw contact;
   std::vector<RigidBody> bodies;
+  std::vector<DeformableBody> deformables;
+
+  /// Of all deformable bodies.
+  [[nodiscard]] int node_count() const;
 
   /// Contact stiffness of a slice of the model's thickness, N/m per m of boundary.
   [[nodiscard]] double stiffness() const { return contact.normal_stiffness * thickness; }

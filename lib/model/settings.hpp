@@ -5,20 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "model/deformable.hpp"
+
 namespace apothem {
 
 struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
-  double safety = 0.1;                    ///< automatic step = safety x stability limit
+  double safety = 0.1;                    ///< automatic step / stability limit of contacts
+  double element_safety = 0.5;            ///< the same for finite elements
   bool settled = false;                   ///< start in equilibrium (dynamics/settle.cpp)
   double longest_step = 1e300;            ///< s; of an automatic step: the interval of the history
 };
 
 struct OutputSettings {
-  int frames = 100;                           ///< besides the one at time 0
-  std::optional<double> history_interval;     ///< s; empty: end / 1000
-  std::vector<int> track;                     ///< bodies in history.csv
+  int frames = 100;                        ///< besides the one at time 0
+  std::optional<double> history_interval;  ///< s; empty: end / 1000
+  std::vector<int> track;                  ///< rigid bodies in history.csv
+  std::vector<int> track_deformables;      ///< deformable bodies as a whole
+  std::vector<TrackedPoint> points;
   std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
 };
 

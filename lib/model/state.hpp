@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "fem/stress.hpp"
 #include "geometry/point.hpp"
 
 namespace apothem {
 
-/// Generalised coordinates, three entries per body: x, y, angle of the mass centre.
+/// Of rigid bodies the generalised coordinates, three entries per body: x, y, angle of the mass
+/// centre.
 struct State {
   double time = 0;  ///< s
   std::int64_t step = 0;
@@ -17,6 +19,10 @@ struct State {
   std::vector<double> remainder;  ///< what rounding has kept out of `position` so far
   std::vector<double> velocity;   ///< m/s, m/s, rad/s
   std::vector<double> force;      ///< contact force and moment about the mass centre: N, N, N m
+  // Of the nodes of deformable bodies, x and y of each:
+  std::vector<double> displacement;   ///< m, from the mesh as given
+  std::vector<double> node_velocity;  ///< m/s
+  std::vector<double> node_force;     ///< N, of elements, loads and contacts; without gravity
 };
 
 /// The energy ledger of the moving bodies and the contacts between them and all others, in J.
@@ -29,7 +35,7 @@ struct Energies {
   double gravity = 0;  ///< zero at time 0
   double friction_loss = 0;
   double damping_loss = 0;
-  double external_work = 0;  ///< done by bodies with prescribed motion
+  double external_work = 0;  ///< done by loads, bodies and supports with prescribed motion
   double total_error = 0;
 };
 
@@ -57,6 +63,9 @@ struct Column {
 inline constexpr std::array kBodyColumns{
     Column{"x", "m"},    Column{"y", "m"},        Column{"angle", "rad"}, Column{"vx", "m/s"},
     Column{"vy", "m/s"}, Column{"spin", "rad/s"}, Column{"fx", "N"},      Column{"fy", "N"}};
+/// Of a point of a deformable body.
+inline constexpr std::array kPointColumns{Column{"ux", "m"}, Column{"uy", "m"}, Column{"vx", "m/s"},
+                                          Column{"vy", "m/s"}};
 inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
                                            "gravity",       "friction_loss", "damping_loss",
                                            "external_work", "total_error"};

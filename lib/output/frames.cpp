@@ -32,7 +32,66 @@ void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<st
   grid->GetFieldData()->AddArray(array);
 }
 
-vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {
+// Stresses of elements, and of nodes as means of their elements weighted by area.
+class StressArrays {
+ public:
+  StressArrays()
+      : arrays_{doubles("stress", 3), doubles("stress_zz", 1), doubles("principal_stress", 2),
+                doubles("von_mises", 1), doubles("strain_energy_density", 1)} {}
+  void add(const CauchyStress& s) {
+    arrays_[0]->InsertNextTuple3(s.xx, s.yy, s.xy);
+    arrays_[1]->InsertNextValue(s.zz);
+    const double middle = (s.xx + s.yy) / 2;
+    const double radius = std::hypot((s.xx - s.yy) / 2, s.xy);
+    arrays_[2]->InsertNextTuple2(middle + radius, middle - radius);
+    const double xy = s.xx - s.yy, yz = s.yy - s.zz, zx = s.zz - s.xx;
+    arrays_[3]->InsertNextValue(std::sqrt((xy * xy + yz * yz + zx * zx) / 2 + 3 * s.xy * s.xy));
+    arrays_[4]->InsertNextValue(s.energy_density);
+  }
+  template <class Data>
+  void add_to(Data* data) {
+    arrays_[0]->SetComponentName(0, "xx");
+    arrays_[0]->SetComponentName(1, "yy");
+    arrays_[0]->SetComponentName(2, "xy");
+    arrays_[2]->SetComponentName(0, "major");
+    arrays_[2]->SetComponentName(1, "minor");
+    for (const auto& array : arrays_) data->AddArray(array);
+  }
+
+ private:
+  std::array<vtkNew<vtkDoubleArray>, 5> arrays_;
+};
+
+double area(const Mesh& mesh, int e) {
+  const std::span<const int> nodes = mesh.element(e);
+  double twice = 0;
+  const Vec2& base = mesh.nodes[nodes[0]];
+  for (size_t i = 2; i < nodes.size(); ++i) {
+    twice += cross(Vec2(mesh.nodes[nodes[i - 1]] - base), Vec2(mesh.nodes[nodes[i]] - base));
+  }
+  return twice / 2;
+}
+
+std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchyStress* stress) {
+  std::vector<CauchyStress> mean(body.mesh.nodes.size());
+  std::vector<double> weight(mean.size(), 0);
+  constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,
+                              &CauchyStress::zz, &CauchyStress::energy_density};
+  for (int e = 0; e < body.mesh.element_count(); ++e) {
+    const double share = area(body.mesh, e);
+    for (const int node : body.mesh.element(e)) {
+      weight[node] += share;
+      for (const auto part : kParts) mean[node].*part += share * stress[e].*part;
+    }
+  }
+  for (size_t i = 0; i < mean.size(); ++i) {
+    for (const auto part : kParts) mean[i].*part /= weight[i];
+  }
+  return mean;
+}
+
+vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state,
+                                   const std::vector<CauchyStress>& stresses) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -44,6 +103,7 @@ vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {
   vtkNew<vtkDoubleArray> rotation = doubles("rotation", 1);
   vtkNew<vtkDoubleArray> spin = doubles("spin", 1);
   vtkNew<vtkDoubleArray> force = doubles("contact_force", 3);
+  StressArrays of_cells, of_points;
   std::vector<std::string> names;
   for (size_t i = 0; i < model.bodies.size(); ++i) {
     const RigidBody& body = model.bodies[i];
@@ -64,7 +124,9 @@ vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {
       cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
       displacement->InsertNextTuple3(u.x(), u.y(), 0);
       velocity->InsertNextTuple3(w.x(), w.y(), 0);
+      of_points.add({});
     }
+    of_cells.add({});
     body_id->InsertNextValue(static_cast<int>(i));
     material->InsertNextValue(body.material);
     rotation->InsertNextValue(x[2] - body.angle);
@@ -72,8 +134,36 @@ vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state) {
     force->InsertNextTuple3(state.force[3 * i], state.force[3 * i + 1], 0);
     names.push_back(body.name);
   }
+  const CauchyStress* stress = stresses.data();
+  for (const DeformableBody& body : model.deformables) {
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+      const size_t c = 2 * (body.first_node + i);
+      const Vec2 u(state.displacement[c], state.displacement[c + 1]);
+      const Vec2 p = body.mesh.nodes[i] + u + model.origin;
+      points->InsertNextPoint(p.x(), p.y(), 0);
+      displacement->InsertNextTuple3(u.x(), u.y(), 0);
+      velocity->InsertNextTuple3(state.node_velocity[c], state.node_velocity[c + 1], 0);
+    }
+    for (const CauchyStress& s : nodal_means(body, stress)) of_points.add(s);
+    for (int e = 0; e < body.mesh.element_count(); ++e, ++stress) {
+      cells->InsertNextCell(static_cast<int>(body.mesh.element(e).size()));
+      for (const int node : body.mesh.element(e)) cells->InsertCellPoint(first + node);
+      body_id->InsertNextValue(static_cast<int>(names.size()));
+      material->InsertNextValue(body.material);
+      rotation->InsertNextValue(0);
+      spin->InsertNextValue(0);
+      force->InsertNextTuple3(0, 0, 0);
+      of_cells.add(*stress);
+    }
+    names.push_back(body.name);
+  }
   grid->SetPoints(points);
   grid->SetCells(VTK_POLYGON, cells);
+  if (!model.deformables.empty()) {
+    of_cells.add_to(grid->GetCellData());
+    of_points.add_to(grid->GetPointData());
+  }
   grid->GetPointData()->AddArray(displacement);
   grid->GetPointData()->AddArray(velocity);
   for (vtkDataArray* array :
@@ -139,9 +229,10 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
   create_folder(folder_ + "/frames");
 }
 
-void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts) {
+void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts,
+                        const std::vector<CauchyStress>& stresses) {
   const size_t frame = times_.size();
-  write_file(folder_ + "/" + file_name("bodies", frame), xml(bodies(model_, state)));
+  write_file(folder_ + "/" + file_name("bodies", frame), xml(bodies(model_, state, stresses)));
   write_file(folder_ + "/" + file_name("contacts", frame),
              xml(patches(model_, state.time, contacts)));
   times_.push_back(state.time);

@@ -16,9 +16,11 @@ class FrameWriter {
   /// Creates the folder; frames at `times` are there already. Throws SystemFailure.
   FrameWriter(std::string folder, const Model& model, std::vector<double> times = {});
 
+  /// `stresses` of the elements of all deformable bodies, in their order.
   /// Writes the next frame, then both collections: whatever they list is complete on disk.
   /// Throws SystemFailure; the earlier frames are then intact.
-  void write(const State& state, const std::vector<ContactRecord>& contacts);
+  void write(const State& state, const std::vector<ContactRecord>& contacts,
+             const std::vector<CauchyStress>& stresses);
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
 

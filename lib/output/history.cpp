@@ -21,6 +21,60 @@ void add_row(std::string& rows, double time, const Numbers&... numbers) {
   rows += '\n';
 }
 
+// Name and unit.
+std::vector<std::pair<std::string, const char*>> columns(const Model& model,
+                                                         const OutputSettings& settings) {
+  std::vector<std::pair<std::string, const char*>> result;
+  const auto add = [&](const std::string& name, const auto& kinds) {
+    for (const Column& c : kinds) result.emplace_back(name + "." + c.name, c.unit);
+  };
+  for (const int i : settings.track) add(model.bodies[i].name, kBodyColumns);
+  for (const int i : settings.track_deformables) add(model.deformables[i].name, kBodyColumns);
+  for (const TrackedPoint& point : settings.points) add(point.name, kPointColumns);
+  return result;
+}
+
+// A deformable body as if it were rigid: mass centre, mean rotation, momentum, spin.
+struct MeanMotion {
+  Vec2 place = Vec2::Zero(), velocity = Vec2::Zero();
+  double angle = 0, spin = 0;
+};
+MeanMotion mean_motion(const DeformableBody& body, const State& state,
+                       const std::vector<double>& mass) {
+  MeanMotion mean;
+  Vec2 reference = Vec2::Zero();
+  double whole = 0;
+  const auto n = body.mesh.nodes.size();
+  const auto first = static_cast<size_t>(body.first_node);
+  const auto at = [&](const std::vector<double>& v, size_t i) -> Vec2 {
+    return {v[2 * (first + i)], v[2 * (first + i) + 1]};
+  };
+  for (size_t i = 0; i < n; ++i) {
+    const double m = mass[first + i];
+    whole += m;
+    reference += m * body.mesh.nodes[i];
+    mean.place += m * at(state.displacement, i);
+    mean.velocity += m * at(state.node_velocity, i);
+  }
+  reference /= whole;
+  mean.place = mean.place / whole + reference;
+  mean.velocity /= whole;
+  // The rotation that fits best, and angular momentum over the present moment of inertia.
+  double turned = 0, straight = 0, angular = 0, inertia = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const double m = mass[first + i];
+    const Vec2 before = body.mesh.nodes[i] - reference;
+    const Vec2 now = body.mesh.nodes[i] + at(state.displacement, i) - mean.place;
+    turned += m * cross(before, now);
+    straight += m * before.dot(now);
+    angular += m * cross(now, Vec2(at(state.node_velocity, i) - mean.velocity));
+    inertia += m * now.squaredNorm();
+  }
+  mean.angle = std::atan2(turned, straight);
+  mean.spin = angular / inertia;
+  return mean;
+}
+
 template <class Names>
 std::string header(const Names& names) {
   std::string row = "time";
@@ -30,10 +84,16 @@ std::string header(const Names& names) {
 
 }  // namespace
 
+std::vector<std::string> history_columns(const Model& model, const OutputSettings& settings) {
+  std::vector<std::string> names;
+  for (auto& [name, unit] : columns(model, settings)) names.push_back(std::move(name));
+  return names;
+}
+
 HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
-                             const std::vector<int>& track, const Sizes& sizes)
+                             const OutputSettings& settings, const Sizes& sizes)
     : model_(model),
-      track_(track),
+      settings_(settings),
       history_{AppendedFile(folder + "/history.csv", sizes[0]), ""},
       energy_{AppendedFile(folder + "/energy.csv", sizes[1]), ""},
       momentum_{AppendedFile(folder + "/momentum.csv", sizes[2]), ""} {
@@ -41,25 +101,42 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   energy_.rows = header(kEnergyColumns);
   momentum_.rows = header(kMomentumColumns);
   history_.rows = "time [s]";
-  for (const int i : track_) {
-    for (const Column& column : kBodyColumns) {
-      history_.rows += fmt::format(",{}.{} [{}]", model.bodies[i].name, column.name, column.unit);
-    }
+  for (const auto& [name, unit] : columns(model, settings)) {
+    history_.rows += fmt::format(",{} [{}]", name, unit);
   }
   history_.rows += '\n';
   flush();
 }
 
-void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p) {
+void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
+                        const std::vector<double>& mass) {
   std::string& rows = history_.rows;
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
-  for (const int i : track_) {
+  for (const int i : settings_.track) {
     const double* x = &state.position[3 * static_cast<size_t>(i)];
     const double* v = &state.velocity[3 * static_cast<size_t>(i)];
     const double* f = &state.force[3 * static_cast<size_t>(i)];
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
                    x[0] + model_.origin.x(), x[1] + model_.origin.y(), x[2], v[0], v[1], v[2], f[0],
                    f[1]);
+  }
+  for (const int i : settings_.track_deformables) {
+    const MeanMotion m = mean_motion(model_.deformables[i], state, mass);
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
+                   m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
+                   m.velocity.x(), m.velocity.y(), m.spin, 0., 0.);
+  }
+  for (const TrackedPoint& point : settings_.points) {
+    std::array<double, 4> value{};
+    for (size_t k = 0; k < point.nodes.size(); ++k) {
+      const size_t c = 2 * static_cast<size_t>(point.nodes[k]);
+      for (size_t axis = 0; axis < 2; ++axis) {
+        value[axis] += point.weights[k] * state.displacement[c + axis];
+        value[2 + axis] += point.weights[k] * state.node_velocity[c + axis];
+      }
+    }
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{}"), value[0], value[1],
+                   value[2], value[3]);
   }
   rows += '\n';
   add_row(energy_.rows, state.time, e.kinetic, e.strain, e.contact, e.gravity, e.friction_loss,

@@ -19,11 +19,13 @@ class HistoryWriter {
   using Sizes = std::array<std::int64_t, 3>;
 
   /// Writes the headers, or continues files of the given sizes. Throws SystemFailure.
-  HistoryWriter(const std::string& folder, const Model& model, const std::vector<int>& track,
+  HistoryWriter(const std::string& folder, const Model& model, const OutputSettings& settings,
                 const Sizes& sizes = {});
 
   /// Rows are kept in memory until there are enough of them, or flush().
-  void add(const State& state, const Energies& energies, const Momenta& momenta);
+  /// `mass` of the nodes, kg, if deformable bodies are tracked as a whole.
+  void add(const State& state, const Energies& energies, const Momenta& momenta,
+           const std::vector<double>& mass);
   void flush();
 
   /// After flush().
@@ -38,9 +40,12 @@ class HistoryWriter {
   };
 
   const Model& model_;
-  std::vector<int> track_;
+  const OutputSettings& settings_;
   Table history_, energy_, momentum_;
 };
+
+/// The columns of history.csv without their units, after the time.
+std::vector<std::string> history_columns(const Model& model, const OutputSettings& settings);
 
 /// A history file read back: column names without units.
 struct HistoryTable {

@@ -1,0 +1,80 @@
+// The nodes of deformable bodies in the step: internal forces, loads, supports, and their part of
+// the ledgers. The same velocity Verlet scheme as for rigid bodies.
+#pragma once
+
+#include <vector>
+
+#include "dynamics/ledger.hpp"
+#include "dynamics/time_step.hpp"
+#include "fem/finite_elements.hpp"
+#include "model/model.hpp"
+#include "model/state.hpp"
+
+namespace apothem {
+
+/// What a checkpoint needs to continue the bookkeeping.
+struct DeformableBalance {
+  double load_work = 0;            ///< of loads and moving supports, J
+  double mass_damping_loss = 0;    ///< J
+  double summed_damping_loss = 0;  ///< of the elements, J
+  double damping_power = 0;        ///< at the last step, W
+};
+
+class Deformables {
+ public:
+  /// Fills the nodal arrays of the state with the start at time 0.
+  Deformables(const Model& model, State& state, int threads);
+
+  /// Largest stable step, with damping.
+  [[nodiscard]] const StepLimit& limit() const { return limit_; }
+
+  /// The parts of a step, in the order of Simulation::step.
+  void damp(State& state, double h);
+  void kick(State& state, double h) const;
+  /// `state.time` is that of the end of the drift.
+  void drift(State& state, double dt);
+  /// Internal forces and loads at `state.time`; books the work since the drift.
+  void find_forces(State& state, double dt);
+
+  /// Kinetic, strain and gravity energy, damping loss and work of loads.
+  [[nodiscard]] Energies energies(const State& state, double dt);
+  [[nodiscard]] Impulse momentum(const State& state) const;
+  /// From loads, supports, gravity and mass damping since the last call.
+  [[nodiscard]] Impulse take_impulse();
+
+  [[nodiscard]] const FiniteElements& elements() const { return elements_; }
+  /// An element that has turned inside out, as `the element at (1, 2) m of "beam"`; empty if none.
+  [[nodiscard]] std::string inverted(const State& state) const;
+
+  [[nodiscard]] const DeformableBalance& balance() const { return balance_; }
+  void restore(const DeformableBalance& balance) { balance_ = balance; }
+
+ private:
+  struct Driven {
+    int coordinate;  // in the nodal arrays
+    int axis;
+    const MotionHistory* motion;
+  };
+  void start(State& state) const;
+  void hold(const DeformableBody& body);
+  void find_limit(const State& state);
+  void apply_loads(State& state);
+  void book(const State& state, double h);
+
+  const Model& model_;
+  FiniteElements elements_;
+  std::vector<double> inverse_mass_;  // per coordinate, 0 where held
+  std::vector<double> acceleration_;  // of gravity on free coordinates; empty without gravity
+  std::vector<double> damping_;       // alpha per coordinate; empty without mass damping
+  std::vector<int> held_;             // coordinates
+  std::vector<Driven> driven_;
+  // Loads at the present time: force and place of each coordinate they act on.
+  std::vector<std::pair<int, Vec2>> loads_;
+  Vec2 free_mass_ = Vec2::Zero();  // of coordinates that gravity moves
+  StepLimit limit_{0, ""};
+  DeformableBalance balance_;
+  double first_damping_power_ = 0;
+  Impulse impulse_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,78 @@
+#include "fem/spectrum.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace apothem {
+namespace {
+
+constexpr double kStrain = 1e-6;    // of the probing displacements: linear, and far above round-off
+constexpr double kAccuracy = 5e-3;  // of the eigenvalue
+constexpr int kMostSteps = 200;
+
+}  // namespace
+
+double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
+                          std::span<const double> inverse_mass) {
+  const auto n = static_cast<Eigen::Index>(u.size());
+  using Vector = Eigen::VectorXd;
+  Vector root(n);
+  for (Eigen::Index i = 0; i < n; ++i) root[i] = std::sqrt(inverse_mass[i]);
+  const Vector still = Vector::Zero(n);
+  const auto span = [&](const Vector& v) { return std::span(v.data(), u.size()); };
+  const double length = elements.shortest_edge();
+
+  // M^-1/2 K M^-1/2 q by a central difference of the force.
+  Vector plus(n), minus(n), moved(n);
+  const auto apply = [&](const Vector& q) -> Vector {
+    const Vector shape = root.cwiseProduct(q);
+    const double scale = kStrain * length / std::max(shape.cwiseAbs().maxCoeff(), 1e-300);
+    for (const double sign : {1., -1.}) {
+      for (Eigen::Index i = 0; i < n; ++i) moved[i] = u[i] + sign * scale * shape[i];
+      Vector& f = sign > 0 ? plus : minus;
+      elements.force(span(moved), span(still), std::span<double>(f.data(), u.size()));
+    }
+    return (minus - plus).cwiseProduct(root) / (2 * scale);
+  };
+
+  std::mt19937_64 random(1);
+  Vector q(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    q[i] = root[i] > 0 ? static_cast<double>(random() >> 11) * 0x1p-53 - 0.5 : 0;
+  }
+  if (q.norm() == 0) return 0;
+  q.normalize();
+  Vector before = Vector::Zero(n);
+  std::vector<double> diagonal, beside;
+  double answer = 0;
+  for (int step = 1; step <= kMostSteps; ++step) {
+    Vector next = apply(q);
+    diagonal.push_back(next.dot(q));
+    next -= diagonal.back() * q;
+    if (!beside.empty()) next -= beside.back() * before;
+    const double rest = next.norm();
+    if (step % 5 == 0 || rest == 0) {
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+      small.computeFromTridiagonal(
+          Eigen::Map<const Vector>(diagonal.data(), step),
+          Eigen::Map<const Vector>(beside.data(), static_cast<Eigen::Index>(beside.size())));
+      const double largest = small.eigenvalues()[step - 1];
+      const double residual = rest * std::abs(small.eigenvectors()(step - 1, step - 1));
+      const double found = largest + residual;
+      // Two agreeing answers: a single small residual may belong to a lower eigenvalue.
+      if (residual < kAccuracy * largest && std::abs(found - answer) < kAccuracy * largest) {
+        return found;
+      }
+      answer = found;
+      if (rest == 0) return answer;
+    }
+    beside.push_back(rest);
+    before = q;
+    q = next / rest;
+  }
+  return answer;
+}
+
+}  // namespace apothem

@@ -1,0 +1,55 @@
+// A body of finite elements, with its supports and loads.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "fem/element.hpp"
+#include "mesh/mesh.hpp"
+#include "model/history.hpp"
+
+namespace apothem {
+
+/// Coordinates of nodes that the scene moves, or holds: their velocity is given.
+struct Support {
+  std::vector<int> nodes;
+  std::array<bool, 2> held{};  ///< x, y
+  MotionHistory motion;        ///< empty: at rest; its spin is not used
+};
+
+/// Forces that keep their direction.
+struct DeadLoad {
+  std::vector<int> nodes;
+  std::vector<Vec2> forces;  ///< N on each node, at factor 1
+  LoadHistory history;
+};
+
+/// Pressure on edges, along their normals as they deform.
+struct PressureLoad {
+  std::vector<std::array<int, 2>> edges;  ///< directed with the body on their left
+  double pressure;                        ///< Pa, at factor 1
+  LoadHistory history;
+};
+
+struct DeformableBody {
+  std::string name;
+  int material = 0;
+  ElementKind element = ElementKind::quad4;
+  Mesh mesh;           ///< in model coordinates, along a space-filling curve
+  int first_node = 0;  ///< in the nodal arrays of the state
+  std::vector<Support> supports;
+  std::vector<DeadLoad> dead_loads;
+  std::vector<PressureLoad> pressures;
+  Vec2 velocity = Vec2::Zero();  ///< m/s, at time 0
+  double spin = 0;               ///< rad/s, about the mass centre
+};
+
+/// A point of a deformable body: the weighted mean of nodes.
+struct TrackedPoint {
+  std::string name;        ///< heads its columns
+  std::vector<int> nodes;  ///< in the nodal arrays of the state
+  std::vector<double> weights;
+};
+
+}  // namespace apothem
