@@ -17,6 +17,9 @@ struct MeshGroup {
   std::vector<std::array<int, 2>> edges;  ///< of a part that is a line; directed as in its element
 };
 
+/// What the generators of meshes fill a region with.
+enum class ElementShape { quadrilateral, triangle };
+
 /// Straight-edged elements; neighbours share the nodes of their common edge.
 struct Mesh {
   std::vector<Vec2> nodes;    ///< m

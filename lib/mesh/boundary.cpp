@@ -1,0 +1,80 @@
+#include "mesh/boundary.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "mesh/invalid_mesh.hpp"
+
+namespace apothem {
+namespace {
+
+double twice_area(const Mesh& mesh, const std::vector<int>& ring) {
+  const Vec2& origin = mesh.nodes[ring.front()];
+  double sum = 0;
+  for (size_t i = 1; i + 1 < ring.size(); ++i) {
+    sum += cross(mesh.nodes[ring[i]] - origin, mesh.nodes[ring[i + 1]] - origin);
+  }
+  return sum;
+}
+
+}  // namespace
+
+int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
+  std::vector<int> parent(mesh.element_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int e) {
+    while (parent[e] != e) e = parent[e] = parent[parent[e]];
+    return e;
+  };
+  int count = mesh.element_count();
+  for (const MeshEdge& edge : edges) {
+    if (edge.on_boundary()) continue;
+    const int a = root(edge.left);
+    const int b = root(edge.right);
+    if (a == b) continue;
+    parent[std::max(a, b)] = std::min(a, b);
+    --count;
+  }
+  return count;
+}
+
+Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
+  struct Step {
+    int to = -1;
+    int element = -1;
+  };
+  std::vector<Step> next(mesh.nodes.size());
+  for (const MeshEdge& edge : edges) {
+    if (!edge.on_boundary()) continue;
+    Step& step = next[edge.nodes[0]];
+    if (step.to >= 0) {
+      throw InvalidMesh::at_node(edge.nodes[0],
+                                 "is a pinch: elements " + std::to_string(step.element) + " and " +
+                                     std::to_string(edge.left) +
+                                     " meet there and in no edge; join or separate them");
+    }
+    step = {edge.nodes[1], edge.left};
+  }
+  Boundary result;
+  result.components = component_count(mesh, edges);
+  for (int first = 0; first < static_cast<int>(next.size()); ++first) {
+    if (next[first].to < 0) continue;
+    BoundaryLoop loop;
+    for (int node = first; next[node].to >= 0;) {
+      const Step step = next[node];
+      next[node].to = -1;
+      loop.nodes.push_back(node);
+      loop.elements.push_back(step.element);
+      node = step.to;
+    }
+    loop.is_hole = twice_area(mesh, loop.nodes) < 0;
+    result.loops.push_back(std::move(loop));
+  }
+  std::stable_partition(result.loops.begin(), result.loops.end(),
+                        [](const BoundaryLoop& loop) { return !loop.is_hole; });
+  return result;
+}
+
+Boundary boundary(const Mesh& mesh) { return boundary(mesh, mesh_edges(mesh)); }
+
+}  // namespace apothem

@@ -1,0 +1,274 @@
+#include "mesh/check.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "geometry/boxes.hpp"
+#include "geometry/polygon.hpp"
+#include "geometry/predicates.hpp"
+#include "mesh/boundary.hpp"
+#include "mesh/invalid_mesh.hpp"
+#include "mesh/measure.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kLargest = 1e60;     // as of Polygon
+constexpr double kFlat = 1e-12;       // area by squared diagonal
+constexpr double kSamePlace = 1e-12;  // of the mesh's size
+constexpr double kOnEdge = 1e-9;      // of the edge's length
+
+class Check {
+ public:
+  Check(const Mesh& mesh, const MeshRules& rules) : mesh_(mesh), rules_(rules) {}
+
+  void run() {
+    arrays();
+    coordinates();
+    for (int e = 0; e < mesh_.element_count(); ++e) element(e);
+    dangling_nodes();
+    duplicate_nodes();
+    edges_ = mesh_edges(mesh_);
+    boundary_edges_meet_in_nodes();
+    one_body();
+    for (const MeshGroup& part : mesh_.groups) group(part);
+  }
+
+ private:
+  [[nodiscard]] bool is_node(int n) const {
+    return n >= 0 && n < static_cast<int>(mesh_.nodes.size());
+  }
+
+  void arrays() const {
+    if (mesh_.first.empty() || mesh_.first.front() != 0 ||
+        mesh_.first.back() != static_cast<int>(mesh_.corners.size()) ||
+        !std::is_sorted(mesh_.first.begin(), mesh_.first.end())) {
+      throw InvalidMesh("the elements do not share out the list of corners", -1, -1);
+    }
+    if (mesh_.element_count() == 0) throw InvalidMesh("has no elements", -1, -1);
+    for (int e = 0; e < mesh_.element_count(); ++e) {
+      for (const int n : mesh_.element(e)) {
+        if (is_node(n)) continue;
+        throw InvalidMesh::at_element(e, "has the corner " + std::to_string(n) +
+                                             ", but there are " +
+                                             std::to_string(mesh_.nodes.size()) + " nodes");
+      }
+    }
+  }
+
+  void coordinates() const {
+    for (int n = 0; n < static_cast<int>(mesh_.nodes.size()); ++n) {
+      if (!is_finite(mesh_.nodes[n])) throw InvalidMesh::at_node(n, "is not finite");
+      if (!(mesh_.nodes[n].cwiseAbs().maxCoeff() < kLargest)) {
+        throw InvalidMesh::at_node(n, "has a coordinate beyond 1e60");
+      }
+    }
+  }
+
+  void element(int e) const {
+    const auto corners = mesh_.element(e);
+    const size_t n = corners.size();
+    if (n < 3) {
+      throw InvalidMesh::at_element(
+          e, "has " + std::to_string(n) + " corners; an element needs at least 3");
+    }
+    repeated_corner(e);
+    // Four left turns make a simple quadrilateral: their sum is a multiple of 360 degrees below
+    // 4 times 180.
+    bool convex = n <= 4;
+    for (size_t i = 0; i < n && convex; ++i) {
+      convex = orientation(mesh_.nodes[corners[i]], mesh_.nodes[after(corners, i)],
+                           mesh_.nodes[corners[(i + 2) % n]]) > 0;
+      if (n == 3) break;
+    }
+    if (!convex) general_element(e);
+    Box box;
+    for (const int c : corners) box.include(mesh_.nodes[c].x(), mesh_.nodes[c].y());
+    const double diagonal = std::hypot(box.x1 - box.x0, box.y1 - box.y0);
+    if (!(element_area(mesh_, e) >= kFlat * diagonal * diagonal)) {
+      throw InvalidMesh::at_element(e, "is degenerate: its area is below 1e-12 of its diameter^2");
+    }
+  }
+
+  void repeated_corner(int e) const {
+    const auto corners = mesh_.element(e);
+    const auto refuse = [&](int node) {
+      throw InvalidMesh(
+          "element " + std::to_string(e) + " repeats its corner, node " + std::to_string(node), e,
+          node);
+    };
+    if (corners.size() <= 4) {
+      for (size_t i = 0; i < corners.size(); ++i) {
+        for (size_t j = 0; j < i; ++j) {
+          if (corners[i] == corners[j]) refuse(corners[i]);
+        }
+      }
+      return;
+    }
+    std::vector<int> sorted(corners.begin(), corners.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) refuse(*twice);
+  }
+
+  // Polygons, and everything that is not right.
+  void general_element(int e) const {
+    const auto corners = mesh_.element(e);
+    std::vector<Vec2> ring;
+    for (const int c : corners) ring.push_back(mesh_.nodes[c]);
+    if (ring.size() == 3 && orientation(ring[0], ring[1], ring[2]) == 0) {
+      throw InvalidMesh::at_element(e, "has no area: its corners are on one line");
+    }
+    try {
+      const Polygon polygon(ring);
+      if (polygon.input_index(1) != 1) {
+        throw InvalidMesh::at_element(e, "is inverted: its corners go clockwise");
+      }
+      if (ring.size() == 4 && rules_.convex_quadrilaterals) straight_or_reflex(e);
+    } catch (const InvalidPolygon& error) {
+      throw InvalidMesh("element " + std::to_string(e) + " is not a simple polygon: " +
+                            error.what() + " (corner " + std::to_string(error.vertex()) +
+                            " is node " + std::to_string(corners[error.vertex()]) + ")",
+                        e, corners[error.vertex()]);
+    }
+  }
+
+  void straight_or_reflex(int e) const {
+    const auto corners = mesh_.element(e);
+    for (size_t i = 0; i < 4; ++i) {
+      const int node = after(corners, i);
+      if (orientation(mesh_.nodes[corners[i]], mesh_.nodes[node],
+                      mesh_.nodes[corners[(i + 2) % 4]]) > 0) {
+        continue;
+      }
+      throw InvalidMesh("element " + std::to_string(e) +
+                            " is a quadrilateral with a corner of 180 degrees or more at node " +
+                            std::to_string(node),
+                        e, node);
+    }
+  }
+
+  void dangling_nodes() const {
+    std::vector<bool> used(mesh_.nodes.size(), false);
+    for (const int c : mesh_.corners) used[c] = true;
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused == used.end()) return;
+    throw InvalidMesh::at_node(static_cast<int>(unused - used.begin()), "belongs to no element");
+  }
+
+  void duplicate_nodes() const {
+    const double reach = kSamePlace * mesh_size(mesh_);
+    std::vector<Box> boxes;
+    boxes.reserve(mesh_.nodes.size());
+    for (const Vec2& p : mesh_.nodes) {
+      boxes.push_back(Box{p.x(), p.y(), p.x(), p.y()}.grown(reach / 2));
+    }
+    std::vector<BoxPair> pairs;
+    BoxGrid().find_pairs(boxes, pairs);
+    if (pairs.empty()) return;
+    throw InvalidMesh::at_node(
+        pairs.front().second,
+        "is in the same place as node " + std::to_string(pairs.front().first) + "; merge them");
+  }
+
+  void boundary_edges_meet_in_nodes() const {
+    std::vector<MeshEdge> rim;
+    std::vector<Box> boxes;
+    for (const MeshEdge& edge : edges_) {
+      if (!edge.on_boundary()) continue;
+      const Vec2& a = mesh_.nodes[edge.nodes[0]];
+      const Vec2& b = mesh_.nodes[edge.nodes[1]];
+      Box box;
+      box.include(a.x(), a.y());
+      box.include(b.x(), b.y());
+      rim.push_back(edge);
+      boxes.push_back(box.grown(kOnEdge * (b - a).norm()));
+    }
+    std::vector<BoxPair> pairs;
+    BoxGrid().find_pairs(boxes, pairs);
+    for (const auto& [i, j] : pairs) {
+      hanging_node(rim[i], rim[j]);
+      hanging_node(rim[j], rim[i]);
+    }
+    for (const auto& [i, j] : pairs) crossing(rim[i], rim[j]);
+  }
+
+  void hanging_node(const MeshEdge& edge, const MeshEdge& other) const {
+    const Vec2& a = mesh_.nodes[edge.nodes[0]];
+    const Vec2 along = mesh_.nodes[edge.nodes[1]] - a;
+    for (const int node : other.nodes) {
+      if (node == edge.nodes[0] || node == edge.nodes[1]) continue;
+      const Vec2 p = mesh_.nodes[node] - a;
+      const double share = p.dot(along) / along.squaredNorm();
+      if (share <= 0 || share >= 1 || std::abs(cross(along, p)) > kOnEdge * along.squaredNorm()) {
+        continue;
+      }
+      throw InvalidMesh("node " + std::to_string(node) + " hangs on the edge of nodes " +
+                            std::to_string(edge.nodes[0]) + " and " +
+                            std::to_string(edge.nodes[1]) + " of element " +
+                            std::to_string(edge.left) + ", which does not have it as a corner",
+                        edge.left, node);
+    }
+  }
+
+  void crossing(const MeshEdge& p, const MeshEdge& q) const {
+    for (const int node : p.nodes) {
+      if (node == q.nodes[0] || node == q.nodes[1]) return;
+    }
+    const auto at = [&](int node) -> const Vec2& { return mesh_.nodes[node]; };
+    if (!segments_meet(at(p.nodes[0]), at(p.nodes[1]), at(q.nodes[0]), at(q.nodes[1]))) return;
+    throw InvalidMesh::at_element(std::max(p.left, q.left),
+                                  "overlaps or touches element " +
+                                      std::to_string(std::min(p.left, q.left)) +
+                                      " without sharing its nodes");
+  }
+
+  void one_body() const {
+    const Boundary outline = boundary(mesh_, edges_);
+    if (outline.components > 1) {
+      throw InvalidMesh("falls into " + std::to_string(outline.components) +
+                            " parts that share no edge; give each its own body",
+                        -1, -1);
+    }
+    const auto outer = std::count_if(outline.loops.begin(), outline.loops.end(),
+                                     [](const BoundaryLoop& loop) { return !loop.is_hole; });
+    if (outer != 1) throw InvalidMesh("elements cover each other", -1, -1);
+  }
+
+  void group(const MeshGroup& part) const {
+    const std::string name = "group \"" + part.name + "\" ";
+    for (size_t i = 0; i < part.nodes.size(); ++i) {
+      if (!is_node(part.nodes[i])) {
+        throw InvalidMesh(name + "names node " + std::to_string(part.nodes[i]) + ", which is none",
+                          -1, -1);
+      }
+      if (i > 0 && part.nodes[i] <= part.nodes[i - 1]) {
+        throw InvalidMesh(name + "does not name its nodes in ascending order", -1, part.nodes[i]);
+      }
+    }
+    for (const auto& [a, b] : part.edges) {
+      const MeshEdge* edge = find_edge(edges_, a, b);
+      if (edge == nullptr || (edge->on_boundary() && edge->nodes[0] != a)) {
+        throw InvalidMesh(name + "has an edge from node " + std::to_string(a) + " to node " +
+                              std::to_string(b) + ", which no element has",
+                          -1, -1);
+      }
+      for (const int node : {a, b}) {
+        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
+        throw InvalidMesh(
+            name + "has an edge at node " + std::to_string(node) + ", but does not name the node",
+            -1, node);
+      }
+    }
+  }
+
+  const Mesh& mesh_;
+  const MeshRules& rules_;
+  std::vector<MeshEdge> edges_;
+};
+
+}  // namespace
+
+void check_mesh(const Mesh& mesh, const MeshRules& rules) { Check(mesh, rules).run(); }
+
+}  // namespace apothem

@@ -1,0 +1,54 @@
+#include "mesh/fill_mesh.hpp"
+
+#include "geometry/delaunay_mesh.hpp"
+#include "mesh/check.hpp"
+#include "mesh/groups.hpp"
+#include "mesh/split.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kTriangle = 2.2;  // edge of the triangles that are cut, in sizes
+constexpr double kLeastSine = .6;  // of a corner of two joined triangles
+
+std::vector<int> edge_numbers(const Polygon& outline) {
+  std::vector<int> numbers;
+  for (int e = 0; e < outline.size(); ++e) numbers.push_back(outline.input_edge(e));
+  return numbers;
+}
+
+}  // namespace
+
+Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
+               ElementShape shape) {
+  const bool quadrilaterals = shape == ElementShape::quadrilateral;
+  TriangleMesh triangles = delaunay_mesh(outline, holes, quadrilaterals ? kTriangle * size : size);
+  Mesh mesh;
+  mesh.nodes = std::move(triangles.points);
+  for (const Triangle& t : triangles.triangles) mesh.add_element(t);
+  if (quadrilaterals) mesh = into_quadrilaterals(join_triangles(mesh, kLeastSine));
+  std::vector<int> hole_sizes;
+  for (const Polygon& hole : holes) hole_sizes.push_back(hole.size());
+  add_outline_groups(mesh, edge_numbers(outline), hole_sizes);
+  check_mesh(mesh);
+  return mesh;
+}
+
+Mesh mesh_of_cells(const Polygon& region, const PolygonMesh& cells) {
+  Mesh mesh;
+  mesh.nodes = cells.points;
+  for (const std::vector<int>& cell : cells.cells) mesh.add_element(cell);
+  add_outline_groups(mesh, edge_numbers(region), {});
+  return mesh;
+}
+
+PolygonMesh cells_of_mesh(const Mesh& mesh) {
+  PolygonMesh cells{mesh.nodes, {}};
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto corners = mesh.element(e);
+    cells.cells.emplace_back(corners.begin(), corners.end());
+  }
+  return cells;
+}
+
+}  // namespace apothem

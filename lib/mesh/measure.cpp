@@ -1,0 +1,56 @@
+#include "mesh/measure.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "mesh/edges.hpp"
+
+namespace apothem {
+
+double element_area(const Mesh& mesh, int element) {
+  const auto corners = mesh.element(element);
+  const Vec2& origin = mesh.nodes[corners[0]];
+  double twice = 0;
+  for (size_t i = 1; i + 1 < corners.size(); ++i) {
+    twice += cross(mesh.nodes[corners[i]] - origin, mesh.nodes[corners[i + 1]] - origin);
+  }
+  return twice / 2;
+}
+
+double mesh_size(const Mesh& mesh) {
+  Box box;
+  for (const Vec2& p : mesh.nodes) box.include(p.x(), p.y());
+  return box.extent();
+}
+
+MeshQuality mesh_quality(const Mesh& mesh) {
+  MeshQuality q{};
+  q.smallest_area = q.shortest_edge = q.smallest_angle = HUGE_VAL;
+  q.smallest_scaled_jacobian = 1;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto corners = mesh.element(e);
+    ++(corners.size() == 3 ? q.triangles : corners.size() == 4 ? q.quadrilaterals : q.polygons);
+    const double area = element_area(mesh, e);
+    q.area += area;
+    q.smallest_area = std::min(q.smallest_area, area);
+    q.largest_area = std::max(q.largest_area, area);
+    Vec2 in = mesh.nodes[corners.front()] - mesh.nodes[corners.back()];
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 out = mesh.nodes[after(corners, i)] - mesh.nodes[corners[i]];
+      const double turn = std::atan2(cross(in, out), in.dot(out));
+      const double angle = std::numbers::pi - turn;
+      q.smallest_angle = std::min(q.smallest_angle, angle);
+      q.largest_angle = std::max(q.largest_angle, angle);
+      q.shortest_edge = std::min(q.shortest_edge, out.norm());
+      q.longest_edge = std::max(q.longest_edge, out.norm());
+      if (corners.size() <= 4) {
+        const double best = corners.size() == 3 ? std::sqrt(3.) / 2 : 1;
+        q.smallest_scaled_jacobian = std::min(q.smallest_scaled_jacobian, std::sin(angle) / best);
+      }
+      in = out;
+    }
+  }
+  return q;
+}
+
+}  // namespace apothem
