@@ -66,6 +66,12 @@ std::vector<std::pair<double, std::string>> entries(const std::string& file) {
   return result;
 }
 
+OutputSettings tracking(int body) {
+  OutputSettings settings;
+  settings.track = {body};
+  return settings;
+}
+
 }  // namespace
 
 TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
@@ -73,13 +79,13 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   const Model model = two_bodies();
   State state = state_of(model);
   FrameWriter frames(folder.path(), model);
-  frames.write(state, {});
+  frames.write(state, {}, {});
   state.time = 0.1 + 0.2;  // not representable in few digits
   state.position[3] += 0.25;
   state.position[5] = M_PI / 2;
   state.velocity = {1, 2, 0, 0, 0, 3};
   state.force = {5, 6, 7, 0, 0, 0};
-  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, 1e-3, 0.01}});
+  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, 1e-3, 0.01}}, {});
 
   const auto list = entries(folder / "frames.pvd");
   REQUIRE(list.size() == 2);
@@ -155,7 +161,8 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
   samples::Random random(30);
   std::vector<std::vector<double>> rows;
   {
-    HistoryWriter writer(folder.path(), model, {1});
+    const OutputSettings settings = tracking(1);
+    HistoryWriter writer(folder.path(), model, settings);
     for (int i = 0; i < 500; ++i) {
       const auto any = [&] { return std::ldexp(random.uniform(-1, 1), random.integer(-300, 300)); };
       state.time = i / 3.0;
@@ -163,7 +170,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       for (double& f : state.force) f = any();
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
-      writer.add(state, e, p);
+      writer.add(state, e, p, {});
       rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
                       p.angular_error});
     }
@@ -192,11 +199,12 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   const Folder folder;
   const Model model = two_bodies();
   State state = state_of(model);
-  HistoryWriter writer(folder.path(), model, {0});
+  const OutputSettings settings = tracking(0);
+  HistoryWriter writer(folder.path(), model, settings);
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {});
+    writer.add(state, {}, {}, {});
   }
   writer.flush();
   const double top = 3 + model.origin.y();
