@@ -1,0 +1,207 @@
+// Internal forces and whole steps of finite elements, next to a straightforward Eigen version and
+// to what the machine can do: bytes of memory and operations of arithmetic, per second.
+
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "dynamics/deformables.hpp"
+#include "geometry/voronoi.hpp"
+#include "mesh/curve.hpp"
+#include "mesh/rectangle_mesh.hpp"
+
+namespace {
+
+using namespace apothem;
+
+constexpr Elastic kRock{ElasticLaw::st_venant_kirchhoff, Plane::stress, 20e9, .2};
+
+DeformableBody block(ElementKind kind, int elements) {
+  DeformableBody body;
+  body.name = "block";
+  body.element = kind;
+  const bool triangles = kind == ElementKind::tri3;
+  const int cells = static_cast<int>(std::lround(std::sqrt(triangles ? elements / 2 : elements)));
+  body.mesh = rectangle_mesh({1, 1}, {cells, cells}, {0, 0},
+                             triangles ? ElementShape::triangle : ElementShape::quadrilateral);
+  reorder_along_curve(body.mesh);
+  return body;
+}
+
+Model model_of(DeformableBody body) {
+  Model model;
+  model.materials = {{"rock", 2000, kRock}};
+  model.deformables = {std::move(body)};
+  return model;
+}
+
+void report(benchmark::State& state, int elements) {
+  state.counters["ns_per_element"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * elements * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+// The internal forces alone.
+void force(benchmark::State& state, ElementKind kind) {
+  const DeformableBody body = block(kind, static_cast<int>(state.range(0)));
+  FiniteElements elements(std::vector<ElementSet>{{kind, &body.mesh, 0, kRock, 2000, 1, 0}}, 1);
+  std::vector<double> u(2 * body.mesh.nodes.size()), f(u.size());
+  for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-5 * std::sin(static_cast<double>(i));
+  for (auto _ : state) {
+    elements.force(u, u, f);
+    benchmark::DoNotOptimize(f.data());
+  }
+  report(state, elements.element_count());
+}
+
+// A whole step of the nodes: forces, two kicks, drift.
+void step(benchmark::State& state, ElementKind kind) {
+  const Model model = model_of(block(kind, static_cast<int>(state.range(0))));
+  State s;
+  Deformables deformables(model, s, 1);
+  const double dt = .5 * deformables.limit().step;
+  for (auto _ : state) {
+    deformables.kick(s, dt / 2);
+    deformables.drift(s, dt);
+    deformables.find_forces(s, dt);
+    deformables.kick(s, dt / 2);
+    benchmark::DoNotOptimize(s.displacement.data());
+  }
+  report(state, model.deformables[0].mesh.element_count());
+}
+
+// Q4-full as one would write it with Eigen's fixed-size matrices.
+void force_eigen(benchmark::State& state) {
+  const DeformableBody body = block(ElementKind::quad4_full, static_cast<int>(state.range(0)));
+  const Mesh& mesh = body.mesh;
+  const auto n = static_cast<Eigen::Index>(mesh.nodes.size());
+  Eigen::Matrix2Xd u(2, n), f(2, n);
+  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = 1e-5 * std::sin(static_cast<double>(i));
+  using Gradients = Eigen::Matrix<double, 2, 4>;
+  struct Gauss {
+    Gradients gradients;
+    double weight;
+  };
+  std::vector<std::array<Gauss, 4>> elements;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    Gradients x;
+    for (int i = 0; i < 4; ++i) x.col(i) = mesh.nodes[mesh.element(e)[i]];
+    std::array<Gauss, 4> points;
+    for (int g = 0; g < 4; ++g) {
+      const double p = 1 / std::sqrt(3.);
+      const double xi = (g == 1 || g == 2) ? p : -p, eta = g > 1 ? p : -p;
+      Gradients local;
+      local << -(1 - eta), 1 - eta, 1 + eta, -(1 + eta), -(1 - xi), -(1 + xi), 1 + xi, 1 - xi;
+      local /= 4;
+      const Eigen::Matrix2d jacobian = local * x.transpose();
+      points[g] = {jacobian.inverse() * local, jacobian.determinant()};
+    }
+    elements.push_back(points);
+  }
+  const Hooke hooke(kRock);
+  for (auto _ : state) {
+    f.setZero();
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const std::span<const int> nodes = mesh.element(e);
+      Gradients displacement;
+      for (int i = 0; i < 4; ++i) displacement.col(i) = u.col(nodes[i]);
+      Gradients forces = Gradients::Zero();
+      for (const Gauss& g : elements[e]) {
+        const Eigen::Matrix2d h = displacement * g.gradients.transpose();
+        const Eigen::Matrix2d strain = .5 * (h + h.transpose() + h.transpose() * h);
+        Eigen::Matrix2d stress;
+        stress(0, 0) = hooke.constrained * strain(0, 0) + hooke.coupled * strain(1, 1);
+        stress(1, 1) = hooke.coupled * strain(0, 0) + hooke.constrained * strain(1, 1);
+        stress(0, 1) = stress(1, 0) = hooke.twice_shear * strain(0, 1);
+        forces -= g.weight * (Eigen::Matrix2d::Identity() + h) * stress * g.gradients;
+      }
+      for (int i = 0; i < 4; ++i) f.col(nodes[i]) += forces.col(i);
+    }
+    benchmark::DoNotOptimize(f.data());
+  }
+  report(state, mesh.element_count());
+}
+
+// Voronoi cells, about six corners each.
+void force_voronoi(benchmark::State& state) {
+  const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  VoronoiOptions options;
+  options.cells = static_cast<int>(state.range(0));
+  options.lloyd = 5;
+  const VoronoiMesh voronoi = voronoi_mesh(square, options);
+  Mesh mesh;
+  mesh.nodes = voronoi.mesh.points;
+  for (const std::vector<int>& cell : voronoi.mesh.cells) mesh.add_element(cell);
+  reorder_along_curve(mesh);
+  FiniteElements elements(
+      std::vector<ElementSet>{{ElementKind::polygon, &mesh, 0, kRock, 2000, 1, 0}}, 1);
+  std::vector<double> u(2 * mesh.nodes.size()), f(u.size());
+  for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-5 * std::sin(static_cast<double>(i));
+  for (auto _ : state) {
+    elements.force(u, u, f);
+    benchmark::DoNotOptimize(f.data());
+  }
+  report(state, mesh.element_count());
+}
+
+// Memory: a = b + s c on arrays far larger than the caches (J. McCalpin, STREAM).
+void machine_memory(benchmark::State& state) {
+  std::vector<double> a(1 << 23), b(a.size(), 1), c(a.size(), 2);
+  for (auto _ : state) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] = b[i] + 3 * c[i];
+    benchmark::DoNotOptimize(a.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["GB/s"] = benchmark::Counter(
+      static_cast<double>(state.iterations() * a.size()) * 24e-9, benchmark::Counter::kIsRate);
+}
+
+// Arithmetic: independent multiplications and additions in registers.
+template <class Chain>
+APOTHEM_INLINE void chains(benchmark::State& state, Chain& p) {
+  const Pack factor(1.0000001), term(1e-9);
+  for (auto _ : state) {
+    for (int i = 0; i < 1000; ++i) {
+      for (Pack& x : p) x = x * factor + term;
+    }
+    benchmark::DoNotOptimize(p);
+  }
+  state.counters["GF/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * 1000 * p.size() * kLanes * 2e-9,
+                         benchmark::Counter::kIsRate);
+}
+[[gnu::target("avx512f")]] void chains_avx512(benchmark::State& state) {
+  std::array<Pack, 12> p{};
+  chains(state, p);
+}
+[[gnu::target("avx2")]] void chains_avx2(benchmark::State& state) {
+  std::array<Pack, 6> p{};
+  chains(state, p);
+}
+void machine_arithmetic(benchmark::State& state) {
+  if (__builtin_cpu_supports("avx512f")) {
+    chains_avx512(state);
+  } else if (__builtin_cpu_supports("avx2")) {
+    chains_avx2(state);
+  } else {
+    std::array<Pack, 3> p{};
+    chains(state, p);
+  }
+}
+
+void sizes(benchmark::internal::Benchmark* b) { b->Arg(1000)->Arg(100000)->Arg(1000000); }
+
+BENCHMARK_CAPTURE(force, T3, ElementKind::tri3)->Apply(sizes);
+BENCHMARK_CAPTURE(force, Q4, ElementKind::quad4)->Apply(sizes);
+BENCHMARK_CAPTURE(force, Q4_full, ElementKind::quad4_full)->Apply(sizes);
+BENCHMARK_CAPTURE(force, polygon_of_four, ElementKind::polygon)->Apply(sizes);
+BENCHMARK(force_voronoi)->Arg(1000)->Arg(10000);
+BENCHMARK(force_eigen)->Apply(sizes);
+BENCHMARK_CAPTURE(step, T3, ElementKind::tri3)->Apply(sizes);
+BENCHMARK_CAPTURE(step, Q4, ElementKind::quad4)->Apply(sizes);
+BENCHMARK_CAPTURE(step, Q4_full, ElementKind::quad4_full)->Apply(sizes);
+BENCHMARK(machine_memory);
+BENCHMARK(machine_arithmetic);
+
+}  // namespace
