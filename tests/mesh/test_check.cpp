@@ -1,10 +1,7 @@
 // What is refused as a mesh, and with which element or node.
-#include <chrono>
-
 #include "mesh/invalid_mesh.hpp"
 #include "mesh/rectangle_mesh.hpp"
 #include "mesh_laws.hpp"
-#include "support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;
@@ -188,14 +185,4 @@ TEST_CASE("the boundary of a frame", "[mesh]") {
   CHECK(outline.loops[0].elements == std::vector<int>{0, 1, 2, 2, 4, 7, 7, 6, 5, 5, 3, 0});
   CHECK(outline.loops[1].nodes == std::vector<int>{5, 9, 10, 6});
   CHECK(outline.loops[1].elements == std::vector<int>{3, 6, 4, 1});
-}
-
-TEST_CASE("a million elements are checked in seconds", "[mesh]") {
-  const int n = scaled(1000);
-  const Mesh mesh = rectangle_mesh({1, 1}, {n, n}, {0, 0}, ElementShape::quadrilateral);
-  const auto start = std::chrono::steady_clock::now();
-  CHECK_NOTHROW(check_mesh(mesh));
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  WARN("check_mesh of " << mesh.element_count() << " elements: " << seconds.count() << " s");
-  CHECK(seconds.count() < 30);
 }

@@ -1,0 +1,131 @@
+#include "mesh/locate.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "geometry/predicates.hpp"
+#include "mesh/edges.hpp"
+#include "mesh/measure.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kOutside = 1e-9;  // of the mesh's size
+
+std::vector<double> barycentric(const Vec2& a, const Vec2& b, const Vec2& c) {  // of 0
+  const std::array<double, 3> areas{cross(b, c), cross(c, a), cross(a, b)};
+  const double sum = areas[0] + areas[1] + areas[2];
+  return {areas[0] / sum, areas[1] / sum, areas[2] / sum};
+}
+
+// The place (u, v) in the unit square of the bilinear map that takes its corners to a, b, c, d.
+std::array<double, 2> inverse_bilinear(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const Vec2 e = b - a;
+  const Vec2 f = d - a;
+  const Vec2 g = (a - b) + (c - d);
+  // a + u e + v f + u v g = 0; crossed with e + v g it is a quadratic equation for v.
+  const double k2 = cross(f, g);
+  const double k1 = cross(f, e) + cross(a, g);
+  const double k0 = cross(a, e);
+  const double root = std::sqrt(std::max(0., k1 * k1 - 4 * k2 * k0));
+  // k1 < 0 in a counter-clockwise element: no cancellation, and the root of the linear case.
+  double v = 2 * k0 / (-k1 + root);
+  const Vec2 h = e + v * g;
+  double u = -h.dot(a + v * f) / h.squaredNorm();
+  for (int i = 0; i < 2; ++i) {  // Newton: round-off of the closed form
+    const Vec2 miss = a + u * e + v * f + u * v * g;
+    const Vec2 by_u = e + v * g;
+    const Vec2 by_v = f + u * g;
+    const double jacobian = cross(by_u, by_v);
+    u -= cross(miss, by_v) / jacobian;
+    v -= cross(by_u, miss) / jacobian;
+  }
+  return {u, v};
+}
+
+std::vector<double> mean_value(const std::vector<Vec2>& ring) {  // of 0
+  const size_t n = ring.size();
+  std::vector<double> weights(n, 0);
+  std::vector<double> half_tangent(n);  // of the angle from corner i to i + 1
+  for (size_t i = 0; i < n; ++i) {
+    const Vec2& p = ring[i];
+    const Vec2& q = after(ring, i);
+    const double lengths = p.norm() * q.norm();
+    if (p.isZero(0)) {
+      weights[i] = 1;
+      return weights;
+    }
+    const double sine = cross(p, q);
+    const double cosine = p.dot(q);
+    if (sine == 0 && cosine < 0) {  // on the edge
+      weights[i] = q.norm() / (p.norm() + q.norm());
+      weights[i + 1 == n ? 0 : i + 1] = p.norm() / (p.norm() + q.norm());
+      return weights;
+    }
+    half_tangent[i] = cosine > 0 ? sine / (lengths + cosine) : (lengths - cosine) / sine;
+  }
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    weights[i] = (half_tangent[i == 0 ? n - 1 : i - 1] + half_tangent[i]) / ring[i].norm();
+    sum += weights[i];
+  }
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+std::vector<Vec2> ring_about(const Mesh& mesh, int element, const Vec2& p) {
+  std::vector<Vec2> ring;
+  for (const int c : mesh.element(element)) ring.emplace_back(mesh.nodes[c] - p);
+  return ring;
+}
+
+bool is_convex(const std::vector<Vec2>& ring) {
+  for (size_t i = 0; i < ring.size(); ++i) {
+    if (orientation(ring[i], after(ring, i), ring[(i + 2) % ring.size()]) <= 0) return false;
+  }
+  return true;
+}
+
+double distance_to_boundary(const std::vector<Vec2>& ring) {  // of 0
+  double least = HUGE_VAL;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 edge = after(ring, i) - ring[i];
+    const double share = std::clamp(-ring[i].dot(edge) / edge.squaredNorm(), 0., 1.);
+    least = std::min(least, (ring[i] + share * edge).norm());
+  }
+  return least;
+}
+
+}  // namespace
+
+std::vector<double> interpolation_weights(const Mesh& mesh, int element, const Vec2& p) {
+  const std::vector<Vec2> ring = ring_about(mesh, element, p);
+  if (ring.size() == 3) return barycentric(ring[0], ring[1], ring[2]);
+  if (ring.size() == 4 && is_convex(ring)) {
+    const auto [u, v] = inverse_bilinear(ring[0], ring[1], ring[2], ring[3]);
+    return {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+  }
+  return mean_value(ring);
+}
+
+std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p) {
+  const double reach = kOutside * mesh_size(mesh);
+  int nearest = -1;
+  double least = HUGE_VAL;
+  for (int e = 0; e < mesh.element_count() && least > 0; ++e) {
+    Box box;
+    for (const int c : mesh.element(e)) box.include(mesh.nodes[c].x(), mesh.nodes[c].y());
+    if (apart(box.grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
+    std::vector<Vec2> ring;
+    for (const int c : mesh.element(e)) ring.push_back(mesh.nodes[c]);
+    const double distance =
+        strictly_inside(ring, p) ? 0 : distance_to_boundary(ring_about(mesh, e, p));
+    if (distance >= least || distance > reach) continue;
+    least = distance;
+    nearest = e;
+  }
+  if (nearest < 0) return std::nullopt;
+  return MeshPoint{nearest, interpolation_weights(mesh, nearest, p)};
+}
+
+}  // namespace apothem
