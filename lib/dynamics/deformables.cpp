@@ -161,6 +161,14 @@ void Deformables::drift(State& state, double dt) {
     state.node_velocity[d.coordinate] = (goal - state.displacement[d.coordinate]) / dt;
   }
   book(state, dt / 2);
+  // A driven coordinate has no momentum of its own; the other one of its node keeps it, and is
+  // carried along.
+  for (const Driven& d : driven_) {
+    const int other = d.coordinate ^ 1;
+    if (inverse_mass_[other] == 0) continue;
+    const double p = state.node_velocity[other] / inverse_mass_[other];
+    impulse_.angular += (d.axis == 0 ? dt : -dt) * state.node_velocity[d.coordinate] * p;
+  }
   double* u = state.displacement.data();
   const double* v = state.node_velocity.data();
   const size_t n = state.displacement.size();
@@ -262,9 +270,9 @@ Energies Deformables::energies(const State& state, double dt) {
   }
   e.strain = elements_.strain_energy(state.displacement);
   e.external_work = balance_.load_work;
-  // The forces act from half a step before their time to half a step after it, but the power was
-  // taken with the velocity before: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
-  e.damping_loss = balance_.mass_damping_loss + balance_.summed_damping_loss +
+  // Of the last force only half a step has acted (-dt/2 [v.C.v] since the start), and each power
+  // was taken with the velocity half a step before its force: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
+  e.damping_loss = balance_.mass_damping_loss + balance_.summed_damping_loss -
                    dt / 4 * (balance_.damping_power - first_damping_power_);
   return e;
 }
