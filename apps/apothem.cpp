@@ -73,20 +73,28 @@ void add_contact(CLI::App& app, ContactOptions& o) {
 }
 
 void add_mesh(CLI::App& app, MeshOptions& o) {
-  CLI::App* sub = app.add_subcommand("mesh", "Mesh a region with polygonal cells");
-  sub->add_option("REGION", o.region, "Polygon: WKT, [[x,y],...] or {\"polygon\": ...}")
+  CLI::App* sub = app.add_subcommand(
+      "mesh", "Mesh a region with polygonal cells, or describe a mesh of gmsh's");
+  sub->add_option("FILE", o.file,
+                  "Region: WKT, [[x,y],...] or {\"polygon\": ...}; or a mesh: NAME.msh")
       ->required();
-  sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->required();
+  CLI::Option* cells = sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells");
   sub->add_option("--seed", o.voronoi.seed, "Of the random sites")
       ->check(CLI::NonNegativeNumber)
+      ->needs(cells)
       ->capture_default_str();
   sub->add_option("--lloyd", o.voronoi.lloyd, "Steps of Lloyd's iteration, at most")
+      ->needs(cells)
       ->capture_default_str();
   sub->add_option("--shortest-edge", o.voronoi.shortest_edge,
                   "Collapse shorter edges; 0 to 0.5, of the mean cell size sqrt(area / cells)")
+      ->needs(cells)
       ->capture_default_str();
-  sub->add_option("-o,--output", o.output, "JSON file (default: standard output)");
+  sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
+  sub->add_option("-o,--output", o.output,
+                  "JSON file (default: standard output for Voronoi cells, none for a mesh)");
   sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at");
+  sub->final_callback([&o, cells] { o.make = cells->count() > 0; });
 }
 
 void add_polygon(CLI::App& app, PolygonOptions& o) {

@@ -48,10 +48,12 @@ struct ContactOptions {
 int contact_command(const ContactOptions& options);
 
 struct MeshOptions {
-  std::string region;
+  std::string file;   ///< a region, or a mesh (.msh)
+  bool make = false;  ///< Voronoi cells in the region
   VoronoiOptions voronoi;
-  std::string output;  ///< empty: standard output
+  std::string output;  ///< empty: a region's cells go to standard output
   std::string vtk;     ///< empty: none
+  bool json = false;   ///< the description of a mesh
 };
 int mesh_command(const MeshOptions& options);
 

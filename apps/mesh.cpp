@@ -2,11 +2,16 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "commands.hpp"
+#include "mesh/boundary.hpp"
+#include "mesh/fill_mesh.hpp"
+#include "mesh/measure.hpp"
 #include "output/files.hpp"
 #include "output/frames.hpp"
 #include "scene/error.hpp"
+#include "scene/mesh_file.hpp"
 #include "scene/polygon_file.hpp"
 
 namespace apothem {
@@ -30,6 +35,14 @@ std::string rows(const std::vector<std::vector<int>>& cells) {
   return "[\n" + text + "\n]";
 }
 
+std::string line(const char* what, const std::string& value) {
+  return fmt::format("{:<12} {}\n", what, value);
+}
+
+std::string range(double from, double to, const char* unit) {
+  return fmt::format("{0:.6g} {2} to {1:.6g} {2}", from, to, unit);
+}
+
 std::string summary(const Polygon& region, const VoronoiMesh& voronoi, const PolygonMesh& mesh) {
   double shortest = HUGE_VAL, longest = 0;
   double smallest = HUGE_VAL, largest = 0, sum = 0;
@@ -48,15 +61,13 @@ std::string summary(const Polygon& region, const VoronoiMesh& voronoi, const Pol
   const double whole = area_moments(region).area;
   const double mean = whole / static_cast<double>(mesh.cells.size());
   std::string text;
-  const auto say = [&](const char* what, const std::string& value) {
-    text += fmt::format("{:<12} {}\n", what, value);
-  };
+  const auto say = [&](const char* what, const std::string& value) { text += line(what, value); };
   say("cells", fmt::format("{}, {} nodes", mesh.cells.size(), mesh.points.size()));
   say("Lloyd", fmt::format("{} steps, last movement {:.2g} of the cell size", voronoi.lloyd_steps,
                            voronoi.last_movement / std::sqrt(mean)));
-  say("edges", fmt::format("{:.6g} m to {:.6g} m; {} collapsed, {} short ones left", shortest,
-                           longest, voronoi.short_edges.collapsed, voronoi.short_edges.left));
-  say("areas", fmt::format("{:.6g} m^2 to {:.6g} m^2, mean {:.6g} m^2", smallest, largest, mean));
+  say("edges", fmt::format("{}; {} collapsed, {} short ones left", range(shortest, longest, "m"),
+                           voronoi.short_edges.collapsed, voronoi.short_edges.left));
+  say("areas", fmt::format("{}, mean {:.6g} m^2", range(smallest, largest, "m^2"), mean));
   say("area defect", fmt::format("{:.2g} of the region", std::abs(sum - whole) / whole));
   if (voronoi.joined_pieces > 0) {
     say("joined",
@@ -65,14 +76,57 @@ std::string summary(const Polygon& region, const VoronoiMesh& voronoi, const Pol
   return text;
 }
 
-}  // namespace
+constexpr double kDegree = std::numbers::pi / 180;
 
-int mesh_command(const MeshOptions& options) {
-  if (!options.output.empty() && options.output == options.vtk) {
-    throw SceneError(options.vtk, 0, "", "is given for JSON and for VTK; give two names");
+std::string description(const Mesh& mesh) {
+  const MeshQuality q = mesh_quality(mesh);
+  std::string text =
+      line("elements", fmt::format("{} triangles, {} quadrilaterals, {} nodes", q.triangles,
+                                   q.quadrilaterals, mesh.nodes.size())) +
+      line("holes", std::to_string(boundary(mesh).loops.size() - 1)) +
+      line("edges", range(q.shortest_edge, q.longest_edge, "m")) +
+      line("areas", fmt::format("{}, sum {:.6g} m^2", range(q.smallest_area, q.largest_area, "m^2"),
+                                q.area)) +
+      line("angles", range(q.smallest_angle / kDegree, q.largest_angle / kDegree, "degrees")) +
+      line("Jacobian", fmt::format("{:.4g} or more, scaled (1: best)", q.smallest_scaled_jacobian));
+  for (const MeshGroup& group : mesh.groups) {
+    text += line("group", fmt::format("{}: {} nodes, {} edges", group.name, group.nodes.size(),
+                                      group.edges.size()));
   }
+  return text;
+}
+
+Json description_json(const Mesh& mesh) {
+  const MeshQuality q = mesh_quality(mesh);
+  Json groups = Json::array();
+  for (const MeshGroup& group : mesh.groups) {
+    groups.push_back(
+        {{"name", group.name}, {"nodes", group.nodes.size()}, {"edges", group.edges.size()}});
+  }
+  return {{"nodes", mesh.nodes.size()},
+          {"triangles", q.triangles},
+          {"quadrilaterals", q.quadrilaterals},
+          {"holes", boundary(mesh).loops.size() - 1},
+          {"area", q.area},
+          {"areas", {q.smallest_area, q.largest_area}},
+          {"edges", {q.shortest_edge, q.longest_edge}},
+          {"angles", {q.smallest_angle, q.largest_angle}},
+          {"smallest_scaled_jacobian", q.smallest_scaled_jacobian},
+          {"groups", groups}};
+}
+
+std::string groups_json(const Mesh& mesh) {
+  std::string text;
+  for (const MeshGroup& group : mesh.groups) {
+    const Json json{{"name", group.name}, {"nodes", group.nodes}, {"edges", group.edges}};
+    text += (text.empty() ? "" : ",\n") + json.dump();
+  }
+  return "[\n" + text + "\n]";
+}
+
+void make_cells(const MeshOptions& options) {
   try {
-    const Polygon region(read_polygon_file(options.region));
+    const Polygon region(read_polygon_file(options.file));
     const VoronoiMesh voronoi = voronoi_mesh(region, options.voronoi);
     const PolygonMesh mesh = in_world(region, voronoi.mesh);
     const std::string json =
@@ -83,9 +137,41 @@ int mesh_command(const MeshOptions& options) {
     if (options.output.empty()) fmt::print("{}", json);
     fmt::print(options.output.empty() ? stderr : stdout, "{}", summary(region, voronoi, mesh));
   } catch (const InvalidPolygon& error) {
-    throw SceneError(options.region, 0, "", fmt::format("the region {}", error.what()));
+    throw SceneError(options.file, 0, "", fmt::format("the region {}", error.what()));
   } catch (const std::invalid_argument& error) {
     throw SceneError("mesh", 0, "", error.what());
+  }
+}
+
+void describe_mesh(const MeshOptions& options) {
+  const Mesh mesh = read_mesh_file(options.file, {.convex_quadrilaterals = false});
+  const PolygonMesh cells = cells_of_mesh(mesh);
+  if (!options.output.empty()) {
+    write_file(options.output,
+               fmt::format("{{\n\"points\": {},\n\"cells\": {},\n\"groups\": {}\n}}\n",
+                           rows(cells.points), rows(cells.cells), groups_json(mesh)));
+  }
+  if (!options.vtk.empty()) write_mesh(options.vtk, cells);
+  fmt::print("{}", options.json ? description_json(mesh).dump(2) + "\n" : description(mesh));
+}
+
+}  // namespace
+
+int mesh_command(const MeshOptions& options) {
+  if (!options.output.empty() && options.output == options.vtk) {
+    throw SceneError(options.vtk, 0, "", "is given for JSON and for VTK; give two names");
+  }
+  if (is_mesh_file(options.file)) {
+    if (options.make) {
+      throw SceneError(options.file, 0, "", "is a mesh already; leave out --voronoi");
+    }
+    describe_mesh(options);
+  } else {
+    if (!options.make) {
+      throw SceneError(options.file, 0, "",
+                       "give --voronoi N to mesh this region, or a mesh (NAME.msh)");
+    }
+    make_cells(options);
   }
   return exit_code::done;
 }

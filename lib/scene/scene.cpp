@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "model/state.hpp"
-#include "scene/polygon_file.hpp"
+#include "scene/polygon_value.hpp"
 
 namespace apothem {
 namespace {
@@ -213,36 +213,7 @@ class SceneReader {
 
   Polygon polygon(const JsonValue& value) {
     JsonObject object(in_, value);
-    const JsonValue& outline =
-        object.required("polygon", "[[x,y],...] in m, or the name of a file");
-    std::string where;
-    std::vector<Vec2> ring;
-    if (outline.type == JsonValue::Type::string) {
-      const auto file = std::filesystem::path(scene_.file).parent_path() / outline.string;
-      try {
-        ring = read_polygon_file(file.string());
-      } catch (const SceneError& error) {
-        in_.fail(outline, error.what());
-      }
-      where = file.string() + ": ";
-    } else {
-      ring = in_.ring(outline);
-    }
-    try {
-      return Polygon(std::move(ring));
-    } catch (const InvalidPolygon& error) {
-      in_.fail(vertex_or(outline, error.vertex()), where + polygon_message(error));
-    }
-  }
-
-  static std::string polygon_message(const InvalidPolygon& error) {
-    return std::string("not a usable polygon: ") + error.what();
-  }
-
-  static const JsonValue& vertex_or(const JsonValue& outline, int vertex) {
-    const bool inside = outline.type == JsonValue::Type::array && vertex >= 0 &&
-                        vertex < static_cast<int>(outline.items.size());
-    return inside ? outline.items[vertex] : outline;
+    return read_polygon(in_, object.required("polygon", "[[x,y],...] in m, or the name of a file"));
   }
 
   void body(const JsonValue& value, const Polygon& polygon) {
@@ -256,7 +227,7 @@ class SceneReader {
     try {
       set_shape(body, polygon, model_);
     } catch (const InvalidPolygon& error) {
-      in_.fail(vertex_or(outline, error.vertex()), polygon_message(error));
+      refuse_polygon(in_, outline, error);
     }
     if (!(body.mass > 0 && body.inertia > 0 && std::isfinite(1 / body.mass) &&
           std::isfinite(1 / body.inertia) && std::isfinite(body.potential.steepest))) {

@@ -329,6 +329,29 @@ TEST_CASE("contact of many pairs goes on after a refusal", "[program]") {
   CHECK(objects[4]["results"][0]["force"][0] == 0);
 }
 
+TEST_CASE("a mesh of gmsh's, described", "[program]") {
+  const Folder folder;
+  const std::string file = test::kSource + "/data/meshes/mixed.msh";
+  const Result plain = run({"mesh", file}, folder);
+  REQUIRE(plain.code == 0);
+  CHECK(plain.out.find("2 triangles, 2 quadrilaterals, 8 nodes") != std::string::npos);
+  CHECK(plain.out.find("left: 2 nodes, 1 edges") != std::string::npos);
+  const Result json =
+      run({"mesh", file, "--json", "-o", folder / "m.json", "--vtk", folder / "m.vtu"}, folder);
+  REQUIRE(json.code == 0);
+  const Json description = Json::parse(json.out);
+  CHECK(description["area"] == 3);
+  CHECK(description["areas"] == Json{.5, 1});
+  CHECK(description["holes"] == 0);
+  CHECK(description["angles"][1] == Approx(std::acos(-1.) / 2));
+  CHECK(description["groups"][1] == Json{{"name", "left"}, {"nodes", 2}, {"edges", 1}});
+  const Json mesh = Json::parse(content(folder / "m.json"));
+  CHECK(mesh["points"][7] == Json{3, 1});
+  CHECK(mesh["cells"][2] == Json{2, 3, 6});
+  CHECK(mesh["groups"][2]["nodes"] == Json{0, 1, 2, 4, 5, 6});
+  CHECK(content(folder / "m.vtu").find("VTKFile") != std::string::npos);
+}
+
 TEST_CASE("a mesh of a region", "[program]") {
   const Folder folder;
   // An L far from the origin: shifted by an exact 2^20 m.
@@ -375,6 +398,10 @@ TEST_CASE("a mesh of a region", "[program]") {
         {"mesh", region, "--voronoi", "5", "--shortest-edge", "nan"},
         {"mesh", region, "--voronoi", "5", "-o", folder / "x", "--vtk", folder / "x"},
         {"mesh", bow, "--voronoi", "5", "-o", folder / "x"},
+        {"mesh", region, "--voronoi", "5", "--json"},
+        {"mesh", test::kSource + "/data/meshes/mixed.msh", "--voronoi", "5"},
+        {"mesh", test::kSource + "/data/meshes/mixed.msh", "--seed", "5"},
+        {"mesh", folder / "missing.msh", "-o", folder / "x"},
         {"mesh", folder / "missing.json", "--voronoi", "5"}}) {
     const Result r = run(wrong, folder);
     INFO(r.err);

@@ -1,0 +1,18 @@
+#include "scene/mesh_file.hpp"
+
+#include "mesh/gmsh.hpp"
+#include "scene/json.hpp"
+
+namespace apothem {
+
+bool is_mesh_file(const std::string& file) { return file.ends_with(".msh"); }
+
+Mesh read_mesh_file(const std::string& file, const MeshRules& rules) {
+  try {
+    return parse_gmsh(read_text(file), rules);
+  } catch (const BadMeshText& error) {
+    throw SceneError(file, error.line(), "", error.what());
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,135 @@
+// The mesh of a body as a scene gives it, and what is refused there.
+#include "scene/mesh_reader.hpp"
+
+#include "folder.hpp"
+#include "mesh/mesh_laws.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+using Catch::Contains;
+
+namespace {
+
+// As in a scene beside data/meshes.
+MeshSpec read(const std::string& text, const std::string& file = kSource + "/data/scene.json") {
+  return read_mesh(JsonReader(file), parse_json(text, file));
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+    return "";
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every way to make a mesh", "[mesh][scene]") {
+  struct Case {
+    const char* text;
+    double area;
+    int elements;
+    ElementKind element;
+  };
+  using K = ElementKind;
+  const Case cases[]{
+      {R"({"rectangle": {"size": [10, 1], "cells": [20, 2]}})", 10, 40, K::quad4},
+      {R"({"rectangle": {"size": [10, 1], "cells": [20, 2], "origin": [1, 2]}, "element": "T3"})",
+       10, 80, K::tri3},
+      {R"({"rectangle": {"size": [2, 1], "cells": [2, 2]}, "element": "Q4-full"})", 2, 4,
+       K::quad4_full},
+      {R"({"rectangle": {"size": [2, 1], "cells": [2, 2]}, "element": "polygon"})", 2, 4,
+       K::polygon},
+      {R"({"disc": {"radius": 0.5, "cells": 4}})", 8 * .25 * std::sin(std::acos(-1.) / 8), 48,
+       K::quad4},
+      {R"({"disc": {"radius": 0.5, "centre": [3, 4], "cells": 4, "grading": 2}, "element": "T3"})",
+       8 * .25 * std::sin(std::acos(-1.) / 8), 96, K::tri3},
+      {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "size": 0.1}})", .5, 0, K::quad4},
+      {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "size": 0.1}, "element": "T3"})", .5, 0,
+       K::tri3},
+      {R"({"fill": {"file": "polygons/boulder.json", "size": 0.5}})", 7.37375, 0, K::quad4},
+      {R"({"fill": {"polygon": "polygons/boulder.json", "size": 0.5}})", 7.37375, 0, K::quad4},
+      {R"({"voronoi": {"polygon": [[0,0],[2,0],[0,1]], "cells": 30, "seed": 2, "lloyd": 5,
+           "shortest_edge": 0.2}})",
+       1, 30, K::polygon},
+      {R"({"voronoi": {"size": [2, 1], "origin": [-1, 0], "cells": 20}})", 2, 20, K::polygon},
+      {R"({"file": "meshes/mixed.msh"})", 3, 4, K::polygon},
+      {R"({"file": "meshes/quarter-disc.msh", "element": "Q4"})", .780361, 95, K::quad4},
+      {R"({"file": "meshes/quarter-disc-triangles.msh"})", .780361, 170, K::tri3},
+  };
+  for (const Case& c : cases) {
+    INFO(c.text);
+    const MeshSpec spec = read(c.text);
+    check_laws(spec.mesh, c.area, 0, 1e-5);
+    if (c.elements > 0) CHECK(spec.mesh.element_count() == c.elements);
+    CHECK(spec.element == c.element);
+    CHECK_FALSE(spec.mesh.groups.empty());
+  }
+  const MeshSpec holed = read(
+      R"({"fill": {"polygon": [[0,0],[4,0],[4,4],[0,4]], "holes": [[[1,1],[2,1],[1,2]]], "size": 1}})");
+  check_laws(holed.mesh, 15.5, 1);
+}
+
+TEST_CASE("a mesh that cannot be is refused at its place", "[mesh][scene]") {
+  const std::pair<const char*, const char*> cases[]{
+      {"{}", "must give one of rectangle, disc"},
+      {"[]", "must be an object"},
+      {R"({"rectangel": {}})",
+       "/rectangel: unknown key \"rectangel\"; did you mean \"rectangle\"?"},
+      {R"({"disc": {"radius": 1, "cells": 4}, "file": "x.msh"})",
+       "/file: a mesh is made in one way, and \"disc\" is given"},
+      {R"({"rectangle": {"size": [1, 1]}})", "/rectangle: missing key \"cells\""},
+      {R"({"rectangle": {"size": [1, 1], "cells": 4}})", "/rectangle/cells: must be an array"},
+      {R"({"rectangle": {"size": [1, 1], "cells": [4, 2.5]}})",
+       "/rectangle/cells/1: must be a whole"},
+      {R"({"rectangle": {"size": [1, 0], "cells": [4, 2]}})",
+       "/rectangle: the sides of a rectangle"},
+      {R"({"rectangle": {"size": [1, 1], "cells": [0, 2]}})", "/rectangle: there must be 1 to 1e8"},
+      {R"({"rectangle": {"size": [1, 1], "cells": [1, 2], "orgin": [0, 0]}})",
+       "did you mean \"origin\"?"},
+      {R"({"disc": {"radius": -1, "cells": 4}})", "/disc/radius: must be positive"},
+      {R"({"disc": {"radius": 1, "cells": 0}})", "/disc: there must be 1 to 5000 cells"},
+      {R"({"disc": {"radius": 1, "cells": 4, "grading": 0}})", "/disc: the grading"},
+      {R"({"fill": {"size": 1}})", "/fill: missing key \"polygon\""},
+      {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "size": 0}})", "/fill/size: must be positive"},
+      {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "file": "x", "size": 1}})",
+       "/fill/file: the polygon is given twice"},
+      {R"({"fill": {"polygon": [[0,0],[1,1],[1,0],[0,1]], "size": 1}})",
+       "/fill/polygon/2: not a usable polygon"},
+      {R"({"fill": {"file": "none.json", "size": 1}})", "/fill/file: "},
+      {R"({"fill": {"polygon": [[0,0],[4,0],[0,4]], "holes": [[[3,3],[5,3],[5,5]]], "size": 1}})",
+       "/fill: hole 0 lies outside"},
+      {R"({"voronoi": {"polygon": [[0,0],[1,0],[0,1]], "cells": 0}})",
+       "/voronoi: the number of cells"},
+      {R"({"voronoi": {"size": [1, -1], "cells": 3}})", "/voronoi/size: must be two positive"},
+      {R"({"voronoi": {"size": [1, 1], "cells": 3}, "element": "Q4"})",
+       "/element: \"Q4\" has 4 corners, but element "},
+      {R"({"file": "meshes/mixed.msh", "element": "T3"})",
+       "/element: \"T3\" has 3 corners, but element 0 of the mesh has 4; \"polygon\" fits every"},
+      {R"({"file": "meshes/mixed.msh", "element": "T4"})", "/element: unknown choice \"T4\""},
+      {R"({"file": "meshes/none.msh"})", "none.msh: cannot be opened"},
+      {R"({"file": 3})", "/file: must be a string"},
+  };
+  for (const auto& [text, message] : cases) {
+    INFO(text);
+    const std::string error = refusal(text);
+    CHECK_THAT(error, Contains(message));
+    CHECK_THAT(error, Contains("scene.json:1"));
+  }
+}
+
+TEST_CASE("only polygon elements may be quadrilaterals that are not convex", "[mesh][scene]") {
+  const Folder folder;
+  folder.write("dart.msh",
+               "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 .2 .2 0\n"
+               "4 0 1 0\n$EndNodes\n$Elements\n1\n1 3 2 0 1 1 2 3 4\n$EndElements\n");
+  const std::string scene = folder / "scene.json";
+  CHECK_THROWS_WITH(read(R"({"file": "dart.msh"})", scene),
+                    Contains("dart.msh:13: element 0 is a quadrilateral with a corner of 180"));
+  const MeshSpec spec = read(R"({"file": "dart.msh", "element": "polygon"})", scene);
+  CHECK(spec.mesh.element_count() == 1);
+  CHECK(spec.element == ElementKind::polygon);
+}
