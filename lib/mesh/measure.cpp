@@ -17,6 +17,21 @@ double element_area(const Mesh& mesh, int element) {
   return twice / 2;
 }
 
+Vec2 mesh_centroid(const Mesh& mesh) {
+  double area = 0;
+  Vec2 moment = Vec2::Zero();
+  const Vec2& base = mesh.nodes.front();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const std::span<const int> ring = mesh.element(e);
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 p = mesh.nodes[ring[i]] - base, q = mesh.nodes[after(ring, i)] - base;
+      area += cross(p, q) / 2;
+      moment += cross(p, q) / 6 * (p + q);
+    }
+  }
+  return base + moment / area;
+}
+
 double mesh_size(const Mesh& mesh) {
   Box box;
   for (const Vec2& p : mesh.nodes) box.include(p.x(), p.y());

@@ -8,6 +8,9 @@ namespace apothem {
 /// Positive if the corners go counter-clockwise, in m^2.
 double element_area(const Mesh& mesh, int element);
 
+/// Of the area, m.
+Vec2 mesh_centroid(const Mesh& mesh);
+
 /// Longer side of the box around the nodes, m.
 double mesh_size(const Mesh& mesh);
 

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/measure.hpp"
 #include "output/files.hpp"
 #include "output/vtk_grid.hpp"
 
@@ -62,23 +63,13 @@ class StressArrays {
   std::array<vtkNew<vtkDoubleArray>, 5> arrays_;
 };
 
-double area(const Mesh& mesh, int e) {
-  const std::span<const int> nodes = mesh.element(e);
-  double twice = 0;
-  const Vec2& base = mesh.nodes[nodes[0]];
-  for (size_t i = 2; i < nodes.size(); ++i) {
-    twice += cross(Vec2(mesh.nodes[nodes[i - 1]] - base), Vec2(mesh.nodes[nodes[i]] - base));
-  }
-  return twice / 2;
-}
-
 std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchyStress* stress) {
   std::vector<CauchyStress> mean(body.mesh.nodes.size());
   std::vector<double> weight(mean.size(), 0);
   constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,
                               &CauchyStress::zz, &CauchyStress::energy_density};
   for (int e = 0; e < body.mesh.element_count(); ++e) {
-    const double share = area(body.mesh, e);
+    const double share = element_area(body.mesh, e);
     for (const int node : body.mesh.element(e)) {
       weight[node] += share;
       for (const auto part : kParts) mean[node].*part += share * stress[e].*part;

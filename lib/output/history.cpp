@@ -8,6 +8,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "model/columns.hpp"
+
 namespace apothem {
 namespace {
 
@@ -19,19 +21,6 @@ void add_row(std::string& rows, double time, const Numbers&... numbers) {
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), time);
   (fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), numbers), ...);
   rows += '\n';
-}
-
-// Name and unit.
-std::vector<std::pair<std::string, const char*>> columns(const Model& model,
-                                                         const OutputSettings& settings) {
-  std::vector<std::pair<std::string, const char*>> result;
-  const auto add = [&](const std::string& name, const auto& kinds) {
-    for (const Column& c : kinds) result.emplace_back(name + "." + c.name, c.unit);
-  };
-  for (const int i : settings.track) add(model.bodies[i].name, kBodyColumns);
-  for (const int i : settings.track_deformables) add(model.deformables[i].name, kBodyColumns);
-  for (const TrackedPoint& point : settings.points) add(point.name, kPointColumns);
-  return result;
 }
 
 // A deformable body as if it were rigid: mass centre, mean rotation, momentum, spin.
@@ -84,12 +73,6 @@ std::string header(const Names& names) {
 
 }  // namespace
 
-std::vector<std::string> history_columns(const Model& model, const OutputSettings& settings) {
-  std::vector<std::string> names;
-  for (auto& [name, unit] : columns(model, settings)) names.push_back(std::move(name));
-  return names;
-}
-
 HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
                              const OutputSettings& settings, const Sizes& sizes)
     : model_(model),
@@ -101,7 +84,7 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   energy_.rows = header(kEnergyColumns);
   momentum_.rows = header(kMomentumColumns);
   history_.rows = "time [s]";
-  for (const auto& [name, unit] : columns(model, settings)) {
+  for (const auto& [name, unit] : history_columns(model, settings)) {
     history_.rows += fmt::format(",{} [{}]", name, unit);
   }
   history_.rows += '\n';

@@ -44,9 +44,6 @@ class HistoryWriter {
   Table history_, energy_, momentum_;
 };
 
-/// The columns of history.csv without their units, after the time.
-std::vector<std::string> history_columns(const Model& model, const OutputSettings& settings);
-
 /// A history file read back: column names without units.
 struct HistoryTable {
   std::vector<std::string> names;

@@ -4,8 +4,15 @@
 
 #include <cmath>
 #include <filesystem>
+#include <variant>
 
+#include "mesh/locate.hpp"
+#include "mesh/measure.hpp"
+#include "mesh/reorder.hpp"
+#include "model/columns.hpp"
 #include "model/state.hpp"
+#include "scene/deformable_reader.hpp"
+#include "scene/mesh_reader.hpp"
 #include "scene/polygon_value.hpp"
 
 namespace apothem {
@@ -73,15 +80,40 @@ class SceneReader {
     JsonObject object(in_, value);
     Material material{name, in_.positive(object.required("density", "in kg/m^3"), "kg/m^3")};
     // Elastic constants belong to deformable bodies; rigid ones only have them checked.
-    if (const JsonValue* v = object.optional("young")) in_.positive(*v, "Pa");
+    Elastic& elastic = material.elastic;
+    if (const JsonValue* v = object.optional("young")) elastic.young = in_.positive(*v, "Pa");
     if (const JsonValue* v = object.optional("poisson")) {
-      const double nu = in_.number(*v, "");
-      if (!(nu > -1 && nu < 0.5))
-        in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", nu));
+      elastic.poisson = in_.number(*v, "");
+      if (!(elastic.poisson > -1 && elastic.poisson < 0.5)) {
+        in_.fail(*v, fmt::format("must lie between -1 and 0.5, not {}", elastic.poisson));
+      }
+      has_poisson_.push_back(static_cast<int>(model_.materials.size()));
     }
-    if (const JsonValue* v = object.optional("plane")) in_.choice(*v, {"stress", "strain"});
+    if (const JsonValue* v = object.optional("plane")) {
+      elastic.plane = static_cast<Plane>(in_.choice(*v, {kPlanes.begin(), kPlanes.end()}));
+    }
+    if (const JsonValue* v = object.optional("law")) {
+      elastic.law =
+          static_cast<ElasticLaw>(in_.choice(*v, {kElasticLaws.begin(), kElasticLaws.end()}));
+    }
+    if (const JsonValue* v = object.optional("damping")) bulk_damping(*v, material);
     object.finish();
     model_.materials.push_back(std::move(material));
+  }
+
+  void bulk_damping(const JsonValue& value, Material& material) {
+    JsonObject object(in_, value);
+    in_.choice(object.required("model", "\"rayleigh\""), {"rayleigh"});
+    if (const JsonValue* v = object.optional("mass")) {
+      material.mass_damping = in_.positive(*v, "1/s");
+    }
+    if (const JsonValue* v = object.optional("stiffness")) {
+      material.stiffness_damping = in_.positive(*v, "s");
+    }
+    object.finish();
+    if (material.mass_damping == 0 && material.stiffness_damping == 0) {
+      in_.fail(value, "must give \"mass\" (alpha in 1/s), \"stiffness\" (beta in s) or both");
+    }
   }
 
   void contact(const JsonValue& value) {
@@ -194,12 +226,19 @@ class SceneReader {
   }
 
   void bodies(const JsonValue& list) {
-    // All rings first: the origin of the model's coordinates depends on where the scene is.
-    std::vector<Polygon> polygons;
+    // All shapes first: the origin of the model's coordinates depends on where the scene is.
+    std::vector<std::variant<Polygon, MeshSpec>> shapes;
     Box box;
     for (const JsonValue& value : list.items) {
-      polygons.push_back(polygon(value));
-      Box own = bounding_box(polygons.back());
+      shapes.push_back(shape(value));
+      Box own;
+      if (const auto* polygon = std::get_if<Polygon>(&shapes.back())) {
+        own = bounding_box(*polygon);
+      } else {
+        for (const Vec2& x : std::get<MeshSpec>(shapes.back()).mesh.nodes) {
+          own.include(x.x(), x.y());
+        }
+      }
       if (const JsonValue* v = value.find("position")) {
         const Vec2 p = in_.vec2(*v, "m");
         own = Box{p.x(), p.y(), p.x(), p.y()}.grown(own.extent());
@@ -208,12 +247,79 @@ class SceneReader {
       box.include(own.x1, own.y1);
     }
     model_.origin = local_origin(box);
-    for (size_t i = 0; i < polygons.size(); ++i) body(list.items[i], polygons[i]);
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      if (const auto* polygon = std::get_if<Polygon>(&shapes[i])) {
+        body(list.items[i], *polygon);
+      } else {
+        deformable(list.items[i], std::move(std::get<MeshSpec>(shapes[i])));
+      }
+    }
+    if (!model_.deformables.empty() && list.items.size() > 1) {
+      in_.fail(list, "bodies with a mesh do not take part in contact: give each its own scene");
+    }
   }
 
-  Polygon polygon(const JsonValue& value) {
+  std::variant<Polygon, MeshSpec> shape(const JsonValue& value) {
     JsonObject object(in_, value);
-    return read_polygon(in_, object.required("polygon", "[[x,y],...] in m, or the name of a file"));
+    if (const JsonValue* mesh = object.optional("mesh")) {
+      if (const JsonValue* v = object.optional("polygon")) {
+        in_.fail(*v,
+                 "a body is rigid with a \"polygon\" or deformable with a \"mesh\": leave one out");
+      }
+      return read_mesh(in_, *mesh);
+    }
+    return read_polygon(in_, object.required("polygon",
+                                             "[[x,y],...] in m, or the name of a file; "
+                                             "or a \"mesh\""));
+  }
+
+  void deformable(const JsonValue& value, MeshSpec spec) {
+    JsonObject object(in_, value);
+    DeformableBody body;
+    body.name = body_name(object.required("name", "a string, unique among the bodies"));
+    const JsonValue& material = object.required("material", "the name of a material");
+    body.material = index_of(material, model_.materials, "material");
+    const Material& m = model_.materials[body.material];
+    if (!(m.elastic.young > 0) ||
+        std::find(has_poisson_.begin(), has_poisson_.end(), body.material) == has_poisson_.end()) {
+      in_.fail(material, fmt::format("a body with a mesh needs \"young\" (Pa) and \"poisson\" of "
+                                     "material \"{}\"",
+                                     m.name));
+    }
+    object.required("mesh", "");
+    body.element = spec.element;
+    body.mesh = std::move(spec.mesh);
+    place_mesh(object, body.mesh);
+    reorder_along_curve(body.mesh);
+    body.first_node = model_.node_count();
+    DeformableReader reader(in_, model_, body);
+    if (const JsonValue* v = object.optional("supports")) reader.supports(*v);
+    if (const JsonValue* v = object.optional("loads")) reader.loads(*v);
+    if (const JsonValue* v = object.optional("velocity")) body.velocity = in_.vec2(*v, "m/s");
+    if (const JsonValue* v = object.optional("spin")) body.spin = in_.number(*v, "rad/s");
+    if (const JsonValue* v = object.optional("motion")) {
+      if (v->type != JsonValue::Type::string || v->string != "free") {
+        in_.fail(*v, "a body with a mesh is \"free\"; hold or move parts of it by \"supports\"");
+      }
+    }
+    object.finish();
+    model_.deformables.push_back(std::move(body));
+  }
+
+  // "position": where the centroid goes; "angle": turned about it.
+  void place_mesh(JsonObject& object, Mesh& mesh) {
+    const JsonValue* position = object.optional("position");
+    const JsonValue* angle = object.optional("angle");
+    for (Vec2& x : mesh.nodes) x -= model_.origin;
+    if (!position && !angle) return;
+    const Vec2 centre = mesh_centroid(mesh);
+    const Vec2 goal = position ? Vec2(in_.vec2(*position, "m") - model_.origin) : centre;
+    const double a = angle ? in_.number(*angle, "rad") : 0;
+    for (Vec2& x : mesh.nodes) {
+      const Vec2 arm = x - centre;
+      x = goal + Vec2(std::cos(a) * arm.x() - std::sin(a) * arm.y(),
+                      std::sin(a) * arm.x() + std::cos(a) * arm.y());
+    }
   }
 
   void body(const JsonValue& value, const Polygon& polygon) {
@@ -258,18 +364,23 @@ class SceneReader {
     model_.bodies.push_back(std::move(body));
   }
 
-  const std::string& body_name(const JsonValue& value) {
+  void refuse_as_column(const JsonValue& value) {
     const std::string& name = in_.string(value);
     if (name.empty() || has_control_character(name) ||
         name.find_first_of(",\"\n\r[]") != std::string::npos) {
       in_.fail(value, "must not be empty nor hold , \" [ ] or line breaks: it heads CSV columns");
     }
-    for (size_t i = 0; i < model_.bodies.size(); ++i) {
-      if (model_.bodies[i].name == name) {
-        in_.fail(value, fmt::format("\"{}\" is already the name of body {}; give each body its own",
-                                    name, i));
-      }
+  }
+
+  const std::string& body_name(const JsonValue& value) {
+    const std::string& name = in_.string(value);
+    refuse_as_column(value);
+    if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+      in_.fail(
+          value,
+          fmt::format("\"{}\" is already the name of another body; give each body its own", name));
     }
+    names_.push_back(name);
     return name;
   }
 
@@ -312,30 +423,16 @@ class SceneReader {
     }
     JsonObject object(in_, value);
     if (const JsonValue* v = object.optional("velocity")) {
-      for (const JsonValue& row : in_.array(*v)) {
-        const std::vector<double> p = in_.numbers(row, 3, "[t, vx, vy] in s and m/s");
-        if (!body.history.velocity.empty()) later(row, body.history.velocity.back().time, p[0]);
-        body.history.velocity.push_back({p[0], {p[1], p[2]}});
-      }
+      body.history.velocity = read_velocities(in_, *v);
     }
     if (const JsonValue* v = object.optional("spin")) {
-      for (const JsonValue& row : in_.array(*v)) {
-        const std::vector<double> p = in_.numbers(row, 2, "[t, spin] in s and rad/s");
-        if (!body.history.spin.empty()) later(row, body.history.spin.back().time, p[0]);
-        body.history.spin.push_back({p[0], p[1]});
-      }
+      body.history.spin = read_spins(in_, *v);
     }
     object.finish();
     if (body.history.velocity.empty() && body.history.spin.empty()) {
       in_.fail(value,
                "must give a velocity or a spin history with at least one row; for a body at "
                "rest use \"fixed\"");
-    }
-  }
-
-  void later(const JsonValue& row, double before, double time) {
-    if (!(time > before)) {
-      in_.fail(row, fmt::format("times must increase: {} s follows {} s", time, before));
     }
   }
 
@@ -363,7 +460,7 @@ class SceneReader {
       time.settled = in_.choice(*v, {"as_given", "settled"}) == 1;
     }
     if (const JsonValue* v = object.optional("safety")) {
-      time.safety = in_.positive(*v, "parts of the stability limit");
+      time.safety = time.element_safety = in_.positive(*v, "parts of the stability limit");
       if (time.safety > 0.8) {
         in_.fail(*v, fmt::format("must not exceed 0.8 of the stability limit, is {}", time.safety));
       }
@@ -378,7 +475,73 @@ class SceneReader {
     for (size_t i = 0; i < model_.bodies.size(); ++i) {
       if (model_.bodies[i].can_move()) track.push_back(static_cast<int>(i));
     }
-    if (track.size() > kMany) track.clear();
+    std::vector<int>& deformables = scene_.output.track_deformables;
+    for (size_t i = 0; i < model_.deformables.size(); ++i) {
+      deformables.push_back(static_cast<int>(i));
+    }
+    if (track.size() + deformables.size() > kMany) {
+      track.clear();
+      deformables.clear();
+    }
+  }
+
+  void tracked(const JsonValue& item) {
+    OutputSettings& output = scene_.output;
+    JsonObject object(in_, item);
+    const JsonValue& name = object.required("body", "the name of a body");
+    const JsonValue* point = object.optional("point");
+    const JsonValue* label = object.optional("name");
+    object.finish();
+    const auto place = std::find(names_.begin(), names_.end(), in_.string(name));
+    if (place == names_.end()) in_.fail(name, "unknown body " + suggest(name.string, names_));
+    const auto index_in = [&](const auto& bodies) {
+      const auto body = std::find_if(bodies.begin(), bodies.end(),
+                                     [&](const auto& b) { return b.name == name.string; });
+      return body == bodies.end() ? -1 : static_cast<int>(body - bodies.begin());
+    };
+    const int rigid = index_in(model_.bodies);
+    const int deformable = index_in(model_.deformables);
+    if (!point) {
+      if (label) in_.fail(*label, "goes with a \"point\"; leave it out");
+      std::vector<int>& list = rigid >= 0 ? output.track : output.track_deformables;
+      const int body = std::max(rigid, deformable);
+      if (std::find(list.begin(), list.end(), body) != list.end()) {
+        in_.fail(item, "is tracked already; leave it out");
+      }
+      list.push_back(body);
+      return;
+    }
+    if (rigid >= 0) {
+      in_.fail(*point,
+               "points are tracked in bodies with a mesh; of a rigid body leave it out: "
+               "place and angle say it all");
+    }
+    tracked_point(model_.deformables[deformable], *point, label);
+  }
+
+  void tracked_point(const DeformableBody& body, const JsonValue& point, const JsonValue* label) {
+    const std::optional<MeshPoint> found =
+        find_point(body.mesh, in_.vec2(point, "m") - model_.origin);
+    if (!found) in_.fail(point, fmt::format("lies outside \"{}\"", body.name));
+    TrackedPoint tracked;
+    for (const int node : body.mesh.element(found->element)) {
+      tracked.nodes.push_back(body.first_node + node);
+    }
+    tracked.weights = found->weights;
+    const auto taken = [&](const std::string& candidate) {
+      for (const TrackedPoint& p : scene_.output.points) {
+        if (p.name == candidate) return true;
+      }
+      return candidate != body.name &&
+             std::find(names_.begin(), names_.end(), candidate) != names_.end();
+    };
+    tracked.name = label ? in_.string(*label) : body.name;
+    if (label) {
+      refuse_as_column(*label);
+      if (taken(tracked.name)) in_.fail(*label, "is the name of another body or point");
+    }
+    for (int i = 2; taken(tracked.name); ++i) tracked.name = fmt::format("{}-{}", body.name, i);
+    scene_.output.points.push_back(std::move(tracked));
   }
 
   void output(const JsonValue& value) {
@@ -392,16 +555,8 @@ class SceneReader {
       }
       if (const JsonValue* list = history.optional("track")) {
         output.track.clear();
-        for (const JsonValue& item : in_.array(*list)) {
-          JsonObject tracked(in_, item);
-          const int body =
-              index_of(tracked.required("body", "the name of a body"), model_.bodies, "body");
-          tracked.finish();
-          if (std::find(output.track.begin(), output.track.end(), body) != output.track.end()) {
-            in_.fail(item, "is tracked already; leave it out");
-          }
-          output.track.push_back(body);
-        }
+        output.track_deformables.clear();
+        for (const JsonValue& item : in_.array(*list)) tracked(item);
       }
       history.finish();
     }
@@ -416,8 +571,8 @@ class SceneReader {
 
   void expect(const JsonValue& value) {
     std::vector<std::string> columns;
-    for (const int i : scene_.output.track) {
-      for (const Column& c : kBodyColumns) columns.push_back(model_.bodies[i].name + "." + c.name);
+    for (HistoryColumn& c : history_columns(model_, scene_.output)) {
+      columns.push_back(std::move(c.name));
     }
     columns.insert(columns.end(), kEnergyColumns.begin(), kEnergyColumns.end());
     columns.insert(columns.end(), kMomentumColumns.begin(), kMomentumColumns.end());
@@ -460,6 +615,8 @@ class SceneReader {
   Model& model_;
   JsonReader in_;
   const JsonValue* contact_pairs_ = nullptr;
+  std::vector<std::string> names_;  // of all bodies
+  std::vector<int> has_poisson_;    // materials that say their Poisson's ratio
 };
 
 }  // namespace

@@ -1,0 +1,20 @@
+// The columns of history.csv.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "model/settings.hpp"
+
+namespace apothem {
+
+struct HistoryColumn {
+  std::string name;  ///< as in "beam.ux"
+  const char* unit;
+};
+
+/// After the time: rigid bodies, deformable ones, points.
+std::vector<HistoryColumn> history_columns(const Model& model, const OutputSettings& settings);
+
+}  // namespace apothem
