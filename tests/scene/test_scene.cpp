@@ -111,7 +111,7 @@ const std::vector<Broken> kBroken{
      "\"pairs\": [{ \"between\": [\"rock\", \"moon\"], \"friction\": { \"coefficient\": 0 } }]",
      ":5: /contact/pairs/0/between/1", "neither a body nor a material", false},
     {"\"name\": \"falling\"", "\"name\": \"target\"", ":9: /bodies/1/name",
-     "already the name of body 0", false},
+     "already the name of another body", false},
     {"\"name\": \"falling\"", "\"name\": \"fall,ing\"", ":9: /bodies/1/name", "must not be empty"},
     {"\"name\": \"falling\", ", "", ":9: /bodies/1", "missing key \"name\""},
     {"\"material\": \"rock\", \"velocity\"", "\"material\": \"rok\", \"velocity\"",
@@ -181,6 +181,79 @@ bool valid(const valijson::Schema& schema, const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+const char* const kMeshed = R"({
+  "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 }, "sand": { "density": 1500 } },
+  "bodies": [
+    { "name": "beam", "material": "rock",
+      "mesh": { "rectangle": { "size": [10, 1], "cells": [20, 2] }, "element": "Q4" },
+      "supports": [ { "where": { "x": 0 }, "fix": ["x", "y"] } ],
+      "loads": [ { "at": [9.8, 1.0], "force": [0, -1], "history": [[0, 0], [0.5, 1]] },
+                 { "where": { "group": "top" }, "pressure": 5 } ] }
+  ],
+  "time": { "end": 1 },
+  "output": { "history": { "track": [ { "body": "beam", "point": [10, 0.5] }, { "body": "beam" } ] } }
+})";
+
+const std::vector<Broken> kBrokenMeshed{
+    {"\"young\": 20e9, ", "", ":4: /bodies/0/material", "needs \"young\" (Pa)", false},
+    {"\"material\": \"rock\"", "\"material\": \"sand\"", ":4: /bodies/0/material", "needs", false},
+    {"\"cells\": [20, 2]", "\"cells\": [20, 0]", ":5: ", "cells"},
+    {"\"Q4\"", "\"Q5\"", ":5: /bodies/0/mesh/element", "did you mean \"Q4\""},
+    {"\"Q4\"", "\"T3\"", "", "", false},  // fits: the rectangle is cut into triangles
+    {"{ \"x\": 0 }", "{ \"x\": -1 }", ":6: /bodies/0/supports/0/where", "no node", false},
+    {"{ \"x\": 0 }", "{ \"z\": 0 }", ":6: /bodies/0/supports/0/where/z", "unknown key"},
+    {"\"fix\": [\"x\", \"y\"]", "\"fix\": []", ":6: ", "what it holds"},
+    {"\"fix\": [\"x\", \"y\"]", "\"fix\": [\"angle\"]", ":6: ", "\"angle\""},
+    {"[9.8, 1.0]", "[9.8, 1.1]", ":7: /bodies/0/loads/0/at", "outside", false},
+    {"\"force\": [0, -1]", "\"pressure\": 1", ":7: /bodies/0/loads/0/at", "\"force\""},
+    {"[[0, 0], [0.5, 1]]", "[[0.5, 0], [0.5, 1]]", ":7: ", "times must increase", false},
+    {"\"pressure\": 5", "\"pressure\": 5, \"traction\": [0, 1]", ":8: ", "one of"},
+    {"\"top\"", "\"tip\"", ":8: ", "did you mean \"top\"", false},
+    {"[10, 0.5]", "[11, 0.5]", ":11: ", "outside", false},
+    {"\"mesh\":", "\"polygon\": [[0,0],[1,0],[0,1]], \"mesh\":", ":5: /bodies/0/polygon",
+     "leave one out"},
+    {"\"supports\"", "\"motion\": \"fixed\", \"supports\"", ":6: /bodies/0/motion", "\"free\"",
+     false},
+    {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
+};
+
+}  // namespace
+
+TEST_CASE("a meshed body becomes elements, supports, loads and points", "[scene]") {
+  const Folder folder;
+  const Scene scene = read_scene(folder.write("meshed.json", kMeshed));
+  REQUIRE(scene.model.deformables.size() == 1);
+  const DeformableBody& beam = scene.model.deformables[0];
+  CHECK(beam.element == ElementKind::quad4);
+  CHECK(beam.mesh.element_count() == 40);
+  REQUIRE(beam.supports.size() == 1);
+  CHECK(beam.supports[0].nodes.size() == 3);
+  REQUIRE(beam.dead_loads.size() == 1);
+  Vec2 sum = Vec2::Zero();
+  for (const Vec2& f : beam.dead_loads[0].forces) sum += f;
+  CHECK(sum.y() == Approx(-1).epsilon(1e-14));
+  REQUIRE(beam.pressures.size() == 1);
+  CHECK(beam.pressures[0].edges.size() == 20);
+  REQUIRE(scene.output.points.size() == 1);
+  CHECK(scene.output.points[0].name == "beam");
+  CHECK(scene.output.track_deformables == std::vector<int>{0});
+  for (const Broken& broken : kBrokenMeshed) {
+    const std::string file = folder.write("broken.json", replaced(kMeshed, broken.what, broken.by));
+    INFO(broken.what << " -> " << broken.by);
+    if (*broken.message == 0) {
+      CHECK_NOTHROW(read_scene(file));
+      continue;
+    }
+    const std::string error = error_of(file);
+    INFO(error);
+    CHECK(error.find(file + broken.place) == 0);
+    CHECK(error.find(broken.message) != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+}
+
 TEST_CASE("a good scene becomes a model", "[scene]") {
   const Folder folder;
   const Scene scene = read_scene(folder.write("good.json", kGood));
@@ -226,6 +299,11 @@ TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
   valijson::Schema schema;
   read_schema(schema);
   CHECK(valid(schema, kGood));
+  CHECK(valid(schema, kMeshed));
+  for (const Broken& broken : kBrokenMeshed) {
+    INFO(broken.what << " -> " << broken.by);
+    if (broken.schema) CHECK_FALSE(valid(schema, replaced(kMeshed, broken.what, broken.by)));
+  }
   for (const Broken& broken : kBroken) {
     INFO(broken.what << " -> " << broken.by);
     if (broken.schema) CHECK_FALSE(valid(schema, replaced(kGood, broken.what, broken.by)));
@@ -248,21 +326,32 @@ TEST_CASE("the JSON Schema lists exactly the keys that the reader knows", "[scen
   struct Case {
     const char* at;
     const Json* properties;
+    const char* scene = kGood;
   };
+  const Json& mesh = definitions["mesh"]["properties"];
   const Case cases[]{
       {"\"gravity\"", &top},
       {"\"density\"", &top["materials"]["additionalProperties"]["properties"]},
       {"\"normal_stiffness\"", &top["contact"]["properties"]},
-      {"\"name\": \"target\"", &definitions["body"]["properties"]},
+      {"\"name\": \"target\"", &definitions["rigid_body"]["properties"]},
       {"\"end\"", &top["time"]["properties"]},
       {"\"frames\"", &top["output"]["properties"]},
       {"\"interval\"", &top["output"]["properties"]["history"]["properties"]},
       {"\"quantity\"", &definitions["expectation"]["properties"]},
+      {"\"name\": \"beam\"", &definitions["deformable_body"]["properties"], kMeshed},
+      {"\"rectangle\"", &mesh, kMeshed},
+      {"\"size\"", &mesh["rectangle"]["properties"], kMeshed},
+      {"\"where\": { \"x\"", &definitions["support"]["properties"], kMeshed},
+      {"\"x\": 0", &definitions["place"]["properties"], kMeshed},
+      {"\"at\"", &definitions["load"]["properties"], kMeshed},
+      {"\"body\": \"beam\", \"point\"",
+       &top["output"]["properties"]["history"]["properties"]["track"]["items"]["properties"],
+       kMeshed},
   };
   const Folder folder;
   for (const Case& c : cases) {
-    const std::string error = error_of(
-        folder.write("keys.json", replaced(kGood, c.at, std::string("\"qqqqqqqq\": 1, ") + c.at)));
+    const std::string error = error_of(folder.write(
+        "keys.json", replaced(c.scene, c.at, std::string("\"qqqqqqqq\": 1, ") + c.at)));
     INFO(error);
     const size_t start = error.find("(known here: ");
     REQUIRE(start != std::string::npos);
