@@ -84,6 +84,8 @@ class TangentialContact {
 
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
+  /// The sizes of the friction forces on each of so many bodies, summed over its springs, N.
+  [[nodiscard]] std::vector<double> friction(size_t bodies) const;
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return now_.energy; }
   [[nodiscard]] const TangentialMemory& memory() const { return now_; }
@@ -110,8 +112,10 @@ class TangentialContact {
                  double dt, const PairIntegral& integral, const PairMemory* before,
                  const Place& place);
   void inherit(const PairMemory* before, const Place& place, double stiffness);
+  /// `force_error`: of the patch's normal force, m.
   void resultant(const PairIntegral& patch, const Motion& motion, double dt,
-                 const Friction& friction, PatchMemory& memory, TangentialForce& total);
+                 const Friction& friction, double force_error, PatchMemory& memory,
+                 TangentialForce& total);
   void per_edge(const Motion& motion, double dt, const Friction& friction, const PairMemory* before,
                 const Place& place, TangentialForce& total);
   void damp(int a, int b, const PlacedShapes& shapes, const PairIntegral& patch,

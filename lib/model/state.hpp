@@ -61,8 +61,9 @@ struct Column {
   const char* unit;
 };
 inline constexpr std::array kBodyColumns{
-    Column{"x", "m"},    Column{"y", "m"},        Column{"angle", "rad"}, Column{"vx", "m/s"},
-    Column{"vy", "m/s"}, Column{"spin", "rad/s"}, Column{"fx", "N"},      Column{"fy", "N"}};
+    Column{"x", "m"},    Column{"y", "m"},    Column{"angle", "rad"},
+    Column{"vx", "m/s"}, Column{"vy", "m/s"}, Column{"spin", "rad/s"},
+    Column{"fx", "N"},   Column{"fy", "N"},   Column{"friction", "N"}};
 /// Of a point of a deformable body.
 inline constexpr std::array kPointColumns{Column{"ux", "m"}, Column{"uy", "m"}, Column{"vx", "m/s"},
                                           Column{"vy", "m/s"}};

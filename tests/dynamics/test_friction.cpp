@@ -79,6 +79,10 @@ TEST_CASE("sliding from equilibrium follows theory", "[friction]") {
       const State& state = simulation.state();
       REQUIRE(std::abs(state.velocity[3] - (speed - slowing * state.time)) < 1e-8);
     }
+    const RigidBody& block = model.bodies[1];
+    CHECK(simulation.friction()[1] ==
+          Approx(coefficient * block.mass * kG * std::cos(angle)).epsilon(1e-8));
+    CHECK(simulation.friction()[0] == simulation.friction()[1]);
     CHECK(std::abs(simulation.energies().total_error) <
           1e-8 * model.bodies[1].mass * speed * speed / 2);
   }
@@ -133,6 +137,31 @@ TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with o
   }
   INFO(errors[0] << " " << errors[1]);
   CHECK(errors[1] < errors[0] / 3);
+}
+
+TEST_CASE("straight approach meets no friction, not even round-off; per edge it does",
+          "[friction]") {
+  for (const FrictionLaw law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
+    for (const double half : {.3, .523, 1.1}) {
+      Model model = make_model(.1);
+      model.contact.friction_law = law;
+      model.gravity = {0, -kG};
+      const double x = std::sin(half), y = std::cos(half);
+      add(model, "target", Polygon({{0, 0}, {-x, -y}, {x, -y}}), Motion::fixed);
+      add(model, "falling", Polygon({{0, .01}, {x, .01 + y}, {-x, .01 + y}}));
+      model.bodies[1].held = {true, false, true};
+      Simulation simulation(model, {.end = .1}, 1, 1);
+      double most = 0;
+      while (simulation.state().time < .1) {
+        simulation.step();
+        most = std::max(most, simulation.friction()[1]);
+      }
+      CHECK(simulation.extremes().force.value > 1e4);
+      if (law == FrictionLaw::resultant) CHECK(most == 0);
+      if (law == FrictionLaw::per_edge) CHECK(most > 100);
+      CHECK((simulation.energies().friction_loss > 0) == (law == FrictionLaw::per_edge));
+    }
+  }
 }
 
 TEST_CASE("a spring that only sticks loses nothing and adds nothing", "[friction]") {

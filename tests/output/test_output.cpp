@@ -170,9 +170,10 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       for (double& f : state.force) f = any();
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
-      writer.add(state, e, p, {});
+      const std::vector<double> friction{0, any()};
+      writer.add(state, friction, e, p, {});
       rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
-                      p.angular_error});
+                      p.angular_error, friction[1]});
     }
     writer.flush();
   }
@@ -192,6 +193,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
     REQUIRE((*energy.column("contact"))[i] == rows[i][3]);
     REQUIRE((*energy.column("total_error"))[i] == rows[i][4]);
     REQUIRE((*momentum.column("angular_error"))[i] == rows[i][5]);
+    REQUIRE((*history.column("two.friction"))[i] == rows[i][6]);
   }
 }
 
@@ -204,7 +206,7 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {}, {});
+    writer.add(state, {0, 0}, {}, {}, {});
   }
   writer.flush();
   const double top = 3 + model.origin.y();
