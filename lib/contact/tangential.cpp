@@ -190,8 +190,8 @@ void TangentialContact::inherit(const PairMemory* before, const Place& place, do
       heir.damping += part * old[i].damping;
       heir.damping_a += part * old[i].damping_a;
       heir.damping_b += part * old[i].damping_b;
-      const Vec2& n = patches_[j].force;
-      const Vec2 tangent = n.norm() > 0 ? Vec2(Vec2(-n.y(), n.x()) / n.norm()) : old[i].tangent;
+      Vec2 tangent = tangent_of(patches_[j].force);
+      if (tangent == Vec2::Zero()) tangent = old[i].tangent;
       heir.spring += part * old[i].spring * tangent.dot(old[i].tangent);
     }
   }
@@ -222,7 +222,7 @@ void TangentialContact::resultant(const PairIntegral& patch, const Motion& motio
     memory.spring = 0;
     return;
   }
-  const Vec2 tangent(-patch.force.y() / size, patch.force.x() / size);
+  const Vec2 tangent = tangent_of(patch.force);
   const Vec2 point = loading_point(patch);
   const Vec2 normal = law_.normal_stiffness * thickness_ * patch.force + memory.damping;
   const Vec2 velocity = motion.slip(point);
@@ -263,8 +263,7 @@ void TangentialContact::per_edge(const Motion& motion, double dt, const Friction
     double spring = 0;
     if (next < end && of_next() == key) spring = before_.springs[next++].spring;
     const double size = run.force.norm();
-    const Vec2 tangent =
-        size > 0 ? Vec2(-run.force.y() / size, run.force.x() / size) : Vec2(Vec2::Zero());
+    const Vec2 tangent = tangent_of(run.force);
     spring = slide(spring, motion.slip(run.centre).dot(tangent) * dt,
                    friction.coefficient * law_.normal_stiffness * thickness_ * size, stiffness);
     now_.springs.push_back({run.of_a, run.edge, spring});

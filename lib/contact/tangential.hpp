@@ -12,10 +12,17 @@
 
 namespace apothem {
 
+/// Along which friction acts: (-n_y, n_x), n the direction of the normal force; zero if there is
+/// none.
+inline Vec2 tangent_of(const Vec2& normal_force) {
+  const double size = normal_force.norm();
+  return size > 0 ? Vec2(Vec2(-normal_force.y(), normal_force.x()) / size) : Vec2(Vec2::Zero());
+}
+
 /// What a patch remembers. Forces are on the pair's first body.
 struct PatchMemory {
   double spring = 0;            ///< tangential force along `tangent`, N (Eqs. 11-14)
-  Vec2 tangent = Vec2::Zero();  ///< (-n_y, n_x), n the direction of the normal force
+  Vec2 tangent = Vec2::Zero();  ///< tangent_of the normal force
   Vec2 normal = Vec2::Zero();   ///< elastic normal force, N
   double moment_a = 0;          ///< of it, N m
   double moment_b = 0;          ///< N m

@@ -37,6 +37,18 @@ Model incline(double angle, double coefficient, double speed, double tangential_
   return model;
 }
 
+// A block with two feet, 0.5 m wide: a U upside down, on y = 0.
+Polygon two_feet() {
+  return Polygon({{-.25, 0},
+                  {-.15, 0},
+                  {-.15, .05},
+                  {.15, .05},
+                  {.15, 0},
+                  {.25, 0},
+                  {.25, .125},
+                  {-.25, .125}});
+}
+
 double speed_after(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step();
   return simulation.state().velocity[3];
@@ -273,6 +285,64 @@ TEST_CASE("normal damping takes energy, and the ledger closes with order 2", "[f
   }
   INFO(errors[0] << " " << errors[1]);
   CHECK(errors[1] < errors[0] / 3);
+}
+
+TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bodies'",
+          "[friction]") {
+  struct Case {
+    Polygon block;
+    double friction, damping;
+    FrictionLaw law;
+    size_t patches;
+  };
+  const Polygon block = samples::block(-.25, 0, .25, .125);
+  for (const Case& c : {Case{two_feet(), 0, 0, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, 0, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, .2, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, .2, FrictionLaw::per_edge, 2},
+                        {two_feet(), 0, .2, FrictionLaw::resultant, 2},
+                        {block, 0, 0, FrictionLaw::resultant, 1},
+                        {block, .3, .2, FrictionLaw::resultant, 1},
+                        {block, .3, .2, FrictionLaw::per_edge, 1}}) {
+    Model model = make_model(c.friction);
+    model.gravity = {-3, -kG};
+    model.contact.normal_damping = c.damping;
+    model.contact.friction_law = c.law;
+    add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
+    add(model, "block", c.block);
+    model.bodies[1].velocity = {1, -.01};
+    Simulation simulation(model, {.end = 1}, 1, 1);
+    while (simulation.extremes().force.value < 2000) simulation.step();
+    const std::vector<ContactRecord> records = simulation.contacts();
+    REQUIRE(records.size() == c.patches);
+    Vec2 sum = Vec2::Zero();
+    double sideways = 0;
+    for (const ContactRecord& r : records) {
+      CHECK((r.a == 0 && r.b == 1));
+      CHECK(r.normal.y() < -100);
+      CHECK(std::abs(r.normal.x()) < 1e-2 * std::abs(r.normal.y()));
+      CHECK(r.penetration > 1e-8);
+      CHECK(r.penetration < 1e-3);
+      CHECK(r.phi > 0);
+      sum -= r.normal + r.tangential;
+      sideways += r.tangential.x();
+    }
+    const std::vector<double>& force = simulation.state().force;
+    CHECK(sum.x() == Approx(force[3]).margin(1e-12 * sum.norm()));
+    CHECK(sum.y() == Approx(force[4]).epsilon(1e-12));
+    CHECK((sideways > 10) == (c.friction > 0));
+    if (c.patches == 2)
+      CHECK(std::abs(records[1].point.x() - records[0].point.x()) == Approx(.4).margin(.1));
+    // The same after a pause.
+    Simulation resumed(model, {.end = 1}, 1, 1);
+    resumed.restore(simulation.snapshot());
+    const std::vector<ContactRecord> again = resumed.contacts();
+    REQUIRE(again.size() == records.size());
+    for (size_t i = 0; i < again.size(); ++i) {
+      CHECK(again[i].normal == records[i].normal);
+      CHECK(again[i].tangential == records[i].tangential);
+    }
+  }
 }
 
 TEST_CASE("a snapshot carries the springs", "[friction]") {

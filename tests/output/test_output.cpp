@@ -85,7 +85,7 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   state.position[5] = M_PI / 2;
   state.velocity = {1, 2, 0, 0, 0, 3};
   state.force = {5, 6, 7, 0, 0, 0};
-  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, 1e-3, 0.01}}, {});
+  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}}, {});
 
   const auto list = entries(folder / "frames.pvd");
   REQUIRE(list.size() == 2);
@@ -126,7 +126,12 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   reader->Update();
   REQUIRE(grid->GetNumberOfPoints() == 1);
   CHECK(grid->GetPoint(0)[0] == 1024.5);
-  CHECK(grid->GetPointData()->GetArray("force_on_a")->GetComponent(0, 1) == 20);
+  for (const auto& [name, x, y] :
+       {std::tuple("force_on_a", 13, 16), std::tuple("normal_force_on_a", 10, 20),
+        std::tuple("tangential_force_on_a", 3, -4)}) {
+    CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 0) == x);
+    CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 1) == y);
+  }
   CHECK(grid->GetPointData()->GetArray("penetration")->GetTuple1(0) == 1e-3);
   CHECK(grid->GetPointData()->GetArray("phi")->GetTuple1(0) == 0.01);
 }
