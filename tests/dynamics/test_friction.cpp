@@ -345,6 +345,27 @@ TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bod
   }
 }
 
+TEST_CASE("the damping ratio is that of the contact's own oscillation", "[friction]") {
+  for (const double ratio : {.02, .1}) {
+    Model model = incline(0, 0, 0, 1.25e9);
+    model.contact.normal_damping = ratio;
+    model.bodies[1].held = {true, false, true};
+    const RigidBody& block = model.bodies[1];
+    // Pressure of a flat contact of width w: k_n d (w/r_slope + w/r_block).
+    const double stiffness = 2e9 * .5 * (1 / model.bodies[0].inradius + 1 / block.inradius);
+    const double omega = std::sqrt(stiffness / block.mass);
+    const double depth = block.mass * kG / stiffness;
+    const double first = block.position.y();
+    model.bodies[1].position.y() -= 1.5 * depth;  // half a depth below equilibrium
+    Simulation simulation(model, {.end = 1, .safety = .02}, 1, 1);
+    const double period = 2 * M_PI / (omega * std::sqrt(1 - ratio * ratio));
+    while (simulation.state().time < 3 * period) simulation.step();
+    const double left = first - depth - simulation.state().position[4];
+    CHECK(left / (.5 * depth) ==
+          Approx(std::exp(-ratio * omega * simulation.state().time)).epsilon(.01));
+  }
+}
+
 TEST_CASE("a snapshot carries the springs", "[friction]") {
   const Model model = collision(.4);
   const TimeSettings time{.end = 1};
