@@ -156,7 +156,8 @@ class Run {
   Run(const RunOptions& options, const Scene& scene)
       : options_(options),
         scene_(scene),
-        simulation_(make_simulation(scene, options.threads)),
+        simulation_(make_simulation(scene, options.threads,
+                                    options.resume ? Start::snapshot : Start::scene)),
         end_(std::min(options.until.value_or(scene.time.end), scene.time.end)),
         folder_(options.folder.empty() ? "out/" + scene.model.name : options.folder),
         scene_hash_(scene_hash(scene)) {}
