@@ -290,7 +290,11 @@ void Simulation::drift() {
     const std::array<double, 3> u = body.history.displacement(state_.time);
     const std::array<double, 3> goal{body.position.x() + u[0], body.position.y() + u[1],
                                      body.angle + u[2]};
-    for (int k = 0; k < 3; ++k) moved_[3 * i + k] = goal[k] - state_.position[3 * i + k];
+    for (int k = 0; k < 3; ++k) {
+      moved_[3 * i + k] = goal[k] - state_.position[3 * i + k];
+      // Of the half step, as free bodies have it: slips then sum to the displacement.
+      state_.velocity[3 * i + k] = moved_[3 * i + k] / dt_;
+    }
   }
   ledger_->half_step(state_, dt_ / 2, moved_);
   double stride = 0;

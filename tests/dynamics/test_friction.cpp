@@ -1,53 +1,16 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
-#include "dynamics/simulation.hpp"
-#include "support.hpp"
+#include "friction_models.hpp"
 
 using namespace apothem;
+using test::add;
+using test::incline;
+using test::kG;
+using test::make_model;
+using test::two_feet;
 
 namespace {
-
-constexpr double kG = 9.81;
-
-Model make_model(double coefficient, double tangential_stiffness = 1.25e9) {
-  Model model;
-  model.materials = {{"rock", 2500}};
-  model.contact.normal_stiffness = 2e9;
-  model.contact.friction = {coefficient, tangential_stiffness};
-  return model;
-}
-
-void add(Model& model, const std::string& name, const Polygon& polygon,
-         Motion motion = Motion::free) {
-  RigidBody body;
-  body.name = name;
-  body.motion = motion;
-  set_shape(body, polygon, model);
-  model.bodies.push_back(body);
-}
-
-// A block on a slope of that angle, the slope along x: gravity is tilted.
-Model incline(double angle, double coefficient, double speed, double tangential_stiffness) {
-  Model model = make_model(coefficient, tangential_stiffness);
-  model.gravity = {-kG * std::sin(angle), -kG * std::cos(angle)};
-  add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
-  add(model, "block", samples::block(-.25, 0, .25, .125));
-  model.bodies[1].velocity = {speed, 0};
-  return model;
-}
-
-// A block with two feet, 0.5 m wide: a U upside down, on y = 0.
-Polygon two_feet() {
-  return Polygon({{-.25, 0},
-                  {-.15, 0},
-                  {-.15, .05},
-                  {.15, .05},
-                  {.15, 0},
-                  {.25, 0},
-                  {.25, .125},
-                  {-.25, .125}});
-}
 
 double speed_after(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step();
