@@ -198,8 +198,10 @@ std::vector<std::string> figure_names(const std::string& data) {
     throw SceneError(data, 0, "", "holds no figures; name the folder that does with --data");
   }
   const auto key = [](const std::string& name) {
-    const size_t digits = name.find_last_not_of("0123456789") + 1;
-    return std::tuple(name.substr(0, digits), name.size(), name);
+    constexpr const char* kDigits = "0123456789";
+    const size_t from = std::min(name.find_first_of(kDigits), name.size());
+    const size_t to = std::min(name.find_first_not_of(kDigits, from), name.size());
+    return std::tuple(name.substr(0, from), to - from, name.substr(from));
   };
   std::sort(names.begin(), names.end(),
             [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
