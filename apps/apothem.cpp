@@ -128,7 +128,8 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
 
 void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
-  sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them");
+  sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
+      ->delimiter(',');
   sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
   sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)");
   add_threads(sub, o.threads);

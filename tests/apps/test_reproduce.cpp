@@ -63,8 +63,8 @@ TEST_CASE("every shipped figure passes the loader", "[reproduce]") {
 TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
   const Folder folder;
   const std::string data = data_folder(folder);
-  const std::vector<std::string> all{"reproduce", "fig-7", "fig-7",       "--data",
-                                     data,        "-o",    folder / "out"};
+  const std::vector<std::string> all{"reproduce", "fig-7,fig-7", "fig-7",       "--data",
+                                     data,        "-o",          folder / "out"};
   const Result r = run(all, folder);
   INFO(r.out << r.err);
   REQUIRE(r.code == 0);
