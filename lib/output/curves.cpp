@@ -19,10 +19,13 @@ constexpr int kWidth = 1000;        // pixels
 constexpr int kPanelHeight = 330;   // of several
 constexpr int kSingleHeight = 560;  // of the only one
 
-// As a string of gnuplot, which takes all but the quote as it is.
+// As a string of gnuplot, which takes all but the quote and the end of a line as it is.
 std::string quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  for (const char c : text) {
+    if (c == '\'') result += c;
+    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
   return result + "'";
 }
 
