@@ -27,13 +27,17 @@ const CLI::Validator kPositive(
     },
     "POSITIVE");
 
+void add_threads(CLI::App* sub, int& threads) {
+  sub->add_option("--threads", threads, "Threads of the contact phase")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
 void add_run(CLI::App& app, RunOptions& o) {
   CLI::App* sub = app.add_subcommand("run", "Run a scene");
   sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
   sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)");
-  sub->add_option("--threads", o.threads, "Threads of the contact phase")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_threads(sub, o.threads);
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
       ->check(kPositive);
   CLI::Option* resume =
@@ -122,6 +126,16 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
       ->excludes(cases);
 }
 
+void add_reproduce(CLI::App& app, ReproduceOptions& o) {
+  CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
+  sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
+      ->delimiter(',');
+  sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
+  sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)");
+  add_threads(sub, o.threads);
+  sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
+}
+
 int fail(int code, const char* what) {
   fmt::print(stderr, "apothem: {}\n", what);
   return code;
@@ -143,6 +157,8 @@ int run(int argc, char** argv) {
   add_polygon(app, polygon_options);
   add_mesh(app, mesh_options);
   add_accuracy(app, accuracy_options);
+  ReproduceOptions reproduce_options;
+  add_reproduce(app, reproduce_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -155,6 +171,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("mesh")) return mesh_command(mesh_options);
   if (app.got_subcommand("polygon")) return polygon_command(polygon_options);
   if (app.got_subcommand("accuracy")) return accuracy_command(accuracy_options);
+  if (app.got_subcommand("reproduce")) return reproduce_command(reproduce_options);
   return contact_command(contact_options);
 }
 

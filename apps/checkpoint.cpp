@@ -116,9 +116,8 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
       state.node_force.size() != nodes || !(c.snapshot.step_size > 0)) {
     throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
   }
-  constexpr std::array histories{"history.csv", "energy.csv", "momentum.csv"};
-  for (size_t i = 0; i < histories.size(); ++i) {
-    const std::string history = folder + "/" + histories[i];
+  for (size_t i = 0; i < kHistoryFiles.size(); ++i) {
+    const std::string history = folder + "/" + kHistoryFiles[i];
     const auto length = std::filesystem::file_size(history, error_code);
     if (error_code || length < static_cast<std::uintmax_t>(c.history_sizes[i])) {
       throw SceneError(history, 0, "",

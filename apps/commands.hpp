@@ -74,4 +74,13 @@ struct AccuracyOptions {
 };
 int accuracy_command(const AccuracyOptions& options);
 
+struct ReproduceOptions {
+  std::vector<std::string> figures;  ///< names, or "all"; none: print the list
+  std::string folder = "out/reproduce";
+  std::string data;  ///< folder with figures, scenes and reference; empty: the program's own
+  int threads = 1;
+  bool verify = false;
+};
+int reproduce_command(const ReproduceOptions& options);
+
 }  // namespace apothem

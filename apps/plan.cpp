@@ -2,9 +2,11 @@
 
 namespace apothem {
 
-Simulation make_simulation(const Scene& scene, int threads) {
+Simulation make_simulation(const Scene& scene, int threads, Start start) {
+  TimeSettings time = scene.time;
+  if (start == Start::snapshot) time.settled = false;
   try {
-    return {scene.model, scene.time, scene.output.frames, threads};
+    return {scene.model, time, scene.output.frames, threads};
   } catch (const Unrunnable& error) {
     const std::string index = error.body() >= 0 ? "/" + std::to_string(error.body()) : "";
     throw scene.error_at("/" + error.key() + index, error.what());

@@ -6,7 +6,11 @@
 
 namespace apothem {
 
+/// Where a simulation begins: as its scene says, or from a snapshot that follows (it need not
+/// settle).
+enum class Start { scene, snapshot };
+
 /// Throws SceneError instead of Unrunnable.
-Simulation make_simulation(const Scene& scene, int threads);
+Simulation make_simulation(const Scene& scene, int threads, Start start = Start::scene);
 
 }  // namespace apothem

@@ -156,7 +156,8 @@ class Run {
   Run(const RunOptions& options, const Scene& scene)
       : options_(options),
         scene_(scene),
-        simulation_(make_simulation(scene, options.threads)),
+        simulation_(make_simulation(scene, options.threads,
+                                    options.resume ? Start::snapshot : Start::scene)),
         end_(std::min(options.until.value_or(scene.time.end), scene.time.end)),
         folder_(options.folder.empty() ? "out/" + scene.model.name : options.folder),
         scene_hash_(scene_hash(scene)) {}
@@ -210,8 +211,8 @@ class Run {
       if (picture) last_picture = simulation_.state().step;
       const Clock::time_point before = Clock::now();
       if (row) {
-        history.add(simulation_.state(), simulation_.energies(), simulation_.momenta(),
-                    simulation_.node_mass());
+        history.add(simulation_.state(), simulation_.friction(), simulation_.energies(),
+                    simulation_.momenta(), simulation_.node_mass());
       }
       if (picture) {
         history.flush();
@@ -328,7 +329,9 @@ class Run {
     Json& list = json["expectations"] = Json::array();
     for (size_t i = 0; i < outcomes_.size(); ++i) {
       const Expectation& e = scene_.expectations[i];
-      list.push_back({{"quantity", e.quantity},
+      list.push_back({{"label", e.label},
+                      {"quantity", e.quantity},
+                      {"take", kTakes[static_cast<size_t>(e.take)]},
                       {"expected", e.value},
                       {"tolerance", e.tolerance},
                       {"value", outcomes_[i].value},

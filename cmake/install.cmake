@@ -5,6 +5,7 @@ install(TARGETS apothem apothem_geometry EXPORT apothem
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY geometry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY data/figures data/polygons data/reference data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 install(FILES docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/apothem)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace apothem {
 namespace {
@@ -9,6 +10,10 @@ namespace {
 // A normal force that is so much smaller than the pressures it is the sum of has no direction worth
 // following.
 constexpr double kNoResultant = 1e-9;
+
+// Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
+// length: twice the worst of a million pairs (docs/verification.md).
+constexpr double kForceError = 1.2;
 
 bool matches(const ContactRule::Party& party, int body, int material) {
   return party.index == (party.is_body ? body : material);
@@ -37,6 +42,19 @@ Friction TangentialContact::friction_of(int a, int b) const {
     const bool straight = matches(p, a, material_[a]) && matches(q, b, material_[b]);
     const bool crossed = matches(p, b, material_[b]) && matches(q, a, material_[a]);
     if (straight || crossed) friction = rule.friction;
+  }
+  return friction;
+}
+
+std::vector<double> TangentialContact::friction(size_t bodies) const {
+  std::vector<double> friction(bodies);
+  size_t patch = 0, spring = 0;
+  for (const PairMemory& pair : now_.pairs) {
+    double size = 0;
+    for (int i = 0; i < pair.patches; ++i) size += std::abs(now_.patches[patch++].spring);
+    for (int i = 0; i < pair.springs; ++i) size += std::abs(now_.springs[spring++].spring);
+    friction[pair.pair.first] += size;
+    friction[pair.pair.second] += size;
   }
   return friction;
 }
@@ -122,7 +140,12 @@ void TangentialContact::step_pair(int p, const BoxPair& pair, const PlacedShapes
   for (size_t j = 0; j < patches_.size(); ++j) {
     PatchMemory& memory = inherited_[j];
     damp(a, b, shapes, patches_[j], motion, dt, memory, total);
-    if (!edgewise) resultant(patches_[j], motion, dt, friction, memory, total);
+    if (edgewise) continue;
+    const double error =
+        kForceError * std::numeric_limits<double>::epsilon() *
+        (shapes.radius(a) + shapes.radius(b)) *
+        (patches_[j].own_length_a * shapes.slope(b) + patches_[j].own_length_b * shapes.slope(a));
+    resultant(patches_[j], motion, dt, friction, error, memory, total);
   }
   const size_t springs = now_.springs.size();
   if (edgewise) per_edge(motion, dt, friction, before, place, total);
@@ -167,8 +190,8 @@ void TangentialContact::inherit(const PairMemory* before, const Place& place, do
       heir.damping += part * old[i].damping;
       heir.damping_a += part * old[i].damping_a;
       heir.damping_b += part * old[i].damping_b;
-      const Vec2& n = patches_[j].force;
-      const Vec2 tangent = n.norm() > 0 ? Vec2(Vec2(-n.y(), n.x()) / n.norm()) : old[i].tangent;
+      Vec2 tangent = tangent_of(patches_[j].force);
+      if (tangent == Vec2::Zero()) tangent = old[i].tangent;
       heir.spring += part * old[i].spring * tangent.dot(old[i].tangent);
     }
   }
@@ -189,7 +212,7 @@ double TangentialContact::slide(double spring, double slip, double limit, double
 // number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 // slip against b: the sign of Eq. 12 is a misprint.
 void TangentialContact::resultant(const PairIntegral& patch, const Motion& motion, double dt,
-                                  const Friction& friction, PatchMemory& memory,
+                                  const Friction& friction, double force_error, PatchMemory& memory,
                                   TangentialForce& total) {
   if (!(friction.coefficient > 0)) return;
   const double stiffness = friction.tangential_stiffness * thickness_;
@@ -199,11 +222,14 @@ void TangentialContact::resultant(const PairIntegral& patch, const Motion& motio
     memory.spring = 0;
     return;
   }
-  const Vec2 tangent(-patch.force.y() / size, patch.force.x() / size);
+  const Vec2 tangent = tangent_of(patch.force);
   const Vec2 point = loading_point(patch);
   const Vec2 normal = law_.normal_stiffness * thickness_ * patch.force + memory.damping;
-  memory.spring = slide(memory.spring, motion.slip(point).dot(tangent) * dt,
-                        friction.coefficient * normal.norm(), stiffness);
+  const Vec2 velocity = motion.slip(point);
+  double slip = velocity.dot(tangent);
+  // The tangent is only as exact as the force: what it makes of an approach is no slip.
+  if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
+  memory.spring = slide(memory.spring, slip * dt, friction.coefficient * normal.norm(), stiffness);
   memory.tangent = tangent;
   const Vec2 force = memory.spring * tangent;
   total.force += force;
@@ -237,8 +263,7 @@ void TangentialContact::per_edge(const Motion& motion, double dt, const Friction
     double spring = 0;
     if (next < end && of_next() == key) spring = before_.springs[next++].spring;
     const double size = run.force.norm();
-    const Vec2 tangent =
-        size > 0 ? Vec2(-run.force.y() / size, run.force.x() / size) : Vec2(Vec2::Zero());
+    const Vec2 tangent = tangent_of(run.force);
     spring = slide(spring, motion.slip(run.centre).dot(tangent) * dt,
                    friction.coefficient * law_.normal_stiffness * thickness_ * size, stiffness);
     now_.springs.push_back({run.of_a, run.edge, spring});

@@ -12,10 +12,17 @@
 
 namespace apothem {
 
+/// Along which friction acts: (-n_y, n_x), n the direction of the normal force; zero if there is
+/// none.
+inline Vec2 tangent_of(const Vec2& normal_force) {
+  const double size = normal_force.norm();
+  return size > 0 ? Vec2(Vec2(-normal_force.y(), normal_force.x()) / size) : Vec2(Vec2::Zero());
+}
+
 /// What a patch remembers. Forces are on the pair's first body.
 struct PatchMemory {
   double spring = 0;            ///< tangential force along `tangent`, N (Eqs. 11-14)
-  Vec2 tangent = Vec2::Zero();  ///< (-n_y, n_x), n the direction of the normal force
+  Vec2 tangent = Vec2::Zero();  ///< tangent_of the normal force
   Vec2 normal = Vec2::Zero();   ///< elastic normal force, N
   double moment_a = 0;          ///< of it, N m
   double moment_b = 0;          ///< N m
@@ -84,6 +91,8 @@ class TangentialContact {
 
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
+  /// The sizes of the friction forces on each of so many bodies, summed over its springs, N.
+  [[nodiscard]] std::vector<double> friction(size_t bodies) const;
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return now_.energy; }
   [[nodiscard]] const TangentialMemory& memory() const { return now_; }
@@ -110,8 +119,10 @@ class TangentialContact {
                  double dt, const PairIntegral& integral, const PairMemory* before,
                  const Place& place);
   void inherit(const PairMemory* before, const Place& place, double stiffness);
+  /// `force_error`: of the patch's normal force, m.
   void resultant(const PairIntegral& patch, const Motion& motion, double dt,
-                 const Friction& friction, PatchMemory& memory, TangentialForce& total);
+                 const Friction& friction, double force_error, PatchMemory& memory,
+                 TangentialForce& total);
   void per_edge(const Motion& motion, double dt, const Friction& friction, const PairMemory* before,
                 const Place& place, TangentialForce& total);
   void damp(int a, int b, const PlacedShapes& shapes, const PairIntegral& patch,

@@ -290,7 +290,11 @@ void Simulation::drift() {
     const std::array<double, 3> u = body.history.displacement(state_.time);
     const std::array<double, 3> goal{body.position.x() + u[0], body.position.y() + u[1],
                                      body.angle + u[2]};
-    for (int k = 0; k < 3; ++k) moved_[3 * i + k] = goal[k] - state_.position[3 * i + k];
+    for (int k = 0; k < 3; ++k) {
+      moved_[3 * i + k] = goal[k] - state_.position[3 * i + k];
+      // Of the half step, as free bodies have it: slips then sum to the displacement.
+      state_.velocity[3 * i + k] = moved_[3 * i + k] / dt_;
+    }
   }
   ledger_->half_step(state_, dt_ / 2, moved_);
   double stride = 0;
@@ -505,22 +509,46 @@ Energies Simulation::energies() {
 }
 
 std::vector<ContactRecord> Simulation::contacts() const {
+  static const TangentialMemory kNothing;
+  const TangentialMemory& memory = tangential_ ? tangential_->memory() : kNothing;
+  size_t next_pair = 0, next_patch = 0,
+         next_spring = 0;  // of the memory, in the order of the pairs
+  PatchWorkspace workspace;
+  std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
   std::vector<ContactRecord> records;
   const std::vector<BoxPair>& pairs = search_.pairs();
-  size_t next = 0;  // of the tangential forces
   for (size_t p = 0; p < pairs.size(); ++p) {
-    const PairIntegral& pair = contact_.integrals()[p];
-    if (!pair.touching()) continue;
-    Vec2 tangential = Vec2::Zero();
-    if (tangential_ && next < tangential_->forces().size() &&
-        tangential_->forces()[next].pair == static_cast<int>(p)) {
-      tangential = tangential_->forces()[next++].force;
-    }
+    if (!contact_.integrals()[p].touching()) continue;
     const auto [a, b] = pairs[p];
     const Vec2 reference(state_.position[3 * a], state_.position[3 * a + 1]);
-    records.push_back({a, b, reference + loading_point(pair),
-                       model_.stiffness() * pair.force + tangential, pair.penetration,
-                       pair.largest_phi});
+    const PairMemory* known = next_pair < memory.pairs.size() &&
+                                      memory.pairs[next_pair].pair.first == a &&
+                                      memory.pairs[next_pair].pair.second == b
+                                  ? &memory.pairs[next_pair++]
+                                  : nullptr;
+    const PlacedPotential view_a = shapes_.view(a), view_b = shapes_.view(b);
+    runs.clear();
+    if (view_a.convex() && view_b.convex() && !(known && known->springs > 0)) {
+      patches.assign(1, contact_.integrals()[p]);
+    } else {
+      const Vec2 other(state_.position[3 * b], state_.position[3 * b + 1]);
+      contact_patches(view_a, view_b, reference - other, workspace, runs, patches);
+    }
+    const size_t first = records.size();
+    for (const PairIntegral& patch : patches) {
+      records.push_back({a, b, reference + loading_point(patch), model_.stiffness() * patch.force,
+                         Vec2::Zero(), patch.penetration, patch.largest_phi});
+    }
+    if (!known) continue;
+    for (int i = 0; i < known->patches; ++i) {
+      const PatchMemory& patch = memory.patches[next_patch++];
+      records[first + i].tangential = patch.spring * patch.tangent + patch.damping;
+    }
+    for (int i = 0; i < known->springs; ++i) {  // one per run
+      records[first + runs[i].patch].tangential +=
+          memory.springs[next_spring++].spring * tangent_of(runs[i].force);
+    }
   }
   return records;
 }

@@ -109,6 +109,11 @@ class Simulation {
   Energies energies();
   [[nodiscard]] Momenta momenta() const;
   [[nodiscard]] std::vector<ContactRecord> contacts() const;
+  /// The sizes of the friction forces on each body, summed, N.
+  [[nodiscard]] std::vector<double> friction() const {
+    const size_t bodies = model_.bodies.size();
+    return tangential_ ? tangential_->friction(bodies) : std::vector<double>(bodies);
+  }
   /// Mean stress of the elements of all deformable bodies.
   [[nodiscard]] std::vector<CauchyStress> stresses() const;
   /// Of their nodes, kg.

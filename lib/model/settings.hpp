@@ -1,6 +1,7 @@
 // How a scene asks to be run and recorded.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct OutputSettings {
   std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
 };
 
+/// Ways to reduce a column to one number, by the names in scenes; in the order of
+/// Expectation::Take.
+inline constexpr std::array kTakes{"first", "last", "min", "max", "max_abs"};
+
 /// A result the scene promises: a column of a history, reduced to one number.
 struct Expectation {
   enum class Take { first, last, minimum, maximum, largest };  ///< largest: of the absolute value
@@ -35,6 +40,7 @@ struct Expectation {
   std::optional<double> from, until;  ///< time window, s
   double value = 0;
   double tolerance = 0;  ///< absolute, in the quantity's unit
+  std::string label = {};  ///< what it is in words; may be empty
 };
 
 }  // namespace apothem

@@ -46,11 +46,12 @@ struct Momenta {
   double x_error = 0, y_error = 0, angular_error = 0;
 };
 
-/// One touching pair.
+/// One connected contact patch of two bodies. Forces are on a.
 struct ContactRecord {
   int a, b;            ///< bodies
   Vec2 point;          ///< loading point, relative to the model's origin, m
-  Vec2 force;          ///< on a, with friction and damping, N
+  Vec2 normal;         ///< elastic normal force, N
+  Vec2 tangential;     ///< friction and damping, N
   double penetration;  ///< extent of the overlap along the force, m
   double phi;          ///< largest potential met along the edges
 };
@@ -61,8 +62,9 @@ struct Column {
   const char* unit;
 };
 inline constexpr std::array kBodyColumns{
-    Column{"x", "m"},    Column{"y", "m"},        Column{"angle", "rad"}, Column{"vx", "m/s"},
-    Column{"vy", "m/s"}, Column{"spin", "rad/s"}, Column{"fx", "N"},      Column{"fy", "N"}};
+    Column{"x", "m"},    Column{"y", "m"},    Column{"angle", "rad"},
+    Column{"vx", "m/s"}, Column{"vy", "m/s"}, Column{"spin", "rad/s"},
+    Column{"fx", "N"},   Column{"fy", "N"},   Column{"friction", "N"}};
 /// Of a point of a deformable body.
 inline constexpr std::array kPointColumns{Column{"ux", "m"}, Column{"uy", "m"}, Column{"vx", "m/s"},
                                           Column{"vy", "m/s"}};

@@ -178,6 +178,8 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   vtkNew<vtkIntArray> a = integers("body_a");
   vtkNew<vtkIntArray> b = integers("body_b");
   vtkNew<vtkDoubleArray> force = doubles("force_on_a", 3);
+  vtkNew<vtkDoubleArray> normal = doubles("normal_force_on_a", 3);
+  vtkNew<vtkDoubleArray> tangential = doubles("tangential_force_on_a", 3);
   vtkNew<vtkDoubleArray> penetration = doubles("penetration", 1);
   vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
   for (const ContactRecord& contact : contacts) {
@@ -186,13 +188,19 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
     cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
     a->InsertNextValue(contact.a);
     b->InsertNextValue(contact.b);
-    force->InsertNextTuple3(contact.force.x(), contact.force.y(), 0);
+    for (const auto& [array, value] :
+         {std::pair<vtkDoubleArray*, Vec2>(force, contact.normal + contact.tangential),
+          {normal, contact.normal},
+          {tangential, contact.tangential}}) {
+      array->InsertNextTuple3(value.x(), value.y(), 0);
+    }
     penetration->InsertNextValue(contact.penetration);
     phi->InsertNextValue(contact.phi);
   }
   grid->SetPoints(points);
   grid->SetCells(VTK_VERTEX, cells);
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, force, penetration, phi}) {
+  for (vtkDataArray* array :
+       std::initializer_list<vtkDataArray*>{a, b, force, normal, tangential, penetration, phi}) {
     grid->GetPointData()->AddArray(array);
   }
   add_time(grid, time);

@@ -91,23 +91,23 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   flush();
 }
 
-void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
-                        const std::vector<double>& mass) {
+void HistoryWriter::add(const State& state, const std::vector<double>& friction, const Energies& e,
+                        const Momenta& p, const std::vector<double>& mass) {
   std::string& rows = history_.rows;
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
   for (const int i : settings_.track) {
     const double* x = &state.position[3 * static_cast<size_t>(i)];
     const double* v = &state.velocity[3 * static_cast<size_t>(i)];
     const double* f = &state.force[3 * static_cast<size_t>(i)];
-    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
                    x[0] + model_.origin.x(), x[1] + model_.origin.y(), x[2], v[0], v[1], v[2], f[0],
-                   f[1]);
+                   f[1], friction[i]);
   }
   for (const int i : settings_.track_deformables) {
     const MeanMotion m = mean_motion(model_.deformables[i], state, mass);
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
                    m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
-                   m.velocity.x(), m.velocity.y(), m.spin, 0., 0.);
+                   m.velocity.x(), m.velocity.y(), m.spin, 0., 0., 0.);
   }
   for (const TrackedPoint& point : settings_.points) {
     std::array<double, 4> value{};
@@ -168,6 +168,14 @@ HistoryTable read_history(const std::string& file) {
   return table;
 }
 
+HistoryTable read_history_of(const std::string& folder, const std::string& column) {
+  for (const char* name : kHistoryFiles) {
+    HistoryTable table = read_history(folder + "/" + name);
+    if (table.column(column)) return table;
+  }
+  throw std::runtime_error("no history has a column " + column);
+}
+
 namespace {
 
 // Extreme value of the parabola through three rows around row i; the row itself at the borders.
@@ -184,43 +192,38 @@ double refined(const std::vector<double>& t, const std::vector<double>& y, size_
 }  // namespace
 
 Outcome evaluate(const Expectation& expectation, const std::string& folder) {
-  for (const char* name : {"history.csv", "energy.csv", "momentum.csv"}) {
-    const HistoryTable table = read_history(folder + "/" + name);
-    const std::vector<double>* found = table.column(expectation.quantity);
-    if (!found) continue;
-    const std::vector<double>& t = table.columns.front();
-    const std::vector<double>& y = *found;
-    size_t from = 0;
-    size_t until = t.size();
-    while (expectation.from && from < until && t[from] < *expectation.from) ++from;
-    while (expectation.until && until > from && t[until - 1] > *expectation.until) --until;
-    if (from == until)
-      throw std::runtime_error("no row of " + expectation.quantity + " in the window");
-    const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
-                                                   y.begin() + static_cast<std::ptrdiff_t>(until));
-    const double minimum = refined(t, y, static_cast<size_t>(least - y.begin()));
-    const double maximum = refined(t, y, static_cast<size_t>(most - y.begin()));
-    double value = 0;
-    switch (expectation.take) {
-      case Expectation::Take::first:
-        value = y[from];
-        break;
-      case Expectation::Take::last:
-        value = y[until - 1];
-        break;
-      case Expectation::Take::minimum:
-        value = minimum;
-        break;
-      case Expectation::Take::maximum:
-        value = maximum;
-        break;
-      case Expectation::Take::largest:
-        value = std::max(-minimum, maximum);
-        break;
-    }
-    return {value, std::abs(value - expectation.value) <= expectation.tolerance};
+  const HistoryTable table = read_history_of(folder, expectation.quantity);
+  const std::vector<double>& t = table.columns.front();
+  const std::vector<double>& y = *table.column(expectation.quantity);
+  size_t from = 0;
+  size_t until = t.size();
+  while (expectation.from && from < until && t[from] < *expectation.from) ++from;
+  while (expectation.until && until > from && t[until - 1] > *expectation.until) --until;
+  if (from == until)
+    throw std::runtime_error("no row of " + expectation.quantity + " in the window");
+  const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
+                                                 y.begin() + static_cast<std::ptrdiff_t>(until));
+  const double minimum = refined(t, y, static_cast<size_t>(least - y.begin()));
+  const double maximum = refined(t, y, static_cast<size_t>(most - y.begin()));
+  double value = 0;
+  switch (expectation.take) {
+    case Expectation::Take::first:
+      value = y[from];
+      break;
+    case Expectation::Take::last:
+      value = y[until - 1];
+      break;
+    case Expectation::Take::minimum:
+      value = minimum;
+      break;
+    case Expectation::Take::maximum:
+      value = maximum;
+      break;
+    case Expectation::Take::largest:
+      value = std::max(-minimum, maximum);
+      break;
   }
-  throw std::runtime_error("no history has a column " + expectation.quantity);
+  return {value, std::abs(value - expectation.value) <= expectation.tolerance};
 }
 
 }  // namespace apothem

@@ -23,9 +23,10 @@ class HistoryWriter {
                 const Sizes& sizes = {});
 
   /// Rows are kept in memory until there are enough of them, or flush().
-  /// `mass` of the nodes, kg, if deformable bodies are tracked as a whole.
-  void add(const State& state, const Energies& energies, const Momenta& momenta,
-           const std::vector<double>& mass);
+  /// `friction` in N per rigid body; `mass` of the nodes, kg, if deformable bodies are tracked as a
+  /// whole.
+  void add(const State& state, const std::vector<double>& friction, const Energies& energies,
+           const Momenta& momenta, const std::vector<double>& mass);
   void flush();
 
   /// After flush().
@@ -54,6 +55,12 @@ struct HistoryTable {
 
 /// Throws std::runtime_error naming the file and line if it is not such a table.
 HistoryTable read_history(const std::string& file);
+
+/// Files with a row per interval, in a folder of results.
+inline constexpr std::array kHistoryFiles{"history.csv", "energy.csv", "momentum.csv"};
+
+/// The first of the folder's histories with that column. Throws std::runtime_error if none has.
+HistoryTable read_history_of(const std::string& folder, const std::string& column);
 
 /// An expectation held against what was recorded.
 struct Outcome {

@@ -585,8 +585,7 @@ class SceneReader {
         in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
       }
       if (const JsonValue* v = object.optional("take")) {
-        e.take = static_cast<Expectation::Take>(
-            in_.choice(*v, {"first", "last", "min", "max", "max_abs"}));
+        e.take = static_cast<Expectation::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
       }
       if (const JsonValue* v = object.optional("between")) {
         const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
@@ -605,6 +604,7 @@ class SceneReader {
       }
       if (!(e.tolerance > 0))
         in_.fail(*relative, "a relative tolerance needs a value other than 0");
+      if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
       if (const JsonValue* v = object.optional("source")) in_.string(*v);
       object.finish();
       scene_.expectations.push_back(std::move(e));

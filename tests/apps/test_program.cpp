@@ -37,7 +37,7 @@ TEST_CASE("help and usage", "[program]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
-  for (const char* sub : {"run", "check", "contact", "polygon", "mesh", "accuracy"})
+  for (const char* sub : {"run", "check", "contact", "polygon", "mesh", "accuracy", "reproduce"})
     CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{},
@@ -205,6 +205,18 @@ TEST_CASE("a resumed run continues bit for bit", "[program]") {
   REQUIRE(run({"run", soft, "-o", folder / "soft", "--resume"}, folder).code == 0);
   REQUIRE(run({"run", soft, "-o", folder / "soft2"}, folder).code == 0);
   CHECK((content(folder / "soft/energy.csv") == content(folder / "soft2/energy.csv")));
+  // A scene that starts settled, stopped while it slides.
+  const std::string incline = test::kSource + "/data/scenes/incline-up-mu-06.json";
+  REQUIRE(run({"run", incline, "-o", folder / "slide", "--until", "0.1"}, folder).code == 0);
+  REQUIRE(run({"run", incline, "-o", folder / "slide2", "--until", "0.2"}, folder).code == 0);
+  REQUIRE(
+      run({"run", incline, "-o", folder / "slide", "--resume", "--until", "0.2"}, folder).code ==
+      0);
+  for (const char* name : {"history.csv", "energy.csv", "momentum.csv"}) {
+    INFO(name);
+    CHECK((content(folder / (std::string("slide/") + name)) ==
+           content(folder / (std::string("slide2/") + name))));
+  }
   // Nothing to resume any more; and never from another scene's checkpoint.
   CHECK(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 2);
   REQUIRE(run({"run", file, "-o", folder / "other", "--until", "0.01"}, folder).code == 0);

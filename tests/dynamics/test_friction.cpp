@@ -1,41 +1,16 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
-#include "dynamics/simulation.hpp"
-#include "support.hpp"
+#include "friction_models.hpp"
 
 using namespace apothem;
+using test::add;
+using test::incline;
+using test::kG;
+using test::make_model;
+using test::two_feet;
 
 namespace {
-
-constexpr double kG = 9.81;
-
-Model make_model(double coefficient, double tangential_stiffness = 1.25e9) {
-  Model model;
-  model.materials = {{"rock", 2500}};
-  model.contact.normal_stiffness = 2e9;
-  model.contact.friction = {coefficient, tangential_stiffness};
-  return model;
-}
-
-void add(Model& model, const std::string& name, const Polygon& polygon,
-         Motion motion = Motion::free) {
-  RigidBody body;
-  body.name = name;
-  body.motion = motion;
-  set_shape(body, polygon, model);
-  model.bodies.push_back(body);
-}
-
-// A block on a slope of that angle, the slope along x: gravity is tilted.
-Model incline(double angle, double coefficient, double speed, double tangential_stiffness) {
-  Model model = make_model(coefficient, tangential_stiffness);
-  model.gravity = {-kG * std::sin(angle), -kG * std::cos(angle)};
-  add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
-  add(model, "block", samples::block(-.25, 0, .25, .125));
-  model.bodies[1].velocity = {speed, 0};
-  return model;
-}
 
 double speed_after(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step();
@@ -79,6 +54,10 @@ TEST_CASE("sliding from equilibrium follows theory", "[friction]") {
       const State& state = simulation.state();
       REQUIRE(std::abs(state.velocity[3] - (speed - slowing * state.time)) < 1e-8);
     }
+    const RigidBody& block = model.bodies[1];
+    CHECK(simulation.friction()[1] ==
+          Approx(coefficient * block.mass * kG * std::cos(angle)).epsilon(1e-8));
+    CHECK(simulation.friction()[0] == simulation.friction()[1]);
     CHECK(std::abs(simulation.energies().total_error) <
           1e-8 * model.bodies[1].mass * speed * speed / 2);
   }
@@ -133,6 +112,31 @@ TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with o
   }
   INFO(errors[0] << " " << errors[1]);
   CHECK(errors[1] < errors[0] / 3);
+}
+
+TEST_CASE("straight approach meets no friction, not even round-off; per edge it does",
+          "[friction]") {
+  for (const FrictionLaw law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
+    for (const double half : {.3, .523, 1.1}) {
+      Model model = make_model(.1);
+      model.contact.friction_law = law;
+      model.gravity = {0, -kG};
+      const double x = std::sin(half), y = std::cos(half);
+      add(model, "target", Polygon({{0, 0}, {-x, -y}, {x, -y}}), Motion::fixed);
+      add(model, "falling", Polygon({{0, .01}, {x, .01 + y}, {-x, .01 + y}}));
+      model.bodies[1].held = {true, false, true};
+      Simulation simulation(model, {.end = .1}, 1, 1);
+      double most = 0;
+      while (simulation.state().time < .1) {
+        simulation.step();
+        most = std::max(most, simulation.friction()[1]);
+      }
+      CHECK(simulation.extremes().force.value > 1e4);
+      if (law == FrictionLaw::resultant) CHECK(most == 0);
+      if (law == FrictionLaw::per_edge) CHECK(most > 100);
+      CHECK((simulation.energies().friction_loss > 0) == (law == FrictionLaw::per_edge));
+    }
+  }
 }
 
 TEST_CASE("a spring that only sticks loses nothing and adds nothing", "[friction]") {
@@ -244,6 +248,85 @@ TEST_CASE("normal damping takes energy, and the ledger closes with order 2", "[f
   }
   INFO(errors[0] << " " << errors[1]);
   CHECK(errors[1] < errors[0] / 3);
+}
+
+TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bodies'",
+          "[friction]") {
+  struct Case {
+    Polygon block;
+    double friction, damping;
+    FrictionLaw law;
+    size_t patches;
+  };
+  const Polygon block = samples::block(-.25, 0, .25, .125);
+  for (const Case& c : {Case{two_feet(), 0, 0, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, 0, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, .2, FrictionLaw::resultant, 2},
+                        {two_feet(), .3, .2, FrictionLaw::per_edge, 2},
+                        {two_feet(), 0, .2, FrictionLaw::resultant, 2},
+                        {block, 0, 0, FrictionLaw::resultant, 1},
+                        {block, .3, .2, FrictionLaw::resultant, 1},
+                        {block, .3, .2, FrictionLaw::per_edge, 1}}) {
+    Model model = make_model(c.friction);
+    model.gravity = {-3, -kG};
+    model.contact.normal_damping = c.damping;
+    model.contact.friction_law = c.law;
+    add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
+    add(model, "block", c.block);
+    model.bodies[1].velocity = {1, -.01};
+    Simulation simulation(model, {.end = 1}, 1, 1);
+    while (simulation.extremes().force.value < 2000) simulation.step();
+    const std::vector<ContactRecord> records = simulation.contacts();
+    REQUIRE(records.size() == c.patches);
+    Vec2 sum = Vec2::Zero();
+    double sideways = 0;
+    for (const ContactRecord& r : records) {
+      CHECK((r.a == 0 && r.b == 1));
+      CHECK(r.normal.y() < -100);
+      CHECK(std::abs(r.normal.x()) < 1e-2 * std::abs(r.normal.y()));
+      CHECK(r.penetration > 1e-8);
+      CHECK(r.penetration < 1e-3);
+      CHECK(r.phi > 0);
+      sum -= r.normal + r.tangential;
+      sideways += r.tangential.x();
+    }
+    const std::vector<double>& force = simulation.state().force;
+    CHECK(sum.x() == Approx(force[3]).margin(1e-12 * sum.norm()));
+    CHECK(sum.y() == Approx(force[4]).epsilon(1e-12));
+    CHECK((sideways > 10) == (c.friction > 0));
+    if (c.patches == 2)
+      CHECK(std::abs(records[1].point.x() - records[0].point.x()) == Approx(.4).margin(.1));
+    // The same after a pause.
+    Simulation resumed(model, {.end = 1}, 1, 1);
+    resumed.restore(simulation.snapshot());
+    const std::vector<ContactRecord> again = resumed.contacts();
+    REQUIRE(again.size() == records.size());
+    for (size_t i = 0; i < again.size(); ++i) {
+      CHECK(again[i].normal == records[i].normal);
+      CHECK(again[i].tangential == records[i].tangential);
+    }
+  }
+}
+
+TEST_CASE("the damping ratio is that of the contact's own oscillation", "[friction]") {
+  for (const double ratio : {.02, .1}) {
+    Model model = incline(0, 0, 0, 1.25e9);
+    model.contact.normal_damping = ratio;
+    model.bodies[1].held = {true, false, true};
+    const RigidBody& block = model.bodies[1];
+    // Pressure of a flat contact of width w: k_n d (w/r_slope + w/r_block).
+    const double stiffness = 2e9 * .5 * (1 / model.bodies[0].inradius + 1 / block.inradius);
+    const double omega = std::sqrt(stiffness / block.mass);
+    const double depth = block.mass * kG / stiffness;
+    const double first = block.position.y();
+    model.bodies[1].position.y() -= 1.5 * depth;  // half a depth below equilibrium
+    Simulation simulation(model, {.end = 1, .safety = .02}, 1, 1);
+    const double period = 2 * M_PI / (omega * std::sqrt(1 - ratio * ratio));
+    while (simulation.state().time < 3 * period) simulation.step();
+    const double left = first - depth - simulation.state().position[4];
+    CHECK(left / (.5 * depth) ==
+          Approx(std::exp(-ratio * omega * simulation.state().time)).epsilon(.01));
+  }
 }
 
 TEST_CASE("a snapshot carries the springs", "[friction]") {

@@ -85,7 +85,7 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   state.position[5] = M_PI / 2;
   state.velocity = {1, 2, 0, 0, 0, 3};
   state.force = {5, 6, 7, 0, 0, 0};
-  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, 1e-3, 0.01}}, {});
+  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}}, {});
 
   const auto list = entries(folder / "frames.pvd");
   REQUIRE(list.size() == 2);
@@ -126,7 +126,12 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   reader->Update();
   REQUIRE(grid->GetNumberOfPoints() == 1);
   CHECK(grid->GetPoint(0)[0] == 1024.5);
-  CHECK(grid->GetPointData()->GetArray("force_on_a")->GetComponent(0, 1) == 20);
+  for (const auto& [name, x, y] :
+       {std::tuple("force_on_a", 13, 16), std::tuple("normal_force_on_a", 10, 20),
+        std::tuple("tangential_force_on_a", 3, -4)}) {
+    CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 0) == x);
+    CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 1) == y);
+  }
   CHECK(grid->GetPointData()->GetArray("penetration")->GetTuple1(0) == 1e-3);
   CHECK(grid->GetPointData()->GetArray("phi")->GetTuple1(0) == 0.01);
 }
@@ -170,9 +175,10 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       for (double& f : state.force) f = any();
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
-      writer.add(state, e, p, {});
+      const std::vector<double> friction{0, any()};
+      writer.add(state, friction, e, p, {});
       rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
-                      p.angular_error});
+                      p.angular_error, friction[1]});
     }
     writer.flush();
   }
@@ -192,6 +198,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
     REQUIRE((*energy.column("contact"))[i] == rows[i][3]);
     REQUIRE((*energy.column("total_error"))[i] == rows[i][4]);
     REQUIRE((*momentum.column("angular_error"))[i] == rows[i][5]);
+    REQUIRE((*history.column("two.friction"))[i] == rows[i][6]);
   }
 }
 
@@ -204,7 +211,7 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {}, {});
+    writer.add(state, {0, 0}, {}, {}, {});
   }
   writer.flush();
   const double top = 3 + model.origin.y();

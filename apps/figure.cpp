@@ -1,0 +1,219 @@
+#include "figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "output/history.hpp"
+
+namespace apothem {
+namespace {
+
+std::string scene_file(const std::string& data, const std::string& scene) {
+  return data + "/scenes/" + scene + ".json";
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  return names;
+}
+
+// Columns of history.csv, energy.csv and momentum.csv.
+std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
+  std::vector<std::vector<std::string>> files{history_columns(scene.model, scene.output),
+                                              {kEnergyColumns.begin(), kEnergyColumns.end()},
+                                              {kMomentumColumns.begin(), kMomentumColumns.end()}};
+  for (std::vector<std::string>& columns : files) columns.emplace_back("time");
+  return files;
+}
+
+class FigureReader {
+ public:
+  FigureReader(const std::string& data, Figure& figure, const std::string& file)
+      : data_(data), figure_(figure), in_(file) {}
+
+  void read(const JsonValue& document) {
+    JsonObject top(in_, document);
+    figure_.shown.title = in_.string(top.required("title", "string"));
+    if (const JsonValue* v = top.optional("about")) figure_.about = in_.string(*v);
+    if (const JsonValue* v = top.optional("panels")) {
+      for (const JsonValue& item : in_.array(*v)) panel(item);
+    }
+    if (const JsonValue* v = top.optional("numbers")) {
+      for (const JsonValue& item : in_.array(*v)) {
+        columns_of(item);
+        figure_.numbers[in_.string(item)].clear();
+      }
+    }
+    top.finish();
+    if (figure_.scenes.empty() && figure_.shown.panels.empty()) {
+      in_.fail(document, "has neither panels nor numbers");
+    }
+  }
+
+ private:
+  // Labels become the head of a CSV file.
+  std::string axis_label(const JsonValue& value) {
+    const std::string& label = in_.string(value);
+    if (label.find_first_of(",\"\n\r") != std::string::npos || !label.ends_with(']') ||
+        label.find(" [") == std::string::npos) {
+      in_.fail(value, "must be a name with a unit, like \"time [s]\", without comma or quote");
+    }
+    return label;
+  }
+
+  Vec2 range(const JsonValue& value) {
+    const Vec2 limits = in_.vec2(value, "the axis's unit");
+    if (!(limits.x() < limits.y())) in_.fail(value, "must be [from, to] with from below to");
+    return limits;
+  }
+
+  void panel(const JsonValue& value) {
+    JsonObject object(in_, value);
+    CurvePanel& panel = figure_.shown.panels.emplace_back();
+    figure_.sources.emplace_back();
+    if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
+    panel.x_label = axis_label(object.required("x", "name [unit]"));
+    panel.y_label = axis_label(object.required("y", "name [unit]"));
+    if (const JsonValue* v = object.optional("x_range")) panel.x_range = range(*v);
+    if (const JsonValue* v = object.optional("y_range")) panel.y_range = range(*v);
+    const JsonValue& curves = object.required("curves", "array of curves");
+    for (const JsonValue& item : in_.array(curves)) curve(item, panel);
+    if (panel.curves.empty()) in_.fail(curves, "must hold at least one curve");
+    object.finish();
+  }
+
+  void curve(const JsonValue& value, CurvePanel& panel) {
+    JsonObject object(in_, value);
+    Curve& curve = panel.curves.emplace_back();
+    CurveSource& source = figure_.sources.back().emplace_back();
+    if (const JsonValue* v = object.optional("label")) curve.label = in_.string(*v);
+    curve.colour = static_cast<int>(panel.curves.size()) - 1;
+    if (const JsonValue* v = object.optional("colour")) curve.colour = in_.count(*v);
+    if (const JsonValue* v = object.optional("style")) {
+      curve.style = static_cast<CurveStyle>(in_.choice(*v, {"line", "dashed", "marks"}));
+    }
+    const JsonValue* scene = object.optional("scene");
+    const JsonValue* reference = object.optional("reference");
+    const JsonValue* points = object.optional("points");
+    if (!scene + !reference + !points != 2) {
+      in_.fail(value, "must give one of \"scene\", \"reference\" and \"points\"");
+    }
+    if (points) {
+      for (const JsonValue& item : in_.array(*points)) {
+        source.points.push_back(in_.vec2(item, "what is shown"));
+      }
+    } else {
+      table(object, source, scene, scene ? *scene : *reference);
+    }
+    object.finish();
+  }
+
+  void table(JsonObject& object, CurveSource& source, bool is_scene, const JsonValue& name) {
+    const JsonValue* x = object.optional("x");
+    const JsonValue& y = object.required("y", "a column");
+    for (auto& [axis, key] : {std::pair(&source.x, std::string("x")), {&source.y, "y"}}) {
+      if (const JsonValue* v = object.optional(key + "_offset")) axis->offset = in_.number(*v, "");
+      if (const JsonValue* v = object.optional(key + "_scale")) axis->scale = in_.number(*v, "");
+    }
+    (is_scene ? source.scene : source.reference) = in_.string(name);
+    const std::vector<std::vector<std::string>> tables =
+        is_scene ? columns_of(name) : columns_of_table(name);
+    const std::vector<std::string>& columns = holding(tables, y);
+    source.y.column = y.string;
+    if (x) source.x.column = holding({columns}, *x).at(index_of(columns, x->string));
+    if (!is_scene) return;
+    std::vector<std::string>& stated = figure_.numbers[source.scene];
+    if (index_of(stated, y.string) == stated.size()) stated.push_back(y.string);
+  }
+
+  static size_t index_of(const std::vector<std::string>& list, const std::string& name) {
+    return static_cast<size_t>(std::find(list.begin(), list.end(), name) - list.begin());
+  }
+
+  const std::vector<std::string>& holding(const std::vector<std::vector<std::string>>& tables,
+                                          const JsonValue& column) {
+    std::vector<std::string> all;
+    for (const std::vector<std::string>& columns : tables) {
+      if (index_of(columns, in_.string(column)) < columns.size()) return columns;
+      all.insert(all.end(), columns.begin(), columns.end());
+    }
+    in_.fail(column, "there is no column " + suggest(column.string, all));
+  }
+
+  std::vector<std::vector<std::string>> columns_of(const JsonValue& scene) {
+    const std::string& name = in_.string(scene);
+    const std::vector<std::string> known = names_in(data_ + "/scenes");
+    if (index_of(known, name) == known.size()) {
+      in_.fail(scene, "there is no scene " + suggest(name, known));
+    }
+    if (index_of(figure_.scenes, name) == figure_.scenes.size()) figure_.scenes.push_back(name);
+    return recorded_columns(read_scene(scene_file(data_, name)));
+  }
+
+  std::vector<std::vector<std::string>> columns_of_table(const JsonValue& reference) {
+    try {
+      return {read_history(data_ + "/reference/" + in_.string(reference)).names};
+    } catch (const std::runtime_error& error) {
+      in_.fail(reference, error.what());
+    }
+  }
+
+  const std::string& data_;
+  Figure& figure_;
+  JsonReader in_;
+};
+
+}  // namespace
+
+CurveFigure Figure::drawn(const std::string& data, const std::string& runs) const {
+  CurveFigure result = shown;
+  for (size_t p = 0; p < sources.size(); ++p) {
+    for (size_t c = 0; c < sources[p].size(); ++c) {
+      const CurveSource& source = sources[p][c];
+      Curve& curve = result.panels[p].curves[c];
+      for (const Vec2& point : source.points) {
+        curve.x.push_back(point.x());
+        curve.y.push_back(point.y());
+      }
+      if (!source.points.empty()) continue;
+      const HistoryTable table = source.scene.empty()
+                                     ? read_history(data + "/reference/" + source.reference)
+                                     : read_history_of(runs + "/" + source.scene, source.y.column);
+      for (const double x : *table.column(source.x.column)) curve.x.push_back(source.x.shown(x));
+      for (const double y : *table.column(source.y.column)) curve.y.push_back(source.y.shown(y));
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> figure_names(const std::string& data) {
+  std::vector<std::string> names = names_in(data + "/figures");
+  if (names.empty()) {
+    throw SceneError(data, 0, "", "holds no figures; name the folder that does with --data");
+  }
+  const auto key = [](const std::string& name) {
+    constexpr const char* kDigits = "0123456789";
+    const size_t from = std::min(name.find_first_of(kDigits), name.size());
+    const size_t to = std::min(name.find_first_not_of(kDigits, from), name.size());
+    return std::tuple(name.substr(0, from), to - from, name.substr(from));
+  };
+  std::sort(names.begin(), names.end(),
+            [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+  return names;
+}
+
+Figure read_figure(const std::string& data, const std::string& name) {
+  Figure figure;
+  figure.name = name;
+  const std::string file = data + "/figures/" + name + ".json";
+  FigureReader(data, figure, file).read(parse_json(read_text(file), file));
+  return figure;
+}
+
+}  // namespace apothem

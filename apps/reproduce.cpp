@@ -1,0 +1,183 @@
+// apothem reproduce: the paper's figures from data/figures, and one report of them.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "commands.hpp"
+#include "figure.hpp"
+#include "output/files.hpp"
+#include "output/report.hpp"
+#include "version.hpp"
+
+namespace apothem {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// Beside the installed program, or where it was built from.
+std::string data_folder(const ReproduceOptions& options) {
+  if (!options.data.empty()) return options.data;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path installed = (program / kDataFromProgram).lexically_normal();
+  if (fs::exists(installed / "figures", error)) return installed.string();
+  return kSourceData;
+}
+
+std::vector<std::string> chosen(const ReproduceOptions& options,
+                                const std::vector<std::string>& known) {
+  if (options.figures == std::vector<std::string>{"all"}) return known;
+  std::vector<std::string> names;
+  for (const std::string& name : options.figures) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw SceneError("reproduce", 0, "",
+                       fmt::format("there is no figure {} (known: all, {})", suggest(name, known),
+                                   fmt::join(known, ", ")));
+    }
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+std::string in_words(const Json& expectation) {
+  const std::string label = expectation.at("label");
+  const std::string column = fmt::format("{} of {}", expectation.at("take").get<std::string>(),
+                                         expectation.at("quantity").get<std::string>());
+  return label.empty() ? column : fmt::format("{} ({})", label, column);
+}
+
+class Reproduction {
+ public:
+  Reproduction(const ReproduceOptions& options, std::string data)
+      : options_(options), data_(std::move(data)) {}
+
+  int execute(const std::vector<std::string>& names) {
+    std::vector<Figure> figures;
+    for (const std::string& name : names) figures.push_back(read_figure(data_, name));
+    create_folder(options_.folder);
+    for (const Figure& figure : figures) {
+      for (const std::string& scene : figure.scenes) {
+        if (!outcomes_.count(scene) && run_scene(figure.name, scene) == exit_code::interrupted) {
+          return exit_code::interrupted;
+        }
+      }
+      draw(figure);
+    }
+    const std::string report = options_.folder + "/report.html";
+    write_report(report, "Figures of the distance-potential FEM-DEM paper",
+                 fmt::format("apothem {} reproduce", kVersion), reports_);
+    fmt::print("{} of {} numbers within their tolerance; {}\n", numbers_ - missed_, numbers_,
+               report);
+    if (no_gnuplot_) {
+      fmt::print("no pictures: install gnuplot-nox; the curves are there as CSV\n");
+    }
+    if (!broken_.empty()) {
+      throw std::runtime_error(broken_ + "/picture.gnuplot: gnuplot failed, see its message");
+    }
+    if (unstable_) return exit_code::unstable;
+    return options_.verify && missed_ > 0 ? exit_code::missed : exit_code::done;
+  }
+
+ private:
+  [[nodiscard]] std::string runs() const { return options_.folder + "/runs"; }
+
+  int run_scene(const std::string& figure, const std::string& scene) {
+    const auto start = std::chrono::steady_clock::now();
+    RunOptions run;
+    run.scene = data_ + "/scenes/" + scene + ".json";
+    run.folder = runs() + "/" + scene;
+    run.threads = options_.threads;
+    run.overwrite = run.quiet = true;
+    const int code = run_command(run);
+    unstable_ = unstable_ || code == exit_code::unstable;
+    outcomes_[scene] = Json::parse(read_text(run.folder + "/run.json"));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    fmt::print("{}: {} {} ({:.1f} s)\n", figure, scene,
+               outcomes_[scene].at("status").get<std::string>(), seconds);
+    std::fflush(stdout);
+    return code;
+  }
+
+  void draw(const Figure& figure) {
+    ReportFigure& report = reports_.emplace_back();
+    report.name = figure.name;
+    report.title = figure.shown.title;
+    report.about = figure.about;
+    const std::string folder = options_.folder + "/" + figure.name;
+    if (!figure.sources.empty()) {
+      std::vector<std::string> files;
+      switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
+        case Plotted::yes:
+          report.picture = folder + "/picture.png";
+          files.insert(files.begin(), {"picture.png", "picture.svg"});
+          break;
+        case Plotted::no_gnuplot:
+          no_gnuplot_ = true;
+          report.faults.emplace_back("No picture: there was no gnuplot.");
+          break;
+        case Plotted::failed:
+          broken_ = folder;
+          report.faults.emplace_back("No picture: gnuplot failed.");
+          break;
+      }
+      for (const std::string& file : files) report.links.push_back(figure.name + "/" + file);
+    }
+    for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
+  }
+
+  void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
+    const Json& outcome = outcomes_.at(scene);
+    report.links.push_back(fmt::format("runs/{}/run.json", scene));
+    if (outcome.contains("message")) {
+      report.faults.push_back(scene + ": " + outcome["message"].get<std::string>());
+    }
+    const std::vector<std::string>& quantities = figure.numbers.at(scene);
+    for (const Json& e : outcome.at("expectations")) {
+      const std::string quantity = e.at("quantity");
+      if (!quantities.empty() &&
+          std::find(quantities.begin(), quantities.end(), quantity) == quantities.end()) {
+        continue;
+      }
+      const Json& value = e.at("value");  // null where the run has no row for it
+      report.numbers.push_back({scene, in_words(e), e.at("expected"),
+                                value.is_null() ? std::nan("") : value.get<double>(),
+                                e.at("tolerance"), e.at("met")});
+      ++numbers_;
+      if (!report.numbers.back().met) {
+        ++missed_;
+        fmt::print("  MISSED {}: {}\n", scene, report.numbers.back().what);
+      }
+    }
+  }
+
+  const ReproduceOptions& options_;
+  std::string data_;
+  std::map<std::string, Json> outcomes_;  // run.json by scene
+  std::vector<ReportFigure> reports_;
+  int numbers_ = 0, missed_ = 0;
+  bool no_gnuplot_ = false, unstable_ = false;
+  std::string broken_;  // folder of a picture that gnuplot could not make
+};
+
+}  // namespace
+
+int reproduce_command(const ReproduceOptions& options) {
+  const std::string data = data_folder(options);
+  const std::vector<std::string> known = figure_names(data);
+  if (!options.figures.empty()) {
+    return Reproduction(options, data).execute(chosen(options, known));
+  }
+  for (const std::string& name : known) {
+    fmt::print("{:<10} {}\n", name, read_figure(data, name).shown.title);
+  }
+  return exit_code::done;
+}
+
+}  // namespace apothem

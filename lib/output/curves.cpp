@@ -1,0 +1,129 @@
+#include "output/curves.hpp"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+
+#include "output/files.hpp"
+
+namespace apothem {
+namespace {
+
+// Told apart by the colour-blind (Paul Tol's "bright" scheme).
+constexpr std::array kColours{"#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377"};
+
+constexpr const char* kKey = "set key above left horizontal Left reverse samplen 2.5 width 2\n";
+constexpr int kWidth = 1000;        // pixels
+constexpr int kPanelHeight = 330;   // of several
+constexpr int kSingleHeight = 560;  // of the only one
+
+// As a string of gnuplot, which takes all but the quote and the end of a line as it is.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += c;
+    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+std::string table(const CurvePanel& panel, const Curve& curve) {
+  std::string text = fmt::format("{},{}\n", panel.x_label, panel.y_label);
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{}\n"), curve.x[i], curve.y[i]);
+  }
+  return text;
+}
+
+std::vector<std::string> labels(const CurvePanel& panel) {
+  std::vector<std::string> list;
+  for (const Curve& curve : panel.curves) list.push_back(curve.label);
+  return list;
+}
+
+std::string range(const std::optional<Vec2>& limits) {
+  return limits ? fmt::format("[{}:{}]", limits->x(), limits->y()) : "[*:*]";
+}
+
+std::string style(const Curve& curve) {
+  const auto index = static_cast<size_t>(curve.colour) % kColours.size();
+  const std::string colour = fmt::format("lc rgb '{}'", kColours[index]);
+  switch (curve.style) {
+    case CurveStyle::line:
+      return "with lines lw 1.8 " + colour;
+    case CurveStyle::dashed:
+      return "with lines lw 1.8 dt (9,6) " + colour;
+    case CurveStyle::marks:
+      break;
+  }
+  return "with points pt 6 ps 1.2 lw 1.5 " + colour;
+}
+
+std::string plot_script(const CurveFigure& figure,
+                        const std::vector<std::vector<std::string>>& files) {
+  const size_t panels = figure.panels.size();
+  const int height = panels == 1 ? kSingleHeight : kPanelHeight * static_cast<int>(panels) + 60;
+  std::string script = fmt::format(R"gp(# gnuplot -e "output='picture.svg'" picture.gnuplot
+if (!exists("output")) output = 'picture.png'
+if (strstrt(output, '.svg') > 0) {{
+  set terminal svg size {0},{1} font 'DejaVu Sans,14' background 'white' noenhanced
+}} else {{
+  set terminal pngcairo size {0},{1} font 'DejaVu Sans,11' background 'white' noenhanced
+}}
+set output output
+set datafile separator ','
+set grid lc rgb '#cccccc' lt 1 lw .5
+set border 3
+set tics nomirror
+set lmargin 13
+set rmargin 4
+set multiplot layout {2},1 title {3}."\n " font ',14'
+)gp",
+                                   kWidth, height, panels, quoted(figure.title));
+  for (size_t p = 0; p < panels; ++p) {
+    const CurvePanel& panel = figure.panels[p];
+    // A key that would only repeat the one above is left out.
+    const bool repeats = p > 0 && labels(panel) == labels(figure.panels[p - 1]);
+    script += repeats ? "unset key\n" : kKey;
+    script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
+                          quoted(panel.x_label), quoted(panel.y_label));
+    script += fmt::format("plot {} {}", range(panel.x_range), range(panel.y_range));
+    for (size_t c = 0; c < panel.curves.size(); ++c) {
+      const Curve& curve = panel.curves[c];
+      script += fmt::format("{}{} every ::1 using 1:2 {} {}", c == 0 ? " " : ", \\\n  ",
+                            quoted(files[p][c]), style(curve),
+                            curve.label.empty() ? "notitle" : "title " + quoted(curve.label));
+    }
+    script += '\n';
+  }
+  return script + "unset multiplot\n";
+}
+
+}  // namespace
+
+Plotted write_curves(const std::string& folder, const CurveFigure& figure,
+                     std::vector<std::string>& files) {
+  create_folder(folder);
+  files.clear();
+  std::vector<std::vector<std::string>> names;  // panel by panel
+  for (size_t p = 0; p < figure.panels.size(); ++p) {
+    std::vector<std::string>& of_panel = names.emplace_back();
+    for (const Curve& curve : figure.panels[p].curves) {
+      of_panel.push_back(fmt::format("curve-{}-{}.csv", p + 1, of_panel.size() + 1));
+      write_file(folder + "/" + of_panel.back(), table(figure.panels[p], curve));
+      files.push_back(of_panel.back());
+    }
+  }
+  write_file(folder + "/picture.gnuplot", plot_script(figure, names));
+  Plotted plotted = Plotted::yes;
+  for (const char* picture : {"picture.png", "picture.svg"}) {
+    if (plotted == Plotted::yes) {
+      plotted = plot_with_gnuplot(folder, "picture.gnuplot", picture);
+    }
+  }
+  return plotted;
+}
+
+}  // namespace apothem
