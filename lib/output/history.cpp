@@ -105,7 +105,7 @@ void HistoryWriter::add(const State& state, const std::vector<double>& friction,
   }
   for (const int i : settings_.track_deformables) {
     const MeanMotion m = mean_motion(model_.deformables[i], state, mass);
-    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{}"),
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
                    m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
                    m.velocity.x(), m.velocity.y(), m.spin, 0., 0., 0.);
   }
