@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "model/columns.hpp"
 #include "output/history.hpp"
 
 namespace apothem {
@@ -25,9 +26,12 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 // Columns of history.csv, energy.csv and momentum.csv.
 std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
-  std::vector<std::vector<std::string>> files{history_columns(scene.model, scene.output),
+  std::vector<std::vector<std::string>> files{{},
                                               {kEnergyColumns.begin(), kEnergyColumns.end()},
                                               {kMomentumColumns.begin(), kMomentumColumns.end()}};
+  for (HistoryColumn& c : history_columns(scene.model, scene.output)) {
+    files[0].push_back(std::move(c.name));
+  }
   for (std::vector<std::string>& columns : files) columns.emplace_back("time");
   return files;
 }
