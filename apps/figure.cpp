@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "model/columns.hpp"
-#include "model/state.hpp"
 #include "output/history.hpp"
 
 namespace apothem {
@@ -27,13 +26,12 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 // Columns of history.csv, energy.csv and momentum.csv.
 std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
-  std::vector<std::string> history;
-  for (HistoryColumn& c : history_columns(scene.model, scene.output)) {
-    history.push_back(std::move(c.name));
-  }
-  std::vector<std::vector<std::string>> files{std::move(history),
+  std::vector<std::vector<std::string>> files{{},
                                               {kEnergyColumns.begin(), kEnergyColumns.end()},
                                               {kMomentumColumns.begin(), kMomentumColumns.end()}};
+  for (HistoryColumn& c : history_columns(scene.model, scene.output)) {
+    files[0].push_back(std::move(c.name));
+  }
   for (std::vector<std::string>& columns : files) columns.emplace_back("time");
   return files;
 }
