@@ -132,6 +132,13 @@ TEST_CASE("regions that cannot be filled are refused", "[mesh]") {
                     Contains("hole 1 meets hole 0"));
   CHECK_THROWS_WITH(fill({samples::block(1, 1, 3, 3), samples::block(1.5, 1.5, 2, 2)}),
                     Contains("hole 1 lies inside hole 0"));
+  // Two vertices that agree as seen from vertex 0, and a slit of hardly any width.
+  const Polygon close({{.1, 0}, {40, 10}, {40, std::nextafter(10, 11)}, {30, 30}});
+  CHECK_THROWS_WITH(fill_mesh(close, {}, 5, ElementShape::triangle),
+                    Contains("nearer than 1e-9 of the size"));
+  const Polygon slit({{0, 0}, {4, 0}, {4, 4}, {2, 4}, {2, 1}, {2 - 1e-10, 4}, {0, 4}});
+  CHECK_THROWS_WITH(fill_mesh(slit, {}, 1, ElementShape::triangle),
+                    Contains("simplify the polygon"));
   for (const double size : {0., -1., std::nan(""), 1e-5}) {
     CHECK_THROWS_AS(fill({}, size), std::invalid_argument);
   }
