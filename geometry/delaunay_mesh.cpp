@@ -37,6 +37,11 @@ constexpr double kLeastHeight = .1;  // of a triangle after a move, of what it w
 constexpr double kMost = 1e7;        // triangles
 constexpr double kThinnest = 1e-9;   // distance of edges, of the size of the outline
 
+[[noreturn]] void refuse_number() {
+  throw std::invalid_argument(
+      "takes more than 1e7 elements; give a larger size or a polygon with less fine detail");
+}
+
 double distance(const Vec2& p, const std::array<Vec2, 2>& segment) {
   const Vec2 way = segment[1] - segment[0];
   const double share = std::clamp((p - segment[0]).dot(way) / way.squaredNorm(), 0., 1.);
@@ -201,7 +206,10 @@ class Mesh2 {
     Triangulation t = triangulation();
     Mesher mesher(t, criteria);
     mesher.set_seeds(seeds_.begin(), seeds_.end());
-    mesher.refine_mesh();
+    mesher.init();
+    while (mesher.step_by_step_refine_mesh()) {
+      if (static_cast<double>(t.number_of_vertices()) > kMost / 2) refuse_number();
+    }
     for (const auto vertex : t.finite_vertex_handles()) {
       if (vertex->info().value >= 0) continue;
       vertex->info().value = static_cast<int>(points_.size());
@@ -290,7 +298,7 @@ TriangleMesh delaunay_mesh(const Polygon& outline, const std::vector<Polygon>& h
   measure(outline);
   for (const Polygon& hole : holes) measure(hole);
   if (!(area_moments(outline).area / (size * size) < kMost / 2.3 && around / size < kMost)) {
-    throw std::invalid_argument("the size asks for more than 1e7 elements; give a larger one");
+    refuse_number();
   }
   TriangleMesh mesh = Mesh2(outline, holes, size).run();
   int i = 0;

@@ -25,7 +25,7 @@ struct TriangleMesh {
 /// the polygon below 60 degrees and, where these are near others, beside them. The same bits in
 /// every run. Throws InvalidPolygon if the holes are not inside the outline and apart, or if edges
 /// that are not neighbours come nearer to each other than 1e-9 of the outline's size, and
-/// std::invalid_argument unless size is positive and leaves at most 1e7 triangles.
+/// std::invalid_argument unless size is positive and detail leave at most 1e7 triangles.
 TriangleMesh delaunay_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size);
 
 }  // namespace apothem
