@@ -35,30 +35,65 @@ constexpr int kSteps = 30;           // of Lloyd's iteration
 constexpr double kSettled = 1e-3;    // movement, of the size
 constexpr double kLeastHeight = .1;  // of a triangle after a move, of what it was
 constexpr double kMost = 1e7;        // triangles
+constexpr double kThinnest = 1e-9;   // distance of edges, of the size of the outline
 
-void require_apart(const Polygon& outline, const std::vector<Polygon>& holes) {
-  std::vector<std::array<Vec2, 2>> edges;
+[[noreturn]] void refuse_number() {
+  throw std::invalid_argument(
+      "takes more than 1e7 elements; give a larger size or a polygon with less fine detail");
+}
+
+double distance(const Vec2& p, const std::array<Vec2, 2>& segment) {
+  const Vec2 way = segment[1] - segment[0];
+  const double share = std::clamp((p - segment[0]).dot(way) / way.squaredNorm(), 0., 1.);
+  return (segment[0] + share * way - p).norm();
+}
+
+// Of segments that do not cross.
+double distance(const std::array<Vec2, 2>& a, const std::array<Vec2, 2>& b) {
+  return std::min({distance(a[0], b), distance(a[1], b), distance(b[0], a), distance(b[1], a)});
+}
+
+// The outline and the holes are apart, and no place is too thin to be meshed.
+void require_room(const Polygon& outline, const std::vector<Polygon>& holes) {
+  struct Edge {
+    std::array<Vec2, 2> ends;
+    int ring, number;  // ring -1: the outline
+  };
+  const double thinnest = kThinnest * bounding_box(outline).extent();
+  std::vector<Edge> edges;
   std::vector<Box> boxes;
-  std::vector<int> ring_of;
   const auto add = [&](const Polygon& ring, int number) {
     for (int i = 0; i < ring.size(); ++i) {
-      edges.push_back({ring[i], ring.after(i)});
-      Box& box = boxes.emplace_back();
-      for (const Vec2& p : edges.back()) box.include(p.x(), p.y());
-      ring_of.push_back(number);
+      edges.push_back({{ring[i], ring.after(i)}, number, i});
+      Box box;
+      for (const Vec2& p : edges.back().ends) box.include(p.x(), p.y());
+      boxes.push_back(box.grown(thinnest / 2));
     }
   };
   add(outline, -1);
   for (size_t h = 0; h < holes.size(); ++h) add(holes[h], static_cast<int>(h));
+  const auto size = [&](int ring) { return ring < 0 ? outline.size() : holes[ring].size(); };
   const auto name = [](int ring) {
     return ring < 0 ? std::string("the outline") : "hole " + std::to_string(ring);
   };
   std::vector<BoxPair> pairs;
   BoxGrid().find_pairs(boxes, pairs);
-  for (const auto& [i, j] : pairs) {
-    if (ring_of[i] == ring_of[j]) continue;
-    if (segments_meet(edges[i][0], edges[i][1], edges[j][0], edges[j][1])) {
-      throw InvalidPolygon(name(ring_of[j]) + " meets " + name(ring_of[i]), 0);
+  for (const auto& [first, second] : pairs) {
+    const Edge& i = edges[first];
+    const Edge& j = edges[second];
+    if (i.ring != j.ring) {
+      if (segments_meet(i.ends[0], i.ends[1], j.ends[0], j.ends[1])) {
+        throw InvalidPolygon(name(j.ring) + " meets " + name(i.ring), 0);
+      }
+    } else if (j.number - i.number == 1 || j.number - i.number == size(i.ring) - 1) {
+      continue;
+    }
+    if (distance(i.ends, j.ends) < thinnest) {
+      throw InvalidPolygon(name(i.ring) + " is, at its edge " + std::to_string(i.number) +
+                               ", nearer than 1e-9 of the size to edge " +
+                               std::to_string(j.number) + " of " + name(j.ring) +
+                               "; simplify the polygon",
+                           i.number);
     }
   }
   for (size_t h = 0; h < holes.size(); ++h) {
@@ -171,7 +206,10 @@ class Mesh2 {
     Triangulation t = triangulation();
     Mesher mesher(t, criteria);
     mesher.set_seeds(seeds_.begin(), seeds_.end());
-    mesher.refine_mesh();
+    mesher.init();
+    while (mesher.step_by_step_refine_mesh()) {
+      if (static_cast<double>(t.number_of_vertices()) > kMost / 2) refuse_number();
+    }
     for (const auto vertex : t.finite_vertex_handles()) {
       if (vertex->info().value >= 0) continue;
       vertex->info().value = static_cast<int>(points_.size());
@@ -252,7 +290,7 @@ class Mesh2 {
 
 TriangleMesh delaunay_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size) {
   if (!(size > 0)) throw std::invalid_argument("the size of the elements must be positive");
-  require_apart(outline, holes);
+  require_room(outline, holes);
   double around = 0;
   const auto measure = [&](const Polygon& ring) {
     for (int i = 0; i < ring.size(); ++i) around += (ring.after(i) - ring[i]).norm();
@@ -260,7 +298,7 @@ TriangleMesh delaunay_mesh(const Polygon& outline, const std::vector<Polygon>& h
   measure(outline);
   for (const Polygon& hole : holes) measure(hole);
   if (!(area_moments(outline).area / (size * size) < kMost / 2.3 && around / size < kMost)) {
-    throw std::invalid_argument("the size asks for more than 1e7 elements; give a larger one");
+    refuse_number();
   }
   TriangleMesh mesh = Mesh2(outline, holes, size).run();
   int i = 0;

@@ -23,8 +23,9 @@ struct TriangleMesh {
 /// are the vertices of the outline and of the holes, bit for bit; the others on their edges lie
 /// there up to the rounding of their coordinates. No angle is below 20 degrees but at corners of
 /// the polygon below 60 degrees and, where these are near others, beside them. The same bits in
-/// every run. Throws InvalidPolygon if the holes are not inside the outline and apart, and
-/// std::invalid_argument unless size is positive and leaves at most 1e7 triangles.
+/// every run. Throws InvalidPolygon if the holes are not inside the outline and apart, or if edges
+/// that are not neighbours come nearer to each other than 1e-9 of the outline's size, and
+/// std::invalid_argument unless size is positive and detail leave at most 1e7 triangles.
 TriangleMesh delaunay_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size);
 
 }  // namespace apothem

@@ -4,21 +4,9 @@
 #include <numeric>
 
 #include "mesh/invalid_mesh.hpp"
+#include "mesh/measure.hpp"
 
 namespace apothem {
-namespace {
-
-double twice_area(const Mesh& mesh, const std::vector<int>& ring) {
-  const Vec2& origin = mesh.nodes[ring.front()];
-  double sum = 0;
-  for (size_t i = 1; i + 1 < ring.size(); ++i) {
-    sum += cross(mesh.nodes[ring[i]] - origin, mesh.nodes[ring[i + 1]] - origin);
-  }
-  return sum;
-}
-
-}  // namespace
-
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
   std::vector<int> parent(mesh.element_count());
   std::iota(parent.begin(), parent.end(), 0);
@@ -67,7 +55,7 @@ Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
       loop.elements.push_back(step.element);
       node = step.to;
     }
-    loop.is_hole = twice_area(mesh, loop.nodes) < 0;
+    loop.is_hole = ring_area(mesh, loop.nodes) < 0;
     result.loops.push_back(std::move(loop));
   }
   std::stable_partition(result.loops.begin(), result.loops.end(),

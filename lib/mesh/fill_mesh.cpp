@@ -3,6 +3,7 @@
 #include "geometry/delaunay_mesh.hpp"
 #include "mesh/check.hpp"
 #include "mesh/groups.hpp"
+#include "mesh/smooth.hpp"
 #include "mesh/split.hpp"
 
 namespace apothem {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kTriangle = 2.2;  // edge of the triangles that are cut, in sizes
 constexpr double kLeastSine = .6;  // of a corner of two joined triangles
+constexpr int kSweeps = 20;
 
 std::vector<int> edge_numbers(const Polygon& outline) {
   std::vector<int> numbers;
@@ -26,7 +28,10 @@ Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double
   Mesh mesh;
   mesh.nodes = std::move(triangles.points);
   for (const Triangle& t : triangles.triangles) mesh.add_element(t);
-  if (quadrilaterals) mesh = into_quadrilaterals(join_triangles(mesh, kLeastSine));
+  if (quadrilaterals) {
+    mesh = into_quadrilaterals(join_triangles(mesh, kLeastSine));
+    smooth_nodes(mesh, kSweeps);
+  }
   std::vector<int> hole_sizes;
   for (const Polygon& hole : holes) hole_sizes.push_back(hole.size());
   add_outline_groups(mesh, edge_numbers(outline), hole_sizes);

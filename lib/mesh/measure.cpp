@@ -7,12 +7,11 @@
 
 namespace apothem {
 
-double element_area(const Mesh& mesh, int element) {
-  const auto corners = mesh.element(element);
-  const Vec2& origin = mesh.nodes[corners[0]];
+double ring_area(const Mesh& mesh, std::span<const int> ring) {
+  const Vec2& origin = mesh.nodes[ring.front()];
   double twice = 0;
-  for (size_t i = 1; i + 1 < corners.size(); ++i) {
-    twice += cross(mesh.nodes[corners[i]] - origin, mesh.nodes[corners[i + 1]] - origin);
+  for (size_t i = 1; i + 1 < ring.size(); ++i) {
+    twice += cross(mesh.nodes[ring[i]] - origin, mesh.nodes[ring[i + 1]] - origin);
   }
   return twice / 2;
 }
@@ -30,6 +29,17 @@ Vec2 mesh_centroid(const Mesh& mesh) {
     }
   }
   return base + moment / area;
+}
+
+double smallest_sine(const Mesh& mesh, std::span<const int> ring) {
+  double smallest = 1;
+  Vec2 in = mesh.nodes[ring.front()] - mesh.nodes[ring.back()];
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 out = mesh.nodes[after(ring, i)] - mesh.nodes[ring[i]];
+    smallest = std::min(smallest, cross(in, out) / std::sqrt(in.squaredNorm() * out.squaredNorm()));
+    in = out;
+  }
+  return smallest;
 }
 
 double mesh_size(const Mesh& mesh) {
@@ -58,11 +68,12 @@ MeshQuality mesh_quality(const Mesh& mesh) {
       q.largest_angle = std::max(q.largest_angle, angle);
       q.shortest_edge = std::min(q.shortest_edge, out.norm());
       q.longest_edge = std::max(q.longest_edge, out.norm());
-      if (corners.size() <= 4) {
-        const double best = corners.size() == 3 ? std::sqrt(3.) / 2 : 1;
-        q.smallest_scaled_jacobian = std::min(q.smallest_scaled_jacobian, std::sin(angle) / best);
-      }
       in = out;
+    }
+    if (corners.size() <= 4) {
+      const double best = corners.size() == 3 ? std::sqrt(3.) / 2 : 1;
+      q.smallest_scaled_jacobian =
+          std::min(q.smallest_scaled_jacobian, smallest_sine(mesh, corners) / best);
     }
   }
   return q;

@@ -5,8 +5,14 @@
 
 namespace apothem {
 
-/// Positive if the corners go counter-clockwise, in m^2.
-double element_area(const Mesh& mesh, int element);
+/// Of a ring of nodes; positive if they go counter-clockwise, in m^2.
+double ring_area(const Mesh& mesh, std::span<const int> ring);
+inline double element_area(const Mesh& mesh, int element) {
+  return ring_area(mesh, mesh.element(element));
+}
+
+/// Of the angles at the nodes of a counter-clockwise ring; negative beyond 180 degrees.
+double smallest_sine(const Mesh& mesh, std::span<const int> ring);
 
 /// Of the area, m.
 Vec2 mesh_centroid(const Mesh& mesh);

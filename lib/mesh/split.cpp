@@ -3,15 +3,10 @@
 #include <algorithm>
 
 #include "mesh/edges.hpp"
+#include "mesh/measure.hpp"
 
 namespace apothem {
 namespace {
-
-double sine(const Vec2& before, const Vec2& corner, const Vec2& behind) {
-  const Vec2 in = before - corner;
-  const Vec2 out = behind - corner;
-  return cross(out, in) / std::sqrt(in.squaredNorm() * out.squaredNorm());
-}
 
 double largest_cosine(const Vec2& a, const Vec2& b, const Vec2& c) {
   const auto cosine = [](const Vec2& u, const Vec2& v) {
@@ -79,11 +74,7 @@ Mesh join_triangles(const Mesh& mesh, double least_sine) {
     if (edge.on_boundary()) continue;
     const auto [a, b] = edge.nodes;
     const std::array corners{a, opposite(edge.right, edge), b, opposite(edge.left, edge)};
-    double quality = 1;
-    for (int i = 0; i < 4; ++i) {
-      quality = std::min(quality, sine(mesh.nodes[corners[(i + 3) % 4]], mesh.nodes[corners[i]],
-                                       mesh.nodes[corners[(i + 1) % 4]]));
-    }
+    const double quality = smallest_sine(mesh, corners);
     if (quality >= least_sine) joins.push_back({quality, edge.left, edge.right, corners});
   }
   std::stable_sort(joins.begin(), joins.end(),

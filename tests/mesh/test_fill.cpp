@@ -4,6 +4,9 @@
 #include "geometry/delaunay_mesh.hpp"
 #include "geometry/voronoi.hpp"
 #include "mesh/fill_mesh.hpp"
+#include "mesh/rectangle_mesh.hpp"
+#include "mesh/select.hpp"
+#include "mesh/smooth.hpp"
 #include "mesh_laws.hpp"
 #include "shapes.hpp"
 
@@ -95,7 +98,7 @@ TEST_CASE("even sizes and shapes where there is room", "[mesh]") {
   const double edge = std::sqrt(4 / std::sqrt(3.) * t.area / t.triangles);
   CHECK(edge == Approx(size).epsilon(.1));
   const MeshQuality q = mesh_quality(fill_mesh(outline, {}, size, ElementShape::quadrilateral));
-  CHECK(q.smallest_scaled_jacobian > .4);
+  CHECK(q.smallest_scaled_jacobian > .6);
   CHECK(std::sqrt(q.area / q.quadrilaterals) == Approx(size).epsilon(.1));
 }
 
@@ -129,6 +132,13 @@ TEST_CASE("regions that cannot be filled are refused", "[mesh]") {
                     Contains("hole 1 meets hole 0"));
   CHECK_THROWS_WITH(fill({samples::block(1, 1, 3, 3), samples::block(1.5, 1.5, 2, 2)}),
                     Contains("hole 1 lies inside hole 0"));
+  // Two vertices that agree as seen from vertex 0, and a slit of hardly any width.
+  const Polygon close({{.1, 0}, {40, 10}, {40, std::nextafter(10, 11)}, {30, 30}});
+  CHECK_THROWS_WITH(fill_mesh(close, {}, 5, ElementShape::triangle),
+                    Contains("nearer than 1e-9 of the size"));
+  const Polygon slit({{0, 0}, {4, 0}, {4, 4}, {2, 4}, {2, 1}, {2 - 1e-10, 4}, {0, 4}});
+  CHECK_THROWS_WITH(fill_mesh(slit, {}, 1, ElementShape::triangle),
+                    Contains("simplify the polygon"));
   for (const double size : {0., -1., std::nan(""), 1e-5}) {
     CHECK_THROWS_AS(fill({}, size), std::invalid_argument);
   }
@@ -161,5 +171,28 @@ TEST_CASE("Voronoi cells as elements", "[mesh]") {
     const PolygonMesh cells = cells_of_mesh(mesh);
     CHECK(cells.cells == voronoi.mesh.cells);
     CHECK(cells.points == in_world(region, voronoi.mesh).points);
+  }
+}
+
+TEST_CASE("smoothing makes the worst corner better and leaves the boundary", "[mesh]") {
+  samples::Random random(3);
+  const Mesh regular = rectangle_mesh({1, 1}, {8, 8}, {0, 0}, ElementShape::quadrilateral);
+  Mesh mesh = regular;
+  const std::vector<int> inner = nodes_where(mesh, {.box = Box{.1, .1, .9, .9}});
+  for (const int node : inner) {
+    mesh.nodes[node] += .05 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+  }
+  const Mesh rough = mesh;
+  smooth_nodes(mesh, 50);
+  check_laws(mesh, 1);
+  CHECK(mesh_quality(mesh).smallest_scaled_jacobian >
+        mesh_quality(rough).smallest_scaled_jacobian + .1);
+  for (const MeshEdge& edge : boundary_edges(mesh)) {
+    for (const int node : edge.nodes) CHECK(mesh.nodes[node] == regular.nodes[node]);
+  }
+  Mesh still = regular;
+  smooth_nodes(still, 5);
+  for (size_t i = 0; i < still.nodes.size(); ++i) {
+    CHECK((still.nodes[i] - regular.nodes[i]).norm() < 1e-12);
   }
 }
