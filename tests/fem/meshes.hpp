@@ -76,14 +76,14 @@ inline Mesh distorted(Mesh mesh, double share, std::uint64_t seed = 1) {
   return mesh;
 }
 
-/// A quad_grid whose upright lines lean: by `lean` times their height above the axis, all to one
-/// side (parallelograms) or in turn to both (trapezoids); the ends stay upright.
-inline Mesh leaning_grid(int nx, int ny, double w, double h, double lean, bool alternate) {
+/// A quad_grid with every other line along x moved by `share` of the elements' width, all to one
+/// side (parallelograms) or its nodes in turn to both (trapezoids); the ends stay upright.
+inline Mesh leaning_grid(int nx, int ny, double w, double h, double share, bool alternate) {
   Mesh mesh = quad_grid(nx, ny, w, h);
-  for (int j = 0; j <= ny; ++j) {
+  for (int j = 1; j <= ny; j += 2) {
     for (int i = 1; i < nx; ++i) {
-      Vec2& p = mesh.nodes[static_cast<size_t>(j) * (nx + 1) + i];
-      p.x() += (alternate && i % 2 ? -lean : lean) * p.y();
+      const double move = share * w / nx;
+      mesh.nodes[static_cast<size_t>(j) * (nx + 1) + i].x() += alternate && i % 2 ? -move : move;
     }
   }
   return mesh;
