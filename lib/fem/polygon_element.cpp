@@ -1,11 +1,21 @@
 #include "fem/polygon_element.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+
+#include "fem/quad4.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kRest = 0.1;  // kappa over modulus and thickness
+// kappa over modulus and thickness: the largest that leaves Voronoi meshes as accurate in bending
+// as none (docs/verification.md).
+constexpr double kRest = 0.1;
+
+// Four functionals of the displacements: a column of x, y per corner.
+using Functionals = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
 struct Stress {
   double xx, yy, xy;
@@ -27,29 +37,35 @@ double complementary(const Elastic& e, const Stress& a, const Stress& b) {
          a.xy * b.xy / e.shear();
 }
 
-}  // namespace
-
-void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double thickness,
-                             double* out) {
-  const int n = static_cast<int>(x.size());
-  const auto after = [&](int i) { return x[i + 1 < n ? i + 1 : 0]; };
-  const auto before = [&](int i) { return x[i > 0 ? i - 1 : n - 1]; };
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& p : x) mean += p / n;
-  double area = 0;
-  Vec2 centroid = Vec2::Zero();  // from the mean corner
-  for (int i = 0; i < n; ++i) {
-    const Vec2 p = x[i] - mean, q = after(i) - mean;
-    area += cross(p, q) / 2;
-    centroid += cross(p, q) / 6 * (p + q);
+// Those of Quad4: sqrt(stiffness) A.q and B.q, q the hourglass part of what is beside a linear
+// field.
+Functionals of_quadrilateral(std::span<const Vec2> x, const Elastic& e, double thickness) {
+  const auto [a, b, q] = quad::Reference(x);
+  const double det = cross(a, b);
+  const double bending = std::sqrt(4. / 3 * e.uniaxial() * thickness * det);
+  const double q_xi = cross(q, b) / det, q_eta = cross(a, q) / det;
+  constexpr int kXi[] = {-1, 1, 1, -1}, kEta[] = {-1, -1, 1, 1};
+  Functionals f = Functionals::Zero(4, 8);
+  for (int i = 0; i < 4; ++i) {
+    const double part = (kXi[i] * kEta[i] - q_xi * kXi[i] - q_eta * kEta[i]) / 4;
+    f.block<1, 2>(0, 2 * i) = bending / a.squaredNorm() * part * a;
+    f.block<1, 2>(1, 2 * i) = bending / b.squaredNorm() * part * b;
   }
-  centroid = mean + centroid / area;
+  return f;
+}
 
-  // Complementary energies of the stresses; each triangle at the centroid by its edge midpoints,
-  // exact for products of linear fields.
+// Work of the four stresses, orthonormal in complementary energy, on the boundary's displacements.
+Functionals of_linear_stresses(std::span<const Vec2> x, const Vec2& centroid, const Elastic& e,
+                               double thickness) {
+  const int n = static_cast<int>(x.size());
+  // Complementary energies; each triangle at the centroid by its edge midpoints, exact for
+  // products of linear fields.
   Eigen::Matrix4d energy = Eigen::Matrix4d::Zero();
+  // INT N_i (s n) ds on the two edges at each corner.
+  Functionals work = Functionals::Zero(4, 2 * n);
   for (int i = 0; i < n; ++i) {
-    const Vec2 p = x[i] - centroid, q = after(i) - centroid;
+    const int j = i + 1 < n ? i + 1 : 0;
+    const Vec2 p = x[i] - centroid, q = x[j] - centroid;
     for (const Vec2& middle : {Vec2(p / 2), Vec2(q / 2), Vec2((p + q) / 2)}) {
       const std::array<Stress, 4> s = linear_stresses(middle);
       for (int k = 0; k < 4; ++k) {
@@ -58,45 +74,61 @@ void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double t
         }
       }
     }
+    const Vec2 normal(q.y() - p.y(), p.x() - q.x());  // times the length
+    const std::array<Stress, 4> at_p = linear_stresses(p), at_q = linear_stresses(q);
+    for (int k = 0; k < 4; ++k) {
+      const Vec2 tp = thickness / 6 * at_p[k].on(normal), tq = thickness / 6 * at_q[k].on(normal);
+      work.block<1, 2>(k, 2 * i) += 2 * tp + tq;
+      work.block<1, 2>(k, 2 * j) += tp + 2 * tq;
+    }
   }
-  const Eigen::LLT<Eigen::Matrix4d> cholesky(energy);
+  return energy.llt().matrixL().solve(work);
+}
 
+// The same energy in functionals that are orthogonal on the corners, less what kappa makes of it.
+Functionals without_penalty(const Functionals& f, double kappa) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> modes(f * f.transpose());
+  Functionals g = modes.eigenvectors().transpose() * f;
+  for (int k = 0; k < 4; ++k) {
+    const double stiffness = modes.eigenvalues()[k];
+    g.row(k) *= stiffness > kappa ? std::sqrt(1 - kappa / stiffness) : 0;
+  }
+  return g;
+}
+
+}  // namespace
+
+void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double thickness,
+                             double* out) {
+  const int n = static_cast<int>(x.size());
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& p : x) mean += p / n;
+  double area = 0;
+  Vec2 centroid = Vec2::Zero();  // from the mean corner
+  for (int i = 0; i < n; ++i) {
+    const Vec2 p = x[i] - mean, q = x[i + 1 < n ? i + 1 : 0] - mean;
+    area += cross(p, q) / 2;
+    centroid += cross(p, q) / 6 * (p + q);
+  }
+  centroid = mean + centroid / area;
+
+  const double kappa = n > 4 ? kRest * e.uniaxial() * thickness : 0;
+  Functionals bending = Functionals::Zero(4, 2 * n);
+  if (n == 4) bending = of_quadrilateral(x, e, thickness);
+  if (n > 4) bending = without_penalty(of_linear_stresses(x, centroid, e, thickness), kappa);
   out[0] = area * thickness;
-  out[kLanes] = n > 4 ? kRest * e.uniaxial() * thickness : 0;
+  out[kLanes] = kappa;
   for (int i = 0; i < n; ++i) {
     double* corner = out + static_cast<ptrdiff_t>(2 + kPerCorner * i) * kLanes;
-    const Vec2 across = after(i) - before(i);
+    const Vec2 across = x[i + 1 < n ? i + 1 : 0] - x[i > 0 ? i - 1 : n - 1];
     const Vec2 place = x[i] - mean;
-    // Work of the tractions on the two edges that end here: INT N_i (s n) ds.
-    Eigen::Matrix<double, 4, 2> work = Eigen::Matrix<double, 4, 2>::Zero();
-    for (const auto& [from, to, at_from] :
-         {std::tuple(before(i), x[i], false), std::tuple(x[i], after(i), true)}) {
-      const Vec2 normal(to.y() - from.y(), from.x() - to.x());  // times the length
-      const std::array<Stress, 4> s_from = linear_stresses(from - centroid);
-      const std::array<Stress, 4> s_to = linear_stresses(to - centroid);
-      for (int k = 0; k < 4; ++k) {
-        const double near = 1. / 3, far = 1. / 6;
-        work.row(k) += thickness * ((at_from ? near : far) * s_from[k].on(normal) +
-                                    (at_from ? far : near) * s_to[k].on(normal));
-      }
+    const double values[] = {across.y() / (2 * area), -across.x() / (2 * area), place.x(),
+                             place.y()};
+    for (int k = 0; k < 4; ++k) {
+      corner[k * kLanes] = values[k];
+      corner[(4 + 2 * k) * kLanes] = bending(k, 2 * i);
+      corner[(5 + 2 * k) * kLanes] = bending(k, 2 * i + 1);
     }
-    if (n > 3)
-      work = cholesky.matrixL().solve(work);
-    else
-      work.setZero();
-    const double values[kPerCorner] = {across.y() / (2 * area),
-                                       -across.x() / (2 * area),
-                                       place.x(),
-                                       place.y(),
-                                       work(0, 0),
-                                       work(0, 1),
-                                       work(1, 0),
-                                       work(1, 1),
-                                       work(2, 0),
-                                       work(2, 1),
-                                       work(3, 0),
-                                       work(3, 1)};
-    for (int k = 0; k < kPerCorner; ++k) corner[k * kLanes] = values[k];
   }
 }
 

@@ -4,12 +4,14 @@
 //
 // The mean displacement gradient needs the boundary only. What the corners have beside a linear
 // field, r_i, gets
-// - the energy of the four equilibrated stress fields that are linear in the place (the hybrid
-//   stress method): exact in bending, as Quad4's two are. With s_k orthonormal in complementary
-//   energy, W = 1/2 SUM_k beta_k^2, beta_k = INT_boundary (s_k n).(F^T u) ds, F the mean gradient,
-//   so that a rotation does not count;
-// - from five corners on W = 1/2 kappa SUM_i |r_i|^2 against the patterns that no linear stress
-//   feels.
+// - with four corners the bending energy of Quad4, so that the two elements are one;
+// - from five corners on the energy of the four equilibrated stress fields that are linear in the
+//   place (the hybrid stress method). With s_k orthonormal in complementary energy,
+//   W = 1/2 SUM_k beta_k^2, beta_k = INT_boundary (s_k n).(F^T u) ds, F the mean gradient, so that
+//   a rotation does not count;
+// - and 1/2 kappa |r'|^2, r' the part of r that no linear stress feels (orthogonal to the beta_k).
+//   Since |r'|^2 is |r|^2 less the squares of orthogonal functionals, prepare() folds it into the
+//   beta_k and the kernel sees 1/2 kappa SUM |r_i|^2 alone.
 #pragma once
 
 #include <span>

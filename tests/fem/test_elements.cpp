@@ -133,6 +133,27 @@ TEST_CASE("internal force is the gradient of the strain energy", "[fem]") {
   }
 }
 
+TEST_CASE("a polygon with four corners is Q4", "[fem]") {
+  samples::Random random(4);
+  const std::vector<Vec2> convex{{0, 0}, {1.3, -.1}, {1.1, .8}, {-.2, 1.1}};
+  const std::vector<Vec2> reflex{{0, 0}, {2, -.3}, {.8, .7}, {-.2, 1.9}};
+  for (const Elastic& material : materials()) {
+    for (const std::vector<Vec2>& x : {convex, reflex}) {
+      const OneElement quad(ElementKind::quad4, x, material);
+      const OneElement polygon(ElementKind::polygon, x, material);
+      for (int trial = 0; trial < 20; ++trial) {
+        const auto u = random_field(4, .2, random);
+        const auto f = quad.force(u), g = polygon.force(u);
+        CHECK(polygon.energy(u) == Approx(quad.energy(u)).epsilon(1e-13));
+        for (int i = 0; i < 4; ++i) {
+          CHECK(g[i].x == Approx(f[i].x).margin(1e-13));
+          CHECK(g[i].y == Approx(f[i].y).margin(1e-13));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("a rigid motion makes no force", "[fem]") {
   for (const Elastic& material : materials()) {
     for (const OneElement& e : elements(material)) {

@@ -1,0 +1,74 @@
+// Patch test: in any mesh, constant stress is exact.
+#include <catch2/catch.hpp>
+
+#include "fem/finite_elements.hpp"
+#include "fem/meshes.hpp"
+#include "fem/static_solution.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+struct Patch {
+  ElementKind kind;
+  Mesh mesh;
+};
+
+std::vector<Patch> patches() {
+  const Mesh quads = distorted(quad_grid(4, 4, 1, 1), .35);
+  const Mesh cells = voronoi_cells(60, 1, 1, 1);
+  const Mesh dented = distorted(cells, .45), pairs = merged_cells(cells);
+  CHECK(reflex_corners(dented) > 5);
+  CHECK(reflex_corners(pairs) > 5);
+  return {{ElementKind::tri3, triangles(quads)}, {ElementKind::quad4, quads},
+          {ElementKind::quad4_full, quads},      {ElementKind::polygon, quads},
+          {ElementKind::polygon, cells},         {ElementKind::polygon, dented},
+          {ElementKind::polygon, pairs}};
+}
+
+}  // namespace
+
+TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
+  double worst = 0;
+  for (const Patch& patch : patches()) {
+    const int nodes = static_cast<int>(patch.mesh.nodes.size());
+    const std::vector<bool> outline = outline_nodes(patch.mesh);
+    CHECK_NOTHROW(tiling_boundary(cells_of(patch.mesh)));
+    for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
+      for (const Plane plane : {Plane::stress, Plane::strain}) {
+        for (const double size : {1e-6, 1.}) {
+          const Elastic material{law, plane, 3, .3};
+          const Tensor<double> h{.12 * size, .09 * size, -.02 * size, -.07 * size};
+          const Structure structure(patch.kind, patch.mesh, material);
+          Supports supports(patch.mesh);
+          VectorXd guess = VectorXd::Zero(structure.size());
+          for (int i = 0; i < nodes; ++i) {
+            const Vec2 p = patch.mesh.nodes[i];
+            const Point<double> u = h * Point<double>{p.x(), p.y()};
+            if (outline[i]) supports.fix(i, {u.x, u.y});
+            guess.segment<2>(2 * i) = Vec2(.8 * u.x, .8 * u.y);
+          }
+          const VectorXd u =
+              solve_newton(structure, supports, VectorXd::Zero(structure.size()), guess);
+          const ElementSet set{
+              .kind = patch.kind, .mesh = &patch.mesh, .material = material, .density = 1};
+          const FiniteElements fem(std::span(&set, 1), 1);
+          const Mesh one{{{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}, {0, 3}, {}};
+          const ElementSet single{
+              .kind = ElementKind::tri3, .mesh = &one, .material = material, .density = 1};
+          const CauchyStress exact = FiniteElements(std::span(&single, 1), 1)
+                                         .stresses(std::array{0., 0., h.xx, h.yx, h.xy, h.yy})[0];
+          const double scale = std::abs(exact.xx) + std::abs(exact.yy) + std::abs(exact.xy);
+          for (const CauchyStress& s : fem.stresses({u.data(), static_cast<size_t>(u.size())})) {
+            const double error = std::max({std::abs(s.xx - exact.xx), std::abs(s.yy - exact.yy),
+                                           std::abs(s.xy - exact.xy), std::abs(s.zz - exact.zz)});
+            worst = std::max(worst, error / scale);
+          }
+        }
+      }
+    }
+  }
+  INFO("largest stress error " << worst);
+  CHECK(worst < 1e-12);
+}
