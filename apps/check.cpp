@@ -18,6 +18,21 @@ int check_command(const CheckOptions& options) {
     roofs += body.potential.roof.has_value();
     fields += body.potential.distance.has_value();
   }
+  int elements = 0, supports = 0, loads = 0;
+  bool damped = false;
+  std::string kinds;
+  for (const DeformableBody& body : model.deformables) {
+    elements += body.mesh.element_count();
+    supports += static_cast<int>(body.supports.size());
+    loads += static_cast<int>(body.dead_loads.size() + body.pressures.size());
+    const Material& m = model.materials[body.material];
+    damped = damped || m.mass_damping > 0 || m.stiffness_damping > 0;
+    const ElementName& element = kElements[static_cast<size_t>(body.element)];
+    const std::string kind = fmt::format("{} ({}, plane {})", element.name,
+                                         kElasticLaws[static_cast<size_t>(m.elastic.law)],
+                                         kPlanes[static_cast<size_t>(m.elastic.plane)]);
+    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+  }
   const bool contact = model.bodies.size() > 1 && fixed < static_cast<int>(model.bodies.size());
   const double steps = std::ceil(scene.time.end / simulation.step_size());
   const auto say = [](const char* what, const std::string& text) {
@@ -28,17 +43,23 @@ int check_command(const CheckOptions& options) {
   };
   fmt::print("{}: a valid scene\n", scene.file);
   say("name", model.name);
-  say("bodies", fmt::format("{} rigid ({} free, {} fixed, {} prescribed), {} vertices",
-                            model.bodies.size(), free, fixed, prescribed, vertices));
-  say("elements", "0");
+  say("bodies",
+      fmt::format("{} rigid ({} free, {} fixed, {} prescribed), {} vertices; {} deformable",
+                  model.bodies.size(), free, fixed, prescribed, vertices,
+                  model.deformables.size()));
+  say("elements", fmt::format("{}, {} nodes", elements, model.node_count()));
   say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end, steps));
   say("time step",
-      fmt::format(
-          "{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
-          scene.time.fixed_step ? "fixed" : fmt::format("auto, safety {:g}", scene.time.safety),
-          simulation.limit().reason, simulation.stability_limit()));
-  say("output", fmt::format("{} frames, histories of {} bodies every {:g} s",
-                            scene.output.frames + 1, scene.output.track.size(),
+      fmt::format("{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
+                  scene.time.fixed_step ? "fixed"
+                  : simulation.limit().reason.starts_with("elements")
+                      ? fmt::format("auto, safety {:g}", scene.time.element_safety)
+                      : fmt::format("auto, safety {:g}", scene.time.safety),
+                  simulation.limit().reason, simulation.stability_limit()));
+  say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
+                            scene.output.frames + 1,
+                            scene.output.track.size() + scene.output.track_deformables.size(),
+                            scene.output.points.size(),
                             scene.output.history_interval.value_or(scene.time.end / 1000)));
   say("expects", fmt::format("{} results", scene.expectations.size()));
   say("at t = 0", fmt::format("{} touching pairs", simulation.counts().touching_now));
@@ -73,7 +94,10 @@ int check_command(const CheckOptions& options) {
        law.normal_damping > 0 ? fmt::format("normal viscous, ratio {:g}", law.normal_damping)
        : law.mass_damping > 0 ? fmt::format("mass, {:g} 1/s", law.mass_damping)
                               : "");
-  uses("finite elements", false, "all bodies are rigid");
+  uses("finite elements", elements > 0, elements > 0 ? kinds : "all bodies are rigid");
+  uses("supports", supports > 0, supports > 0 ? fmt::format("{}", supports) : "");
+  uses("loads", loads > 0, loads > 0 ? fmt::format("{}", loads) : "");
+  uses("Rayleigh damping", damped, "");
   return exit_code::done;
 }
 
