@@ -34,7 +34,7 @@ TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
   for (const Patch& patch : patches()) {
     const int nodes = static_cast<int>(patch.mesh.nodes.size());
     const std::vector<bool> outline = outline_nodes(patch.mesh);
-    CHECK_NOTHROW(tiling_boundary(cells_of(patch.mesh)));
+    CHECK_NOTHROW(tiling_boundary(cells_of_mesh(patch.mesh)));
     for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
       for (const Plane plane : {Plane::stress, Plane::strain}) {
         for (const double size : {1e-6, 1.}) {
