@@ -10,8 +10,8 @@
 namespace apothem {
 namespace {
 
-// kappa over modulus and thickness: the largest that leaves Voronoi meshes as accurate in bending
-// as none (docs/verification.md).
+// kappa over modulus and thickness: softer cells give way under single nodal forces, stiffer ones
+// bend less accurately (docs/verification.md).
 constexpr double kRest = 0.1;
 
 // Four functionals of the displacements: a column of x, y per corner.

@@ -8,34 +8,24 @@
 
 #include "geometry/samples.hpp"
 #include "geometry/voronoi.hpp"
-#include "mesh/mesh.hpp"
+#include "mesh/fill_mesh.hpp"
+#include "mesh/rectangle_mesh.hpp"
+#include "mesh/split.hpp"
 
 namespace apothem::test {
 
 /// [0, w] x [-h/2, h/2] in nx x ny quadrilaterals.
 inline Mesh quad_grid(int nx, int ny, double w, double h) {
-  Mesh mesh;
-  for (int j = 0; j <= ny; ++j) {
-    for (int i = 0; i <= nx; ++i) mesh.nodes.emplace_back(w * i / nx, h * j / ny - h / 2);
-  }
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      const int a = j * (nx + 1) + i, b = a + nx + 1;
-      mesh.add_element(std::array{a, a + 1, b + 1, b});
-    }
-  }
-  return mesh;
+  return rectangle_mesh({w, h}, {nx, ny}, {0, -h / 2}, ElementShape::quadrilateral);
 }
 
-/// Each quadrilateral in two triangles; the diagonals alternate in a quad_grid of odd width.
+/// Each quadrilateral in two triangles.
 inline Mesh triangles(const Mesh& quads) {
   Mesh mesh;
   mesh.nodes = quads.nodes;
   for (int e = 0; e < quads.element_count(); ++e) {
     const auto q = quads.element(e);
-    const int k = e % 2;
-    mesh.add_element(std::array{q[k], q[k + 1], q[k + 2]});
-    mesh.add_element(std::array{q[k], q[k + 2], q[(k + 3) % 4]});
+    add_quadrilateral(mesh, {q[0], q[1], q[2], q[3]}, ElementShape::triangle, e % 2 != 0);
   }
   return mesh;
 }
@@ -89,24 +79,11 @@ inline Mesh leaning_grid(int nx, int ny, double w, double h, double share, bool 
   return mesh;
 }
 
-inline PolygonMesh cells_of(const Mesh& mesh) {
-  PolygonMesh cells{mesh.nodes, {}};
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const auto c = mesh.element(e);
-    cells.cells.emplace_back(c.begin(), c.end());
-  }
-  return cells;
-}
-
 /// [0, w] x [-h/2, h/2] in Voronoi cells, short edges collapsed.
 inline Mesh voronoi_cells(int cells, double w, double h, int lloyd = 50, std::uint64_t seed = 1) {
   const Polygon region = samples::block(0, -h / 2, w, h / 2);
-  const VoronoiMesh made =
-      voronoi_mesh(region, VoronoiOptions{.cells = cells, .seed = seed, .lloyd = lloyd});
-  Mesh mesh;
-  for (const Vec2& p : made.mesh.points) mesh.nodes.push_back(p + region.origin());
-  for (const auto& cell : made.mesh.cells) mesh.add_element(cell);
-  return mesh;
+  const VoronoiOptions options{.cells = cells, .seed = seed, .lloyd = lloyd};
+  return mesh_of_cells(region, in_world(region, voronoi_mesh(region, options).mesh));
 }
 
 /// Cells joined in pairs across one edge: mostly not convex. Cells without a partner stay.

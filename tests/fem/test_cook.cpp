@@ -66,7 +66,7 @@ TEST_CASE("Cook's membrane", "[fem]") {
     }
     if (long_run()) WARN(line);
     if (n == 2) {
-      // What the literature's tables give for Pian and Sumihara's element ...
+      // What tables in the literature give for Pian and Sumihara's element ...
       CHECK(middle_displacement(ElementKind::quad4, quads) == Approx(21.13).margin(.01));
       // ... and for two by two points.
       CHECK(middle_displacement(ElementKind::quad4_full, quads) == Approx(11.85).margin(.01));

@@ -1,5 +1,6 @@
 // Patch test: in any mesh, constant stress is exact.
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "fem/finite_elements.hpp"
 #include "fem/meshes.hpp"
@@ -34,7 +35,7 @@ TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
   for (const Patch& patch : patches()) {
     const int nodes = static_cast<int>(patch.mesh.nodes.size());
     const std::vector<bool> outline = outline_nodes(patch.mesh);
-    CHECK_NOTHROW(tiling_boundary(cells_of(patch.mesh)));
+    CHECK_NOTHROW(tiling_boundary(cells_of_mesh(patch.mesh)));
     for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
       for (const Plane plane : {Plane::stress, Plane::strain}) {
         for (const double size : {1e-6, 1.}) {
@@ -71,4 +72,28 @@ TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
   }
   INFO("largest stress error " << worst);
   CHECK(worst < 1e-12);
+}
+
+TEST_CASE("only rigid motions have no energy", "[fem]") {
+  const Elastic material{ElasticLaw::st_venant_kirchhoff, Plane::stress, 3, .3};
+  const auto softest = [&](ElementKind kind, const std::vector<Vec2>& corners) {
+    Mesh one;
+    one.nodes = corners;
+    std::vector<int> numbers(corners.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    one.add_element(numbers);
+    const MatrixXd k = Structure(kind, one, material).stiffness();
+    const VectorXd values = Eigen::SelfAdjointEigenSolver<MatrixXd>(k).eigenvalues();
+    CHECK(values.head<3>().cwiseAbs().maxCoeff() < 1e-14 * material.young);
+    return values[3] / material.young;
+  };
+  const std::vector<Vec2> quad{{0, 0}, {1.3, -.1}, {1.1, .8}, {-.2, 1.1}};
+  CHECK(softest(ElementKind::quad4, quad) > .05);
+  CHECK(softest(ElementKind::quad4_full, quad) > .05);
+  CHECK(softest(ElementKind::tri3, {quad[0], quad[1], quad[3]}) > .05);
+  for (const int n : {3, 4, 5, 6, 7, 12}) {
+    CHECK(softest(ElementKind::polygon, samples::regular(n).vertices()) > .05);
+  }
+  CHECK(softest(ElementKind::polygon, samples::l_shape().vertices()) > .05);
+  CHECK(softest(ElementKind::polygon, samples::star(5, .4).vertices()) > .05);
 }
