@@ -190,7 +190,12 @@ void Deformables::find_forces(State& state, double dt) {
   }
 }
 
-void Deformables::apply_loads(State& state) {
+void Deformables::restore(const DeformableBalance& balance, const State& state) {
+  balance_ = balance;
+  apply_loads(state);
+}
+
+void Deformables::apply_loads(const State& state) {
   loads_.clear();
   for (const DeformableBody& body : model_.deformables) {
     for (const DeadLoad& load : body.dead_loads) {

@@ -47,7 +47,7 @@ class Deformables {
   [[nodiscard]] std::string inverted(const State& state) const;
 
   [[nodiscard]] const DeformableBalance& balance() const { return balance_; }
-  void restore(const DeformableBalance& balance) { balance_ = balance; }
+  void restore(const DeformableBalance& balance, const State& state);
 
  private:
   struct Driven {
@@ -58,7 +58,7 @@ class Deformables {
   void start(State& state) const;
   void hold(const DeformableBody& body);
   void find_limit(const State& state);
-  void apply_loads(State& state);
+  void apply_loads(const State& state);
   void book(const State& state, double h);
 
   const Model& model_;

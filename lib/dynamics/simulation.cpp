@@ -199,7 +199,7 @@ void Simulation::restore(const Snapshot& s) {
   energy_in_play_ = s.energy_in_play;
   mass_damping_loss_ = s.mass_damping_loss;
   if (tangential_) tangential_->restore(s.tangential);
-  if (deformables_) deformables_->restore(s.deformables);
+  if (deformables_) deformables_->restore(s.deformables, state_);
   for (int i = 0; i < shapes_.size(); ++i) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
     shapes_.place(i, x[0], x[1], x[2]);

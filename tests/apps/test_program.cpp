@@ -174,6 +174,53 @@ TEST_CASE("Ctrl-C finishes the step and closes the files", "[program]") {
   CHECK(content(folder / "long/frames.pvd").ends_with("</VTKFile>\n"));
 }
 
+TEST_CASE("a resumed run of elements with damping continues bit for bit", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("beam.json", R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2,
+                             "damping": { "model": "rayleigh", "mass": 3, "stiffness": 1e-6 } } },
+    "gravity": [0, -9.81],
+    "bodies": [ { "name": "beam", "material": "rock", "spin": 1,
+      "mesh": { "rectangle": { "size": [2, 0.5], "cells": [16, 4] } },
+      "supports": [ { "where": { "x": 0 }, "velocity": [[0, 0, 0], [0.01, 1, 0.5]] } ],
+      "loads": [ { "where": { "group": "top" }, "pressure": 1e6, "history": [[0, 0], [0.01, 1]] } ] } ],
+    "time": { "end": 0.02 },
+    "output": { "frames": 10, "history": { "interval": 1e-4, "track": [
+      { "body": "beam" }, { "body": "beam", "point": [1.9, 0.3] } ] } } })");
+  REQUIRE(run({"run", file, "-o", folder / "whole"}, folder).code == 0);
+  REQUIRE(run({"run", file, "-o", folder / "parts", "--until", "0.0073"}, folder).code == 0);
+  REQUIRE(run({"run", file, "-o", folder / "parts", "--resume", "--threads", "3"}, folder).code ==
+          0);
+  for (const char* name :
+       {"history.csv", "energy.csv", "momentum.csv", "frames/bodies_000010.vtu"}) {
+    INFO(name);
+    CHECK((content(folder / (std::string("whole/") + name)) ==
+           content(folder / (std::string("parts/") + name))));
+  }
+  const HistoryTable energy = read_history(folder / "whole/energy.csv");
+  CHECK(std::abs(energy.column("total_error")->back()) < 1e-3 * energy.column("kinetic")->back());
+  const HistoryTable momentum = read_history(folder / "whole/momentum.csv");
+  CHECK(std::abs(momentum.column("py_error")->back()) <
+        1e-9 * std::abs(momentum.column("py")->back()));
+}
+
+TEST_CASE("a load too heavy for the material stops with the place", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("crushed.json", R"({
+    "materials": { "soft": { "density": 1000, "young": 1e6, "poisson": 0.2 } },
+    "bodies": [ { "name": "block", "material": "soft",
+      "mesh": { "rectangle": { "size": [1, 1], "cells": [4, 4] } },
+      "supports": [ { "where": { "y": 0 }, "fix": ["x", "y"] } ],
+      "loads": [ { "where": { "group": "top" }, "pressure": 5e6 } ] } ],
+    "time": { "end": 1 }, "output": { "history": { "interval": 1e-3 } } })");
+  const Result r = run({"run", file, "-o", folder / "crushed"}, folder);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("\"block\"") != std::string::npos);
+  CHECK(r.err.find("inside out") != std::string::npos);
+  CHECK(lines(r.err) == 1);
+  CHECK(Json::parse(content(folder / "crushed/run.json"))["status"] == "unstable");
+}
+
 TEST_CASE("a resumed run continues bit for bit", "[program]") {
   const Folder folder;
   const std::string file = test::kSource + "/data/scenes/two-body-collision.json";

@@ -16,7 +16,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fem/finite_elements.hpp"
 #include "folder.hpp"
+#include "mesh/rectangle_mesh.hpp"
 #include "output/files.hpp"
 #include "output/frames.hpp"
 #include "output/history.hpp"
@@ -157,6 +159,55 @@ TEST_CASE("VTK's own reader gets a mesh back, with shared points", "[output]") {
   CHECK(grid->GetCellData()->GetArray("area")->GetTuple1(0) == Approx(.2).epsilon(1e-15));
   CHECK(grid->GetCellData()->GetArray("area")->GetTuple1(1) == Approx(1.8).epsilon(1e-15));
   CHECK_THROWS_AS(write_mesh("/proc/none/mesh.vtu", mesh), SystemFailure);
+}
+
+TEST_CASE("frames of a deformed body hold its stresses", "[output]") {
+  // A uniform stretch along x and shear, in plane strain: stresses by Hooke's law to 1e-6.
+  const Folder folder;
+  Model model;
+  model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::strain, 1e9, .25}}};
+  DeformableBody body;
+  body.name = "block";
+  body.mesh = rectangle_mesh({2, 1}, {4, 2}, {0, 0}, ElementShape::quadrilateral);
+  model.deformables = {body};
+  FiniteElements elements(std::vector<ElementSet>{{body.element, &model.deformables[0].mesh, 0,
+                                                   model.materials[0].elastic, 2000, 1, 0}},
+                          1);
+  State state;
+  for (const Vec2& x : body.mesh.nodes) {
+    state.displacement.insert(state.displacement.end(), {1e-7 * x.x() + 2e-7 * x.y(), 0});
+    state.node_velocity.insert(state.node_velocity.end(), {x.y(), 7});
+  }
+  FrameWriter frames(folder.path(), model);
+  frames.write(state, {}, elements.stresses(state.displacement));
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / entries(folder / "frames.pvd")[0].second).c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  REQUIRE(grid->GetNumberOfCells() == 8);
+  REQUIRE(grid->GetNumberOfPoints() == 15);
+  // lambda = mu = E / 2.5
+  const double mu = 4e8, xx = 3 * mu * 1e-7, yy = mu * 1e-7, xy = mu * 2e-7;
+  const double radius = std::hypot((xx - yy) / 2, xy),
+               mises = std::sqrt(((xx - yy) * (xx - yy) + xx * xx * 4 / 9) / 2 + 3 * xy * xy);
+  for (vtkDataSetAttributes* data :
+       std::initializer_list<vtkDataSetAttributes*>{grid->GetCellData(), grid->GetPointData()}) {
+    const vtkIdType last = data->GetNumberOfTuples() - 1;
+    const auto value = [&](const char* name, int component) {
+      return data->GetArray(name)->GetComponent(last, component);
+    };
+    CHECK(value("stress", 0) == Approx(xx).epsilon(1e-6));
+    CHECK(value("stress", 1) == Approx(yy).epsilon(1e-6));
+    CHECK(value("stress", 2) == Approx(xy).epsilon(1e-6));
+    CHECK(value("stress_zz", 0) == Approx(yy).epsilon(1e-6));
+    CHECK(value("principal_stress", 0) == Approx((xx + yy) / 2 + radius).epsilon(1e-6));
+    CHECK(value("principal_stress", 1) == Approx((xx + yy) / 2 - radius).margin(1e-6 * radius));
+    CHECK(value("von_mises", 0) == Approx(mises).epsilon(1e-6));
+    CHECK(value("strain_energy_density", 0) == Approx((xx * 1e-7 + xy * 2e-7) / 2).epsilon(1e-6));
+  }
+  const int corner = 14;
+  CHECK(grid->GetPointData()->GetArray("velocity")->GetComponent(corner, 1) == 7);
+  CHECK(grid->GetPoint(corner)[0] == Approx(2 + 4e-7).epsilon(1e-14));
 }
 
 TEST_CASE("histories read back to the same doubles", "[output]") {
