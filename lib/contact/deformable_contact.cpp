@@ -14,6 +14,9 @@ namespace {
 // Below this many candidates the threads cost more than they give.
 constexpr int kCandidatesWorthThreads = 10000;
 
+// More than the round-off of an area, relative.
+constexpr double kRound = 1e-9;
+
 bool contains(const Box& outer, const Box& inner) {
   return inner.x0 >= outer.x0 && inner.y0 >= outer.y0 && inner.x1 <= outer.x1 &&
          inner.y1 <= outer.y1;
@@ -90,6 +93,7 @@ void DeformableContact::close_body(const Outlines::Body& body) {
   body_stiffness_.resize(o.bodies.size());
   fx_.resize(n), fy_.resize(n);
   ends_.resize(4 * n);
+  events_.resize(n), areas_.resize(n);
   kept_edges_.clear();  // search anew
 }
 
@@ -143,16 +147,19 @@ void DeformableContact::find_edges() {
   }
 }
 
-// An edge's face ends where it shrinks to a point, or one of its neighbours, or where another front
-// arrives.
+// An edge's face ends where it shrinks to a point or another front arrives, there or at a
+// neighbour; the second neighbours count as well because events follow each other.
 void DeformableContact::find_depths() {
   Outlines& o = outlines_;
   const int n = o.size();
-  for (int i = 0; i < n; ++i) o.depth[i] = o.clearance[i];
   for (int i = 0; i < n; ++i) {
     const CollarFace<double> f = o.face(i);
-    const double event = collar_event(f.length, f.alpha(), f.beta());
-    for (const int k : {o.previous[i], i, o.next[i]}) o.depth[k] = std::min(o.depth[k], event);
+    events_[i] = std::min(o.clearance[i], collar_event(f.length, f.alpha(), f.beta()));
+  }
+  for (int i = 0; i < n; ++i) {
+    const int p = o.previous[i], q = o.next[i];
+    o.depth[i] =
+        std::min({events_[o.previous[p]], events_[p], events_[i], events_[q], events_[o.next[q]]});
   }
 }
 
@@ -311,6 +318,7 @@ void DeformableContact::evaluate() {
   contacts_.clear();
   depth_ = {};
   std::fill(ends_.begin(), ends_.end(), 0.);
+  std::fill(areas_.begin(), areas_.end(), 0.);
   std::fill(body_stiffness_.begin(), body_stiffness_.end(), 0.);
   const auto push = [&](int edge, double start_x, double start_y, double end_x, double end_y) {
     double* f = ends_.data() + 4 * static_cast<size_t>(edge);
@@ -329,21 +337,20 @@ void DeformableContact::evaluate() {
     const double b = k * p.along / o.length[f], a = k * p.area - b;
     push(f, -a * o.ty[f], a * o.tx[f], -b * o.ty[f], b * o.tx[f]);
 
+    areas_[f] += p.area;
     if (!(p.deepest <= 0)) contacts_.push_back({e, f, p});
     const double stiffness = k * (p.to - p.from) * o.length[e];
     body_stiffness_[o.body[e]] += stiffness;
     body_stiffness_[o.body[f]] += stiffness;
     depth_.largest = std::max(depth_.largest, p.deepest);
     const double ratio = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
-    if (ratio > depth_.ratio) {
-      const double u = (p.from + p.to) / 2;
-      const int q = o.next[e];
-      depth_.ratio = ratio;
-      depth_.body = o.body[f];
-      depth_.other = o.body[e];
-      depth_.place = {o.x[e] + u * (o.x[q] - o.x[e]), o.y[e] + u * (o.y[q] - o.y[e])};
-      depth_.limit = o.depth[f];
-    }
+    if (ratio > depth_.ratio) note_depth(ratio, e, f, (p.from + p.to) / 2);
+  }
+  // Where a body contains the end of a collar without its outline crossing it, Green's theorem has
+  // taken the complement.
+  for (const auto& [e, f, p] : contacts_) {
+    if (depth_.ratio < 1 && areas_[f] < -kRound * o.length[f] * o.depth[f])
+      note_depth(1, e, f, (p.from + p.to) / 2);
   }
   for (int i = 0; i < o.size(); ++i) {
     const double* own = ends_.data() + 4 * static_cast<size_t>(i);
@@ -351,6 +358,16 @@ void DeformableContact::evaluate() {
     fx_[i] = before[2] + own[0];
     fy_[i] = before[3] + own[1];
   }
+}
+
+void DeformableContact::note_depth(double ratio, int e, int f, double u) {
+  const Outlines& o = outlines_;
+  const int q = o.next[e];
+  depth_.ratio = ratio;
+  depth_.body = o.body[f];
+  depth_.other = o.body[e];
+  depth_.place = {o.x[e] + u * (o.x[q] - o.x[e]), o.y[e] + u * (o.y[q] - o.y[e])};
+  depth_.limit = o.depth[f];
 }
 
 void DeformableContact::add_forces(std::span<double> node_force) const {

@@ -179,12 +179,14 @@ class DeformableContact {
   void search();
   void find_clearance(int body);
   void find_candidates(int a, int b);
+  void note_depth(double ratio, int edge, int face, double u);
 
   double stiffness_, thickness_, skin_;
   int threads_;
   Outlines outlines_;
-  std::vector<double> slope_;  // of each edge's face
-  int measured_ = 0;           // so many bodies have their clearances, if they are rigid
+  std::vector<double> events_;  // height at which each face changes its shape
+  std::vector<double> slope_;   // of each edge's face
+  int measured_ = 0;            // so many bodies have their clearances, if they are rigid
 
   std::vector<Box> edge_boxes_, face_boxes_;  // now
   std::vector<Box> kept_edges_, kept_faces_;  // grown, of the last search
@@ -199,7 +201,8 @@ class DeformableContact {
   std::vector<CollarPiece<double>> pieces_;  // of the candidates
   std::vector<char> touching_;
   std::vector<EdgeFaceContact> contacts_;
-  std::vector<double> ends_;  // forces of each edge on its two ends, four numbers
+  std::vector<double> ends_;   // forces of each edge on its two ends, four numbers
+  std::vector<double> areas_;  // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;
   std::vector<double> body_stiffness_;
   Depth depth_;
