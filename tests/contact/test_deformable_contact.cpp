@@ -205,11 +205,11 @@ TEST_CASE("a body pushed through the collar is noticed", "[deformable_contact]")
 
 TEST_CASE("a body that has swallowed the end of a collar is noticed", "[deformable_contact]") {
   const std::vector<Vec2> block = samples::block(-2, -4, 2, 0).vertices();
-  // The top of the triangle's collar is at (0, y + .5).
-  for (const double y : {-.3, -.45, -.55, -.8, -1.}) {
-    const OutlinePair pair(block, {{0, y}, {.866, y + 1.5}, {-.866, y + 1.5}}, 1, 1);
+  // The top of the triangle's collar is at (0, y + 1).
+  for (const double y : {-.3, -.8, -.95, -1.05, -1.2, -1.4}) {
+    const OutlinePair pair(block, {{0, y}, {.866, y + 1.5}, {-.866, y + 1.5}}, 2, 1);
     CAPTURE(y);
-    CHECK((pair.contact.depth().ratio < 1) == (y > -.5));
+    CHECK((pair.contact.depth().ratio < 1) == (y > -1));
   }
 }
 
