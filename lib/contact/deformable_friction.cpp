@@ -1,0 +1,149 @@
+#include "contact/deformable_friction.hpp"
+
+#include <algorithm>
+
+namespace apothem {
+namespace {
+
+// Pressure-weighted coefficients of the slip rate: of t at both ends of the edge and of the face,
+// and of n at the ends of the face.
+struct SlipRate {
+  double p, q, a, b, couple;
+};
+
+SlipRate slip_rate(const Outlines& o, const EdgeFaceContact& c, double weight) {
+  const int e = c.edge, e1 = o.next[e], f = c.face;
+  const double tx = o.tx[f], ty = o.ty[f], length = o.length[f];
+  const double px = o.x[e] - o.x[f], py = o.y[e] - o.y[f];
+  const double dx = o.x[e1] - o.x[e], dy = o.y[e1] - o.y[e];
+  const double sum = weight * c.piece.sum, first = weight * c.piece.first;
+  const double b = ((tx * px + ty * py) * sum + (tx * dx + ty * dy) * first) / length;
+  const double couple = ((tx * py - ty * px) * sum + (tx * dy - ty * dx) * first) / length;
+  return {sum - first, first, b - sum, -b, couple};
+}
+
+}  // namespace
+
+void DeformableFriction::find_velocities(const DeformableContact& contact,
+                                         std::span<const double> node_velocity,
+                                         std::span<const double> velocity) {
+  const Outlines& o = contact.outlines();
+  vx_.resize(o.size()), vy_.resize(o.size());
+  for (const Outlines::Body& body : o.bodies) {
+    for (int i = body.first; i < body.end; ++i) {
+      if (body.rigid()) {
+        const double* v = velocity.data() + 3 * static_cast<size_t>(body.entry);
+        vx_[i] = v[0] - v[2] * (o.y[i] - body.cy);
+        vy_[i] = v[1] + v[2] * (o.x[i] - body.cx);
+      } else {
+        vx_[i] = node_velocity[2 * static_cast<size_t>(o.node[i])];
+        vy_[i] = node_velocity[2 * static_cast<size_t>(o.node[i]) + 1];
+      }
+    }
+  }
+}
+
+void DeformableFriction::update(const DeformableContact& contact,
+                                std::span<const double> node_velocity,
+                                std::span<const double> velocity, double dt) {
+  const Outlines& o = contact.outlines();
+  const std::vector<EdgeFaceContact>& contacts = contact.contacts();
+  find_velocities(contact, node_velocity, velocity);
+  fx_.assign(o.size(), 0), fy_.assign(o.size(), 0);
+  body_stiffness_.assign(o.bodies.size(), 0);
+  std::swap(now_, before_);
+  now_.slips.clear();
+  now_.energy = 0;
+  now_.friction_loss = before_.friction_loss;
+
+  const auto key = [](const EdgeSlip& s) { return std::pair(s.edge, s.partner); };
+  auto old = before_.slips.begin();
+  const auto drop = [&] { now_.friction_loss += old++->energy(); };
+  const auto partner = [&](const EdgeFaceContact& c) {
+    return o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face];
+  };
+  for (size_t first = 0, end; first < contacts.size(); first = end) {
+    EdgeSlip slip{contacts[first].edge, partner(contacts[first]), 0, 0};
+    for (end = first; end < contacts.size() && contacts[end].edge == slip.edge &&
+                      partner(contacts[end]) == slip.partner;)
+      ++end;
+    const int body = o.body[slip.edge], other = o.body[contacts[first].face];
+    const Friction& friction = between(body, other);
+    if (!(friction.coefficient > 0)) continue;
+
+    double normal = 0, rate = 0;
+    for (size_t i = first; i < end; ++i) {
+      const EdgeFaceContact& c = contacts[i];
+      const double weight = contact.slope(c) * o.length[c.edge];
+      normal += weight * c.piece.sum;
+      slip.stiffness += friction.tangential_stiffness * contact.thickness() /
+                        o.bodies[other].reference * (c.piece.to - c.piece.from) * o.length[c.edge];
+      const SlipRate k = slip_rate(o, c, weight);
+      const int p = c.edge, q = o.next[p], a = c.face, b = o.next[a];
+      const double x = k.p * vx_[p] + k.q * vx_[q] + k.a * vx_[a] + k.b * vx_[b];
+      const double y = k.p * vy_[p] + k.q * vy_[q] + k.a * vy_[a] + k.b * vy_[b];
+      rate += o.tx[a] * x + o.ty[a] * y +
+              k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
+    }
+    while (old != before_.slips.end() && key(*old) < key(slip)) drop();
+    const bool known = old != before_.slips.end() && key(*old) == key(slip);
+    if (!(normal > 0)) continue;
+    slip.spring = slide(known ? &*old : nullptr, slip.stiffness, rate / normal * dt,
+                        friction.coefficient * normal);
+    if (known) ++old;
+    now_.slips.push_back(slip);
+    now_.energy += slip.energy();
+    body_stiffness_[body] += slip.stiffness;
+    body_stiffness_[other] += slip.stiffness;
+
+    for (size_t i = first; i < end; ++i) {
+      const EdgeFaceContact& c = contacts[i];
+      const SlipRate k =
+          slip_rate(o, c, contact.slope(c) * o.length[c.edge] * slip.spring / normal);
+      const int p = c.edge, q = o.next[p], a = c.face, b = o.next[a];
+      const double tx = o.tx[a], ty = o.ty[a];
+      fx_[p] += k.p * tx, fy_[p] += k.p * ty;
+      fx_[q] += k.q * tx, fy_[q] += k.q * ty;
+      fx_[a] += k.a * tx + k.couple * ty, fy_[a] += k.a * ty - k.couple * tx;
+      fx_[b] += k.b * tx - k.couple * ty, fy_[b] += k.b * ty + k.couple * tx;
+    }
+  }
+  while (old != before_.slips.end()) drop();
+}
+
+double DeformableFriction::slide(const EdgeSlip* before, double stiffness, double slip,
+                                 double limit) {
+  double spring = 0;
+  if (before) {
+    // New contact joins without a slip of its own; contact that ends takes its share along.
+    spring = before->spring * std::min(1., stiffness / before->stiffness);
+    now_.friction_loss += before->energy() - spring * spring / (2 * stiffness);
+  }
+  const double trial = spring - stiffness * slip;
+  const double next = std::clamp(trial, -limit, limit);
+  // Mean force times the slip that the spring does not follow.
+  now_.friction_loss += (spring + next) * (trial - next) / (2 * stiffness);
+  return next;
+}
+
+void DeformableFriction::add_forces(const DeformableContact& contact,
+                                    std::span<double> node_force) const {
+  const Outlines& o = contact.outlines();
+  for (int i = 0; i < o.size(); ++i) {
+    if (o.node[i] < 0) continue;
+    node_force[2 * static_cast<size_t>(o.node[i])] += fx_[i];
+    node_force[2 * static_cast<size_t>(o.node[i]) + 1] += fy_[i];
+  }
+}
+
+void DeformableFriction::tractions(const DeformableContact& contact,
+                                   std::vector<double>& traction) const {
+  const Outlines& o = contact.outlines();
+  traction.assign(o.size(), 0);
+  // The faces look the other way.
+  for (const EdgeSlip& s : now_.slips) {
+    traction[s.edge] -= s.spring / (o.length[s.edge] * contact.thickness());
+  }
+}
+
+}  // namespace apothem

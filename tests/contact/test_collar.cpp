@@ -1,0 +1,234 @@
+// The collar's closed forms: gradient by complex step, volume by CGAL, corners, flat edges.
+#include <catch2/catch.hpp>
+#include <complex>
+
+#include "contact/outline_pairs.hpp"
+#include "geometry/overlap.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+struct ComplexRing {
+  std::vector<Complex> x, y;
+};
+
+ComplexRing complex_ring(const std::vector<Vec2>& ring) {
+  ComplexRing result;
+  for (const Vec2& v : ring) {
+    result.x.emplace_back(v.x());
+    result.y.emplace_back(v.y());
+  }
+  return result;
+}
+
+// INT of t's collar over c, from all edges and all faces; depths of t's faces.
+Complex volume(const ComplexRing& c, const ComplexRing& t, const double* depths) {
+  const size_t n = t.x.size(), m = c.x.size();
+  std::vector<Complex> tx(n), ty(n), length(n);
+  for (size_t i = 0; i < n; ++i) {
+    const Complex dx = t.x[(i + 1) % n] - t.x[i], dy = t.y[(i + 1) % n] - t.y[i];
+    length[i] = std::sqrt(dx * dx + dy * dy);
+    tx[i] = dx / length[i], ty[i] = dy / length[i];
+  }
+  Complex sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const size_t p = (i + n - 1) % n, q = (i + 1) % n;
+    const Mitre<Complex> a(tx[p], ty[p], tx[i], ty[i]), b(tx[i], ty[i], tx[q], ty[q]);
+    const CollarFace<Complex> face{t.x[i], t.y[i], t.x[q], t.y[q], tx[i],     ty[i],     length[i],
+                                   a.x,    a.y,    b.x,    b.y,    depths[i], depths[p], depths[q]};
+    for (size_t e = 0; e < m; ++e) {
+      CollarPiece<Complex> piece;
+      const size_t g = (e + 1) % m;
+      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece)) sum += piece.height;
+    }
+  }
+  return sum;
+}
+
+// Largest |f + dE/dx| over largest |f|.
+double gradient_error(const OutlinePair& pair) {
+  ComplexRing a = complex_ring(pair.a), b = complex_ring(pair.b);
+  const double* depths = pair.contact.outlines().depth.data();
+  const auto slope = [&] {
+    const double h = 1e-40;
+    return -(volume(b, a, depths) / pair.reference_a +
+             volume(a, b, depths + pair.a.size()) / pair.reference_b)
+                .imag() /
+           h;
+  };
+  double worst = 0;
+  size_t k = 0;
+  for (ComplexRing* ring : {&a, &b}) {
+    for (size_t i = 0; i < ring->x.size(); ++i) {
+      for (Complex* z : {&ring->x[i], &ring->y[i]}) {
+        z->imag(1e-40);
+        worst = std::max(worst, std::abs(slope() - pair.force[k++]));
+        z->imag(0);
+      }
+    }
+  }
+  return worst / pair.largest_force();
+}
+
+}  // namespace
+
+TEST_CASE("nodal forces are the gradient of the energy", "[collar]") {
+  samples::Random random(11);
+  int pairs = 0;
+  double worst = 0;
+  const int wanted = scaled(600);
+  while (pairs < wanted) {
+    const double inner = random.integer(0, 3) == 0 ? 1 : random.uniform(.3, .9);
+    const auto pair = random_pair(random, random.integer(3, 12), inner);
+    if (!pair) continue;
+    ++pairs;
+    worst = std::max(worst, gradient_error(*pair));
+  }
+  CAPTURE(worst);
+  CHECK(worst < 1e-12);
+}
+
+TEST_CASE("the energy is that of CGAL's overlap under CGAL's roof", "[collar]") {
+  samples::Random random(12);
+  int pairs = 0;
+  double worst = 0, worst_force = 0;
+  const int wanted = scaled(100);
+  while (pairs < wanted) {
+    const double inner = random.integer(0, 1) == 0 ? 1 : random.uniform(.4, .9);
+    auto pair = random_pair(random, random.integer(3, 9), inner);
+    if (!pair) continue;
+    const Polygon a(pair->a), b(pair->b);
+    PairResult exact;
+    try {
+      exact = overlap_method(a, make_potential(a, length_choice(pair->reference_a)), b,
+                             make_potential(b, length_choice(pair->reference_b)));
+    } catch (const SkeletonFailure&) {
+      continue;
+    }
+    ++pairs;
+    worst = std::max(worst,
+                     std::abs(pair->contact.energy() - exact.volume.energy) / exact.volume.energy);
+    const Vec2 force = pair->contact.resultant(0).force;
+    worst_force =
+        std::max(worst_force, (force - exact.integral.force).norm() / exact.integral.weight);
+  }
+  CAPTURE(worst, worst_force);
+  CHECK(worst < 1e-12);
+  CHECK(worst_force < 1e-12);
+}
+
+TEST_CASE("contact keeps linear and angular momentum", "[collar]") {
+  samples::Random random(13);
+  double worst = 0, worst_moment = 0;
+  for (int i = 0; i < scaled(2000); ++i) {
+    const auto pair = random_pair(random, random.integer(3, 12), random.uniform(.3, 1.2));
+    if (!pair) continue;
+    const auto a = pair->contact.resultant(0), b = pair->contact.resultant(1);
+    const double size = pair->largest_force();
+    worst = std::max(worst, (a.force + b.force).norm() / size);
+    worst_moment = std::max(worst_moment, std::abs(a.moment + b.moment) / size);
+  }
+  CAPTURE(worst, worst_moment);
+  CHECK(worst < 1e-12);
+  CHECK(worst_moment < 1e-12);
+}
+
+TEST_CASE("an edge on a bisector belongs to one face", "[collar]") {
+  // Corner of the unit square, and a triangle with an edge exactly on the diagonal through it.
+  const std::vector<Vec2> square = samples::block(0, 0, 1, 1).vertices();
+  for (const std::vector<Vec2>& triangle :
+       {std::vector<Vec2>{{-.25, -.25}, {.25, -.25}, {.25, .25}},
+        std::vector<Vec2>{{.25, .25}, {-.25, .25}, {-.25, -.25}}}) {
+    const OutlinePair pair(square, triangle, .5, .5);
+    // Half of the square [0, .25]^2 under a roof h/r: INT h dA = d^3/6.
+    const double own = std::pow(.25, 3) / 6 / .5;
+    const Polygon a(square), b(triangle);
+    const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
+                                            make_potential(b, length_choice(.5)));
+    CHECK(pair.contact.energy() == Approx(exact.volume.energy).epsilon(1e-14));
+    CHECK(pair.contact.energy() > own);
+    const Vec2 force = pair.contact.resultant(0).force;
+    CHECK((force - exact.integral.force).norm() < 1e-15);
+  }
+}
+
+TEST_CASE("flat on flat: the closed form for any splitting of the edges", "[collar]") {
+  const double d = .0625, width = 1, k = 3, r_c = .25, r_t = .375;
+  const double force = k * d * (width / r_t + (width - d) / r_c);
+  const double energy = k * (width * d * d / (2 * r_t) + (width * d * d / 2 - d * d * d / 3) / r_c);
+  for (const int parts : {1, 2, 3, 7}) {
+    for (const int other : {1, 2, 4}) {
+      const OutlinePair pair(split(samples::block(-.5, -d, .5, 1 - d).vertices(), parts),
+                             split(samples::block(-1, -1, 1, 0).vertices(), other), r_c, r_t, k);
+      const auto on_c = pair.contact.resultant(0);
+      CAPTURE(parts, other);
+      CHECK(on_c.force.y() == Approx(force).epsilon(1e-13));
+      CHECK(std::abs(on_c.force.x()) < 1e-14);
+      CHECK(pair.contact.energy() == Approx(energy).epsilon(1e-13));
+      CHECK(pair.contact.depth().largest == Approx(d).epsilon(1e-14));
+      // Away from the corners p = k d (1/r_c + 1/r_t).
+      std::vector<double> pressure;
+      pair.contact.pressures(pressure);
+      if (parts == 7) CHECK(pressure[3] == Approx(k * d * (1 / r_t + 1 / r_c)).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("a tip dragged over a flat row of edges meets no tangential force", "[collar]") {
+  samples::Random random(14);
+  for (const int parts : {1, 8, 31}) {
+    double worst = 0;
+    for (int i = 0; i <= scaled(400); ++i) {
+      const double x = i % 2 ? random.uniform(-.9, .9) : .0625 * random.integer(-14, 14);
+      const double d = random.uniform(.001, .012);
+      const std::vector<Vec2> tip{{x, -d}, {x + .5, .5 - d}, {x - .5, .5 - d}};
+      const OutlinePair pair(split(samples::block(-1, -.5, 1, 0).vertices(), parts), tip, .02, .02);
+      const Vec2 force = pair.contact.resultant(1).force;
+      REQUIRE(force.y() > 0);
+      REQUIRE(pair.contact.depth().ratio < 1);
+      worst = std::max(worst, std::abs(force.x() / force.y()));
+      // Apex on flat.
+      CHECK(force.y() == Approx(d * d * (1 + std::sqrt(.5)) / .02).epsilon(1e-11));
+    }
+    CAPTURE(parts, worst);
+    CHECK(worst < 1e-12);
+  }
+}
+
+TEST_CASE("convex and reflex corners of many angles", "[collar]") {
+  // A tip in the notch of a block, and a block's corner on a flat: gradient and CGAL's energy.
+  for (const double opening : {.3, .8, 1.2, 2., 2.9}) {
+    const double half = opening / 2;
+    const Vec2 left = 2 * Vec2(-std::sin(half), std::cos(half));
+    const Vec2 right(-left.x(), left.y());
+    const std::vector<Vec2> notch{{0, 0},  left,           {-3, left.y()}, {-3, -2},
+                                  {3, -2}, {3, right.y()}, right};
+    const double tilt = half / 2;
+    const std::vector<Vec2> tip{{.01, -.06},
+                                {.01 + std::sin(tilt), -.06 + std::cos(tilt)},
+                                {.01 - std::sin(1.1 * tilt), -.06 + std::cos(1.1 * tilt)}};
+    const OutlinePair pair(notch, tip, .5, .3);
+    CAPTURE(opening);
+    REQUIRE(pair.contact.depth().ratio > 0);
+    REQUIRE(pair.contact.depth().ratio < 1);
+    CHECK(gradient_error(pair) < 1e-12);
+    const Polygon a(notch), b(tip);
+    const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
+                                            make_potential(b, length_choice(.3)));
+    CHECK(pair.contact.energy() == Approx(exact.volume.energy).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("NaN is never a miss", "[collar]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .5, .5};
+  CollarPiece<double> piece;
+  CHECK(collar_piece(face, nan, .1, .5, .1, piece));
+  CHECK(collar_piece(face, .5, .1, .5, nan, piece));
+  CHECK(std::isnan(piece.sum));
+  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece));
+}
