@@ -64,7 +64,7 @@ void step(benchmark::State& state, ElementKind kind) {
   for (auto _ : state) {
     deformables.kick(s, dt / 2);
     deformables.drift(s, dt);
-    deformables.find_forces(s, dt);
+    deformables.find_forces(s, dt, nullptr);
     deformables.kick(s, dt / 2);
     benchmark::DoNotOptimize(s.displacement.data());
   }

@@ -53,7 +53,7 @@ int check_command(const CheckOptions& options) {
       fmt::format("{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
                   scene.time.fixed_step ? "fixed"
                   : simulation.limit().reason.starts_with("elements")
-                      ? fmt::format("auto, safety {:g}", scene.time.element_safety)
+                      ? fmt::format("auto, safety {:g}", simulation.element_safety())
                       : fmt::format("auto, safety {:g}", scene.time.safety),
                   simulation.limit().reason, simulation.stability_limit()));
   say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",

@@ -28,6 +28,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, veloc
                                    displacement, node_velocity, node_force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeformableBalance, load_work, mass_damping_loss,
                                    summed_damping_loss, damping_power)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSlip, edge, partner, spring, stiffness)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SlipMemory, slips, energy, friction_loss)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Balance, initial_energy, initial, impulse, external_work)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Peak, value, time, a, b)
@@ -64,6 +66,7 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
                       {"tangential", s.tangential},
                       {"mass_damping_loss", s.mass_damping_loss},
                       {"deformables", s.deformables},
+                      {"slips", s.slips},
                       {"state", s.state},
                       {"balance", s.balance},
                       {"extremes", s.extremes},
@@ -96,6 +99,7 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
     json.at("tangential").get_to(s.tangential);
     json.at("mass_damping_loss").get_to(s.mass_damping_loss);
     json.at("deformables").get_to(s.deformables);
+    json.at("slips").get_to(s.slips);
     json.at("state").get_to(s.state);
     json.at("balance").get_to(s.balance);
     json.at("extremes").get_to(s.extremes);

@@ -8,7 +8,8 @@ Simulation make_simulation(const Scene& scene, int threads, Start start) {
   try {
     return {scene.model, time, scene.output.frames, threads};
   } catch (const Unrunnable& error) {
-    const std::string index = error.body() >= 0 ? "/" + std::to_string(error.body()) : "";
+    const std::string index =
+        error.body() >= 0 ? "/" + std::to_string(scene.rigid_places[error.body()]) : "";
     throw scene.error_at("/" + error.key() + index, error.what());
   }
 }

@@ -39,11 +39,14 @@ std::uint64_t fnv1a(const void* data, size_t size, std::uint64_t hash = 0xcbf29c
   return hash;
 }
 
-// The scene as read, with the polygons that stand in files of their own.
+// The scene as read, with the polygons and meshes that stand in files of their own.
 std::string scene_hash(const Scene& scene) {
   std::uint64_t hash = fnv1a(scene.text.data(), scene.text.size());
   for (const RigidBody& body : scene.model.bodies) {
     for (const Vec2& v : body.potential.vertices) hash = fnv1a(v.data(), 2 * sizeof(double), hash);
+  }
+  for (const DeformableBody& body : scene.model.deformables) {
+    for (const Vec2& v : body.mesh.nodes) hash = fnv1a(v.data(), 2 * sizeof(double), hash);
   }
   return fmt::format("fnv1a64:{:016x}", hash);
 }
@@ -51,7 +54,9 @@ std::string scene_hash(const Scene& scene) {
 // The bits of the final state: equal for any number of threads.
 std::string state_hash(const State& state) {
   std::uint64_t hash = fnv1a(&state.time, sizeof state.time);
-  for (const std::vector<double>* v : {&state.position, &state.velocity, &state.force}) {
+  for (const std::vector<double>* v :
+       {&state.position, &state.velocity, &state.force, &state.displacement, &state.node_velocity,
+        &state.node_force}) {
     hash = fnv1a(v->data(), v->size() * sizeof(double), hash);
   }
   return fmt::format("fnv1a64:{:016x}", hash);
@@ -60,8 +65,8 @@ std::string state_hash(const State& state) {
 // A folder with results in it is never touched unless the user says so, and then only our files.
 void prepare_folder(const std::string& folder, bool overwrite) {
   namespace fs = std::filesystem;
-  constexpr std::array ours{"run.json",   "frames.pvd",   "contacts.pvd",   "history.csv",
-                            "energy.csv", "momentum.csv", "checkpoint.json"};
+  constexpr std::array ours{"run.json",    "frames.pvd", "contacts.pvd", "surfaces.pvd",
+                            "history.csv", "energy.csv", "momentum.csv", "checkpoint.json"};
   std::vector<fs::path> old;
   std::error_code error;
   for (const char* name : ours) {
@@ -75,7 +80,8 @@ void prepare_folder(const std::string& folder, bool overwrite) {
   }
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "frames", error)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".vtu") && (name.starts_with("bodies_") || name.starts_with("contacts_"))) {
+    if (name.ends_with(".vtu") && (name.starts_with("bodies_") || name.starts_with("contacts_") ||
+                                   name.starts_with("surfaces_"))) {
       old.push_back(entry.path());
     }
   }
@@ -211,12 +217,14 @@ class Run {
       if (picture) last_picture = simulation_.state().step;
       const Clock::time_point before = Clock::now();
       if (row) {
-        history.add(simulation_.state(), simulation_.friction(), simulation_.energies(),
-                    simulation_.momenta(), simulation_.node_mass());
+        history.add(
+            simulation_.state(), simulation_.energies(), simulation_.momenta(),
+            {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass()});
       }
       if (picture) {
         history.flush();
-        frames.write(simulation_.state(), simulation_.contacts(), simulation_.stresses());
+        frames.write(simulation_.state(), simulation_.contacts(), simulation_.stresses(),
+                     simulation_.surfaces());
       }
       output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
     };
@@ -286,7 +294,7 @@ class Run {
 
   [[nodiscard]] std::vector<std::string> names(const Peak& peak) const {
     if (peak.a < 0) return {};
-    return {scene_.model.bodies[peak.a].name, scene_.model.bodies[peak.b].name};
+    return {scene_.model.name_of(peak.a), scene_.model.name_of(peak.b)};
   }
 
   void write_summary() {

@@ -37,6 +37,9 @@ struct ContactLaw {
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
 };
 
+/// Between two bodies, given with their materials: the last rule that fits, or that of the scene.
+Friction friction_between(const ContactLaw& law, int a, int material_a, int b, int material_b);
+
 /// The friction laws a scene can name.
 struct NamedFrictionLaw {
   std::string_view name;

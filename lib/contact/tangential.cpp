@@ -15,10 +15,6 @@ constexpr double kNoResultant = 1e-9;
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
 
-bool matches(const ContactRule::Party& party, int body, int material) {
-  return party.index == (party.is_body ? body : material);
-}
-
 }  // namespace
 
 TangentialContact::TangentialContact(const ContactLaw& law, double thickness,
@@ -36,14 +32,7 @@ bool TangentialContact::needed(const ContactLaw& law) {
 }
 
 Friction TangentialContact::friction_of(int a, int b) const {
-  Friction friction = law_.friction;
-  for (const ContactRule& rule : law_.rules) {  // later rules win
-    const auto [p, q] = rule.between;
-    const bool straight = matches(p, a, material_[a]) && matches(q, b, material_[b]);
-    const bool crossed = matches(p, b, material_[b]) && matches(q, a, material_[a]);
-    if (straight || crossed) friction = rule.friction;
-  }
-  return friction;
+  return friction_between(law_, a, material_[a], b, material_[b]);
 }
 
 std::vector<double> TangentialContact::friction(size_t bodies) const {

@@ -57,10 +57,7 @@ Deformables::Deformables(const Model& model, State& state, int threads)
   find_limit(state);
   apply_loads(state);
   const double power = elements_.force(state.displacement, state.node_velocity, state.node_force);
-  for (const auto& [node, force] : loads_) {
-    state.node_force[2 * static_cast<size_t>(node)] += force.x();
-    state.node_force[2 * static_cast<size_t>(node) + 1] += force.y();
-  }
+  add_loads(state);
   first_damping_power_ = balance_.damping_power = power;
 }
 
@@ -175,15 +172,28 @@ void Deformables::drift(State& state, double dt) {
   for (size_t c = 0; c < n; ++c) u[c] += dt * v[c];
 }
 
-void Deformables::find_forces(State& state, double dt) {
-  balance_.damping_power =
-      elements_.force(state.displacement, state.node_velocity, state.node_force);
-  balance_.summed_damping_loss += dt * balance_.damping_power;
-  apply_loads(state);
+void Deformables::add_loads(State& state) const {
   for (const auto& [node, force] : loads_) {
     state.node_force[2 * static_cast<size_t>(node)] += force.x();
     state.node_force[2 * static_cast<size_t>(node) + 1] += force.y();
   }
+}
+
+std::vector<double> Deformables::free_mass() const {
+  std::vector<double> mass(elements_.mass());
+  for (size_t i = 0; i < mass.size(); ++i) {
+    if (inverse_mass_[2 * i] == 0 && inverse_mass_[2 * i + 1] == 0) mass[i] = 0;
+  }
+  return mass;
+}
+
+void Deformables::find_forces(State& state, double dt, const SurfaceContact* contact) {
+  balance_.damping_power =
+      elements_.force(state.displacement, state.node_velocity, state.node_force);
+  balance_.summed_damping_loss += dt * balance_.damping_power;
+  apply_loads(state);
+  add_loads(state);
+  if (contact) contact->add_to_nodes(state.node_force);
   book(state, dt / 2);
   for (const Driven& d : driven_) {
     state.node_velocity[d.coordinate] = d.motion->rate(state.time)[d.axis];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dynamics/ledger.hpp"
+#include "dynamics/surface_contact.hpp"
 #include "dynamics/time_step.hpp"
 #include "fem/finite_elements.hpp"
 #include "model/model.hpp"
@@ -33,8 +34,10 @@ class Deformables {
   void kick(State& state, double h) const;
   /// `state.time` is that of the end of the drift.
   void drift(State& state, double dt);
-  /// Internal forces and loads at `state.time`; books the work since the drift.
-  void find_forces(State& state, double dt);
+  /// Internal forces, loads at `state.time` and contacts; books the work since the drift.
+  void find_forces(State& state, double dt, const SurfaceContact* contact);
+  /// Of each node, kg; 0 where it is held.
+  [[nodiscard]] std::vector<double> free_mass() const;
 
   /// Kinetic, strain and gravity energy, damping loss and work of loads.
   [[nodiscard]] Energies energies(const State& state, double dt);
@@ -58,6 +61,7 @@ class Deformables {
   void start(State& state) const;
   void hold(const DeformableBody& body);
   void find_limit(const State& state);
+  void add_loads(State& state) const;
   void apply_loads(const State& state);
   void book(const State& state, double h);
 

@@ -109,11 +109,16 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
     tangential_.emplace(model.contact, model.thickness, material, inverse_masses_);
   }
   if (!model.deformables.empty()) deformables_.emplace(model, state_, threads);
+  if (SurfaceContact::needed(model)) surface_.emplace(model, state_, threads);
   stiffness_.resize(model.bodies.size());
   largest_stride_ = kLargestStride * inradius;
   energy_noise_ = energy_noise(model);
   choose_step(time, frames);
   try {
+    if (surface_) {
+      surface_->evaluate(state_);
+      surface_->add_to_nodes(state_.node_force);
+    }
     find_forces(false, state_.velocity, 0);
     if (time.settled) settle();
   } catch (const Unstable& error) {
@@ -128,7 +133,11 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
 void Simulation::choose_step(const TimeSettings& time, int frames) {
   limit_ = contact_step_limit(model_);
   const double contact_target = time.safety * limit_.step;
-  const StepLimit elements = deformables_ ? deformables_->limit() : StepLimit{HUGE_VAL, ""};
+  StepLimit elements = deformables_ ? deformables_->limit() : StepLimit{HUGE_VAL, ""};
+  if (surface_) {
+    const double rate = surface_->rate(deformables_->free_mass());
+    elements = {2 / std::hypot(2 / elements.step, rate), "elements and their contacts"};
+  }
   if (elements.step < limit_.step) limit_ = elements;
   stability_limit_ = limit_.step;
   automatic_ = !time.fixed_step;
@@ -154,8 +163,9 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
     return;
   }
   double target = contact_target;
-  if (time.element_safety * elements.step < target) {
-    target = time.element_safety * elements.step;
+  element_safety_ = time.element_safety.value_or(surface_ ? .4 : .5);
+  if (element_safety_ * elements.step < target) {
+    target = element_safety_ * elements.step;
     limit_ = elements;
   }
   const StepLimit motion = motion_step_limit(model_);
@@ -184,7 +194,8 @@ Snapshot Simulation::snapshot() const {
           energy_in_play_,
           tangential_ ? tangential_->memory() : TangentialMemory{},
           mass_damping_loss_,
-          deformables_ ? deformables_->balance() : DeformableBalance{}};
+          deformables_ ? deformables_->balance() : DeformableBalance{},
+          surface_ ? surface_->memory() : SlipMemory{}};
 }
 
 void Simulation::restore(const Snapshot& s) {
@@ -200,6 +211,7 @@ void Simulation::restore(const Snapshot& s) {
   mass_damping_loss_ = s.mass_damping_loss;
   if (tangential_) tangential_->restore(s.tangential);
   if (deformables_) deformables_->restore(s.deformables, state_);
+  if (surface_) surface_->restore(s.slips, state_);
   for (int i = 0; i < shapes_.size(); ++i) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
     shapes_.place(i, x[0], x[1], x[2]);
@@ -217,8 +229,13 @@ void Simulation::step() {
   kick(dt_ / 2);
   drift();
   clock.lap(Phase::integrate);
+  if (surface_) {
+    surface_->evaluate(state_);
+    surface_->slide(state_, dt_);
+    clock.lap(Phase::contact);
+  }
   if (deformables_) {
-    deformables_->find_forces(state_, dt_);
+    deformables_->find_forces(state_, dt_, surface_ ? &*surface_ : nullptr);
     clock.lap(Phase::elements);
   }
   find_forces(timed, state_.velocity, dt_);
@@ -431,15 +448,24 @@ void Simulation::gather() {
     }
   }
   if (tangential_) gather_tangential();
+  if (surface_) gather_surfaces();
   counts_.candidate_pairs += static_cast<std::int64_t>(pairs.size());
   counts_.touching_pairs += touching;
-  counts_.touching_now = touching;
+  counts_.touching_now = touching + (surface_ ? static_cast<int>(surface_->touching()) : 0);
   worst_stiffness_ = 0;
   for (size_t i = 0; touching > 0 && i < stiffness_.size(); ++i) {
     if (stiffness_[i] > worst_stiffness_) {
       worst_stiffness_ = stiffness_[i];
       worst_body_ = static_cast<int>(i);
     }
+  }
+}
+
+void Simulation::gather_surfaces() {
+  surface_->add_to_bodies(state_.force);
+  if (surface_->penetration() > extremes_.penetration.value) {
+    const auto [a, b] = surface_->deepest();
+    extremes_.penetration = {surface_->penetration(), state_.time, a, b};
   }
 }
 
@@ -485,7 +511,7 @@ void Simulation::tighten_step() {
 
 double Simulation::contact_energy() const {
   return model_.stiffness() * contact_.energy(shapes_, state_.position, search_.pairs()) +
-         (tangential_ ? tangential_->energy() : 0);
+         (tangential_ ? tangential_->energy() : 0) + (surface_ ? surface_->energy() : 0);
 }
 
 Energies Simulation::energies() {
@@ -494,6 +520,7 @@ Energies Simulation::energies() {
     dissipation.friction = tangential_->memory().friction_loss;
     dissipation.damping += tangential_->memory().damping_loss;
   }
+  if (surface_) dissipation.friction += surface_->friction_loss();
   const Energies nodes = deformables_ ? deformables_->energies(state_, dt_) : Energies{};
   const Energies e = ledger_->energies(state_, contact_energy(), dissipation, nodes);
   energy_in_play_ =
@@ -550,6 +577,10 @@ std::vector<ContactRecord> Simulation::contacts() const {
           memory.springs[next_spring++].spring * tangent_of(runs[i].force);
     }
   }
+  if (surface_) {
+    const std::vector<ContactRecord> more = surface_->records();
+    records.insert(records.end(), more.begin(), more.end());
+  }
   return records;
 }
 
@@ -565,6 +596,18 @@ std::vector<CauchyStress> Simulation::stresses() const {
 const std::vector<double>& Simulation::node_mass() const {
   static const std::vector<double> none;
   return deformables_ ? deformables_->elements().mass() : none;
+}
+
+std::vector<BodyForce> Simulation::deformable_forces() const {
+  std::vector<BodyForce> forces(model_.deformables.size());
+  for (size_t i = 0; surface_ && i < forces.size(); ++i) {
+    forces[i] = surface_->on_deformable(static_cast<int>(i));
+  }
+  return forces;
+}
+
+std::vector<SurfaceRecord> Simulation::surfaces() const {
+  return surface_ ? surface_->surfaces() : std::vector<SurfaceRecord>{};
 }
 
 std::array<double, kPhaseNames.size()> Simulation::phase_seconds() const {

@@ -1,7 +1,7 @@
-// The step loop of rigid bodies.
+// The step loop.
 //
-//   kick (Eq. 18) -> drift (Eq. 17) -> place shapes -> find pairs -> contact forces -> kick (Eq.
-//   20)
+//   kick (Eq. 18) -> drift (Eq. 17) -> contacts of meshes -> elements, loads -> place rigid shapes
+//   -> find pairs -> contact forces -> kick (Eq. 20)
 //
 // Velocity Verlet in kick-drift-kick form: symplectic, so energy oscillates with order dt^2 and
 // does not drift, and momenta are kept to round-off. Forces are summed pair by pair in ascending
@@ -17,33 +17,14 @@
 #include "contact/tangential.hpp"
 #include "dynamics/deformables.hpp"
 #include "dynamics/ledger.hpp"
+#include "dynamics/surface_contact.hpp"
 #include "dynamics/time_step.hpp"
+#include "dynamics/unstable.hpp"
 #include "model/model.hpp"
 #include "model/settings.hpp"
 #include "model/state.hpp"
 
 namespace apothem {
-
-/// The scene cannot be run as it is; says which key of the scene is to blame, or which body (or
-/// -1).
-class Unrunnable : public std::runtime_error {
- public:
-  Unrunnable(const std::string& what, std::string key, int body)
-      : std::runtime_error(what), key_(std::move(key)), body_(body) {}
-  [[nodiscard]] const std::string& key() const { return key_; }
-  [[nodiscard]] int body() const { return body_; }
-
- private:
-  std::string key_;
-  int body_;
-};
-
-/// The run became unstable or left the range where the method is accurate: says when, where, why
-/// and what helps.
-class Unstable : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Parts of the step, for the timings in run.json.
 enum class Phase { integrate, elements, place, search, contact, gather };
@@ -84,6 +65,7 @@ struct Snapshot {
   TangentialMemory tangential = {};
   double mass_damping_loss = 0;
   DeformableBalance deformables = {};
+  SlipMemory slips = {};
 };
 
 class Simulation {
@@ -101,6 +83,8 @@ class Simulation {
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] double step_size() const { return dt_; }
+  /// An automatic step over the limit of the finite elements.
+  [[nodiscard]] double element_safety() const { return element_safety_; }
   /// What limits the step.
   [[nodiscard]] const StepLimit& limit() const { return limit_; }
   /// Largest stable step of the contacts, s; infinite if nothing can touch.
@@ -114,6 +98,10 @@ class Simulation {
     const size_t bodies = model_.bodies.size();
     return tangential_ ? tangential_->friction(bodies) : std::vector<double>(bodies);
   }
+  /// What acts on each deformable body from contacts.
+  [[nodiscard]] std::vector<BodyForce> deformable_forces() const;
+  /// The boundary edges of bodies that take part in contact of deformable bodies.
+  [[nodiscard]] std::vector<SurfaceRecord> surfaces() const;
   /// Mean stress of the elements of all deformable bodies.
   [[nodiscard]] std::vector<CauchyStress> stresses() const;
   /// Of their nodes, kg.
@@ -137,6 +125,7 @@ class Simulation {
   [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void gather();
   void gather_tangential();
+  void gather_surfaces();
   void watch();
   void tighten_step();
   [[nodiscard]] double contact_energy() const;
@@ -154,12 +143,14 @@ class Simulation {
   NormalContact contact_;
   std::optional<TangentialContact> tangential_;  // only where there is friction or damping
   std::optional<Deformables> deformables_;       // only where there are finite elements
+  std::optional<SurfaceContact> surface_;        // only where they can touch something
   std::optional<Ledger> ledger_;
   std::vector<double> moved_;
 
   StepLimit limit_{0, ""};
   bool automatic_ = true;
   double safety_ = 0.1;
+  double element_safety_ = 0;
   double dt_ = 0;
   double stability_limit_ = 0;
   double base_time_ = 0;

@@ -61,6 +61,12 @@ std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
 }  // namespace
 
+double flat_mobility(const RigidBody& body) {
+  double worst = 0;
+  for (const Foot& foot : footing(body).feet) worst = std::max(worst, foot.length * foot.mobility);
+  return worst;
+}
+
 StepLimit contact_step_limit(const Model& model) {
   std::vector<Footing> footings;
   Footing any;  // bounds every other body

@@ -24,6 +24,9 @@ struct StepLimit {
   std::string reason;  ///< e.g. `contact of "falling" with "target"`
 };
 
+/// lambda / (k_n x sum of the slopes 1/r) of a body that lies flat on its worst edge, m/kg.
+double flat_mobility(const RigidBody& body);
+
 /// Limit known before the run: every pair that can meet lies flat on each other along its stiffest
 /// edges. Vertex contacts are softer.
 StepLimit contact_step_limit(const Model& model);

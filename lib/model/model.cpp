@@ -7,6 +7,16 @@ std::array<double, 3> RigidBody::inverse_mass() const {
   return {held[0] ? 0 : 1 / mass, held[1] ? 0 : 1 / mass, held[2] ? 0 : 1 / inertia};
 }
 
+const std::string& Model::name_of(int body) const {
+  const int rigid = static_cast<int>(bodies.size());
+  return body < rigid ? bodies[body].name : deformables[body - rigid].name;
+}
+
+int Model::material_of(int body) const {
+  const int rigid = static_cast<int>(bodies.size());
+  return body < rigid ? bodies[body].material : deformables[body - rigid].material;
+}
+
 int Model::node_count() const {
   if (deformables.empty()) return 0;
   return deformables.back().first_node + static_cast<int>(deformables.back().mesh.nodes.size());

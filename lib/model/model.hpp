@@ -55,6 +55,10 @@ struct Model {
   std::vector<RigidBody> bodies;
   std::vector<DeformableBody> deformables;
 
+  // All bodies are numbered rigid ones first.
+  [[nodiscard]] const std::string& name_of(int body) const;
+  [[nodiscard]] int material_of(int body) const;
+
   /// Of all deformable bodies.
   [[nodiscard]] int node_count() const;
 

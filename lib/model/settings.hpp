@@ -14,9 +14,10 @@ struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
   double safety = 0.1;                    ///< automatic step / stability limit of contacts
-  double element_safety = 0.5;            ///< the same for finite elements
-  bool settled = false;                   ///< start in equilibrium (dynamics/settle.cpp)
-  double longest_step = 1e300;            ///< s; of an automatic step: the interval of the history
+  /// The same for finite elements; empty: 0.5, 0.4 if they can touch something.
+  std::optional<double> element_safety = {};
+  bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
+  double longest_step = 1e300;  ///< s; of an automatic step: the interval of the history
 };
 
 struct OutputSettings {
@@ -39,7 +40,7 @@ struct Expectation {
   Take take = Take::last;
   std::optional<double> from, until;  ///< time window, s
   double value = 0;
-  double tolerance = 0;  ///< absolute, in the quantity's unit
+  double tolerance = 0;    ///< absolute, in the quantity's unit
   std::string label = {};  ///< what it is in words; may be empty
 };
 

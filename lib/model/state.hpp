@@ -56,6 +56,19 @@ struct ContactRecord {
   double phi;          ///< largest potential met along the edges
 };
 
+/// Contact force on a body, N; `friction` sums the sizes of the friction forces.
+struct BodyForce {
+  double fx = 0, fy = 0, friction = 0;
+};
+
+/// An edge of the boundary of a body in contacts of deformable bodies.
+struct SurfaceRecord {
+  int body;         ///< rigid ones first
+  Vec2 from, to;    ///< relative to the model's origin, m
+  double pressure;  ///< mean, Pa
+  double traction;  ///< mean of its friction, along the edge, Pa
+};
+
 /// A column of a history file: name and unit.
 struct Column {
   const char* name;

@@ -207,6 +207,34 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   return grid;
 }
 
+vtkNew<vtkUnstructuredGrid> boundaries(const Model& model, double time,
+                                       const std::vector<SurfaceRecord>& surfaces) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> body = integers("body");
+  vtkNew<vtkDoubleArray> pressure = doubles("contact_pressure", 1);
+  vtkNew<vtkDoubleArray> traction = doubles("tangential_traction", 1);
+  for (const SurfaceRecord& surface : surfaces) {
+    cells->InsertNextCell(2);
+    for (const Vec2& end : {surface.from, surface.to}) {
+      const Vec2 p = end + model.origin;
+      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+    }
+    body->InsertNextValue(surface.body);
+    pressure->InsertNextValue(surface.pressure);
+    traction->InsertNextValue(surface.traction);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_LINE, cells);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{body, pressure, traction}) {
+    grid->GetCellData()->AddArray(array);
+  }
+  add_time(grid, time);
+  return grid;
+}
+
 std::string file_name(const char* series, size_t frame) {
   return fmt::format("frames/{}_{:06}.vtu", series, frame);
 }
@@ -229,12 +257,20 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
 }
 
 void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts,
-                        const std::vector<CauchyStress>& stresses) {
+                        const std::vector<CauchyStress>& stresses,
+                        const std::vector<SurfaceRecord>& surfaces) {
   const size_t frame = times_.size();
   write_file(folder_ + "/" + file_name("bodies", frame), xml(bodies(model_, state, stresses)));
   write_file(folder_ + "/" + file_name("contacts", frame),
              xml(patches(model_, state.time, contacts)));
+  if (!surfaces.empty()) {
+    write_file(folder_ + "/" + file_name("surfaces", frame),
+               xml(boundaries(model_, state.time, surfaces)));
+  }
   times_.push_back(state.time);
+  if (!surfaces.empty()) {
+    write_file(folder_ + "/surfaces.pvd", collection("surfaces", times_));
+  }
   write_file(folder_ + "/frames.pvd", collection("bodies", times_));
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
 }

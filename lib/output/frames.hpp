@@ -1,5 +1,6 @@
 // The VTK time series: frames.pvd with one .vtu per frame for the bodies, contacts.pvd for the
-// contact patches. A mesh as a .vtu of its own. All open in ParaView.
+// contact patches, surfaces.pvd for the boundaries of bodies in contact with meshes. A mesh as a
+// .vtu of its own. All open in ParaView.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ class FrameWriter {
   /// Writes the next frame, then both collections: whatever they list is complete on disk.
   /// Throws SystemFailure; the earlier frames are then intact.
   void write(const State& state, const std::vector<ContactRecord>& contacts,
-             const std::vector<CauchyStress>& stresses);
+             const std::vector<CauchyStress>& stresses, const std::vector<SurfaceRecord>& surfaces);
 
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
 

@@ -91,8 +91,8 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   flush();
 }
 
-void HistoryWriter::add(const State& state, const std::vector<double>& friction, const Energies& e,
-                        const Momenta& p, const std::vector<double>& mass) {
+void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
+                        const Observed& observed) {
   std::string& rows = history_.rows;
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
   for (const int i : settings_.track) {
@@ -101,13 +101,14 @@ void HistoryWriter::add(const State& state, const std::vector<double>& friction,
     const double* f = &state.force[3 * static_cast<size_t>(i)];
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
                    x[0] + model_.origin.x(), x[1] + model_.origin.y(), x[2], v[0], v[1], v[2], f[0],
-                   f[1], friction[i]);
+                   f[1], observed.friction[i]);
   }
   for (const int i : settings_.track_deformables) {
-    const MeanMotion m = mean_motion(model_.deformables[i], state, mass);
+    const MeanMotion m = mean_motion(model_.deformables[i], state, observed.node_mass);
+    const BodyForce& f = observed.contact[i];
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
                    m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
-                   m.velocity.x(), m.velocity.y(), m.spin, 0., 0., 0.);
+                   m.velocity.x(), m.velocity.y(), m.spin, f.fx, f.fy, f.friction);
   }
   for (const TrackedPoint& point : settings_.points) {
     std::array<double, 4> value{};

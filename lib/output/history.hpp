@@ -13,6 +13,13 @@
 
 namespace apothem {
 
+/// What histories record besides the state and the ledgers.
+struct Observed {
+  std::vector<double> friction;    ///< of each rigid body, summed sizes, N
+  std::vector<BodyForce> contact;  ///< on each deformable body
+  std::vector<double> node_mass;   ///< kg
+};
+
 class HistoryWriter {
  public:
   /// Sizes of the three files, to continue them later.
@@ -23,10 +30,8 @@ class HistoryWriter {
                 const Sizes& sizes = {});
 
   /// Rows are kept in memory until there are enough of them, or flush().
-  /// `friction` in N per rigid body; `mass` of the nodes, kg, if deformable bodies are tracked as a
-  /// whole.
-  void add(const State& state, const std::vector<double>& friction, const Energies& energies,
-           const Momenta& momenta, const std::vector<double>& mass);
+  void add(const State& state, const Energies& energies, const Momenta& momenta,
+           const Observed& observed);
   void flush();
 
   /// After flush().

@@ -190,8 +190,9 @@ class SceneReader {
   // A name that is both a body's and a material's means the body.
   ContactRule::Party party(const JsonValue& value) {
     const std::string& name = in_.string(value);
-    for (size_t i = 0; i < model_.bodies.size(); ++i) {
-      if (model_.bodies[i].name == name) return {true, static_cast<int>(i)};
+    const int bodies = static_cast<int>(model_.bodies.size() + model_.deformables.size());
+    for (int i = 0; i < bodies; ++i) {
+      if (model_.name_of(i) == name) return {true, i};
     }
     for (size_t i = 0; i < model_.materials.size(); ++i) {
       if (model_.materials[i].name == name) return {false, static_cast<int>(i)};
@@ -249,13 +250,11 @@ class SceneReader {
     model_.origin = local_origin(box);
     for (size_t i = 0; i < shapes.size(); ++i) {
       if (const auto* polygon = std::get_if<Polygon>(&shapes[i])) {
+        scene_.rigid_places.push_back(static_cast<int>(i));
         body(list.items[i], *polygon);
       } else {
         deformable(list.items[i], std::move(std::get<MeshSpec>(shapes[i])));
       }
-    }
-    if (!model_.deformables.empty() && list.items.size() > 1) {
-      in_.fail(list, "bodies with a mesh do not take part in contact: give each its own scene");
     }
   }
 
@@ -460,7 +459,8 @@ class SceneReader {
       time.settled = in_.choice(*v, {"as_given", "settled"}) == 1;
     }
     if (const JsonValue* v = object.optional("safety")) {
-      time.safety = time.element_safety = in_.positive(*v, "parts of the stability limit");
+      time.safety = in_.positive(*v, "parts of the stability limit");
+      time.element_safety = time.safety;
       if (time.safety > 0.8) {
         in_.fail(*v, fmt::format("must not exceed 0.8 of the stability limit, is {}", time.safety));
       }

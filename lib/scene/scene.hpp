@@ -17,6 +17,7 @@ struct Scene {
   TimeSettings time;
   OutputSettings output;
   std::vector<Expectation> expectations;
+  std::vector<int> rigid_places;  ///< of each rigid body, in the scene's list of bodies
 
   /// An error at a JSON pointer of this scene, or at the nearest enclosing value that exists.
   [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;

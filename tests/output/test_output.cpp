@@ -81,13 +81,13 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   const Model model = two_bodies();
   State state = state_of(model);
   FrameWriter frames(folder.path(), model);
-  frames.write(state, {}, {});
+  frames.write(state, {}, {}, {});
   state.time = 0.1 + 0.2;  // not representable in few digits
   state.position[3] += 0.25;
   state.position[5] = M_PI / 2;
   state.velocity = {1, 2, 0, 0, 0, 3};
   state.force = {5, 6, 7, 0, 0, 0};
-  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}}, {});
+  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}}, {}, {});
 
   const auto list = entries(folder / "frames.pvd");
   REQUIRE(list.size() == 2);
@@ -179,7 +179,7 @@ TEST_CASE("frames of a deformed body hold its stresses", "[output]") {
     state.node_velocity.insert(state.node_velocity.end(), {x.y(), 7});
   }
   FrameWriter frames(folder.path(), model);
-  frames.write(state, {}, elements.stresses(state.displacement));
+  frames.write(state, {}, elements.stresses(state.displacement), {});
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName((folder / entries(folder / "frames.pvd")[0].second).c_str());
   reader->Update();
@@ -227,7 +227,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
       const std::vector<double> friction{0, any()};
-      writer.add(state, friction, e, p, {});
+      writer.add(state, e, p, {friction, {}, {}});
       rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
                       p.angular_error, friction[1]});
     }
@@ -262,7 +262,7 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {0, 0}, {}, {}, {});
+    writer.add(state, {}, {}, {{0, 0}, {}, {}});
   }
   writer.flush();
   const double top = 3 + model.origin.y();

@@ -1,0 +1,62 @@
+// Contact of bodies with a mesh: with each other and with rigid bodies. Bodies are numbered rigid
+// ones first.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "contact/deformable_friction.hpp"
+#include "dynamics/time_step.hpp"
+#include "model/model.hpp"
+#include "model/state.hpp"
+
+namespace apothem {
+
+class SurfaceContact {
+ public:
+  SurfaceContact(const Model& model, const State& state, int threads);
+  /// True if a body with a mesh can touch another body.
+  static bool needed(const Model& model);
+
+  /// Bound of the contacts' frequencies, 1/s: that of the boundary nodes (theory: Sec. 5.4) and of
+  /// rigid bodies that lie flat on a mesh. `node_mass` in kg, 0 where held.
+  [[nodiscard]] double rate(std::span<const double> node_mass) const;
+
+  /// Forces where the bodies are now. Throws Unstable where they are out of the method's range:
+  /// deeper than the collar, or a body in contact with itself.
+  void evaluate(const State& state);
+  /// Friction of a step that ends here, with its half-step velocities.
+  void slide(const State& state, double dt);
+
+  void add_to_nodes(std::vector<double>& node_force) const;
+  void add_to_bodies(std::vector<double>& force) const;
+
+  /// Of contacts and friction springs, J.
+  [[nodiscard]] double energy() const;
+  [[nodiscard]] double friction_loss() const;
+  [[nodiscard]] double penetration() const { return contact_.depth().largest; }
+  /// The bodies of the deepest contact.
+  [[nodiscard]] std::pair<int, int> deepest() const;
+  [[nodiscard]] int searches() const { return contact_.searches(); }
+  [[nodiscard]] size_t candidates() const { return contact_.candidates().size(); }
+  [[nodiscard]] size_t touching() const { return contact_.contacts().size(); }
+
+  /// What acts on a deformable body from contacts.
+  [[nodiscard]] BodyForce on_deformable(int deformable) const;
+  [[nodiscard]] std::vector<ContactRecord> records() const;
+  [[nodiscard]] std::vector<SurfaceRecord> surfaces() const;
+
+  [[nodiscard]] SlipMemory memory() const { return friction_ ? friction_->memory() : SlipMemory{}; }
+  void restore(const SlipMemory& memory, const State& state);
+
+ private:
+  [[nodiscard]] const std::string& name(int body) const;
+  [[nodiscard]] double friction_on(int body) const;
+  void guard(const State& state) const;
+
+  const Model& model_;
+  DeformableContact contact_;
+  std::optional<DeformableFriction> friction_;
+};
+
+}  // namespace apothem
