@@ -23,8 +23,11 @@ template <class Number>
 struct Mitre {
   Number x, y;
 
-  Mitre(const Number& px, const Number& py, const Number& qx, const Number& qy)
-      : x(-(py + qy) / (1. + (px * qx + py * qy))), y((px + qx) / (1. + (px * qx + py * qy))) {}
+  Mitre(const Number& px, const Number& py, const Number& qx, const Number& qy) {
+    const Number scale = 1. / (1. + (px * qx + py * qy));
+    x = -(py + qy) * scale;
+    y = (px + qx) * scale;
+  }
 };
 
 template <class Number>

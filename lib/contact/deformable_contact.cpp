@@ -92,7 +92,7 @@ void DeformableContact::close_body(const Outlines::Body& body) {
   slope_.resize(n, stiffness_ / body.reference);
   body_stiffness_.resize(o.bodies.size());
   fx_.resize(n), fy_.resize(n);
-  ends_.resize(4 * n);
+  ends_.resize(2 * n);
   events_.resize(n), areas_.resize(n);
   kept_edges_.clear();  // search anew
 }
@@ -137,8 +137,9 @@ void DeformableContact::find_edges() {
   for (int i = 0; i < n; ++i) {
     const double dx = o.x[o.next[i]] - o.x[i], dy = o.y[o.next[i]] - o.y[i];
     o.length[i] = std::sqrt(dx * dx + dy * dy);
-    o.tx[i] = dx / o.length[i];
-    o.ty[i] = dy / o.length[i];
+    const double scale = 1 / o.length[i];
+    o.tx[i] = dx * scale;
+    o.ty[i] = dy * scale;
   }
   for (int i = 0; i < n; ++i) {
     const int p = o.previous[i];
@@ -153,8 +154,10 @@ void DeformableContact::find_depths() {
   Outlines& o = outlines_;
   const int n = o.size();
   for (int i = 0; i < n; ++i) {
-    const CollarFace<double> f = o.face(i);
-    events_[i] = std::min(o.clearance[i], collar_event(f.length, f.alpha(), f.beta()));
+    const int j = o.next[i];
+    const double alpha = o.mx[i] * o.tx[i] + o.my[i] * o.ty[i];
+    const double beta = o.mx[j] * o.tx[i] + o.my[j] * o.ty[i];
+    events_[i] = std::min(o.clearance[i], collar_event(o.length[i], alpha, beta));
   }
   for (int i = 0; i < n; ++i) {
     const int p = o.previous[i], q = o.next[i];
@@ -301,50 +304,29 @@ void DeformableContact::find_clearance(int b) {
 
 void DeformableContact::evaluate() {
   const Outlines& o = outlines_;
-  const int count = static_cast<int>(candidates_.size());
-  pieces_.resize(count), touching_.resize(count);
-  const auto find_piece = [&](int c) {
-    const auto [e, f] = candidates_[c];
-    const int q = o.next[e];
-    touching_[c] = collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], pieces_[c]);
-  };
-  if (threads_ == 1 || count < kCandidatesWorthThreads) {
-    for (int c = 0; c < count; ++c) find_piece(c);
-  } else {
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (int c = 0; c < count; ++c) find_piece(c);
-  }
-
   contacts_.clear();
   depth_ = {};
   std::fill(ends_.begin(), ends_.end(), 0.);
   std::fill(areas_.begin(), areas_.end(), 0.);
   std::fill(body_stiffness_.begin(), body_stiffness_.end(), 0.);
-  const auto push = [&](int edge, double start_x, double start_y, double end_x, double end_y) {
-    double* f = ends_.data() + 4 * static_cast<size_t>(edge);
-    f[0] += start_x, f[1] += start_y, f[2] += end_x, f[3] += end_y;
-  };
-  for (int c = 0; c < count; ++c) {
-    if (!touching_[c]) continue;
+  const int count = static_cast<int>(candidates_.size());
+  const auto find_piece = [&](int c, CollarPiece<double>& piece) {
     const auto [e, f] = candidates_[c];
-    const CollarPiece<double>& p = pieces_[c];
-    const double k = slope_[f];
-    // Pressure on the edge, against its outward normal N.
-    const double nx = o.length[e] * o.ty[e], ny = -o.length[e] * o.tx[e];
-    const double start = -k * (p.sum - p.first), end = -k * p.first;
-    push(e, start * nx, start * ny, end * nx, end * ny);
-    // The face gives way along its inward normal.
-    const double b = k * p.along / o.length[f], a = k * p.area - b;
-    push(f, -a * o.ty[f], a * o.tx[f], -b * o.ty[f], b * o.tx[f]);
-
-    areas_[f] += p.area;
-    if (!(p.deepest <= 0)) contacts_.push_back({e, f, p});
-    const double stiffness = k * (p.to - p.from) * o.length[e];
-    body_stiffness_[o.body[e]] += stiffness;
-    body_stiffness_[o.body[f]] += stiffness;
-    depth_.largest = std::max(depth_.largest, p.deepest);
-    const double ratio = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
-    if (ratio > depth_.ratio) note_depth(ratio, e, f, (p.from + p.to) / 2);
+    const int q = o.next[e];
+    return collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece);
+  };
+  if (threads_ == 1 || count < kCandidatesWorthThreads) {
+    CollarPiece<double> piece;
+    for (int c = 0; c < count; ++c) {
+      if (find_piece(c, piece)) add_contact({candidates_[c].edge, candidates_[c].face, piece});
+    }
+  } else {
+    pieces_.resize(count), touching_.resize(count);
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (int c = 0; c < count; ++c) touching_[c] = find_piece(c, pieces_[c]);
+    for (int c = 0; c < count; ++c) {
+      if (touching_[c]) add_contact({candidates_[c].edge, candidates_[c].face, pieces_[c]});
+    }
   }
   // Where a body contains the end of a collar without its outline crossing it, Green's theorem has
   // taken the complement.
@@ -353,11 +335,34 @@ void DeformableContact::evaluate() {
       note_depth(1, e, f, (p.from + p.to) / 2);
   }
   for (int i = 0; i < o.size(); ++i) {
-    const double* own = ends_.data() + 4 * static_cast<size_t>(i);
-    const double* before = ends_.data() + 4 * static_cast<size_t>(o.previous[i]);
-    fx_[i] = before[2] + own[0];
-    fy_[i] = before[3] + own[1];
+    const int p = o.previous[i];
+    const double own = ends_[2 * i], before = ends_[2 * p + 1];
+    fx_[i] = -before * o.ty[p] - own * o.ty[i];
+    fy_[i] = before * o.tx[p] + own * o.tx[i];
   }
+}
+
+// The edge gets the pressure against its outward normal, and the face gives way along its inward
+// normal: both along the inward normals, on the two ends.
+void DeformableContact::add_contact(const EdgeFaceContact& contact) {
+  const Outlines& o = outlines_;
+  const auto& [e, f, p] = contact;
+  const double k = slope_[f], on_edge = k * o.length[e];
+  ends_[2 * e] += on_edge * (p.sum - p.first);
+  ends_[2 * e + 1] += on_edge * p.first;
+  const double b = k * p.along / o.length[f];
+  ends_[2 * f] += k * p.area - b;
+  ends_[2 * f + 1] += b;
+
+  areas_[f] += p.area;
+  if (!(p.deepest <= 0)) contacts_.push_back(contact);
+  const double stiffness = on_edge * (p.to - p.from);
+  body_stiffness_[o.body[e]] += stiffness;
+  body_stiffness_[o.body[f]] += stiffness;
+  depth_.largest = std::max(depth_.largest, p.deepest);
+  if (p.deepest < depth_.ratio * o.depth[f] && !p.beyond) return;
+  const double ratio = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
+  if (ratio > depth_.ratio) note_depth(ratio, e, f, (p.from + p.to) / 2);
 }
 
 void DeformableContact::note_depth(double ratio, int e, int f, double u) {

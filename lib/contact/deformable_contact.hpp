@@ -179,6 +179,7 @@ class DeformableContact {
   void search();
   void find_clearance(int body);
   void find_candidates(int a, int b);
+  void add_contact(const EdgeFaceContact& contact);
   void note_depth(double ratio, int edge, int face, double u);
 
   double stiffness_, thickness_, skin_;
@@ -198,10 +199,10 @@ class DeformableContact {
   int searches_ = 0;
   std::optional<SelfContact> self_contact_;
 
-  std::vector<CollarPiece<double>> pieces_;  // of the candidates
+  std::vector<CollarPiece<double>> pieces_;  // of the candidates, with several threads
   std::vector<char> touching_;
   std::vector<EdgeFaceContact> contacts_;
-  std::vector<double> ends_;   // forces of each edge on its two ends, four numbers
+  std::vector<double> ends_;   // force of each edge on its two ends, along its inward normal
   std::vector<double> areas_;  // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;
   std::vector<double> body_stiffness_;

@@ -223,6 +223,57 @@ TEST_CASE("convex and reflex corners of many angles", "[collar]") {
   }
 }
 
+TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[collar]") {
+  samples::Random random(15);
+  double worst = 0, worst_energy = 0;
+  int pairs = 0;
+  for (int i = 0; i < scaled(2000); ++i) {
+    const double grid = 1. / (8 << random.integer(0, 2));
+    const auto outline = [&] {
+      const Polygon star = samples::random_star_shaped(random, random.integer(3, 10), .4);
+      return split(
+          samples::mapped(star,
+                          [&](const Vec2& v) -> Vec2 { return grid * (v / grid).array().round(); })
+              .vertices(),
+          random.integer(1, 3));
+    };
+    const Vec2 step(random.integer(-1, 1), random.integer(-1, 1));
+    std::vector<Vec2> a, b;
+    try {
+      a = outline();
+      b = random.integer(0, 2) == 0 ? a : outline();
+    } catch (const InvalidPolygon&) {
+      continue;  // two vertices in one place
+    }
+    std::optional<OutlinePair> pair;
+    for (int k = static_cast<int>(2.5 / grid); k > 0 && !step.isZero(); --k) {
+      std::vector<Vec2> moved = b;
+      for (Vec2& v : moved) v += k * grid * step;
+      pair.emplace(a, moved, .3, .4);
+      if (pair->contact.depth().ratio > 1e-6) break;
+    }
+    if (!pair || pair->contact.depth().ratio < 1e-6 || pair->contact.depth().ratio == 1) continue;
+    ++pairs;
+    const auto on_a = pair->contact.resultant(0), on_b = pair->contact.resultant(1);
+    const double size = pair->largest_force();
+    worst = std::max({worst, (on_a.force + on_b.force).norm() / size,
+                      std::abs(on_a.moment + on_b.moment) / size});
+    if (i % 20 != 0) continue;
+    try {
+      const Polygon first(pair->a), second(pair->b);
+      const PairResult exact = overlap_method(first, make_potential(first, length_choice(.3)),
+                                              second, make_potential(second, length_choice(.4)));
+      worst_energy = std::max(worst_energy, std::abs(pair->contact.energy() - exact.volume.energy) /
+                                                exact.volume.energy);
+    } catch (const SkeletonFailure&) {
+    }
+  }
+  CHECK(pairs > scaled(2000) / 5);
+  CAPTURE(worst, worst_energy);
+  CHECK(worst < 1e-12);
+  CHECK(worst_energy < 1e-12);
+}
+
 TEST_CASE("NaN is never a miss", "[collar]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .5, .5};
