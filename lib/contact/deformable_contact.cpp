@@ -318,14 +318,14 @@ void DeformableContact::evaluate() {
   if (threads_ == 1 || count < kCandidatesWorthThreads) {
     CollarPiece<double> piece;
     for (int c = 0; c < count; ++c) {
-      if (find_piece(c, piece)) add_contact({candidates_[c].edge, candidates_[c].face, piece});
+      if (find_piece(c, piece)) add_contact(candidates_[c], piece);
     }
   } else {
     pieces_.resize(count), touching_.resize(count);
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (int c = 0; c < count; ++c) touching_[c] = find_piece(c, pieces_[c]);
     for (int c = 0; c < count; ++c) {
-      if (touching_[c]) add_contact({candidates_[c].edge, candidates_[c].face, pieces_[c]});
+      if (touching_[c]) add_contact(candidates_[c], pieces_[c]);
     }
   }
   // Where a body contains the end of a collar without its outline crossing it, Green's theorem has
@@ -344,9 +344,9 @@ void DeformableContact::evaluate() {
 
 // The edge gets the pressure against its outward normal, and the face gives way along its inward
 // normal: both along the inward normals, on the two ends.
-void DeformableContact::add_contact(const EdgeFaceContact& contact) {
+void DeformableContact::add_contact(const EdgeFacePair& pair, const CollarPiece<double>& p) {
   const Outlines& o = outlines_;
-  const auto& [e, f, p] = contact;
+  const auto [e, f] = pair;
   const double k = slope_[f], on_edge = k * o.length[e];
   ends_[2 * e] += on_edge * (p.sum - p.first);
   ends_[2 * e + 1] += on_edge * p.first;
@@ -355,7 +355,7 @@ void DeformableContact::add_contact(const EdgeFaceContact& contact) {
   ends_[2 * f + 1] += b;
 
   areas_[f] += p.area;
-  if (!(p.deepest <= 0)) contacts_.push_back(contact);
+  if (!(p.deepest <= 0)) contacts_.emplace_back(e, f, p);
   const double stiffness = on_edge * (p.to - p.from);
   body_stiffness_[o.body[e]] += stiffness;
   body_stiffness_[o.body[f]] += stiffness;

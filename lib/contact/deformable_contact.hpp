@@ -179,7 +179,7 @@ class DeformableContact {
   void search();
   void find_clearance(int body);
   void find_candidates(int a, int b);
-  void add_contact(const EdgeFaceContact& contact);
+  void add_contact(const EdgeFacePair& pair, const CollarPiece<double>& piece);
   void note_depth(double ratio, int edge, int face, double u);
 
   double stiffness_, thickness_, skin_;
