@@ -17,11 +17,6 @@ constexpr int kCandidatesWorthThreads = 10000;
 // More than the round-off of an area, relative.
 constexpr double kRound = 1e-9;
 
-bool contains(const Box& outer, const Box& inner) {
-  return inner.x0 >= outer.x0 && inner.y0 >= outer.y0 && inner.x1 <= outer.x1 &&
-         inner.y1 <= outer.y1;
-}
-
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
   box.include(other.x1, other.y1);
@@ -94,7 +89,7 @@ void DeformableContact::close_body(const Outlines::Body& body) {
   fx_.resize(n), fy_.resize(n);
   ends_.resize(2 * n);
   events_.resize(n), areas_.resize(n);
-  kept_edges_.clear();  // search anew
+  kept_.clear();  // search anew
 }
 
 void DeformableContact::update(std::span<const double> displacement,
@@ -102,7 +97,6 @@ void DeformableContact::update(std::span<const double> displacement,
   place(displacement, position);
   find_edges();
   find_depths();
-  find_boxes();
   if (stale()) search();
 }
 
@@ -176,19 +170,35 @@ void DeformableContact::find_boxes() {
     box.include(o.x[i], o.y[i]);
     box.include(o.x[j], o.y[j]);
     edge_boxes_[i] = box;
-    const double h = o.depth[i];
-    box.include(o.x[i] + h * o.mx[i], o.y[i] + h * o.my[i]);
-    box.include(o.x[j] + h * o.mx[j], o.y[j] + h * o.my[j]);
+    const Corners c = corners(i);
+    box.include(c[2], c[3]);
+    box.include(c[4], c[5]);
     face_boxes_[i] = box;
   }
 }
 
-// A candidate list serves as long as no box has left its grown one.
+// Where the outline and the ends of the collar are.
+DeformableContact::Corners DeformableContact::corners(int i) const {
+  const Outlines& o = outlines_;
+  const int j = o.next[i];
+  const double h = o.depth[i];
+  return {o.x[i],
+          o.y[i],
+          o.x[i] + h * o.mx[i],
+          o.y[i] + h * o.my[i],
+          o.x[j] + h * o.mx[j],
+          o.y[j] + h * o.my[j]};
+}
+
+// A candidate list serves as long as no corner has moved through half the skin.
 bool DeformableContact::stale() const {
-  if (kept_edges_.size() != edge_boxes_.size()) return true;
-  for (size_t i = 0; i < edge_boxes_.size(); ++i) {
-    if (!contains(kept_edges_[i], edge_boxes_[i]) || !contains(kept_faces_[i], face_boxes_[i]))
-      return true;
+  const int n = outlines_.size();
+  if (static_cast<int>(kept_.size()) != n) return true;
+  for (int i = 0; i < n; ++i) {
+    const Corners now = corners(i);
+    double moved = 0;
+    for (size_t k = 0; k < now.size(); ++k) moved = std::max(moved, std::abs(now[k] - kept_[i][k]));
+    if (!(moved <= skin_ / 2)) return true;
   }
   return false;
 }
@@ -197,6 +207,7 @@ void DeformableContact::search() {
   const Outlines& o = outlines_;
   ++searches_;
   self_contact_.reset();
+  find_boxes();
   const int bodies = static_cast<int>(o.bodies.size());
   for (int b = 0; b < bodies; ++b) {
     if (!o.bodies[b].rigid() || b >= measured_) find_clearance(b);
@@ -205,9 +216,10 @@ void DeformableContact::search() {
   find_depths();
   find_boxes();
 
-  kept_edges_.clear(), kept_faces_.clear();
+  kept_.clear(), kept_edges_.clear(), kept_faces_.clear();
   body_boxes_.assign(bodies, {});
   for (int i = 0; i < o.size(); ++i) {
+    kept_.push_back(corners(i));
     kept_edges_.push_back(edge_boxes_[i].grown(skin_ / 2));
     kept_faces_.push_back(face_boxes_[i].grown(skin_ / 2));
     include(body_boxes_[o.body[i]], kept_edges_[i]);
@@ -318,14 +330,14 @@ void DeformableContact::evaluate() {
   if (threads_ == 1 || count < kCandidatesWorthThreads) {
     CollarPiece<double> piece;
     for (int c = 0; c < count; ++c) {
-      if (find_piece(c, piece)) add_contact({candidates_[c].edge, candidates_[c].face, piece});
+      if (find_piece(c, piece)) add_contact(candidates_[c], piece);
     }
   } else {
     pieces_.resize(count), touching_.resize(count);
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (int c = 0; c < count; ++c) touching_[c] = find_piece(c, pieces_[c]);
     for (int c = 0; c < count; ++c) {
-      if (touching_[c]) add_contact({candidates_[c].edge, candidates_[c].face, pieces_[c]});
+      if (touching_[c]) add_contact(candidates_[c], pieces_[c]);
     }
   }
   // Where a body contains the end of a collar without its outline crossing it, Green's theorem has
@@ -344,9 +356,9 @@ void DeformableContact::evaluate() {
 
 // The edge gets the pressure against its outward normal, and the face gives way along its inward
 // normal: both along the inward normals, on the two ends.
-void DeformableContact::add_contact(const EdgeFaceContact& contact) {
+void DeformableContact::add_contact(const EdgeFacePair& pair, const CollarPiece<double>& p) {
   const Outlines& o = outlines_;
-  const auto& [e, f, p] = contact;
+  const auto [e, f] = pair;
   const double k = slope_[f], on_edge = k * o.length[e];
   ends_[2 * e] += on_edge * (p.sum - p.first);
   ends_[2 * e + 1] += on_edge * p.first;
@@ -355,7 +367,7 @@ void DeformableContact::add_contact(const EdgeFaceContact& contact) {
   ends_[2 * f + 1] += b;
 
   areas_[f] += p.area;
-  if (!(p.deepest <= 0)) contacts_.push_back(contact);
+  if (!(p.deepest <= 0)) contacts_.emplace_back(e, f, p);
   const double stiffness = on_edge * (p.to - p.from);
   body_stiffness_[o.body[e]] += stiffness;
   body_stiffness_[o.body[f]] += stiffness;

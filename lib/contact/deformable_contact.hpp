@@ -8,6 +8,7 @@
 // part with their polygons; pairs of two rigid bodies do not belong here.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -175,11 +176,14 @@ class DeformableContact {
   void find_edges();
   void find_depths();
   void find_boxes();
+  /// x, y of the start of an edge and of both ends of its collar's upper end.
+  using Corners = std::array<double, 6>;
+  [[nodiscard]] Corners corners(int edge) const;
   [[nodiscard]] bool stale() const;
   void search();
   void find_clearance(int body);
   void find_candidates(int a, int b);
-  void add_contact(const EdgeFaceContact& contact);
+  void add_contact(const EdgeFacePair& pair, const CollarPiece<double>& piece);
   void note_depth(double ratio, int edge, int face, double u);
 
   double stiffness_, thickness_, skin_;
@@ -189,8 +193,9 @@ class DeformableContact {
   std::vector<double> slope_;   // of each edge's face
   int measured_ = 0;            // so many bodies have their clearances, if they are rigid
 
-  std::vector<Box> edge_boxes_, face_boxes_;  // now
-  std::vector<Box> kept_edges_, kept_faces_;  // grown, of the last search
+  // Of the last search: corners, boxes, and boxes grown by half the skin.
+  std::vector<Corners> kept_;
+  std::vector<Box> edge_boxes_, face_boxes_, kept_edges_, kept_faces_;
   std::vector<Box> body_boxes_;
   std::vector<BoxPair> pairs_;
   std::vector<int> near_edges_, near_faces_;
