@@ -58,7 +58,11 @@ void DeformableFriction::update(const DeformableContact& contact,
 
   const auto key = [](const EdgeSlip& s) { return std::pair(s.edge, s.partner); };
   auto old = before_.slips.begin();
-  const auto drop = [&] { now_.friction_loss += old++->energy(); };
+  // The last force acts for half a step more, while the bodies slip on as before.
+  const auto drop = [&] {
+    now_.friction_loss += old->energy() - old->spring * old->slip / 2;
+    ++old;
+  };
   const auto partner = [&](const EdgeFaceContact& c) {
     return o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face];
   };
@@ -88,8 +92,9 @@ void DeformableFriction::update(const DeformableContact& contact,
     while (old != before_.slips.end() && key(*old) < key(slip)) drop();
     const bool known = old != before_.slips.end() && key(*old) == key(slip);
     if (!(normal > 0)) continue;
-    slip.spring = slide(known ? &*old : nullptr, slip.stiffness, rate / normal * dt,
-                        friction.coefficient * normal);
+    slip.slip = rate / normal * dt;
+    slip.spring =
+        slide(known ? &*old : nullptr, slip.stiffness, slip.slip, friction.coefficient * normal);
     if (known) ++old;
     now_.slips.push_back(slip);
     now_.energy += slip.energy();
@@ -113,16 +118,13 @@ void DeformableFriction::update(const DeformableContact& contact,
 
 double DeformableFriction::slide(const EdgeSlip* before, double stiffness, double slip,
                                  double limit) {
-  double spring = 0;
-  if (before) {
-    // New contact joins without a slip of its own; contact that ends takes its share along.
-    spring = before->spring * std::min(1., stiffness / before->stiffness);
-    now_.friction_loss += before->energy() - spring * spring / (2 * stiffness);
-  }
-  const double trial = spring - stiffness * slip;
-  const double next = std::clamp(trial, -limit, limit);
-  // Mean force times the slip that the spring does not follow.
-  now_.friction_loss += (spring + next) * (trial - next) / (2 * stiffness);
+  const EdgeSlip last = before ? *before : EdgeSlip{0, 0, 0, stiffness};
+  // New contact joins without a slip of its own; contact that ends takes its share along.
+  const double spring = last.spring * std::min(1., stiffness / last.stiffness);
+  const double next = std::clamp(spring - stiffness * slip, -limit, limit);
+  // What the bodies lose, at the mean of the two forces, and the springs do not store.
+  now_.friction_loss -= (last.spring + next) / 2 * slip;
+  now_.friction_loss += last.energy() - next * next / (2 * stiffness);
   return next;
 }
 

@@ -22,6 +22,7 @@ struct EdgeSlip {
   int partner;       ///< the other body; for edges of rigid bodies the face
   double spring;     ///< friction force along the faces, N
   double stiffness;  ///< N/m
+  double slip = 0;   ///< of the last step, m
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? spring * spring / (2 * stiffness) : 0;

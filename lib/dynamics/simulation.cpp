@@ -163,7 +163,7 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
     return;
   }
   double target = contact_target;
-  element_safety_ = time.element_safety.value_or(surface_ ? .4 : .5);
+  element_safety_ = time.element_safety.value_or(surface_ ? .2 : .5);
   if (element_safety_ * elements.step < target) {
     target = element_safety_ * elements.step;
     limit_ = elements;
@@ -520,7 +520,13 @@ Energies Simulation::energies() {
     dissipation.friction = tangential_->memory().friction_loss;
     dissipation.damping += tangential_->memory().damping_loss;
   }
-  if (surface_) dissipation.friction += surface_->friction_loss();
+  if (surface_) {
+    dissipation.friction += surface_->friction_loss();
+    for (const ContactRecord& r : surface_->records()) {
+      const double force = r.normal.norm();
+      if (force > extremes_.force.value) extremes_.force = {force, state_.time, r.a, r.b};
+    }
+  }
   const Energies nodes = deformables_ ? deformables_->energies(state_, dt_) : Energies{};
   const Energies e = ledger_->energies(state_, contact_energy(), dissipation, nodes);
   energy_in_play_ =

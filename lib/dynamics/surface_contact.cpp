@@ -51,6 +51,8 @@ SurfaceContact::SurfaceContact(const Model& model, const State& state, int threa
   }
   if (rough) friction_.emplace(std::move(kind), bodies, std::move(table));
   contact_.update(state.displacement, state.position);
+  contact_.evaluate();
+  slide(state, 0);
 }
 
 double SurfaceContact::rate(std::span<const double> node_mass) const {

@@ -14,7 +14,7 @@ struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
   double safety = 0.1;                    ///< automatic step / stability limit of contacts
-  /// The same for finite elements; empty: 0.5, 0.4 if they can touch something.
+  /// The same for finite elements; empty: 0.5, 0.2 if they can touch something.
   std::optional<double> element_safety = {};
   bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
   double longest_step = 1e300;  ///< s; of an automatic step: the interval of the history
