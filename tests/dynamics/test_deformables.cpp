@@ -46,7 +46,7 @@ TEST_CASE("a spinning free body keeps energy and momenta over 100 turns", "[defo
     body.spin = 200;
     const Model model = model_of(body, rock());
     TimeSettings time;
-    time.end = 200 * std::numbers::pi / body.spin;
+    time.end = (test::scaled(50) < 50 ? 10 : 200) * std::numbers::pi / body.spin;
     Simulation simulation(model, time, 10, 1);
     const Energies before = simulation.energies();
     // The centrifugal load comes at once: the body pulses, and Verlet's energy with it.
@@ -167,9 +167,10 @@ TEST_CASE("energy of a large vibration: order 2, no drift over 1e5 steps", "[def
   CHECK(coarse / fine > 3.5);
   CHECK(coarse / fine < 4.6);
 
-  // Mean error of each tenth of 1e5 steps: it stays where it is.
+  // Mean error of each tenth of 1e5 steps: it stays where it is. Fewer steps are no mean.
+  if (test::scaled(2) < 2) return;
   const Model gentle = vibrating_beam(5, rock());
-  const int tenth = test::scaled(10000);
+  const int tenth = 10000;
   time.end = 10 * tenth * .6 * limit;
   time.fixed_step = .6 * limit;
   Simulation simulation(gentle, time, 1, 1);

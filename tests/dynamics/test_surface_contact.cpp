@@ -1,0 +1,216 @@
+// Deformable bodies that touch each other and rigid bodies, in the step loop.
+#include <catch2/catch.hpp>
+
+#include "dynamics/simulation.hpp"
+#include "geometry/voronoi.hpp"
+#include "mesh/disc_mesh.hpp"
+#include "mesh/fill_mesh.hpp"
+#include "mesh/rectangle_mesh.hpp"
+#include "mesh/reorder.hpp"
+#include "mesh/select.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+
+namespace {
+
+enum class Shape { quads, triangles, voronoi };
+
+Mesh disc(const Vec2& centre, Shape shape) {
+  if (shape == Shape::voronoi) {
+    std::vector<Vec2> ring;
+    for (int i = 0; i < 24; ++i) {
+      ring.emplace_back(.5 * std::cos(2 * M_PI * i / 24), .5 * std::sin(2 * M_PI * i / 24));
+    }
+    const Polygon region(samples::shifted(Polygon(ring), centre));
+    VoronoiOptions options;
+    options.cells = 80;
+    Mesh mesh = mesh_of_cells(region, in_world(region, voronoi_mesh(region, options).mesh));
+    reorder_along_curve(mesh);
+    return mesh;
+  }
+  Mesh mesh =
+      disc_mesh(centre, .5, {.quarter = 6},
+                shape == Shape::quads ? ElementShape::quadrilateral : ElementShape::triangle);
+  reorder_along_curve(mesh);
+  return mesh;
+}
+
+ElementKind element_of(Shape shape) {
+  return shape == Shape::quads       ? ElementKind::quad4
+         : shape == Shape::triangles ? ElementKind::tri3
+                                     : ElementKind::polygon;
+}
+
+Model empty_model() {
+  Model model;
+  model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::stress, 20e9, .2}}};
+  model.contact.normal_stiffness = 20e9;
+  return model;
+}
+
+void add(Model& model, const char* name, Mesh mesh, ElementKind kind, const Vec2& velocity,
+         double spin = 0) {
+  DeformableBody body;
+  body.name = name;
+  body.element = kind;
+  body.mesh = std::move(mesh);
+  body.velocity = velocity;
+  body.spin = spin;
+  body.first_node = model.node_count();
+  model.deformables.push_back(std::move(body));
+}
+
+void add_floor(Model& model) {
+  RigidBody floor;
+  floor.name = "floor";
+  floor.motion = Motion::fixed;
+  set_shape(floor, Polygon({{-3, -1}, {3, -1}, {3, 0}, {-3, 0}}), model);
+  model.bodies.push_back(floor);
+}
+
+struct Result {
+  double energy = 0;    // largest error over the initial kinetic energy
+  double momentum = 0;  // largest error over the first body's momentum
+  bool touched = false;
+  Energies last;
+};
+
+Result collide(const Model& model, double safety, double end, int threads = 1) {
+  TimeSettings time;
+  time.end = end;
+  time.element_safety = time.safety = safety;
+  Simulation simulation(model, time, 1, threads);
+  const double kinetic = simulation.energies().kinetic;
+  Result result;
+  while (simulation.state().time < end) {
+    simulation.step();
+    if (simulation.state().step % 5 != 0) continue;
+    result.last = simulation.energies();
+    const Momenta p = simulation.momenta();
+    result.energy = std::max(result.energy, std::abs(result.last.total_error) / kinetic);
+    for (const double error : {p.x_error, p.y_error, p.angular_error}) {
+      result.momentum = std::max(result.momentum, std::abs(error));
+    }
+    result.touched = result.touched || result.last.contact > 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", "[surface]") {
+  for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
+    for (const double mu : {0., .3}) {
+      Model model = empty_model();
+      model.contact.friction = {mu, 12e9};
+      add(model, "one", disc({0, 0}, shape), element_of(shape), {2, 0}, mu > 0 ? 5 : 0);
+      add(model, "two", disc({.96, .3}, shape), element_of(shape), {-2, 0});
+      const Result coarse = collide(model, .2, 3e-3);
+      const Result fine = collide(model, .1, 3e-3);
+      INFO(static_cast<int>(shape) << " mu " << mu);
+      CHECK(coarse.touched);
+      CHECK(coarse.energy < 1e-4);
+      CHECK(coarse.energy / fine.energy > 2.5);
+      CHECK(coarse.momentum < 1e-8);
+      if (mu > 0) CHECK(coarse.last.friction_loss > 1);
+    }
+  }
+}
+
+TEST_CASE("a deformable body bounces on a rigid one as on a meshed one", "[surface]") {
+  Model rigid = empty_model();
+  add_floor(rigid);
+  add(rigid, "ball", disc({0, .5001}, Shape::quads), ElementKind::quad4, {0, -1});
+  CHECK(collide(rigid, .2, 2e-3).energy < 1e-4);
+
+  Model meshed = empty_model();
+  Mesh floor = rectangle_mesh({2, .5}, {20, 5}, {-1, -.5}, ElementShape::quadrilateral);
+  reorder_along_curve(floor);
+  add(meshed, "floor", std::move(floor), ElementKind::quad4, {0, 0});
+  meshed.deformables[0].supports = {
+      {nodes_where(meshed.deformables[0].mesh, {.y = -.5}), {true, true}, {}}};
+  add(meshed, "ball", disc({0, .5001}, Shape::quads), ElementKind::quad4, {0, -1});
+  CHECK(collide(meshed, .2, 2e-3).energy < 1e-4);
+}
+
+TEST_CASE("a free rigid body and a deformable one exchange momentum", "[surface]") {
+  Model model = empty_model();
+  RigidBody wedge;
+  wedge.name = "wedge";
+  set_shape(wedge, Polygon({{-.3, .6}, {0, .448}, {.3, .6}, {0, .9}}), model);
+  wedge.velocity = {0, -1};
+  wedge.spin = 2;
+  model.bodies.push_back(wedge);
+  model.contact.friction = {.2, 12e9};
+  add(model, "ball", disc({.05, -.05}, Shape::quads), ElementKind::quad4, {0, .5});
+  const Result result = collide(model, .1, 4e-3);
+  CHECK(result.touched);
+  CHECK(result.energy < 3e-4);
+  CHECK(result.momentum < 1e-8);
+}
+
+TEST_CASE("threads change no bit of deformable contact", "[surface]") {
+  std::vector<double> serial;
+  for (const int threads : {1, 3}) {
+    Model model = empty_model();
+    model.contact.friction = {.3, 12e9};
+    add(model, "one", disc({0, 0}, Shape::quads), ElementKind::quad4, {2, 0});
+    add(model, "two", disc({.95, .3}, Shape::quads), ElementKind::quad4, {-2, 0});
+    TimeSettings time;
+    time.end = 1;
+    Simulation simulation(model, time, 1, threads);
+    for (int i = 0; i < 300; ++i) simulation.step();
+    CHECK(simulation.energies().contact > 0);
+    if (threads == 1) serial = simulation.state().displacement;
+    CHECK((simulation.state().displacement == serial));
+  }
+}
+
+TEST_CASE("contact beyond the method's range stops the run with the place", "[surface]") {
+  Model model = empty_model();
+  model.contact.normal_stiffness = 1e6;
+  add_floor(model);
+  add(model, "ball", disc({0, .51}, Shape::quads), ElementKind::quad4, {0, -20});
+  try {
+    collide(model, .2, 1e-2);
+    FAIL("not noticed");
+  } catch (const Unstable& error) {
+    const std::string what = error.what();
+    INFO(what);
+    CHECK(what.find("\"ball\"") != std::string::npos);
+    CHECK(what.find("normal_stiffness") != std::string::npos);
+    CHECK(what.find("t = ") != std::string::npos);
+  }
+}
+
+TEST_CASE("three bodies in a box for 120 000 steps", "[surface]") {
+  // The full number with APOTHEM_LONG=1.
+  Model model = empty_model();
+  for (const auto& [name, x, y, w, h] :
+       {std::tuple("left", -.6, -.6, .5, 3.), std::tuple("right", 2.1, -.6, .5, 3.),
+        std::tuple("bottom", -.1, -.6, 2.2, .5), std::tuple("top", -.1, 1.9, 2.2, .5)}) {
+    RigidBody wall;
+    wall.name = name;
+    wall.motion = Motion::fixed;
+    set_shape(wall, Polygon({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}}), model);
+    model.bodies.push_back(wall);
+  }
+  add(model, "one", disc({.5, .5}, Shape::quads), ElementKind::quad4, {20, 7});
+  add(model, "two", disc({1.59, .51}, Shape::voronoi), ElementKind::polygon, {-15, 3});
+  add(model, "three", disc({1, 1.39}, Shape::triangles), ElementKind::tri3, {4, -18});
+  TimeSettings time;
+  time.end = 1e3;
+  time.element_safety = .4;
+  Simulation simulation(model, time, 1, 1);
+  const double kinetic = simulation.energies().kinetic;
+  const int steps = test::long_run() ? 120000 : test::scaled(12000);
+  double error = 0;
+  for (int i = 0; i < steps; ++i) simulation.step();
+  for (int i = 0; i < 100; ++i) {
+    simulation.step();
+    error += simulation.energies().total_error / 100;
+  }
+  INFO(error / kinetic);
+  CHECK(std::abs(error) < 1e-3 * kinetic);
+}
