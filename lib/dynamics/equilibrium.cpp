@@ -21,6 +21,7 @@ constexpr double kStep = 0.75;
 constexpr double kStride = 0.02;  // of the shortest edge, per step: no contact is jumped over
 constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
+constexpr double kFar = 100;                     // of the scene's size: there a body is lost
 constexpr int kCheckedEvery = 10;
 constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
@@ -41,6 +42,11 @@ Equilibrium::Equilibrium(const Model& model, Deformables& deformables, SurfaceCo
     v->assign(n, 0);
   }
   surface_.assign(n / 2, 0);
+  Box scene;
+  for (const DeformableBody& body : model.deformables) {
+    for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
+  }
+  far_ = kFar * scene.extent();
 }
 
 // So many steps that nothing moves more than a stride in one.
@@ -93,6 +99,20 @@ void Equilibrium::find_masses(const State& state) {
 }
 
 void Equilibrium::check_shapes(const State& state) const {
+  for (const DeformableBody& body : model_.deformables) {
+    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+      const size_t c = 2 * (body.first_node + i);
+      if (std::max(std::abs(state.displacement[c]), std::abs(state.displacement[c + 1])) < far_) {
+        continue;
+      }
+      throw Unstable(
+          fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
+                      "equilibrium: nothing holds it against its loads; support it, or press it "
+                      "against another body",
+                      body.name, std::hypot(state.displacement[c], state.displacement[c + 1]),
+                      state.time, state.step));
+    }
+  }
   const std::string element = deformables_.inverted(state);
   if (element.empty()) return;
   throw Unstable(

@@ -47,6 +47,7 @@ class Equilibrium {
   std::vector<double> rest_, velocity_;    // forces out of balance, N; velocity
   std::vector<double> outside_;            // forces at the last equilibrium, N
   std::vector<double> rigid_force_;
+  double far_ = 0;                  // m
   double loads_ = 0;                // largest norm so far, N
   std::vector<double> body_loads_;  // largest sum of sizes so far, N
   double kinetic_ = 0;              // at the step before
