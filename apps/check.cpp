@@ -49,13 +49,18 @@ int check_command(const CheckOptions& options) {
                   model.deformables.size()));
   say("elements", fmt::format("{}, {} nodes", elements, model.node_count()));
   say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end, steps));
-  say("time step",
-      fmt::format("{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
-                  scene.time.fixed_step ? "fixed"
-                  : simulation.limit().reason.starts_with("elements")
-                      ? fmt::format("auto, safety {:g}", simulation.element_safety())
-                      : fmt::format("auto, safety {:g}", scene.time.safety),
-                  simulation.limit().reason, simulation.stability_limit()));
+  if (scene.time.statics) {
+    say("static",
+        fmt::format("{} load steps, tolerance {:g}", scene.time.load_steps, scene.time.tolerance));
+  } else {
+    say("time step",
+        fmt::format("{} s ({}); limited by: {}; stability limit {:.6g} s", simulation.step_size(),
+                    scene.time.fixed_step ? "fixed"
+                    : simulation.limit().reason.starts_with("elements")
+                        ? fmt::format("auto, safety {:g}", simulation.element_safety())
+                        : fmt::format("auto, safety {:g}", scene.time.safety),
+                    simulation.limit().reason, simulation.stability_limit()));
+  }
   say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
                             scene.output.frames + 1,
                             scene.output.track.size() + scene.output.track_deformables.size(),

@@ -170,6 +170,9 @@ class Run {
 
   int execute() {
     Checkpoint from;
+    if (options_.resume && scene_.time.statics) {
+      throw scene_.error_at("/time/mode", "a static run cannot be resumed; start it again");
+    }
     if (options_.resume) {
       from = read_checkpoint(folder_, scene_hash_, simulation_.state());
       simulation_.restore(from.snapshot);
@@ -181,7 +184,7 @@ class Run {
     try {
       HistoryWriter history(folder_, scene_.model, scene_.output, from.history_sizes);
       FrameWriter frames(folder_, scene_.model, from.frame_times);
-      code = loop(history, frames, from);
+      code = scene_.time.statics ? load_steps(history, frames) : loop(history, frames, from);
     } catch (const Unstable& error) {
       code = exit_code::unstable;
       status_ = "unstable";
@@ -204,6 +207,46 @@ class Run {
   }
 
  private:
+  void write(HistoryWriter& history, bool row, FrameWriter& frames, bool picture) {
+    const Clock::time_point before = Clock::now();
+    if (row) {
+      history.add(
+          simulation_.state(), simulation_.energies(), simulation_.momenta(),
+          {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass()});
+    }
+    if (picture) {
+      history.flush();
+      frames.write(simulation_.state(), simulation_.contacts(), simulation_.stresses(),
+                   simulation_.surfaces());
+    }
+    output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
+  }
+
+  int load_steps(HistoryWriter& history, FrameWriter& frames) {
+    const int count = scene_.time.load_steps;
+    write(history, true, frames, true);
+    for (int i = 1; i <= count && !interrupted; ++i) {
+      const double time = i < count ? scene_.time.end * i / count : scene_.time.end;
+      if (time > end_ * (1 + 1e-12)) break;
+      load_steps_.push_back(simulation_.balance(time));
+      const LoadStep& step = load_steps_.back();
+      write(history, true, frames, true);
+      if (options_.quiet) continue;
+      fmt::print(
+          stderr,
+          "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g}\n", i,
+          count, step.iterations, step.residual, step.imbalance);
+    }
+    if (!interrupted) {
+      status_ = "done";
+      return exit_code::done;
+    }
+    status_ = "interrupted";
+    message_ = fmt::format("interrupted at t = {:.9g} s; all files are complete",
+                           simulation_.state().time);
+    return exit_code::interrupted;
+  }
+
   int loop(HistoryWriter& history, FrameWriter& frames, const Checkpoint& from) {
     Progress progress(!options_.quiet, end_);
     Schedule rows(scene_.output.history_interval.value_or(scene_.time.end / 1000), from.next_row);
@@ -212,21 +255,9 @@ class Run {
     const auto record = [&](bool row, bool picture) {
       row = row && last_row != simulation_.state().step;
       picture = picture && last_picture != simulation_.state().step;
-      if (!row && !picture) return;
       if (row) last_row = simulation_.state().step;
       if (picture) last_picture = simulation_.state().step;
-      const Clock::time_point before = Clock::now();
-      if (row) {
-        history.add(
-            simulation_.state(), simulation_.energies(), simulation_.momenta(),
-            {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass()});
-      }
-      if (picture) {
-        history.flush();
-        frames.write(simulation_.state(), simulation_.contacts(), simulation_.stresses(),
-                     simulation_.surfaces());
-      }
-      output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
+      if (row || picture) write(history, row, frames, picture);
     };
     const auto checkpoint = [&] {
       history.flush();
@@ -333,6 +364,17 @@ class Run {
               {"largest_contact_force_at", peak(extremes.force)},
               {"largest_energy_error", extremes.energy_error},
               {"final_state_hash", state_hash(state)}};
+    if (scene_.time.statics) {
+      json.erase("steps_per_second");
+      json["stability_limit"] = nullptr;
+      Json& found = json["load_steps"] = Json::array();
+      for (const LoadStep& s : load_steps_) {
+        found.push_back({{"time", s.time},
+                         {"iterations", s.iterations},
+                         {"residual", s.residual},
+                         {"imbalance", s.imbalance}});
+      }
+    }
     if (!message_.empty()) json["message"] = message_;
     Json& list = json["expectations"] = Json::array();
     for (size_t i = 0; i < outcomes_.size(); ++i) {
@@ -353,8 +395,9 @@ class Run {
   void print_summary() const {
     const State& state = simulation_.state();
     const Extremes& extremes = simulation_.extremes();
-    fmt::print("{}: {} steps of {:.6g} s, t = {:.6g} s, results in {}\n", scene_.model.name,
-               state.step, simulation_.step_size(), state.time, folder_);
+    fmt::print("{}: {} {} of {:.6g} s, t = {:.6g} s, results in {}\n", scene_.model.name,
+               state.step, scene_.time.statics ? "load steps" : "steps", simulation_.step_size(),
+               state.time, folder_);
     fmt::print("largest penetration {:.9g} m, contact force {:.9g} N, energy error {:.3g} J\n",
                extremes.penetration.value, extremes.force.value, extremes.energy_error);
     for (size_t i = 0; i < outcomes_.size(); ++i) {
@@ -375,6 +418,7 @@ class Run {
   double output_seconds_ = 0;
   std::string status_ = "running";
   std::string message_;
+  std::vector<LoadStep> load_steps_;
   std::vector<Outcome> outcomes_;
   int missed_ = 0;
 };

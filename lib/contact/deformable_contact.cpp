@@ -444,6 +444,23 @@ DeformableContact::Rate DeformableContact::rate(std::span<const double> node_mas
   return worst;
 }
 
+void DeformableContact::add_stiffness(std::span<double> node_stiffness) const {
+  const Outlines& o = outlines_;
+  std::vector<double> slope(o.size(), 0);  // of each vertex: 1/r_c + 1/r_t
+  for (const EdgeFacePair& c : candidates_) {
+    const double both =
+        1 / o.bodies[o.body[c.edge]].reference + 1 / o.bodies[o.body[c.face]].reference;
+    for (const int i : {c.edge, o.next[c.edge], c.face, o.next[c.face]}) {
+      slope[i] = std::max(slope[i], both);
+    }
+  }
+  for (int i = 0; i < o.size(); ++i) {
+    if (o.node[i] < 0) continue;
+    const double share = (o.length[i] + o.length[o.previous[i]]) / 2;
+    node_stiffness[o.node[i]] += 2 * stiffness_ * slope[i] * share;
+  }
+}
+
 void DeformableContact::pressures(std::vector<double>& pressure) const {
   const Outlines& o = outlines_;
   pressure.assign(o.size(), 0);

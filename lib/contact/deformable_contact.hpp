@@ -154,6 +154,10 @@ class DeformableContact {
   };
   [[nodiscard]] Rate rate(std::span<const double> node_mass) const;
 
+  /// Adds to each node the same bound as a stiffness, m_i w_c^2, N/m, where the last search has
+  /// found candidates.
+  void add_stiffness(std::span<double> node_stiffness) const;
+
   [[nodiscard]] const Outlines& outlines() const { return outlines_; }
   [[nodiscard]] const std::vector<EdgeFacePair>& candidates() const { return candidates_; }
   /// Ascending.

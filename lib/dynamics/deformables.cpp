@@ -200,6 +200,47 @@ void Deformables::find_forces(State& state, double dt, const SurfaceContact* con
   }
 }
 
+void Deformables::place_supports(State& state) const {
+  for (const Driven& d : driven_) {
+    state.displacement[d.coordinate] = d.motion->displacement(state.time)[d.axis];
+    state.node_velocity[d.coordinate] = d.motion->rate(state.time)[d.axis];
+  }
+}
+
+void Deformables::find_static_forces(State& state, const SurfaceContact* contact) {
+  elements_.force(state.displacement, state.node_velocity, state.node_force);
+  apply_loads(state);
+  add_loads(state);
+  if (contact) contact->add_to_nodes(state.node_force);
+}
+
+std::vector<double> Deformables::weights() const {
+  std::vector<double> weights(acceleration_);
+  for (size_t c = 0; c < weights.size(); ++c) {
+    if (inverse_mass_[c] > 0) weights[c] /= inverse_mass_[c];
+  }
+  return weights;
+}
+
+std::vector<double> Deformables::outside_forces(const State& state) const {
+  std::vector<double> outside(inverse_mass_.size(), 0);
+  for (const auto& [node, force] : loads_) {
+    outside[2 * static_cast<size_t>(node)] += force.x();
+    outside[2 * static_cast<size_t>(node) + 1] += force.y();
+  }
+  for (const Driven& d : driven_) outside[d.coordinate] -= state.node_force[d.coordinate];
+  return outside;
+}
+
+double Deformables::largest_support_move(double from, double until) const {
+  double largest = 0;
+  for (const Driven& d : driven_) {
+    largest = std::max(largest, std::abs(d.motion->displacement(until)[d.axis] -
+                                         d.motion->displacement(from)[d.axis]));
+  }
+  return largest;
+}
+
 void Deformables::restore(const DeformableBalance& balance, const State& state) {
   balance_ = balance;
   apply_loads(state);

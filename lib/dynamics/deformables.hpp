@@ -39,6 +39,18 @@ class Deformables {
   /// Of each node, kg; 0 where it is held.
   [[nodiscard]] std::vector<double> free_mass() const;
 
+  // Static scenes:
+  /// Moves supports to where they are at `state.time`.
+  void place_supports(State& state) const;
+  /// Internal forces, loads at `state.time` and contacts; books nothing.
+  void find_static_forces(State& state, const SurfaceContact* contact);
+  /// The weight of each coordinate that is not held, N; empty without gravity.
+  [[nodiscard]] std::vector<double> weights() const;
+  [[nodiscard]] bool held(size_t coordinate) const { return inverse_mass_[coordinate] == 0; }
+  /// Loads and reactions of moving supports on each coordinate, N.
+  [[nodiscard]] std::vector<double> outside_forces(const State& state) const;
+  void add_load_work(double work) { balance_.load_work += work; }
+
   /// Kinetic, strain and gravity energy, damping loss and work of loads.
   [[nodiscard]] Energies energies(const State& state, double dt);
   [[nodiscard]] Impulse momentum(const State& state) const;
@@ -46,6 +58,8 @@ class Deformables {
   [[nodiscard]] Impulse take_impulse();
 
   [[nodiscard]] const FiniteElements& elements() const { return elements_; }
+  /// How far the supports move between two times at most, m.
+  [[nodiscard]] double largest_support_move(double from, double until) const;
   /// An element that has turned inside out, as `the element at (1, 2) m of "beam"`; empty if none.
   [[nodiscard]] std::string inverted(const State& state) const;
 

@@ -110,6 +110,9 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   }
   if (!model.deformables.empty()) deformables_.emplace(model, state_, threads);
   if (SurfaceContact::needed(model)) surface_.emplace(model, state_, threads);
+  if (time.statics && deformables_) {
+    equilibrium_.emplace(model, *deformables_, surface_ ? &*surface_ : nullptr, time.tolerance);
+  }
   stiffness_.resize(model.bodies.size());
   largest_stride_ = kLargestStride * inradius;
   energy_noise_ = energy_noise(model);
@@ -140,6 +143,11 @@ void Simulation::choose_step(const TimeSettings& time, int frames) {
   }
   if (elements.step < limit_.step) limit_ = elements;
   stability_limit_ = limit_.step;
+  if (time.statics) {
+    dt_ = time.end / time.load_steps;
+    limit_ = {dt_, "load steps"};
+    return;
+  }
   automatic_ = !time.fixed_step;
   safety_ = time.safety;
   const auto require_progress = [&] {
@@ -255,6 +263,24 @@ void Simulation::step() {
   again.lap(Phase::integrate);
   timed_steps_ += timed;
   if (state_.step % kWatchedEvery == 0) watch();
+}
+
+LoadStep Simulation::balance(double time) {
+  for (const int i : driven_) {
+    const RigidBody& body = model_.bodies[i];
+    const std::array<double, 3> from = body.history.displacement(state_.time);
+    const std::array<double, 3> until = body.history.displacement(time);
+    for (int k = 0; k < 3; ++k) moved_[3 * i + k] = until[k] - from[k];
+  }
+  ledger_->half_step(state_, 0, moved_);
+  const LoadStep result = equilibrium_->find(state_, time);
+  for (const int i : driven_) {
+    const std::array<double, 3> rate = model_.bodies[i].history.rate(time);
+    std::copy(rate.begin(), rate.end(), state_.velocity.begin() + 3 * i);
+  }
+  find_forces(false, state_.velocity, 0);
+  ledger_->half_step(state_, 0, moved_);
+  return result;
 }
 
 void Simulation::watch() {
@@ -532,6 +558,8 @@ Energies Simulation::energies() {
   energy_in_play_ =
       std::max(energy_in_play_, e.kinetic + e.strain + e.contact + std::abs(e.external_work));
   extremes_.energy_error = std::max(extremes_.energy_error, std::abs(e.total_error));
+  // A load step that comes at once gives off energy; that is no error of the equilibrium.
+  if (equilibrium_) return e;
   if (!(std::abs(e.total_error) <= kLargestEnergyError * energy_in_play_ + energy_noise_)) {
     throw Unstable(
         fmt::format("{:.3g} J of the {:.3g} J in play are unaccounted for {}: the step is too "

@@ -16,6 +16,7 @@
 #include "contact/pair_search.hpp"
 #include "contact/tangential.hpp"
 #include "dynamics/deformables.hpp"
+#include "dynamics/equilibrium.hpp"
 #include "dynamics/ledger.hpp"
 #include "dynamics/surface_contact.hpp"
 #include "dynamics/time_step.hpp"
@@ -76,6 +77,11 @@ class Simulation {
 
   /// One step. Throws Unstable; the state is then not to be trusted.
   void step();
+
+  /// Static scenes: the next load step, which brings loads, supports and prescribed bodies to where
+  /// they are at `time`. Throws Unstable if it finds no equilibrium; the state is then not to be
+  /// trusted.
+  LoadStep balance(double time);
 
   [[nodiscard]] Snapshot snapshot() const;
   /// Continues from a snapshot of the same model and settings.
@@ -144,6 +150,7 @@ class Simulation {
   std::optional<TangentialContact> tangential_;  // only where there is friction or damping
   std::optional<Deformables> deformables_;       // only where there are finite elements
   std::optional<SurfaceContact> surface_;        // only where they can touch something
+  std::optional<Equilibrium> equilibrium_;       // only in static scenes
   std::optional<Ledger> ledger_;
   std::vector<double> moved_;
 

@@ -22,6 +22,11 @@ class SurfaceContact {
   /// rigid bodies that lie flat on a mesh. `node_mass` in kg, 0 where held.
   [[nodiscard]] double rate(std::span<const double> node_mass) const;
 
+  /// Adds the same bound as a stiffness of each node that is near another body, N/m.
+  void add_stiffness(std::span<double> node_stiffness) const {
+    contact_.add_stiffness(node_stiffness);
+  }
+
   /// Forces where the bodies are now. Throws Unstable where they are out of the method's range:
   /// deeper than the collar, or a body in contact with itself.
   void evaluate(const State& state);

@@ -369,6 +369,39 @@ std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) co
   return result;
 }
 
+void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
+  constexpr double kProbe = 1e-6;  // of the shortest edge: linear, and far above round-off
+  const double step = kProbe * shortest_edge_;
+  std::fill(sums.begin(), sums.end(), 0.);
+  std::vector<Point<double>> moved, plus, minus;
+  each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int index,
+                                     int element, const Point<double>* w) {
+    const ElementSet& set = sets_[index];
+    moved.assign(w, w + corners);
+    plus.resize(corners);
+    minus.resize(corners);
+    with_law(set.material, [&]<class Law>(const Law& law) {
+      const Response<Law, false> response(law, set.material, 0, set.thickness);
+      const std::span<const int> nodes = set.mesh->element(element);
+      double power = 0;
+      for (int j = 0; j < 2 * corners; ++j) {
+        double& varied = j % 2 ? moved[j / 2].y : moved[j / 2].x;
+        const double middle = varied;
+        varied = middle + step;
+        Element::force(data, response, corners, moved.data(), moved.data(), plus.data(), power);
+        varied = middle - step;
+        Element::force(data, response, corners, moved.data(), moved.data(), minus.data(), power);
+        varied = middle;
+        for (int i = 0; i < corners; ++i) {
+          const size_t at = 2 * static_cast<size_t>(set.first_node + nodes[i]);
+          sums[at] += std::abs(plus[i].x - minus[i].x) / (2 * step);
+          sums[at + 1] += std::abs(plus[i].y - minus[i].y) / (2 * step);
+        }
+      }
+    });
+  });
+}
+
 FiniteElements::Collapse FiniteElements::smallest_ratio(std::span<const double> u) const {
   Collapse worst{HUGE_VAL, -1, -1};
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int set,

@@ -54,6 +54,10 @@ class FiniteElements {
   /// J.
   [[nodiscard]] double strain_energy(std::span<const double> u);
 
+  /// For each coordinate an upper bound of SUM_j |K_ij|, N/m, of the tangent stiffness at u: the
+  /// sum over the elements' own matrices, by differences of their forces. Without damping.
+  void stiffness_sums(std::span<const double> u, std::span<double> sums) const;
+
   /// Mean stress of every element, in the order of the sets. Without damping.
   [[nodiscard]] std::vector<CauchyStress> stresses(std::span<const double> u) const;
 

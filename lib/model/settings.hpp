@@ -17,6 +17,9 @@ struct TimeSettings {
   /// The same for finite elements; empty: 0.5, 0.2 if they can touch something.
   std::optional<double> element_safety = {};
   bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
+  bool statics = false;         ///< a sequence of equilibria (dynamics/equilibrium.cpp)
+  int load_steps = 10;          ///< of a static run
+  double tolerance = 1e-6;      ///< of its forces out of balance, parts of the loads
   double longest_step = 1e300;  ///< s; of an automatic step: the interval of the history
 };
 

@@ -41,6 +41,7 @@ class SceneReader {
     bodies(list);
     contact_rules();
     time(top.required("time", "{\"end\": ...} in s"));
+    if (scene_.time.statics) statics();
     const JsonValue* output_value = top.optional("output");
     const JsonValue* expect_value = top.optional("expect");
     top.finish();
@@ -447,6 +448,27 @@ class SceneReader {
     JsonObject object(in_, value);
     TimeSettings& time = scene_.time;
     time.end = in_.positive(object.required("end", "in s"), "s");
+    if (const JsonValue* v = object.optional("mode")) {
+      time.statics = in_.choice(*v, {"dynamic", "static"}) == 1;
+    }
+    for (const char* key : {"step", "start", "safety"}) {
+      const JsonValue* v = value.find(key);
+      if (v && time.statics) in_.fail(*v, kStatic);
+    }
+    for (const char* key : {"load_steps", "tolerance"}) {
+      const JsonValue* v = value.find(key);
+      if (v && !time.statics) in_.fail(*v, "goes with \"mode\": \"static\"; leave it out");
+    }
+    if (const JsonValue* v = object.optional("load_steps")) {
+      time.load_steps = in_.count(*v);
+      if (time.load_steps < 1) in_.fail(*v, "must be at least 1");
+    }
+    if (const JsonValue* v = object.optional("tolerance")) {
+      time.tolerance = in_.positive(*v, "parts of the loads");
+      if (!(time.tolerance >= 1e-12 && time.tolerance <= 1e-2)) {
+        in_.fail(*v, fmt::format("must lie between 1e-12 and 1e-2, not {}", time.tolerance));
+      }
+    }
     if (const JsonValue* v = object.optional("step")) {
       if (v->type == JsonValue::Type::string) {
         in_.choice(*v, {"auto"});
@@ -468,6 +490,46 @@ class SceneReader {
     }
     object.finish();
   }
+
+  // What a sequence of equilibria cannot take.
+  void statics() {
+    const JsonValue& document = scene_.document;
+    const std::vector<JsonValue>& list = document.find("bodies")->items;
+    if (model_.deformables.empty()) {
+      in_.fail(*document.find("time")->find("mode"), "a static run needs a body with a mesh");
+    }
+    for (size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (model_.bodies[i].motion == Motion::free) {
+        in_.fail(list[scene_.rigid_places[i]],
+                 "a rigid body of a static run must be \"fixed\" or move as prescribed; say so by "
+                 "\"motion\", or give it a mesh");
+      }
+    }
+    for (const JsonValue& body : list) {
+      for (const char* key : {"velocity", "spin"}) {
+        if (const JsonValue* v = body.find(key)) in_.fail(*v, kStatic);
+      }
+    }
+    for (const JsonValue& material : document.find("materials")->items) {
+      if (const JsonValue* v = material.find("damping")) in_.fail(*v, kStatic);
+    }
+    if (const JsonValue* contact = document.find("contact")) {
+      for (const char* key : {"friction", "damping", "pairs"}) {
+        if (const JsonValue* v = contact->find(key)) in_.fail(*v, kStatic);
+      }
+    }
+    if (const JsonValue* output = document.find("output")) {
+      const JsonValue* history = output->find("history");
+      for (const JsonValue* v : {output->find("frames"), output->find("checkpoint"),
+                                 history ? history->find("interval") : nullptr}) {
+        if (v) in_.fail(*v, "a static run writes a row and a frame per load step; leave it out");
+      }
+    }
+    scene_.output.frames = scene_.time.load_steps;
+    scene_.output.history_interval = scene_.time.end / scene_.time.load_steps;
+  }
+
+  static constexpr const char* kStatic = "has no meaning in a static run; leave it out";
 
   void track_by_default() {
     constexpr size_t kMany = 20;

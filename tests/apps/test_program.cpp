@@ -135,6 +135,41 @@ TEST_CASE("check prints the plan", "[program]") {
     CHECK(r.out.find(word) != std::string::npos);
 }
 
+TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
+  const Folder folder;
+  const std::string scene = test::kSource + "/data/scenes/pressed-blocks.json";
+  const Result r = run({"run", scene, "-o", folder / "blocks", "--until", "0.6"}, folder);
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  const Json json = Json::parse(content(folder / "blocks/run.json"));
+  REQUIRE(json["load_steps"].size() == 3);
+  for (const Json& step : json["load_steps"]) {
+    CHECK(step["residual"] <= 1e-6);
+    CHECK(step["imbalance"] <= 1e-6);
+    CHECK(step["iterations"] > 10);
+  }
+  CHECK(read_history(folder / "blocks/history.csv").columns[0].size() == 4);
+  CHECK(content(folder / "blocks/surfaces.pvd").find("surfaces_000003.vtu") != std::string::npos);
+  CHECK(run({"run", scene, "-o", folder / "blocks", "--resume"}, folder).code == 2);
+  CHECK(run({"check", scene}, folder).out.find("5 load steps") != std::string::npos);
+}
+
+TEST_CASE("a static run without an equilibrium says what is loose", "[program]") {
+  const Folder folder;
+  const std::string loose = folder.write(
+      "loose.json", R"({ "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+    "bodies": [ { "name": "kite", "material": "rock",
+                  "mesh": { "rectangle": { "size": [1, 1], "cells": [2, 2] } },
+                  "loads": [ { "at": [0.5, 0.5], "force": [1e4, 0] } ] } ],
+    "time": { "end": 1, "mode": "static" } })");
+  const Result r = run({"run", loose, "-o", folder / "loose"}, folder);
+  INFO(r.err);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("\"kite\"") != std::string::npos);
+  CHECK(r.err.find("support it") != std::string::npos);
+  CHECK(content(folder / "loose/frames.pvd").find("bodies_000000.vtu") != std::string::npos);
+}
+
 TEST_CASE("an unstable run keeps its last good frame", "[program]") {
   const Folder folder;
   const std::string soft = folder.write(

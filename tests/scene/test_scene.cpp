@@ -394,3 +394,40 @@ TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {
   CHECK(body.position.y() + far.model.origin.y() == 5);
   CHECK(body.angle == 0.5);
 }
+
+TEST_CASE("a static scene refuses what has no meaning in it", "[scene]") {
+  const Folder folder;
+  const std::string good =
+      replaced(kMeshed, "\"time\": { \"end\": 1 }",
+               "\"time\": { \"end\": 1, \"mode\": \"static\", \"load_steps\": 4 }");
+  const Scene scene = read_scene(folder.write("static.json", good));
+  CHECK(scene.time.statics);
+  CHECK(scene.time.load_steps == 4);
+  CHECK(scene.time.tolerance == 1e-6);
+  struct Case {
+    const char *what, *by, *message;
+  };
+  const Case cases[]{
+      {"\"load_steps\": 4", "\"load_steps\": 0", "/time/load_steps"},
+      {"\"load_steps\": 4", "\"tolerance\": 0.5", "between 1e-12 and 1e-2"},
+      {"\"load_steps\": 4", "\"step\": 1e-3", "/time/step: has no meaning in a static run"},
+      {"\"load_steps\": 4", "\"start\": \"settled\"", "/time/start: has no meaning"},
+      {"\"static\"", "\"dynamic\"", "goes with \"mode\": \"static\""},
+      {"\"supports\"", "\"velocity\": [0, 1], \"supports\"", "/bodies/0/velocity"},
+      {"\"output\": {", "\"output\": { \"frames\": 3,", "a frame per load step"},
+      {"\"young\"", "\"damping\": { \"model\": \"rayleigh\", \"mass\": 1 }, \"young\"", "damping"},
+      {"\"bodies\": [",
+       "\"contact\": { \"normal_stiffness\": 1e9 }, \"bodies\": [ { \"name\": \"r\", \"material\": "
+       "\"rock\", \"polygon\": [[0, 5], [1, 5], [0, 6]] },",
+       "/bodies/0: a rigid body of a static run must be \"fixed\""},
+      {"\"bodies\": [",
+       "\"contact\": { \"normal_stiffness\": 1e9, \"friction\": { \"coefficient\": 1, "
+       "\"tangential_stiffness\": 1e9 } }, \"bodies\": [",
+       "/contact/friction: has no meaning"},
+  };
+  for (const Case& c : cases) {
+    const std::string error = error_of(folder.write("broken.json", replaced(good, c.what, c.by)));
+    INFO(error);
+    CHECK(error.find(c.message) != std::string::npos);
+  }
+}

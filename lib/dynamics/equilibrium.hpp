@@ -1,0 +1,58 @@
+// Static scenes: the equilibrium of deformable bodies under the loads of one instant.
+#pragma once
+
+#include <vector>
+
+#include "dynamics/deformables.hpp"
+#include "dynamics/surface_contact.hpp"
+
+namespace apothem {
+
+/// How the equilibrium of a load step was found.
+struct LoadStep {
+  double time = 0;              ///< s
+  std::int64_t iterations = 0;  ///< steps of dynamic relaxation
+  double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
+  double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
+};
+
+/// Dynamic relaxation. Rigid bodies must be fixed or prescribed.
+class Equilibrium {
+ public:
+  /// `contact` may be null. All must outlive this object.
+  Equilibrium(const Model& model, Deformables& deformables, SurfaceContact* contact,
+              double tolerance);
+
+  /// Moves loads, supports and prescribed bodies to where they are at `time` and finds the
+  /// equilibrium there; books the work of loads and supports (trapezoid rule over the load step).
+  /// Throws Unstable if there is none in reach; the state is then not to be trusted.
+  LoadStep find(State& state, double time);
+
+ private:
+  [[nodiscard]] double ramp(double from, double until) const;
+  void place(State& state) const;
+  void find_forces(State& state);
+  void find_masses(const State& state);
+  void check_shapes(const State& state) const;
+  [[nodiscard]] bool reached(const State& state, LoadStep& result);
+  void move(State& state, bool first);
+
+  const Model& model_;
+  Deformables& deformables_;
+  SurfaceContact* contact_;
+  double tolerance_;
+  std::vector<double> weight_;             // of each coordinate; empty without gravity
+  std::vector<double> element_, surface_;  // stiffness of elements and contacts, N/m
+  std::vector<double> mass_, inverse_;     // scaled; inverse 0 where held
+  std::vector<double> rest_, velocity_;    // forces out of balance, N; velocity
+  std::vector<double> outside_;            // forces at the last equilibrium, N
+  std::vector<double> rigid_force_;
+  double far_ = 0;                  // m
+  double loads_ = 0;                // largest norm so far, N
+  std::vector<double> body_loads_;  // largest sum of sizes so far, N
+  double kinetic_ = 0;              // at the step before
+  int searches_ = -1;
+  int worst_ = 0;  // the body that is farthest from balance
+};
+
+}  // namespace apothem

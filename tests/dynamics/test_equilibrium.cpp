@@ -1,0 +1,236 @@
+// Static scenes: equilibria found by dynamic relaxation.
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "dynamics/half_disc.hpp"
+#include "dynamics/simulation.hpp"
+#include "fem/static_solution.hpp"
+#include "mesh/check.hpp"
+#include "mesh/rectangle_mesh.hpp"
+#include "mesh/reorder.hpp"
+#include "mesh/select.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+
+namespace {
+
+constexpr double kYoung = 20e9;
+
+DeformableBody block(const char* name, const Vec2& size, std::array<int, 2> cells,
+                     const Vec2& origin) {
+  DeformableBody body;
+  body.name = name;
+  body.mesh = rectangle_mesh(size, cells, origin, ElementShape::quadrilateral);
+  return body;
+}
+
+Model model_of(std::vector<DeformableBody> bodies, const Elastic& elastic) {
+  Model model;
+  model.materials = {{"rock", 2000, elastic}};
+  int nodes = 0;
+  for (DeformableBody& body : bodies) {
+    body.first_node = nodes;
+    nodes += static_cast<int>(body.mesh.nodes.size());
+  }
+  model.deformables = std::move(bodies);
+  return model;
+}
+
+// Rises from 0 to 1 over a time of 1.
+const LoadHistory kRamp{{{0, 0}, {1, 1}}};
+
+// A force on the nodes of a straight side, shared by length.
+DeadLoad side_load(const DeformableBody& body, const Place& where, const Vec2& force) {
+  DeadLoad load{{}, {}, kRamp};
+  const std::vector<MeshEdge> edges = edges_where(body.mesh, where);
+  double whole = 0;
+  const auto length = [&](const MeshEdge& e) {
+    return (body.mesh.nodes[e.nodes[1]] - body.mesh.nodes[e.nodes[0]]).norm();
+  };
+  for (const MeshEdge& e : edges) whole += length(e);
+  for (const MeshEdge& e : edges) {
+    for (const int node : e.nodes) {
+      load.nodes.push_back(node);
+      load.forces.emplace_back(length(e) / whole / 2 * force);
+    }
+  }
+  return load;
+}
+
+TimeSettings statics(int load_steps) {
+  TimeSettings time;
+  time.end = 1;
+  time.statics = true;
+  time.load_steps = load_steps;
+  return time;
+}
+
+}  // namespace
+
+TEST_CASE("relaxation finds the deflection that Newton's method finds", "[equilibrium]") {
+  for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::neo_hookean}) {
+    const Elastic elastic{law, Plane::stress, kYoung, .2};
+    DeformableBody beam = block("beam", {4, 1}, {16, 4}, {0, 0});
+    beam.supports = {{nodes_where(beam.mesh, {.x = 0}), {true, true}, {}}};
+    beam.dead_loads = {side_load(beam, {.x = 4}, {0, -2e7})};
+    const Model model = model_of({beam}, elastic);
+    const Mesh& mesh = model.deformables[0].mesh;
+    test::Supports supports(mesh);
+    for (const int node : beam.supports[0].nodes) supports.fix(node);
+    const test::Structure structure(beam.element, mesh, elastic);
+    test::VectorXd load = test::VectorXd::Zero(structure.size());
+    for (size_t i = 0; i < beam.dead_loads[0].nodes.size(); ++i) {
+      load.segment<2>(2 * beam.dead_loads[0].nodes[i]) += beam.dead_loads[0].forces[i];
+    }
+    const test::VectorXd exact =
+        solve_newton(structure, supports, load, solve_linear(structure, supports, load));
+    for (const double tolerance : {1e-6, 1e-9}) {
+      TimeSettings time = statics(2);
+      time.tolerance = tolerance;
+      Simulation simulation(model, time, 2, 1);
+      simulation.balance(.5);
+      const LoadStep step = simulation.balance(1);
+      const std::vector<double>& u = simulation.state().displacement;
+      double worst = 0;
+      for (size_t c = 0; c < u.size(); ++c) {
+        worst = std::max(worst, std::abs(u[c] - exact[static_cast<ptrdiff_t>(c)]));
+      }
+      UNSCOPED_INFO("iterations " << step.iterations << ", error "
+                                  << worst / exact.cwiseAbs().maxCoeff());
+      CHECK(exact.cwiseAbs().maxCoeff() > .2);
+      // Bending is softer than a cell by far: the error is larger than the residual.
+      CHECK(worst < 100 * tolerance * exact.cwiseAbs().maxCoeff());
+      CHECK(step.residual <= tolerance);
+      // Loads from zero to these in two straight pieces.
+      const Energies e = simulation.energies();
+      CHECK(e.kinetic == 0);
+      CHECK(e.external_work == Approx(e.strain).epsilon(.01));
+    }
+  }
+}
+
+namespace {
+
+// One block on another, cells of 1/10 on cells of 1/7, pressed with p = young / 1000; largest error
+// of the stress away from the sides and the interface, of p.
+double patch_error(double stiffness) {
+  const double p = kYoung / 1000;
+  DeformableBody lower = block("lower", {1, .5}, {7, 4}, {0, 0});
+  DeformableBody upper = block("upper", {1, .5}, {10, 5}, {0, .5});
+  lower.supports = {{nodes_where(lower.mesh, {.y = 0}), {false, true}, {}},
+                    {nodes_where(lower.mesh, {.nearest = Vec2(.5, 0)}), {true, true}, {}}};
+  upper.supports = {{nodes_where(upper.mesh, {.nearest = Vec2(.5, 1)}), {true, false}, {}}};
+  upper.dead_loads = {side_load(upper, {.y = 1}, {0, -p})};
+  Model model =
+      model_of({lower, upper}, {ElasticLaw::st_venant_kirchhoff, Plane::strain, kYoung, .2});
+  model.contact.normal_stiffness = stiffness * kYoung;
+  TimeSettings time = statics(1);
+  time.tolerance = 1e-9;
+  Simulation simulation(model, time, 1, 1);
+  const LoadStep step = simulation.balance(1);
+  const std::vector<BodyForce> forces = simulation.deformable_forces();
+  CHECK(std::abs(forces[1].fy - p) < 1e-5 * p);
+  CHECK(std::abs(forces[0].fy + p) < 1e-5 * p);
+  const std::vector<CauchyStress> stresses = simulation.stresses();
+  // The load is dead, and the blocks grow wider under it.
+  const std::vector<double>& u = simulation.state().displacement;
+  const auto side = [&](double x) {
+    return u[2 * static_cast<size_t>(model.deformables[1].first_node +
+                                     nodes_where(upper.mesh, {.nearest = Vec2(x, 1)})[0])];
+  };
+  const double stress = p / (1 + side(1) - side(0));
+  double worst = 0, all = 0;
+  size_t element = 0;
+  for (const DeformableBody& body : model.deformables) {
+    for (int e = 0; e < body.mesh.element_count(); ++e, ++element) {
+      Vec2 centre = Vec2::Zero();
+      for (const int node : body.mesh.element(e)) centre += body.mesh.nodes[node] / 4;
+      const double error = std::abs(stresses[element].yy + stress) / p;
+      all = std::max(all, error);
+      if (std::abs(centre.x() - .5) < .3 && std::abs(centre.y() - .5) > .15) {
+        worst = std::max(worst, error);
+      }
+    }
+  }
+  std::printf("patch k/E %g: its %ld res %.2g imb %.2g interior %.3g all %.3g\n", stiffness,
+              (long)step.iterations, step.residual, step.imbalance, worst, all);
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a block pressed on one of other cells: uniform pressure", "[equilibrium]") {
+  CHECK(patch_error(1) < 2e-4);
+  CHECK(patch_error(10) < 1e-5);
+}
+
+namespace {
+
+struct Hertz {
+  double peak, half_width;  // of theory's
+  double balance;           // contact force / load - 1
+};
+
+// Two equal half discs, pressed until their contact is b wide on each side.
+Hertz hertz(double b, int cells, double stiffness, double nu = .2, int mode = 0, double growth = 1.1, int turn = 0) {
+  const Elastic elastic{ElasticLaw::st_venant_kirchhoff, Plane::strain, kYoung, nu};
+  const double modulus = kYoung / 2 / (1 - elastic.poisson * elastic.poisson);
+  const double radius = .5;  // 1/R = 1/R1 + 1/R2
+  const double force = std::numbers::pi * modulus * b * b / (4 * radius);
+  const double peak = std::sqrt(force * modulus / (std::numbers::pi * radius));
+  DeformableBody upper, lower;
+  upper.name = "upper";
+  upper.mesh = test::half_disc({1.5 * b, 3 * cells / 2, growth});
+  lower.name = "lower";
+  lower.mesh = upper.mesh;
+  for (Vec2& x : lower.mesh.nodes) x = -x;
+  for (DeformableBody* body : {&upper, &lower}) {
+    REQUIRE_NOTHROW(check_mesh(body->mesh));
+    reorder_along_curve(body->mesh);
+  }
+  lower.supports = {{nodes_where(lower.mesh, {.y = -1}), {true, true}, {}}};
+  (void)turn;
+  if (mode == 1) {  // only middle node held
+    upper.supports = {{nodes_where(upper.mesh, {.nearest = Vec2(0, 1)}), {true, false}, {}}};
+    lower.supports = {{nodes_where(lower.mesh, {.nearest = Vec2(0, -1)}), {true, true}, {}}, {nodes_where(lower.mesh, {.y = -1}), {false, true}, {}}};
+  } else upper.supports = {{nodes_where(upper.mesh, {.y = 1}), {true, false}, {}}};
+  upper.dead_loads = {side_load(upper, {.y = 1}, {0, -force})};
+  if (mode == 2) upper.dead_loads = {side_load(upper, {.box = Box{-.5, .99, .5, 1.01}}, {0, -force})};
+  Model model = model_of({lower, upper}, elastic);
+  model.contact.normal_stiffness = stiffness * kYoung;
+  Simulation simulation(model, statics(4), 4, 1);
+  for (int i = 1; i <= 4; ++i) {
+    const LoadStep step = simulation.balance(i / 4.);
+    std::printf("step %d its %ld res %.2g imb %.2g\n", i, (long)step.iterations, step.residual,
+                step.imbalance);
+  }
+  Hertz result{0, 0, simulation.deformable_forces()[1].fy / force - 1};
+  // p^2 = p0^2 (1 - x^2/b^2): a straight line in x^2.
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const SurfaceRecord& s : simulation.surfaces()) {
+    result.peak = std::max(result.peak, s.pressure / peak);
+    if (s.pressure < .2 * peak) continue;
+    const double x = std::pow((s.from.x() + s.to.x()) / 2, 2), y = s.pressure * s.pressure;
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  result.half_width = std::sqrt((sx - sy / slope) / n) / b;
+  std::printf("b %g cells %d k/E %g nodes %d: peak %.4f width %.4f fit peak %.4f balance %.2g\n", b,
+              cells, stiffness, model.node_count(), result.peak, result.half_width,
+              std::sqrt((sy - slope * sx) / n) / peak, result.balance);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("Hertz: two half discs", "[equilibrium]") {
+  if (std::getenv("VAR")) {
+    hertz(.05, 10, 1, .3); hertz(.05, 10, 1, .2, 1); hertz(.05, 10, 1, .3, 2); hertz(.05, 10, 1, .2, 0, 1.05);
+    hertz(.05, 20, 10, .2); hertz(.05, 20, 10, .3);hertz(.025, 10, 10, .2);hertz(.0125, 10, 10, .2);
+  }
+  const Hertz coarse = hertz(.05, 10, 1);
+  CHECK(std::abs(coarse.peak - 1) < .012);
+  CHECK(std::abs(coarse.half_width - 1) < .015);
+  CHECK(std::abs(coarse.balance) < 1e-5);
+}
