@@ -8,6 +8,12 @@
 
 namespace apothem {
 
+/// NaN is never contained.
+inline bool contains(const Box& outer, const Box& inner) {
+  return inner.x0 >= outer.x0 && inner.y0 >= outer.y0 && inner.x1 <= outer.x1 &&
+         inner.y1 <= outer.y1;
+}
+
 /// Indices of two boxes, first < second.
 struct BoxPair {
   std::int32_t first;

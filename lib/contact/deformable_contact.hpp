@@ -157,11 +157,14 @@ class DeformableContact {
   /// Adds to each node the same bound as a stiffness, m_i w_c^2, N/m, where the last search has
   /// found candidates.
   void add_stiffness(std::span<double> node_stiffness) const;
+  /// Inverse of the length of a body's potential, 1/m.
+  [[nodiscard]] double slope(int body) const { return 1 / outlines_.bodies[body].reference; }
 
   [[nodiscard]] const Outlines& outlines() const { return outlines_; }
   [[nodiscard]] const std::vector<EdgeFacePair>& candidates() const { return candidates_; }
   /// Ascending.
   [[nodiscard]] const std::vector<EdgeFaceContact>& contacts() const { return contacts_; }
+  [[nodiscard]] size_t touching() const { return contacts_.size(); }
   /// Stiffness of a contact's pressure over the depth, k_n thickness / r of the face, N/m^2.
   [[nodiscard]] double slope(const EdgeFaceContact& c) const { return slope_[c.face]; }
   [[nodiscard]] double thickness() const { return thickness_; }

@@ -17,6 +17,15 @@ struct Friction {
 /// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
 enum class FrictionLaw { resultant, per_edge };
 
+/// Whose potential deformable bodies touch with: the body's own near its surface, or that of each
+/// of its outermost elements (the paper).
+enum class ContactSurface { body, element };
+
+/// How the contact force of deformable bodies becomes nodal forces: as the gradient of the energy;
+/// the tractions of each part of the overlap's boundary by the shape functions; or the resultant of
+/// a pair of elements by the shape functions at its action point (Eq. 15).
+enum class ForceDistribution { variational, integrated, resultant };
+
 /// Friction between two parties, each a body or every body of a material.
 struct ContactRule {
   struct Party {
@@ -32,6 +41,8 @@ struct ContactLaw {
   double normal_stiffness = 0;  ///< k_n, Pa; there is no default, the scene must say it
   Friction friction = {};
   FrictionLaw friction_law = FrictionLaw::resultant;
+  ContactSurface surface = ContactSurface::body;
+  ForceDistribution distribution = ForceDistribution::variational;
   std::vector<ContactRule> rules = {};  ///< instead of `friction`; later ones win
   double normal_damping = 0;            ///< ratio of critical, of the normal force; 0: none
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
@@ -48,6 +59,29 @@ struct NamedFrictionLaw {
 inline constexpr std::array kFrictionLaws{
     NamedFrictionLaw{"resultant", FrictionLaw::resultant},  // Eqs. 10-14
     NamedFrictionLaw{"per_edge", FrictionLaw::per_edge},    // Eq. 9
+};
+
+/// The surfaces of deformable bodies a scene can name.
+struct NamedSurface {
+  std::string_view name;
+  ContactSurface surface;
+};
+inline constexpr std::array kSurfaces{
+    NamedSurface{"body", ContactSurface::body},
+    NamedSurface{"element", ContactSurface::element},
+};
+
+/// The distributions of contact forces a scene can name, each with the one surface it belongs to;
+/// the first of a surface is its default.
+struct NamedDistribution {
+  std::string_view name;
+  ForceDistribution distribution;
+  ContactSurface surface;
+};
+inline constexpr std::array kDistributions{
+    NamedDistribution{"variational", ForceDistribution::variational, ContactSurface::body},
+    NamedDistribution{"resultant", ForceDistribution::resultant, ContactSurface::element},
+    NamedDistribution{"integrated", ForceDistribution::integrated, ContactSurface::element},
 };
 
 /// The damping models a scene can name, each with its one number.

@@ -24,6 +24,7 @@ int PlacedShapes::add(const Potential& potential) {
   body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
   body_gradients_.insert(body_gradients_.end(), potential.gradients.begin(),
                          potential.gradients.end());
+  for (const Vec2& g : potential.gradients) inverse_length_.push_back(g.norm());
   x_.resize(x_.size() + shape.size + 1);
   y_.resize(x_.size());
   gx_.resize(gx_.size() + shape.size);
@@ -60,6 +61,45 @@ void PlacedShapes::place(int i, double x, double y, double angle) {
     }
   }
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
+}
+
+int PlacedShapes::add_deforming(const Potential& potential) {
+  const int i = add(potential);
+  // Its inradius may grow beyond the length that it had at first, and its size is not known.
+  shapes_[i].capped = true;
+  shapes_[i].radius = 0;
+  return i;
+}
+
+bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> vertices) {
+  Shape& shape = shapes_[i];
+  double* const vx = x_.data() + shape.vertices;
+  double* const vy = y_.data() + shape.vertices;
+  double* const gx = gx_.data() + shape.edges;
+  double* const gy = gy_.data() + shape.edges;
+  const double* const inverse = inverse_length_.data() + shape.edges;
+  const int n = shape.size;
+  Box box;
+  shape.top = Vec2::Zero();
+  bool convex = true;
+  Vec2 before = vertices[0] - vertices[n - 1];
+  for (int k = 0; k < n; ++k) {
+    const Vec2& v = vertices[k];
+    const Vec2 along = vertices[k + 1 == n ? 0 : k + 1] - v;
+    const double scale = inverse[k] / along.norm();
+    vx[k] = v.x();
+    vy[k] = v.y();
+    gx[k] = -scale * along.y();
+    gy[k] = scale * along.x();
+    convex = convex && cross(before, along) > 0;
+    before = along;
+    box.include(v.x(), v.y());
+    shape.top += v / n;
+  }
+  vx[n] = vx[0];
+  vy[n] = vy[0];
+  boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
+  return convex;
 }
 
 bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {

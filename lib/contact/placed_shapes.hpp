@@ -1,6 +1,7 @@
 // The shapes of all bodies where they are now: contiguous arrays for the contact kernel.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/edge_integral.hpp"
@@ -15,6 +16,14 @@ class PlacedShapes {
 
   /// Moves shape i: reference point to (x, y), rotated by `angle`.
   void place(int i, double x, double y, double angle);
+
+  /// Adds a convex shape whose vertices will move by themselves. The inverse lengths of its edges
+  /// stay those of `potential`.
+  int add_deforming(const Potential& potential);
+
+  /// Gives a deforming shape its vertices, relative to the reference point (x, y). False, with a
+  /// shape that must not be used, if it is no longer strictly convex and counter-clockwise.
+  bool deform(int i, double x, double y, std::span<const Vec2> vertices);
 
   [[nodiscard]] PlacedPotential view(int i) const {
     const Shape& s = shapes_[i];
@@ -49,13 +58,14 @@ class PlacedShapes {
     bool capped;
     double radius;
     double slope;
-    Vec2 top;          // of the potential, body frame
+    Vec2 top;          // of the potential, body frame; of a deforming shape the mean vertex
     const Roof* roof;  // if not convex, or
     size_t nodes;      // (first of its placed nodes)
     const DistanceField* distance;
   };
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
+  std::vector<double> inverse_length_;                // 1/m, indexed by `edges`
   std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
   std::vector<double> node_x_, node_y_;               // of roofs, the same
   std::vector<Box> boxes_;                            // in the coordinates of the model

@@ -4,8 +4,10 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "contact/deformable_friction.hpp"
+#include "contact/element_contact.hpp"
 #include "dynamics/time_step.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
@@ -39,29 +41,36 @@ class SurfaceContact {
   /// Of contacts and friction springs, J.
   [[nodiscard]] double energy() const;
   [[nodiscard]] double friction_loss() const;
-  [[nodiscard]] double penetration() const { return contact_.depth().largest; }
+  [[nodiscard]] double penetration() const;
   /// The bodies of the deepest contact.
   [[nodiscard]] std::pair<int, int> deepest() const;
-  [[nodiscard]] int searches() const { return contact_.searches(); }
-  [[nodiscard]] size_t candidates() const { return contact_.candidates().size(); }
-  [[nodiscard]] size_t touching() const { return contact_.contacts().size(); }
+  [[nodiscard]] int searches() const;
+  [[nodiscard]] size_t candidates() const;
+  [[nodiscard]] size_t touching() const;
 
   /// What acts on a deformable body from contacts.
   [[nodiscard]] BodyForce on_deformable(int deformable) const;
   [[nodiscard]] std::vector<ContactRecord> records() const;
+  /// None where elements touch by potentials of their own.
   [[nodiscard]] std::vector<SurfaceRecord> surfaces() const;
 
   [[nodiscard]] SlipMemory memory() const { return friction_ ? friction_->memory() : SlipMemory{}; }
   void restore(const SlipMemory& memory, const State& state);
 
  private:
+  using Contact = std::variant<DeformableContact, ElementContact>;
+  static Contact make_contact(const Model& model, int threads);
+  void add_friction();
   [[nodiscard]] const std::string& name(int body) const;
   [[nodiscard]] double friction_on(int body) const;
-  void guard(const State& state) const;
+  [[nodiscard]] DeformableContact::Resultant friction_sum(int body) const;
+  void guard(const DeformableContact& contact, const State& state) const;
+  void guard(const ElementContact& contact, const State& state) const;
+  [[nodiscard]] std::string at(const Vec2& place, const State& state) const;
 
   const Model& model_;
-  DeformableContact contact_;
-  std::optional<DeformableFriction> friction_;
+  Contact contact_;
+  std::optional<DeformableFriction> friction_;  // of DeformableContact only
 };
 
 }  // namespace apothem

@@ -1,5 +1,6 @@
 #include "mesh/locate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kOutside = 1e-9;  // of the mesh's size
 
-std::vector<double> barycentric(const Vec2& a, const Vec2& b, const Vec2& c) {  // of 0
+std::array<double, 3> barycentric(const Vec2& a, const Vec2& b, const Vec2& c) {  // of 0
   const std::array<double, 3> areas{cross(b, c), cross(c, a), cross(a, b)};
   const double sum = areas[0] + areas[1] + areas[2];
   return {areas[0] / sum, areas[1] / sum, areas[2] / sum};
@@ -43,34 +44,33 @@ std::array<double, 2> inverse_bilinear(const Vec2& a, const Vec2& b, const Vec2&
   return {u, v};
 }
 
-std::vector<double> mean_value(const std::vector<Vec2>& ring) {  // of 0
+void mean_value(std::span<const Vec2> ring, std::span<double> weights) {  // of 0
   const size_t n = ring.size();
-  std::vector<double> weights(n, 0);
-  std::vector<double> half_tangent(n);  // of the angle from corner i to i + 1
-  for (size_t i = 0; i < n; ++i) {
-    const Vec2& p = ring[i];
-    const Vec2& q = after(ring, i);
-    const double lengths = p.norm() * q.norm();
-    if (p.isZero(0)) {
-      weights[i] = 1;
-      return weights;
-    }
-    const double sine = cross(p, q);
-    const double cosine = p.dot(q);
-    if (sine == 0 && cosine < 0) {  // on the edge
-      weights[i] = q.norm() / (p.norm() + q.norm());
-      weights[i + 1 == n ? 0 : i + 1] = p.norm() / (p.norm() + q.norm());
-      return weights;
-    }
-    half_tangent[i] = cosine > 0 ? sine / (lengths + cosine) : (lengths - cosine) / sine;
-  }
+  std::fill(weights.begin(), weights.end(), 0.);
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
-    weights[i] = (half_tangent[i == 0 ? n - 1 : i - 1] + half_tangent[i]) / ring[i].norm();
-    sum += weights[i];
+    const size_t next = i + 1 == n ? 0 : i + 1;
+    const Vec2& p = ring[i];
+    const Vec2& q = ring[next];
+    const double p_length = p.norm();
+    const double q_length = q.norm();
+    const double sine = cross(p, q);
+    const double cosine = p.dot(q);
+    const bool on_corner = p.isZero(0);
+    if (on_corner || (sine == 0 && cosine < 0)) {  // or on the edge
+      std::fill(weights.begin(), weights.end(), 0.);
+      weights[i] = on_corner ? 1 : q_length / (p_length + q_length);
+      if (!on_corner) weights[next] = p_length / (p_length + q_length);
+      return;
+    }
+    // Of the angle from corner i to the next.
+    const double lengths = p_length * q_length;
+    const double half_tangent = cosine > 0 ? sine / (lengths + cosine) : (lengths - cosine) / sine;
+    weights[i] += half_tangent / p_length;
+    weights[next] += half_tangent / q_length;
   }
+  for (const double w : weights) sum += w;
   for (double& w : weights) w /= sum;
-  return weights;
 }
 
 std::vector<Vec2> ring_about(const Mesh& mesh, int element, const Vec2& p) {
@@ -79,9 +79,10 @@ std::vector<Vec2> ring_about(const Mesh& mesh, int element, const Vec2& p) {
   return ring;
 }
 
-bool is_convex(const std::vector<Vec2>& ring) {
-  for (size_t i = 0; i < ring.size(); ++i) {
-    if (orientation(ring[i], after(ring, i), ring[(i + 2) % ring.size()]) <= 0) return false;
+bool is_convex(std::span<const Vec2> ring) {
+  const size_t n = ring.size();
+  for (size_t i = 0; i < n; ++i) {
+    if (orientation(ring[i], ring[(i + 1) % n], ring[(i + 2) % n]) <= 0) return false;
   }
   return true;
 }
@@ -98,14 +99,26 @@ double distance_to_boundary(const std::vector<Vec2>& ring) {  // of 0
 
 }  // namespace
 
+void interpolation_weights(std::span<const Vec2> ring, std::span<double> weights) {
+  if (ring.size() == 3) {
+    const std::array<double, 3> w = barycentric(ring[0], ring[1], ring[2]);
+    std::copy(w.begin(), w.end(), weights.begin());
+  } else if (ring.size() == 4 && is_convex(ring)) {
+    const auto [u, v] = inverse_bilinear(ring[0], ring[1], ring[2], ring[3]);
+    weights[0] = (1 - u) * (1 - v);
+    weights[1] = u * (1 - v);
+    weights[2] = u * v;
+    weights[3] = (1 - u) * v;
+  } else {
+    mean_value(ring, weights);
+  }
+}
+
 std::vector<double> interpolation_weights(const Mesh& mesh, int element, const Vec2& p) {
   const std::vector<Vec2> ring = ring_about(mesh, element, p);
-  if (ring.size() == 3) return barycentric(ring[0], ring[1], ring[2]);
-  if (ring.size() == 4 && is_convex(ring)) {
-    const auto [u, v] = inverse_bilinear(ring[0], ring[1], ring[2], ring[3]);
-    return {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
-  }
-  return mean_value(ring);
+  std::vector<double> weights(ring.size());
+  interpolation_weights(ring, weights);
+  return weights;
 }
 
 std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p) {

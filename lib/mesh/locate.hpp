@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -22,7 +23,9 @@ struct MeshPoint {
 /// coordinates in all others (M. Floater, Comput. Aided Geom. Des. 20 (2003)).
 std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p);
 
-/// Of a point in or hardly outside the element.
+/// Of a point in or hardly outside the element. The first form takes its corners relative to the
+/// point, where they are now, and fills one weight for each.
+void interpolation_weights(std::span<const Vec2> ring, std::span<double> weights);
 std::vector<double> interpolation_weights(const Mesh& mesh, int element, const Vec2& p);
 
 }  // namespace apothem

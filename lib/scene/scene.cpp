@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <variant>
@@ -40,6 +41,7 @@ class SceneReader {
     }
     bodies(list);
     contact_rules();
+    smooth_elements();
     time(top.required("time", "{\"end\": ...} in s"));
     if (scene_.time.statics) statics();
     const JsonValue* output_value = top.optional("output");
@@ -132,7 +134,36 @@ class SceneReader {
     if (const JsonValue* v = object.optional("friction")) law.friction = friction(*v, true);
     if (const JsonValue* v = object.optional("damping")) damping(*v);
     contact_pairs_ = object.optional("pairs");
+    surface(object);
     object.finish();
+  }
+
+  // Of bodies with a mesh, and how its forces reach their nodes.
+  void surface(JsonObject& object) {
+    ContactLaw& law = model_.contact;
+    const JsonValue* surface = object.optional("surface");
+    if (surface) {
+      std::vector<std::string> names;
+      for (const NamedSurface& n : kSurfaces) names.emplace_back(n.name);
+      law.surface = kSurfaces[in_.choice(*surface, names)].surface;
+    }
+    const auto fits = [&](const NamedDistribution& d) { return d.surface == law.surface; };
+    const NamedDistribution* known =
+        std::find_if(kDistributions.begin(), kDistributions.end(), fits);
+    if (const JsonValue* v = object.optional("distribution")) {
+      std::vector<std::string> names;
+      for (const NamedDistribution& d : kDistributions) names.emplace_back(d.name);
+      known = &kDistributions[in_.choice(*v, names)];
+      if (!fits(*known)) {
+        const bool body = known->surface == ContactSurface::body;
+        in_.fail(*v, fmt::format("\"{}\" needs \"surface\": \"{}\"; {}", known->name,
+                                 body ? "body" : "element",
+                                 body ? "with elements use \"resultant\" or \"integrated\""
+                                      : "the body's own surface has \"variational\" only"));
+      }
+    }
+    law.distribution = known->distribution;
+    if (law.surface == ContactSurface::element) by_element_ = surface;
   }
 
   // Of the whole scene, or of a pair, which may leave the stiffness to the scene.
@@ -170,6 +201,18 @@ class SceneReader {
     model_.contact.*model.value =
         in_.positive(object.required(key, "a positive number " + unit), unit);
     object.finish();
+  }
+
+  // Friction of elements would lose its history on every border between them.
+  void smooth_elements() {
+    if (by_element_ == nullptr || model_.deformables.empty()) return;
+    const ContactLaw& law = model_.contact;
+    bool rough = law.friction.coefficient > 0;
+    for (const ContactRule& rule : law.rules) rough = rough || rule.friction.coefficient > 0;
+    if (rough) {
+      in_.fail(*by_element_,
+               "\"element\" has no friction: set every \"coefficient\" to 0, or use \"body\"");
+    }
   }
 
   // After the bodies, whose names it may use.
@@ -677,8 +720,9 @@ class SceneReader {
   Model& model_;
   JsonReader in_;
   const JsonValue* contact_pairs_ = nullptr;
-  std::vector<std::string> names_;  // of all bodies
-  std::vector<int> has_poisson_;    // materials that say their Poisson's ratio
+  const JsonValue* by_element_ = nullptr;  // the surface, where it is "element"
+  std::vector<std::string> names_;         // of all bodies
+  std::vector<int> has_poisson_;           // materials that say their Poisson's ratio
 };
 
 }  // namespace

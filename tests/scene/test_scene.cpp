@@ -103,6 +103,14 @@ const std::vector<Broken> kBroken{
      ":5: /contact/friction/coefficient", "must be 0 or more"},
     {"\"reference\": \"roof\"", "\"friction\": { \"coefficient\": 0.5 }", ":5: /contact/friction",
      "missing key \"tangential_stiffness\"", false},
+    {"\"reference\": \"roof\"", "\"surface\": \"elements\"", ":5: /contact/surface",
+     "did you mean \"element\""},
+    {"\"reference\": \"roof\"", "\"distribution\": \"sum\"", ":5: /contact/distribution",
+     "unknown choice \"sum\" (known: variational, resultant, integrated)"},
+    {"\"reference\": \"roof\"", "\"distribution\": \"resultant\"", ":5: /contact/distribution",
+     "\"resultant\" needs \"surface\": \"element\"", false},
+    {"\"reference\": \"roof\"", "\"surface\": \"element\", \"distribution\": \"variational\"",
+     ":5: /contact/distribution", "\"variational\" needs \"surface\": \"body\"", false},
     {"\"reference\": \"roof\"", "\"damping\": { \"model\": \"viscous\" }",
      ":5: /contact/damping/model", "unknown choice"},
     {"\"reference\": \"roof\"", "\"damping\": { \"model\": \"mass\", \"ratio\": 1 }",
@@ -216,6 +224,10 @@ const std::vector<Broken> kBrokenMeshed{
      "leave one out"},
     {"\"supports\"", "\"motion\": \"fixed\", \"supports\"", ":6: /bodies/0/motion", "\"free\"",
      false},
+    {"  \"bodies\"",
+     "  \"contact\": { \"normal_stiffness\": 1, \"surface\": \"element\", \"friction\": { "
+     "\"coefficient\": 0.5, \"tangential_stiffness\": 1 } },\n  \"bodies\"",
+     ":3: /contact/surface", "has no friction", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
 };
 
@@ -239,6 +251,19 @@ TEST_CASE("a meshed body becomes elements, supports, loads and points", "[scene]
   REQUIRE(scene.output.points.size() == 1);
   CHECK(scene.output.points[0].name == "beam");
   CHECK(scene.output.track_deformables == std::vector<int>{0});
+  CHECK(scene.model.contact.surface == ContactSurface::body);
+  CHECK(scene.model.contact.distribution == ForceDistribution::variational);
+  const std::vector<std::pair<std::string, ForceDistribution>> distributions{
+      {"", ForceDistribution::resultant},
+      {", \"distribution\": \"integrated\"", ForceDistribution::integrated}};
+  for (const auto& [text, distribution] : distributions) {
+    const std::string contact =
+        R"("contact": { "normal_stiffness": 1, "surface": "element")" + text + " }, \"bodies\"";
+    const Scene by_element =
+        read_scene(folder.write("element.json", replaced(kMeshed, "\"bodies\"", contact)));
+    CHECK(by_element.model.contact.surface == ContactSurface::element);
+    CHECK(by_element.model.contact.distribution == distribution);
+  }
   for (const Broken& broken : kBrokenMeshed) {
     const std::string file = folder.write("broken.json", replaced(kMeshed, broken.what, broken.by));
     INFO(broken.what << " -> " << broken.by);

@@ -1,0 +1,246 @@
+#include "contact/element_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "mesh/locate.hpp"
+
+namespace apothem {
+
+namespace {
+
+// As for rigid bodies: beyond it an edge is about to cross the other's centre.
+constexpr double kDeepestPhi = 0.95;
+
+}  // namespace
+
+int ElementContact::add_deformable(const Mesh& mesh, const Boundary& boundary, int first_node,
+                                   const PotentialChoice& choice) {
+  const int body = static_cast<int>(bodies_.size());
+  bodies_.push_back({0, false});
+  std::vector<int> outermost;
+  std::vector<double> share(mesh.nodes.size());
+  for (const BoundaryLoop& loop : boundary.loops) {
+    outermost.insert(outermost.end(), loop.elements.begin(), loop.elements.end());
+    for (size_t i = 0; i < loop.nodes.size(); ++i) {
+      const int p = loop.nodes[i], q = loop.nodes[i + 1 == loop.nodes.size() ? 0 : i + 1];
+      const double half = (mesh.nodes[q] - mesh.nodes[p]).norm() / 2;
+      share[p] += half, share[q] += half;
+    }
+  }
+  for (int n = 0; n < static_cast<int>(share.size()); ++n) {
+    if (share[n] > 0) shares_.push_back({first_node + n, body, share[n]});
+  }
+  std::sort(outermost.begin(), outermost.end());
+  outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
+  for (const int element : outermost) {
+    const int first = static_cast<int>(nodes_.size());
+    for (const int n : mesh.element(element)) {
+      nodes_.push_back(first_node + n);
+      start_.push_back(mesh.nodes[n]);
+    }
+    const Polygon polygon({start_.begin() + first, start_.end()});
+    if (!polygon.is_convex()) {
+      throw InvalidPolygon(
+          fmt::format("the element at ({:.6g}, {:.6g}) m on its boundary is not convex",
+                      polygon[0].x(), polygon[0].y()),
+          *polygon.first_reflex_vertex());
+    }
+    const Potential potential = make_potential(polygon, choice);
+    shapes_.add_deforming(potential);
+    pieces_.push_back({body, -1, first});
+    bodies_[body].slope = std::max(bodies_[body].slope, potential.steepest);
+    const size_t corners = polygon.vertices().size();
+    ring_.resize(std::max(ring_.size(), corners));
+    weights_.resize(ring_.size());
+  }
+  kept_.clear();  // search anew
+  return body;
+}
+
+int ElementContact::add_rigid(const Potential& potential, int entry) {
+  pieces_.push_back({static_cast<int>(bodies_.size()), entry, -1});
+  bodies_.push_back({potential.steepest, true});
+  shapes_.add(potential);
+  kept_.clear();
+  return pieces_.back().body;
+}
+
+void ElementContact::update(std::span<const double> displacement,
+                            std::span<const double> position) {
+  places_.resize(3 * pieces_.size());
+  convex_.resize(pieces_.size());
+  double all = 0;
+  for (size_t p = 0; p < pieces_.size(); ++p) {
+    const Piece& piece = pieces_[p];
+    const int index = static_cast<int>(p);
+    double* place = &places_[3 * p];
+    if (piece.entry >= 0) {
+      std::copy_n(position.begin() + 3 * static_cast<ptrdiff_t>(piece.entry), 3, place);
+      all += 0 * place[0] + 0 * place[1] + 0 * place[2];
+      shapes_.place(index, place[0], place[1], place[2]);
+      convex_[p] = 1;
+      continue;
+    }
+    const auto moved = [&](int corner) -> Vec2 {
+      const double* u = &displacement[2 * static_cast<size_t>(nodes_[static_cast<size_t>(corner)])];
+      return {u[0], u[1]};
+    };
+    // Differences before sums: no digit is lost far from the origin.
+    const Vec2& origin = start_[piece.corners];
+    const Vec2 carried = moved(piece.corners);
+    place[0] = origin.x() + carried.x();
+    place[1] = origin.y() + carried.y();
+    place[2] = 0;
+    all += 0 * place[0] + 0 * place[1];
+    const int count = corner_count(index);
+    for (int k = 0; k < count; ++k) {
+      const int c = piece.corners + k;
+      ring_[k] = (start_[c] - origin) + (moved(c) - carried);
+      all += 0 * ring_[k].x() + 0 * ring_[k].y();
+    }
+    convex_[p] = shapes_.deform(index, place[0], place[1], {ring_.data(), size_t(count)});
+  }
+  if (all != 0) throw std::domain_error("a vertex of a body is not at a finite place");
+  if (stale()) search();
+}
+
+bool ElementContact::stale() const {
+  if (kept_.size() != pieces_.size()) return true;
+  for (size_t p = 0; p < pieces_.size(); ++p) {
+    if (!contains(kept_[p], shapes_.boxes()[p])) return true;
+  }
+  return false;
+}
+
+void ElementContact::search() {
+  ++searches_;
+  kept_.clear();
+  for (const Box& box : shapes_.boxes()) kept_.push_back(box.grown(skin_ / 2));
+  grid_.find_pairs(kept_, pairs_);
+  std::erase_if(pairs_, [&](const BoxPair& pair) {
+    const int a = pieces_[pair.first].body, b = pieces_[pair.second].body;
+    return a == b || (bodies_[a].rigid && bodies_[b].rigid);
+  });
+}
+
+bool ElementContact::too_deep(int a, int b, const PairIntegral& pair) const {
+  if (!(pair.largest_phi <= kDeepestPhi)) return true;
+  const double inradius = 1 / std::max(shapes_.slope(a), shapes_.slope(b));
+  if (pair.own_length_a + pair.own_length_b < inradius) return false;
+  const Vec2 offset = reference(a) - reference(b);
+  return shapes_.top_inside(a, places_[3 * static_cast<size_t>(a) + 2], b, offset) ||
+         shapes_.top_inside(b, places_[3 * static_cast<size_t>(b) + 2], a, -offset);
+}
+
+void ElementContact::evaluate() {
+  normal_.evaluate(shapes_, places_, pairs_);
+  forces_.clear();
+  sums_.assign(bodies_.size(), {Vec2::Zero(), 0});
+  touching_ = 0;
+  depth_ = {};
+  fault_.reset();
+  for (size_t p = 0; p < pairs_.size(); ++p) {
+    const PairIntegral& pair = normal_.integrals()[p];
+    if (!pair.touching()) continue;
+    const auto [a, b] = pairs_[p];
+    const int body_a = pieces_[a].body, body_b = pieces_[b].body;
+    const bool bent = !convex_[a] || !convex_[b];
+    if (bent || too_deep(a, b, pair)) {
+      fault_ = {bent ? Fault::Kind::not_convex : Fault::Kind::too_deep, body_a, body_b,
+                reference(convex_[a] ? (bodies_[body_b].rigid ? a : b) : a)};
+      return;
+    }
+    ++touching_;
+    if (pair.penetration > depth_.largest) depth_ = {pair.penetration, body_a, body_b};
+    const Vec2 force = stiffness_ * pair.force;
+    sums_[body_a].force += force;
+    sums_[body_b].force -= force;
+    if (bodies_[body_a].rigid) sums_[body_a].moment += stiffness_ * pair.moment_a;
+    if (bodies_[body_b].rigid) sums_[body_b].moment += stiffness_ * pair.moment_b;
+    const Vec2 offset = reference(a) - reference(b);
+    if (distribution_ == ForceDistribution::resultant) {
+      const Vec2 point = loading_point(pair);
+      distribute(a, force, point);
+      distribute(b, -force, point + offset);
+      continue;
+    }
+    contact_patches(shapes_.view(a), shapes_.view(b), offset, patch_workspace_, runs_, patches_);
+    for (const BoundaryRun& run : runs_) {
+      distribute(a, stiffness_ * run.force, run.centre);
+      distribute(b, -stiffness_ * run.force, run.centre + offset);
+    }
+  }
+}
+
+// A force at a point relative to the polygon's reference point.
+void ElementContact::distribute(int piece, const Vec2& force, const Vec2& point) {
+  if (pieces_[piece].entry >= 0) return;
+  const PlacedPotential view = shapes_.view(piece);
+  const auto count = static_cast<size_t>(view.size);
+  for (size_t k = 0; k < count; ++k) ring_[k] = Vec2(view.x[k], view.y[k]) - point;
+  const std::span<double> weights(weights_.data(), count);
+  interpolation_weights({ring_.data(), count}, weights);
+  for (size_t k = 0; k < count; ++k) {
+    forces_.push_back(
+        {nodes_[static_cast<size_t>(pieces_[piece].corners) + k], weights[k] * force});
+  }
+}
+
+void ElementContact::add_forces(std::span<double> node_force) const {
+  for (const auto& [node, force] : forces_) {
+    node_force[2 * static_cast<size_t>(node)] += force.x();
+    node_force[2 * static_cast<size_t>(node) + 1] += force.y();
+  }
+}
+
+double ElementContact::energy() const {
+  return stiffness_ * normal_.energy(shapes_, places_, pairs_);
+}
+
+DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) const {
+  std::vector<double> other(bodies_.size());  // the steepest potential among the others
+  for (size_t a = 0; a < bodies_.size(); ++a) {
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      if (a != b) other[a] = std::max(other[a], bodies_[b].slope);
+    }
+  }
+  DeformableContact::Rate worst;
+  for (const auto& [node, body, length] : shares_) {
+    const double mass = node_mass[node];
+    if (!(mass > 0) || other[body] == 0) continue;
+    const double value = 2 * stiffness_ * (bodies_[body].slope + other[body]) * length / mass;
+    if (value > worst.value) worst = {value, body};
+  }
+  return worst;
+}
+
+std::vector<BodyContact> ElementContact::body_contacts() const {
+  struct Sum {
+    BodyContact contact;
+    double weight = 0;
+  };
+  std::map<std::pair<int, int>, Sum> sums;
+  for (size_t p = 0; p < pairs_.size(); ++p) {
+    const PairIntegral& pair = normal_.integrals()[p];
+    if (!pair.touching()) continue;
+    const int a = pieces_[pairs_[p].first].body, b = pieces_[pairs_[p].second].body;
+    Sum& sum = sums.try_emplace({a, b}, Sum{{a, b}}).first->second;
+    sum.contact.force += stiffness_ * pair.force;
+    sum.contact.point += pair.weight * (reference(pairs_[p].first) + loading_point(pair));
+    sum.contact.penetration = std::max(sum.contact.penetration, pair.penetration);
+    sum.weight += pair.weight;
+  }
+  std::vector<BodyContact> result;
+  for (auto& [bodies, sum] : sums) {
+    if (sum.weight > 0) sum.contact.point /= sum.weight;
+    result.push_back(sum.contact);
+  }
+  return result;
+}
+
+}  // namespace apothem

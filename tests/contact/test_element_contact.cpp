@@ -1,0 +1,302 @@
+// Contact by the potentials of the outermost elements, and what it costs against the body's own
+// surface.
+#include <catch2/catch.hpp>
+
+#include "contact/element_contact.hpp"
+#include "contact/outline_pairs.hpp"
+#include "dynamics/simulation.hpp"
+#include "mesh/disc_mesh.hpp"
+#include "mesh/rectangle_mesh.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+// Square elements of 1 m (r = .5 m) with their top at y = 0, and a right-angled tip above.
+struct DraggedTip {
+  DraggedTip(ContactSurface surface, double depth, double x) {
+    const Mesh row = rectangle_mesh({9, 1}, {9, 1}, {-4.5, -1}, ElementShape::quadrilateral);
+    const std::vector<Vec2> tip{{0, 0}, {1, 1}, {-1, 1}};
+    const Polygon polygon(tip);
+    const Potential potential = translated(make_potential(polygon), area_moments(polygon).centroid);
+    const std::vector<double> u(2 * row.nodes.size());
+    const std::vector<double> place{x, 2. / 3 - depth, 0};
+    if (surface == ContactSurface::body) {
+      DeformableContact contact(1, 1, .1, 1);
+      contact.add_rigid(potential.vertices, 0, 1 / potential.steepest);
+      contact.add_deformable(row, boundary(row), 0);
+      contact.update(u, place);
+      contact.evaluate();
+      force = contact.resultant(0).force;
+    } else {
+      ElementContact contact(1, 1, .1, ForceDistribution::resultant, 1);
+      contact.add_rigid(potential, 0);
+      contact.add_deformable(row, boundary(row), 0);
+      contact.update(u, place);
+      contact.evaluate();
+      REQUIRE_FALSE(contact.fault());
+      force = contact.resultant(0).force;
+    }
+  }
+  Vec2 force;
+};
+
+// Largest |Fx/Fy| over one element, and how much less Fy is than in its middle.
+std::pair<double, double> drag(ContactSurface surface, double depth) {
+  double tangential = 0, least = HUGE_VAL;
+  const double middle = DraggedTip(surface, depth, 0).force.y();
+  for (int i = 0; i <= 100; ++i) {
+    const Vec2 f = DraggedTip(surface, depth, .01 * i).force;
+    tangential = std::max(tangential, std::abs(f.x() / f.y()));
+    least = std::min(least, f.y());
+  }
+  return {tangential, 1 - least / middle};
+}
+
+// Discs of 1 m that meet with an offset across their velocity (m, m/s).
+struct Oblique {
+  int quarter;
+  double speed, offset;
+};
+Model oblique_discs(const Oblique& o, ContactSurface surface, ForceDistribution distribution) {
+  Model model;
+  model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::stress, 20e9, .2}}};
+  model.contact.normal_stiffness = 20e9;
+  model.contact.surface = surface;
+  model.contact.distribution = distribution;
+  const DiscCells cells{o.quarter, 1};
+  const double half = std::sqrt(1 - o.offset * o.offset) + .0013;  // a little apart
+  for (const double side : {-1., 1.}) {
+    DeformableBody body;
+    body.name = side < 0 ? "left" : "right";
+    body.element = ElementKind::quad4;
+    const Vec2 centre(side * half, side * o.offset);
+    body.mesh = disc_mesh(centre, 1, cells, ElementShape::quadrilateral);
+    body.velocity = {-side * o.speed, 0};
+    body.first_node = model.node_count();
+    model.deformables.push_back(body);
+  }
+  return model;
+}
+
+struct Impact {
+  double worst = 0;     // energy error, of the kinetic energy
+  double momentum = 0;  // largest error, of that of one disc
+  bool touched = false;
+};
+
+Impact impact(const Model& model, double safety) {
+  TimeSettings time;
+  time.end = 4.5e-3;
+  time.fixed_step = safety * Simulation(model, time, 1, 1).stability_limit();
+  Simulation simulation(model, time, 1, 1);
+  const double kinetic = simulation.energies().kinetic;
+  Impact result;
+  while (simulation.state().time < time.end) {
+    simulation.step();
+    const Energies e = simulation.energies();
+    result.worst = std::max(result.worst, std::abs(e.total_error) / kinetic);
+    result.touched = result.touched || e.contact > 0;
+  }
+  CHECK(simulation.energies().contact == 0);  // apart again
+  const Momenta m = simulation.momenta();
+  const double one = kinetic / model.deformables[1].velocity.norm();
+  for (const double error : {m.x_error, m.y_error, m.angular_error}) {
+    result.momentum = std::max(result.momentum, std::abs(error) / one);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("elements in contact keep linear and angular momentum", "[element_contact][contact]") {
+  samples::Random random(31);
+  for (const ForceDistribution distribution :
+       {ForceDistribution::resultant, ForceDistribution::integrated}) {
+    for (const ElementShape shape : {ElementShape::triangle, ElementShape::quadrilateral}) {
+      double worst = 0;
+      for (int i = 0; i < scaled(50); ++i) {
+        const Mesh lower = rectangle_mesh({4, 2}, {4, 2}, {0, 0}, shape);
+        const Mesh upper = rectangle_mesh({3, 2}, {4, 3}, {.6, 1.93}, shape);
+        const std::vector<Vec2> tip{{-.5, 0}, {.1, -.6}, {.5, .2}};
+        const Polygon polygon(tip);
+        const Vec2 centroid = area_moments(polygon).centroid;
+        const Potential potential = translated(make_potential(polygon), centroid);
+        const int first = static_cast<int>(lower.nodes.size());
+        ElementContact contact(3, .5, .1, distribution, 1);
+        contact.add_rigid(potential, 0);
+        contact.add_deformable(lower, boundary(lower), 0);
+        contact.add_deformable(upper, boundary(upper), first);
+        std::vector<Vec2> nodes = lower.nodes;
+        nodes.insert(nodes.end(), upper.nodes.begin(), upper.nodes.end());
+        std::vector<double> u;
+        for (size_t k = 0; k < 2 * nodes.size(); ++k) u.push_back(random.uniform(-.04, .04));
+        const Vec2 at(-.45, random.uniform(.6, 1.4));
+        contact.update(u, std::vector<double>{at.x(), at.y(), random.uniform(-3, 3)});
+        contact.evaluate();
+        REQUIRE_FALSE(contact.fault());
+        REQUIRE(contact.touching() > 3);
+        std::vector<double> f(u.size());
+        contact.add_forces(f);
+        const auto rigid = contact.resultant(0);
+        Vec2 sum = rigid.force;
+        double moment = rigid.moment + cross(at, rigid.force), scale = rigid.force.norm();
+        for (size_t n = 0; n < nodes.size(); ++n) {
+          const Vec2 force(f[2 * n], f[2 * n + 1]);
+          sum += force;
+          moment += cross(Vec2(nodes[n] + Vec2(u[2 * n], u[2 * n + 1])), force);
+          scale = std::max(scale, force.norm());
+        }
+        worst = std::max({worst, sum.norm() / scale, std::abs(moment) / scale});
+        CHECK((contact.resultant(1).force + contact.resultant(2).force + rigid.force).norm() <
+              1e-13 * scale);
+      }
+      CAPTURE(worst);
+      CHECK(worst < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("contact of elements has the same bits for any number of threads",
+          "[element_contact][contact]") {
+  const ElementShape shape = ElementShape::triangle;
+  const Mesh lower = rectangle_mesh({40, .1}, {2000, 5}, {0, 0}, shape);
+  const Mesh upper = rectangle_mesh({39, .1}, {1850, 5}, {.5, .097}, shape);
+  const int first = static_cast<int>(lower.nodes.size());
+  std::vector<double> u(2 * (lower.nodes.size() + upper.nodes.size()));
+  for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
+  std::vector<double> before;
+  for (const int threads : {1, 3}) {
+    ElementContact contact(1, 1, .002, ForceDistribution::resultant, threads);
+    contact.add_deformable(lower, boundary(lower), 0);
+    contact.add_deformable(upper, boundary(upper), first);
+    contact.update(u, {});
+    contact.evaluate();
+    REQUIRE_FALSE(contact.fault());
+    CHECK(contact.candidates().size() > 2000);
+    CHECK(contact.touching() > 2000);
+    std::vector<double> f(u.size());
+    contact.add_forces(f);
+    if (threads > 1) CHECK((f == before));
+    before = f;
+    // The search is kept while all boxes stay near.
+    std::vector<double> near = u;
+    for (double& v : near) v += 5e-4;
+    contact.update(near, {});
+    CHECK(contact.searches() == 1);
+  }
+}
+
+TEST_CASE("an element that does not deform feels what a rigid polygon feels",
+          "[element_contact][contact]") {
+  const Polygon quad = quad_q(), tip = samples::shifted(triangle_t(), {.3, .75});
+  const Vec2 centroid = area_moments(tip).centroid;
+  const Potential potential = translated(make_potential(tip), centroid);
+  const Mesh mesh = one_element(quad.vertices());
+  for (const ForceDistribution distribution :
+       {ForceDistribution::resultant, ForceDistribution::integrated}) {
+    ElementContact contact(1, 1, .1, distribution, 1);
+    contact.add_rigid(potential, 0);
+    contact.add_deformable(mesh, boundary(mesh), 0);
+    const Vec2 place = tip.origin() + centroid;
+    contact.update(std::vector<double>(8), std::vector<double>{place.x(), place.y(), 0});
+    contact.evaluate();
+    const PairResult pair = edge(tip, quad);
+    CHECK((contact.resultant(0).force - pair.integral.force).norm() < 1e-14);
+    CHECK(contact.resultant(0).moment == Approx(pair.integral.moment_a).epsilon(1e-12));
+    CHECK(contact.energy() == Approx(pair.volume.energy).epsilon(1e-12));
+    CHECK(contact.depth().largest == Approx(pair.integral.penetration).epsilon(1e-12));
+    const std::vector<BodyContact> record = contact.body_contacts();
+    REQUIRE(record.size() == 1);
+    CHECK((record[0].point - place - loading_point(pair.integral)).norm() < 1e-13);
+  }
+}
+
+TEST_CASE("the resultant goes to the corners by the shape functions at its action point",
+          "[element_contact][contact]") {
+  // Symmetric tip from above: in the middle of the upper edge's width, so half on each side.
+  const Mesh mesh = one_element({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  const Polygon tip({{.5, .9}, {.7, 1.3}, {.3, 1.3}});
+  const Potential potential = translated(make_potential(tip), area_moments(tip).centroid);
+  const Vec2 place = tip.origin() + area_moments(tip).centroid;
+  ElementContact contact(1, 1, .1, ForceDistribution::resultant, 1);
+  contact.add_rigid(potential, 0);
+  contact.add_deformable(mesh, boundary(mesh), 0);
+  contact.update(std::vector<double>(8), std::vector<double>{place.x(), place.y(), 0});
+  contact.evaluate();
+  std::vector<double> f(8);
+  contact.add_forces(f);
+  const double y = contact.body_contacts()[0].point.y();
+  const double total = -contact.resultant(0).force.y();
+  CHECK(total < 0);
+  CHECK(y > .9);
+  CHECK(y < 1);
+  for (const int upper : {2, 3}) CHECK(f[2 * upper + 1] == Approx(total / 2 * y));
+  for (const int lower : {0, 1}) CHECK(f[2 * lower + 1] == Approx(total / 2 * (1 - y)));
+}
+
+TEST_CASE("an element bent or passed through is noticed", "[element_contact][contact]") {
+  const Mesh mesh = one_element({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  const Polygon wall = samples::block(-1, -1, 2, .05);
+  const Potential potential = translated(make_potential(wall), area_moments(wall).centroid);
+  const std::vector<double> place{.5, -.475, 0};
+  ElementContact contact(1, 1, .1, ForceDistribution::resultant, 1);
+  contact.add_rigid(potential, 0);
+  contact.add_deformable(mesh, boundary(mesh), 0);
+  std::vector<double> u(8);
+  contact.update(u, place);
+  contact.evaluate();
+  CHECK_FALSE(contact.fault());
+  u[4] = u[5] = -.6;  // the upper right corner below the diagonal
+  contact.update(u, place);
+  contact.evaluate();
+  REQUIRE(contact.fault());
+  CHECK(contact.fault()->kind == ElementContact::Fault::Kind::not_convex);
+  for (size_t i = 0; i < u.size(); ++i) u[i] = i % 2 ? -.6 : 0;
+  contact.update(u, place);
+  contact.evaluate();
+  REQUIRE(contact.fault());
+  CHECK(contact.fault()->kind == ElementContact::Fault::Kind::too_deep);
+  u[0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(contact.update(u, place), std::domain_error);
+  const Mesh arrow = one_element({{0, 0}, {2, 0}, {.5, .5}, {0, 2}});
+  CHECK_THROWS_AS(contact.add_deformable(arrow, boundary(arrow), 0), InvalidPolygon);
+}
+
+TEST_CASE("a tip dragged over a row of elements meets their borders",
+          "[element_contact][contact]") {
+  for (const double depth : {.05, .2}) {
+    const auto [tangential, loss] = drag(ContactSurface::element, depth);
+    const auto [none, even] = drag(ContactSurface::body, depth);
+    CAPTURE(depth, tangential, loss, none, even);
+    // On a border the elements' share of the force is half of what it is elsewhere.
+    const double sine = std::sqrt(.5), r_tip = std::sqrt(2.) - 1, r_element = .5;
+    CHECK(loss == Approx(.5 / (1 + sine * r_element / r_tip)).epsilon(1e-10));
+    CHECK(tangential == Approx(.17).margin(.005));
+    CHECK(none < 1e-12);
+    CHECK(std::abs(even) < 1e-12);
+  }
+}
+
+TEST_CASE("energy of two oblique discs: a floor, or the step squared",
+          "[element_contact][contact][deformable]") {
+  // Node against node, and in general position, where edges and faces come and go.
+  for (const Oblique& o : {Oblique{6, 20, .5}, Oblique{8, 40, .35}}) {
+    for (const ForceDistribution distribution :
+         {ForceDistribution::resultant, ForceDistribution::integrated}) {
+      const Model elements = oblique_discs(o, ContactSurface::element, distribution);
+      const Impact coarse = impact(elements, .4), fine = impact(elements, .2);
+      CAPTURE(o.quarter, coarse.worst, fine.worst, coarse.momentum);
+      CHECK(coarse.touched);
+      CHECK(coarse.momentum < 1e-13);
+      CHECK(fine.worst > 2e-3);
+      CHECK(coarse.worst / fine.worst < 1.1);
+    }
+    const Model surface = oblique_discs(o, ContactSurface::body, ForceDistribution::variational);
+    const Impact coarse = impact(surface, .4), fine = impact(surface, .2);
+    CAPTURE(o.quarter, coarse.worst, fine.worst);
+    CHECK(coarse.worst < 3e-4);
+    CHECK(coarse.worst / fine.worst == Approx(4).epsilon(o.quarter == 6 ? .05 : .2));
+  }
+}
