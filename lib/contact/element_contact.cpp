@@ -202,13 +202,19 @@ double ElementContact::energy() const {
   return stiffness_ * normal_.energy(shapes_, places_, pairs_);
 }
 
-DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) const {
-  std::vector<double> other(bodies_.size());  // the steepest potential among the others
+// Of the steepest potential among the other bodies, 1/m.
+std::vector<double> ElementContact::slopes_of_others() const {
+  std::vector<double> other(bodies_.size());
   for (size_t a = 0; a < bodies_.size(); ++a) {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       if (a != b) other[a] = std::max(other[a], bodies_[b].slope);
     }
   }
+  return other;
+}
+
+DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) const {
+  const std::vector<double> other = slopes_of_others();
   DeformableContact::Rate worst;
   for (const auto& [node, body, length] : shares_) {
     const double mass = node_mass[node];
@@ -217,6 +223,14 @@ DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) 
     if (value > worst.value) worst = {value, body};
   }
   return worst;
+}
+
+void ElementContact::add_stiffness(std::span<double> node_stiffness) const {
+  const std::vector<double> other = slopes_of_others();
+  for (const auto& [node, body, length] : shares_) {
+    if (other[body] == 0) continue;
+    node_stiffness[node] += 2 * stiffness_ * (bodies_[body].slope + other[body]) * length;
+  }
 }
 
 std::vector<BodyContact> ElementContact::body_contacts() const {
