@@ -25,8 +25,9 @@ class SurfaceContact {
   [[nodiscard]] double rate(std::span<const double> node_mass) const;
 
   /// Adds the same bound as a stiffness of each node that is near another body, N/m.
+  /// Where bodies touch by their own surfaces only; throws std::bad_variant_access otherwise.
   void add_stiffness(std::span<double> node_stiffness) const {
-    contact_.add_stiffness(node_stiffness);
+    std::get<DeformableContact>(contact_).add_stiffness(node_stiffness);
   }
 
   /// Forces where the bodies are now. Throws Unstable where they are out of the method's range:
