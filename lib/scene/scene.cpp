@@ -561,6 +561,11 @@ class SceneReader {
         if (const JsonValue* v = contact->find(key)) in_.fail(*v, kStatic);
       }
     }
+    if (by_element_) {
+      in_.fail(*by_element_,
+               "a static run needs \"body\": element potentials have no equilibrium "
+               "of least energy");
+    }
     if (const JsonValue* output = document.find("output")) {
       const JsonValue* history = output->find("history");
       for (const JsonValue* v : {output->find("frames"), output->find("checkpoint"),
