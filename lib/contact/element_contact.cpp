@@ -219,6 +219,22 @@ DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) 
   return worst;
 }
 
+void ElementContact::add_stiffness(std::span<double> node_stiffness) const {
+  std::vector<double> slope(node_stiffness.size());  // 1/r_c + 1/r_t
+  for (const BoxPair& pair : pairs_) {
+    const double both =
+        bodies_[pieces_[pair.first].body].slope + bodies_[pieces_[pair.second].body].slope;
+    for (const int p : {pair.first, pair.second}) {
+      if (pieces_[p].entry >= 0) continue;
+      const int* node = &nodes_[pieces_[p].corners];
+      for (int k = 0; k < corner_count(p); ++k) slope[node[k]] = std::max(slope[node[k]], both);
+    }
+  }
+  for (const auto& [node, body, length] : shares_) {
+    node_stiffness[node] += 2 * stiffness_ * slope[node] * length;
+  }
+}
+
 std::vector<BodyContact> ElementContact::body_contacts() const {
   struct Sum {
     BodyContact contact;

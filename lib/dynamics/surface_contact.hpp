@@ -26,7 +26,7 @@ class SurfaceContact {
 
   /// Adds the same bound as a stiffness of each node that is near another body, N/m.
   void add_stiffness(std::span<double> node_stiffness) const {
-    contact_.add_stiffness(node_stiffness);
+    std::visit([&](const auto& contact) { contact.add_stiffness(node_stiffness); }, contact_);
   }
 
   /// Forces where the bodies are now. Throws Unstable where they are out of the method's range:
