@@ -1,12 +1,12 @@
 // Contact of deformable bodies: one edge against one face by itself, whole interfaces in place, and
-// the same interface as pairs of the elements on it.
+// the same interface by potentials of the elements on it.
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
 #include "contact/deformable_friction.hpp"
-#include "contact/placed_shapes.hpp"
+#include "contact/element_contact.hpp"
 #include "geometry/samples.hpp"
 #include "mesh/rectangle_mesh.hpp"
 
@@ -101,50 +101,23 @@ void deformable_friction(benchmark::State& state) {
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 
-// The elements of the two facing rows as bodies of their own: placed and integrated, without
-// the inradii of the deformed elements and the distribution to nodes.
-void element_pairs(benchmark::State& state) {
-  Interface bars(static_cast<int>(state.range(0)));
-  PlacedShapes shapes;
-  std::vector<Potential> potentials;
-  std::vector<Vec2> centres;
-  const auto collect = [&](const Mesh& mesh, size_t first_node, double y) {
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      std::vector<Vec2> corners;
-      bool on_row = false;
-      for (const int n : mesh.element(e)) {
-        const size_t k = 2 * (first_node + static_cast<size_t>(n));
-        corners.emplace_back(mesh.nodes[n] + Vec2(bars.displacement[k], bars.displacement[k + 1]));
-        on_row |= std::abs(mesh.nodes[n].y() - y) < 1e-9;
-      }
-      if (!on_row) continue;
-      const Polygon polygon(corners);
-      const Vec2 centre = area_moments(polygon).centroid;
-      potentials.push_back(translated(make_potential(polygon), centre));
-      centres.emplace_back(polygon.origin() + centre);
-    }
-  };
-  collect(bars.lower, 0, 4);
-  const int lower = static_cast<int>(potentials.size());
-  collect(bars.upper, bars.lower.nodes.size(), 3.95);
-  for (const Potential& potential : potentials) shapes.add(potential);
-  for (int i = 0; i < shapes.size(); ++i) shapes.place(i, centres[i].x(), centres[i].y(), 0);
-  std::vector<BoxPair> pairs;
-  BoxGrid grid;
-  std::vector<Box> grown;
-  for (const Box& box : shapes.boxes()) grown.push_back(box.grown(.05));
-  grid.find_pairs(grown, pairs);
-  std::erase_if(pairs, [&](const BoxPair& p) { return (p.first < lower) == (p.second < lower); });
-  EdgeWorkspace workspace;
+// The same interface by potentials of the outermost elements: all that a step needs.
+void element_interface(benchmark::State& state, ForceDistribution distribution) {
+  const Interface bars(static_cast<int>(state.range(0)));
+  ElementContact contact(1, 1, .1, distribution, 1);
+  contact.add_deformable(bars.lower, boundary(bars.lower), 0);
+  contact.add_deformable(bars.upper, boundary(bars.upper),
+                         static_cast<int>(bars.lower.nodes.size()));
+  std::vector<double> f(bars.displacement.size());
+  contact.update(bars.displacement, {});
+  contact.evaluate();
   for (auto _ : state) {
-    for (int i = 0; i < shapes.size(); ++i) shapes.place(i, centres[i].x(), centres[i].y(), 0);
-    for (const auto& [a, b] : pairs) {
-      if (apart(shapes.boxes()[a], shapes.boxes()[b])) continue;
-      benchmark::DoNotOptimize(
-          pair_integral(shapes.view(a), shapes.view(b), centres[a] - centres[b], workspace));
-    }
+    contact.update(bars.displacement, {});
+    contact.evaluate();
+    contact.add_forces(f);
+    benchmark::DoNotOptimize(f.data());
   }
-  per(state, "ns_per_pair", pairs.size());
+  per(state, "ns_per_pair", contact.touching());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 
@@ -152,6 +125,9 @@ BENCHMARK(collar_edge_face);
 BENCHMARK(deformable_interface)->Arg(100)->Arg(10000);
 BENCHMARK(deformable_evaluation)->Arg(100)->Arg(10000);
 BENCHMARK(deformable_friction)->Arg(100)->Arg(10000);
-BENCHMARK(element_pairs)->Arg(100)->Arg(10000);
+BENCHMARK_CAPTURE(element_interface, resultant, ForceDistribution::resultant)->Arg(100)->Arg(10000);
+BENCHMARK_CAPTURE(element_interface, integrated, ForceDistribution::integrated)
+    ->Arg(100)
+    ->Arg(10000);
 
 }  // namespace

@@ -202,19 +202,13 @@ double ElementContact::energy() const {
   return stiffness_ * normal_.energy(shapes_, places_, pairs_);
 }
 
-// Of the steepest potential among the other bodies, 1/m.
-std::vector<double> ElementContact::slopes_of_others() const {
-  std::vector<double> other(bodies_.size());
+DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) const {
+  std::vector<double> other(bodies_.size());  // the steepest potential among the others
   for (size_t a = 0; a < bodies_.size(); ++a) {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       if (a != b) other[a] = std::max(other[a], bodies_[b].slope);
     }
   }
-  return other;
-}
-
-DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) const {
-  const std::vector<double> other = slopes_of_others();
   DeformableContact::Rate worst;
   for (const auto& [node, body, length] : shares_) {
     const double mass = node_mass[node];
@@ -226,10 +220,18 @@ DeformableContact::Rate ElementContact::rate(std::span<const double> node_mass) 
 }
 
 void ElementContact::add_stiffness(std::span<double> node_stiffness) const {
-  const std::vector<double> other = slopes_of_others();
+  std::vector<double> slope(node_stiffness.size());  // 1/r_c + 1/r_t
+  for (const BoxPair& pair : pairs_) {
+    const double both =
+        bodies_[pieces_[pair.first].body].slope + bodies_[pieces_[pair.second].body].slope;
+    for (const int p : {pair.first, pair.second}) {
+      if (pieces_[p].entry >= 0) continue;
+      const int* node = &nodes_[pieces_[p].corners];
+      for (int k = 0; k < corner_count(p); ++k) slope[node[k]] = std::max(slope[node[k]], both);
+    }
+  }
   for (const auto& [node, body, length] : shares_) {
-    if (other[body] == 0) continue;
-    node_stiffness[node] += 2 * stiffness_ * (bodies_[body].slope + other[body]) * length;
+    node_stiffness[node] += 2 * stiffness_ * slope[node] * length;
   }
 }
 

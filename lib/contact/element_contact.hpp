@@ -80,7 +80,8 @@ class ElementContact {
 
   /// The bound of DeformableContact::rate, with the edges as they are in the mesh as given.
   [[nodiscard]] DeformableContact::Rate rate(std::span<const double> node_mass) const;
-  /// Adds the same bound as a stiffness of each boundary node, N/m.
+  /// Adds to each node on the boundary the same bound as a stiffness, N/m, where an element at it
+  /// has candidates.
   void add_stiffness(std::span<double> node_stiffness) const;
   /// Inverse of the smallest length of a body's potentials, 1/m.
   [[nodiscard]] double slope(int body) const { return bodies_[body].slope; }
@@ -94,7 +95,6 @@ class ElementContact {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 
  private:
-  [[nodiscard]] std::vector<double> slopes_of_others() const;
   struct Body {
     double slope;  // steepest of its potentials, 1/m
     bool rigid;

@@ -167,8 +167,10 @@ TEST_CASE("contact of elements has the same bits for any number of threads",
   std::vector<double> u(2 * (lower.nodes.size() + upper.nodes.size()));
   for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
   std::vector<double> before;
-  for (const int threads : {1, 3}) {
-    ElementContact contact(1, 1, .002, ForceDistribution::resultant, threads);
+  using enum ForceDistribution;
+  for (const auto& [distribution, threads] :
+       {std::pair(resultant, 1), {resultant, 3}, {integrated, 1}, {integrated, 3}}) {
+    ElementContact contact(1, 1, .002, distribution, threads);
     contact.add_deformable(lower, boundary(lower), 0);
     contact.add_deformable(upper, boundary(upper), first);
     contact.update(u, {});
@@ -299,4 +301,48 @@ TEST_CASE("energy of two oblique discs: a floor, or the step squared",
     CHECK(coarse.worst < 3e-4);
     CHECK(coarse.worst / fine.worst == Approx(4).epsilon(o.quarter == 6 ? .05 : .2));
   }
+}
+
+TEST_CASE("a rigid block bounces on elements", "[element_contact][contact][deformable]") {
+  Model model;
+  model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::stress, 20e9, .2}}};
+  model.contact.normal_stiffness = 20e9;
+  model.contact.surface = ContactSurface::element;
+  model.contact.distribution = ForceDistribution::resultant;
+  RigidBody block;
+  block.name = "block";
+  block.velocity = {0, -5};
+  set_shape(block, samples::block(.55, .501, 1.15, 1), model);
+  model.bodies = {block};
+  DeformableBody bar;
+  bar.name = "bar";
+  bar.mesh = rectangle_mesh({2, .5}, {8, 2}, {0, 0}, ElementShape::quadrilateral);
+  model.deformables = {bar};
+  TimeSettings time;
+  time.end = 2e-3;
+  time.fixed_step = .4 * Simulation(model, time, 1, 1).stability_limit();
+  Simulation simulation(model, time, 1, 1);
+  double pressed = 0;
+  while (simulation.state().time < time.end) {
+    simulation.step();
+    const std::vector<ContactRecord> contacts = simulation.contacts();
+    if (contacts.empty()) continue;
+    REQUIRE(contacts.size() == 1);
+    CHECK(contacts[0].a == 0);
+    CHECK(contacts[0].b == 1);
+    const BodyForce on_bar = simulation.deformable_forces()[0];
+    CHECK(contacts[0].normal.y() == Approx(-on_bar.fy).epsilon(1e-12));
+    CHECK(contacts[0].normal.y() == Approx(simulation.state().force[1]).epsilon(1e-12));
+    pressed = std::max(pressed, contacts[0].normal.y());
+  }
+  CHECK(pressed > 0);
+  CHECK(simulation.state().velocity[1] > -4);
+  const Momenta m = simulation.momenta();
+  const double momentum = 5 * model.bodies[0].mass;
+  CHECK(std::abs(m.x_error) < 1e-12 * momentum);
+  CHECK(std::abs(m.y_error) < 1e-12 * momentum);
+  CHECK(std::abs(m.angular_error) < 1e-12 * momentum);
+
+  model.contact.potential = area_choice();  // which quadrilaterals do not have
+  CHECK_THROWS_WITH(Simulation(model, time, 1, 1), Catch::Contains("potentials of their own"));
 }
