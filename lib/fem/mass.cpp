@@ -1,12 +1,15 @@
 #include "fem/mass.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "fem/quad4.hpp"
 
 namespace apothem {
 namespace {
+
+constexpr double kLeastShare = 0.1;  // of the mean, before the tilt
 
 std::vector<double> quad_areas(std::span<const Vec2> x) {
   const auto [a, b, q] = quad::Reference(x);
@@ -20,7 +23,11 @@ std::vector<double> quad_areas(std::span<const Vec2> x) {
 std::vector<double> corner_areas(std::span<const Vec2> x) {
   const int n = static_cast<int>(x.size());
   if (n == 3) return std::vector<double>(3, cross(x[1] - x[0], x[2] - x[0]) / 6);
-  if (n == 4) return quad_areas(x);
+  if (n == 4) {
+    std::vector<double> areas = quad_areas(x);
+    const auto [least, most] = std::minmax_element(areas.begin(), areas.end());
+    if (*least > kLeastShare * *most) return areas;  // not where a corner is far inside
+  }
 
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : x) mean += p / n;
@@ -38,6 +45,10 @@ std::vector<double> corner_areas(std::span<const Vec2> x) {
     share[j] += std::abs(triangle) / 2;
   }
   const Vec2 centroid = moment / area;
+  // A corner near the mean corner, as the inner one of an L, would have no mass.
+  double mean_share = 0;
+  for (const double w : share) mean_share += w / n;
+  for (double& w : share) w = std::max(w, kLeastShare * mean_share);
   // Newton for the tilt: SUM share exp(tilt.(x - centroid)) (x - centroid) = 0, the minimum of a
   // convex function.
   Vec2 tilt = Vec2::Zero();

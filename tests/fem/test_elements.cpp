@@ -242,6 +242,13 @@ TEST_CASE("corner areas keep area and centroid and are positive", "[fem]") {
   }
 }
 
+TEST_CASE("a corner in the middle of the others has mass", "[fem]") {
+  const std::vector<Vec2> l{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  for (const double area : corner_areas(l)) CHECK(area > .03);
+  const std::vector<Vec2> dart{{0, 0}, {1, 0}, {.1, .1}, {0, 1}};
+  for (const double area : corner_areas(dart)) CHECK(area > 0);
+}
+
 TEST_CASE("plane stress leaves no stress across the plane", "[fem]") {
   // The closed form against the condition it solves, and against small strains.
   const Elastic e{ElasticLaw::neo_hookean, Plane::stress, 3, .3};
