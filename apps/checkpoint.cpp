@@ -28,7 +28,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, veloc
                                    displacement, node_velocity, node_force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeformableBalance, load_work, mass_damping_loss,
                                    summed_damping_loss, damping_power)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSlip, edge, partner, spring, stiffness, slip)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSlip, edge, partner, spring, stiffness)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SlipMemory, slips, energy, friction_loss)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Balance, initial_energy, initial, impulse, external_work)

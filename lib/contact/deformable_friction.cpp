@@ -49,6 +49,8 @@ void DeformableFriction::update(const DeformableContact& contact,
   const Outlines& o = contact.outlines();
   const std::vector<EdgeFaceContact>& contacts = contact.contacts();
   find_velocities(contact, node_velocity, velocity);
+  fx_.resize(o.size()), fy_.resize(o.size());
+  const double power_before = power();
   fx_.assign(o.size(), 0), fy_.assign(o.size(), 0);
   body_stiffness_.assign(o.bodies.size(), 0);
   std::swap(now_, before_);
@@ -58,11 +60,6 @@ void DeformableFriction::update(const DeformableContact& contact,
 
   const auto key = [](const EdgeSlip& s) { return std::pair(s.edge, s.partner); };
   auto old = before_.slips.begin();
-  // The last force acts for half a step more, while the bodies slip on as before.
-  const auto drop = [&] {
-    now_.friction_loss += old->energy() - old->spring * old->slip / 2;
-    ++old;
-  };
   const auto partner = [&](const EdgeFaceContact& c) {
     return o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face];
   };
@@ -89,12 +86,13 @@ void DeformableFriction::update(const DeformableContact& contact,
       rate += o.tx[a] * x + o.ty[a] * y +
               k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
     }
-    while (old != before_.slips.end() && key(*old) < key(slip)) drop();
+    while (old != before_.slips.end() && key(*old) < key(slip)) ++old;
     const bool known = old != before_.slips.end() && key(*old) == key(slip);
     if (!(normal > 0)) continue;
-    slip.slip = rate / normal * dt;
-    slip.spring =
-        slide(known ? &*old : nullptr, slip.stiffness, slip.slip, friction.coefficient * normal);
+    // New contact joins without a slip of its own; contact that ends takes its share along.
+    const double spring = known ? old->spring * std::min(1., slip.stiffness / old->stiffness) : 0;
+    const double limit = friction.coefficient * normal;
+    slip.spring = std::clamp(spring - slip.stiffness * (rate / normal * dt), -limit, limit);
     if (known) ++old;
     now_.slips.push_back(slip);
     now_.energy += slip.energy();
@@ -113,19 +111,16 @@ void DeformableFriction::update(const DeformableContact& contact,
       fx_[b] += k.b * tx - k.couple * ty, fy_[b] += k.b * ty + k.couple * tx;
     }
   }
-  while (old != before_.slips.end()) drop();
+  // What the bodies lose between the two forces, and the springs do not store.
+  now_.friction_loss -= dt / 2 * (power_before + power());
+  now_.friction_loss -= now_.energy - before_.energy;
 }
 
-double DeformableFriction::slide(const EdgeSlip* before, double stiffness, double slip,
-                                 double limit) {
-  const EdgeSlip last = before ? *before : EdgeSlip{0, 0, 0, stiffness};
-  // New contact joins without a slip of its own; contact that ends takes its share along.
-  const double spring = last.spring * std::min(1., stiffness / last.stiffness);
-  const double next = std::clamp(spring - stiffness * slip, -limit, limit);
-  // What the bodies lose, at the mean of the two forces, and the springs do not store.
-  now_.friction_loss -= (last.spring + next) / 2 * slip;
-  now_.friction_loss += last.energy() - next * next / (2 * stiffness);
-  return next;
+// Of the forces on the bodies, W.
+double DeformableFriction::power() const {
+  double sum = 0;
+  for (size_t i = 0; i < fx_.size(); ++i) sum += fx_[i] * vx_[i] + fy_[i] * vy_[i];
+  return sum;
 }
 
 void DeformableFriction::add_forces(const DeformableContact& contact,

@@ -22,7 +22,6 @@ struct EdgeSlip {
   int partner;       ///< the other body; for edges of rigid bodies the face
   double spring;     ///< friction force along the faces, N
   double stiffness;  ///< N/m
-  double slip = 0;   ///< of the last step, m
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? spring * spring / (2 * stiffness) : 0;
@@ -71,7 +70,7 @@ class DeformableFriction {
   [[nodiscard]] const Friction& between(int a, int b) const {
     return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
   }
-  [[nodiscard]] double slide(const EdgeSlip* before, double stiffness, double slip, double limit);
+  [[nodiscard]] double power() const;
 
   std::vector<int> kind_;
   int kinds_;
