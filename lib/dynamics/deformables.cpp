@@ -316,13 +316,21 @@ void Deformables::book(const State& state, double h) {
   }
 }
 
+double Deformables::kinetic(const State& state) const {
+  double sum = 0;
+  for (size_t c = 0; c < inverse_mass_.size(); ++c) {
+    const double v = state.node_velocity[c];
+    if (inverse_mass_[c] > 0) sum += v * v / inverse_mass_[c] / 2;
+  }
+  return sum;
+}
+
 Energies Deformables::energies(const State& state, double dt) {
   Energies e;
-  for (size_t c = 0; c < inverse_mass_.size(); ++c) {
-    if (inverse_mass_[c] == 0) continue;
-    const double mass = 1 / inverse_mass_[c];
-    e.kinetic += mass * state.node_velocity[c] * state.node_velocity[c] / 2;
-    if (!acceleration_.empty()) e.gravity -= mass * acceleration_[c] * state.displacement[c];
+  e.kinetic = kinetic(state);
+  for (size_t c = 0; c < acceleration_.size(); ++c) {
+    if (inverse_mass_[c] > 0)
+      e.gravity -= acceleration_[c] * state.displacement[c] / inverse_mass_[c];
   }
   e.strain = elements_.strain_energy(state.displacement);
   e.external_work = balance_.load_work;

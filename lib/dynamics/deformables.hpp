@@ -51,6 +51,8 @@ class Deformables {
   [[nodiscard]] std::vector<double> outside_forces(const State& state) const;
   void add_load_work(double work) { balance_.load_work += work; }
 
+  /// J.
+  [[nodiscard]] double kinetic(const State& state) const;
   /// Kinetic, strain and gravity energy, damping loss and work of loads.
   [[nodiscard]] Energies energies(const State& state, double dt);
   [[nodiscard]] Impulse momentum(const State& state) const;

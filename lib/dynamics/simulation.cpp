@@ -285,7 +285,9 @@ LoadStep Simulation::balance(double time) {
 
 void Simulation::watch() {
   // Energies may be asked for at the top of a bounce, where all there was is in the height.
-  energy_in_play_ = std::max(energy_in_play_, ledger_->kinetic(state_));
+  const double kinetic =
+      ledger_->kinetic(state_) + (deformables_ ? deformables_->kinetic(state_) : 0);
+  energy_in_play_ = std::max(energy_in_play_, kinetic);
   if (!deformables_) return;
   const std::string element = deformables_->inverted(state_);
   if (!element.empty()) {
@@ -489,6 +491,8 @@ void Simulation::gather() {
 
 void Simulation::gather_surfaces() {
   surface_->add_to_bodies(state_.force);
+  counts_.candidate_pairs += static_cast<std::int64_t>(surface_->candidates());
+  counts_.touching_pairs += static_cast<std::int64_t>(surface_->touching());
   if (surface_->penetration() > extremes_.penetration.value) {
     const auto [a, b] = surface_->deepest();
     extremes_.penetration = {surface_->penetration(), state_.time, a, b};

@@ -47,7 +47,7 @@ struct Extremes {
 
 struct Counts {
   std::int64_t searches = 0;
-  std::int64_t candidate_pairs = 0;  ///< summed over the steps
+  std::int64_t candidate_pairs = 0;  ///< summed over the steps; of meshes edges and faces
   std::int64_t touching_pairs = 0;
   int touching_now = 0;
 };

@@ -60,12 +60,7 @@ SurfaceContact::Contact SurfaceContact::make_contact(const Model& model, int thr
 SurfaceContact::SurfaceContact(const Model& model, const State& state, int threads)
     : model_(model), contact_(make_contact(model, threads)) {
   if (std::holds_alternative<DeformableContact>(contact_)) add_friction();
-  const auto place = [&](auto& contact) {
-    contact.update(state.displacement, state.position);
-    contact.evaluate();
-  };
-  std::visit(place, contact_);
-  slide(state, 0);
+  refresh(state);
 }
 
 void SurfaceContact::add_friction() {
@@ -273,14 +268,18 @@ std::vector<SurfaceRecord> SurfaceContact::surfaces() const {
 }
 
 void SurfaceContact::restore(const SlipMemory& memory, const State& state) {
+  if (friction_) friction_->restore(memory);
+  refresh(state);
+}
+
+// Contacts and friction as they are, without a step.
+void SurfaceContact::refresh(const State& state) {
   const auto place = [&](auto& contact) {
     contact.update(state.displacement, state.position);
     contact.evaluate();
   };
   std::visit(place, contact_);
-  if (!friction_) return;
-  friction_->restore(memory);
-  friction_->update(std::get<DeformableContact>(contact_), state.node_velocity, state.velocity, 0);
+  slide(state, 0);
 }
 
 const std::string& SurfaceContact::name(int body) const { return model_.name_of(body); }

@@ -61,6 +61,7 @@ class SurfaceContact {
   using Contact = std::variant<DeformableContact, ElementContact>;
   static Contact make_contact(const Model& model, int threads);
   void add_friction();
+  void refresh(const State& state);
   [[nodiscard]] const std::string& name(int body) const;
   [[nodiscard]] double friction_on(int body) const;
   [[nodiscard]] DeformableContact::Resultant friction_sum(int body) const;
