@@ -99,7 +99,7 @@ class Splitter {
     }
     for (int e = 0; e < x.size; ++e) {
       const PlacedEdge edge(x, y, e, dx, dy);
-      const Row row = row_of(edge, e, y, rows, spare);
+      const Row<double> row = row_of(edge, e, y, rows, spare);
       double s0, s1;
       if (!clip(row, s0, s1)) continue;
       SegmentMoments<double> moments;
@@ -113,7 +113,7 @@ class Splitter {
   }
 
   // The line that clips an edge at s, or -1 where the edge itself ends.
-  static int clipped_by(const Row& row, double s, bool entering) {
+  static int clipped_by(const Row<double>& row, double s, bool entering) {
     for (int i = 0; i < row.size; ++i) {
       const double a = row.a[i];
       const double b = row.b[i];

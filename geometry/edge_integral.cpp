@@ -35,6 +35,28 @@ class Pieces {
   size_t used_ = 0;
 };
 
+// Both halves and the extent of their pieces, of which the first `middle` numbers are a's.
+PairIntegral join(const Half& of_a, const Half& of_b, const Vec2& r, const Pieces& pieces,
+                  size_t middle) {
+  PairIntegral pair = combine(of_a, of_b, r);
+  const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
+  if (size > 0) {
+    const double nx = pair.force.x() / size;
+    const double ny = pair.force.y() / size;
+    Extent extent;
+    const auto project = [&](size_t from, size_t to, double shift_n, double shift_t) {
+      for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
+        extent.include(nx * p[0] + ny * p[1] + shift_n, nx * p[1] - ny * p[0] + shift_t);
+      }
+    };
+    project(0, middle, 0, 0);
+    project(middle, pieces.used(), nx * r.x() + ny * r.y(), nx * r.y() - ny * r.x());
+    pair.penetration = extent.n1 - extent.n0;
+    pair.breadth = extent.t1 - extent.t0;
+  }
+  return pair;
+}
+
 // y convex: its envelope on the part of each edge of x that clipping leaves.
 Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                         const double* rows, double* spare, Pieces& pieces) {
@@ -42,7 +64,7 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
   pieces.reserve(x.size);
   for (int e = 0; e < x.size; ++e) {
     const PlacedEdge edge(x, y, e, dx, dy);
-    const Row row = row_of(edge, e, y, rows, spare);
+    const Row<double> row = row_of(edge, e, y, rows, spare);
     double s0, s1;
     if (!clip(row, s0, s1)) continue;
     SegmentMoments<double> moments;
@@ -117,24 +139,7 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   const size_t middle = pieces.used();
   const Half of_b = half(b, a, -dx, -dy, height.of_b);  // frame of a
 
-  const Vec2 r = arm(a, b, offset);
-  PairIntegral pair = combine(of_a, of_b, r);
-  const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
-  if (size > 0) {
-    const double nx = pair.force.x() / size;
-    const double ny = pair.force.y() / size;
-    Extent extent;
-    const auto project = [&](size_t from, size_t to, double shift_n, double shift_t) {
-      for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
-        extent.include(nx * p[0] + ny * p[1] + shift_n, nx * p[1] - ny * p[0] + shift_t);
-      }
-    };
-    project(0, middle, 0, 0);
-    project(middle, pieces.used(), nx * r.x() + ny * r.y(), nx * r.y() - ny * r.x());
-    pair.penetration = extent.n1 - extent.n0;
-    pair.breadth = extent.t1 - extent.t0;
-  }
-  return pair;
+  return join(of_a, of_b, arm(a, b, offset), pieces, middle);
 }
 
 namespace {
@@ -225,13 +230,96 @@ Vec2 loading_point(const PairIntegral& pair) {
   return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
 }
 
+namespace {
+
+// Where one ulp of the coordinates moves phi by more than some 1e-13, single evaluations take more
+// digits. In the step loop they would be lost on vertices that have been turned.
+using Fine = long double;
+constexpr double kNeedle = 1e3;  // size of the pair over the shorter reference length
+
+bool is_needle(const Polygon& a, const Potential& potential_a, const Polygon& b,
+               const Potential& potential_b) {
+  const double size = std::max(bounding_box(a).extent(), bounding_box(b).extent());
+  const double steepest = std::max(potential_a.steepest, potential_b.steepest);
+  return a.is_convex() && b.is_convex() && size * steepest > kNeedle;
+}
+
+// Heights over the edges of y, directions taken from its vertices again.
+class FineLines {
+ public:
+  explicit FineLines(const PlacedPotential& y) : y_(y) {
+    for (int i = 0; i < y.size; ++i) {
+      const Fine tx = static_cast<Fine>(y.x[i + 1]) - y.x[i];
+      const Fine ty = static_cast<Fine>(y.y[i + 1]) - y.y[i];
+      const Fine slope =
+          std::hypot(static_cast<Fine>(y.gx[i]), static_cast<Fine>(y.gy[i])) / std::hypot(tx, ty);
+      gx_.push_back(-ty * slope);
+      gy_.push_back(tx * slope);
+    }
+  }
+  [[nodiscard]] std::vector<Fine> at(Fine px, Fine py) const {
+    std::vector<Fine> row;
+    for (int i = 0; i < y_.size; ++i)
+      row.push_back(gx_[i] * (px - y_.x[i]) + gy_[i] * (py - y_.y[i]));
+    if (y_.capped) row.push_back(1);
+    return row;
+  }
+
+ private:
+  const PlacedPotential& y_;
+  std::vector<Fine> gx_, gy_;
+};
+
+Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces& pieces) {
+  const FineLines lines(y);
+  Half half;
+  pieces.reserve(x.size);
+  for (int e = 0; e < x.size; ++e) {
+    const BasicEdge<Fine> edge(x, y, e, 0, 0);
+    const std::vector<Fine> from = lines.at(edge.px, edge.py);
+    const std::vector<Fine> to = lines.at(edge.px + edge.ex, edge.py + edge.ey);
+    const Row<Fine> row{from.data(), to.data(), y.size, static_cast<int>(from.size())};
+    Fine s0, s1;
+    if (!clip(row, s0, s1)) continue;
+    const Fine share = s1 - s0;
+    SegmentMoments<Fine> moments;  // along the part inside
+    walk_envelope(row, s0, s1, [&](Fine u1, Fine v1, Fine u2, Fine v2) {
+      moments.add((u1 - s0) / share, v1, (u2 - s0) / share, v2);
+    });
+    PlacedEdge part(x, y, e, 0, 0);
+    part.qx = static_cast<double>(edge.qx + s0 * edge.ex);
+    part.qy = static_cast<double>(edge.qy + s0 * edge.ey);
+    part.ex = static_cast<double>(share * edge.ex);
+    part.ey = static_cast<double>(share * edge.ey);
+    accumulate(part,
+               {static_cast<double>(moments.sum), static_cast<double>(moments.first),
+                static_cast<double>(moments.largest)},
+               1, half);
+    pieces.add(part, 0, 1);
+  }
+  return half;
+}
+
+PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
+                             EdgeWorkspace& workspace) {
+  Pieces pieces(workspace.pieces);
+  const Half of_a = integrate_needle(a, b, pieces);
+  const size_t middle = pieces.used();
+  const Half of_b = integrate_needle(b, a, pieces);
+  return join(of_a, of_b, arm(a, b, Vec2::Zero()), pieces, middle);
+}
+
+}  // namespace
+
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b) {
   const PlacedPair placed(a, potential_a, b, potential_b);
   EdgeWorkspace workspace;
   PairResult result;
   PairIntegral& pair = result.integral;
-  pair = pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
+  pair = is_needle(a, potential_a, b, potential_b)
+             ? needle_integral(placed.a.view, placed.b.view, workspace)
+             : pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
   placed.about_centroids(pair);
   result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
   return result;

@@ -12,28 +12,30 @@ namespace apothem::edge_detail {
 
 // phi is the minimum of the lines a_i + s (b_i - a_i) along an edge, s in [0, 1]; a_i and b_i are
 // the heights of its two ends over edge i of the other polygon (1 for the cap phi <= 1).
+template <class Real>
 struct Row {
-  const double* a;
-  const double* b;
+  const Real* a;
+  const Real* b;
   int size;   // lines that bound the polygon
   int lines;  // size, or size + 1 with the cap
 };
 
 // Interval of the edge inside the polygon: one sign per node, half-open, no tolerance. A NaN ends
 // up in the interval, never in "outside".
-inline bool clip(const Row& row, double& s0, double& s1) {
+template <class Real>
+bool clip(const Row<Real>& row, Real& s0, Real& s1) {
   s0 = 0;
   s1 = 1;
   for (int i = 0; i < row.size; ++i) {
-    const double a = row.a[i];
-    const double b = row.b[i];
+    const Real a = row.a[i];
+    const Real b = row.b[i];
     if (a >= 0) {
       if (b >= 0) continue;
-      const double s = a / (a - b);
+      const Real s = a / (a - b);
       if (!(s >= s1)) s1 = s;
     } else {
       if (a < 0 && b < 0) return false;
-      const double s = a / (a - b);
+      const Real s = a / (a - b);
       if (!(s <= s0)) s0 = s;
     }
   }
@@ -41,31 +43,31 @@ inline bool clip(const Row& row, double& s0, double& s1) {
 }
 
 // Calls piece(s, value, s_next, value_next) along the concave lower envelope from s0 to s1.
-template <class Piece>
-void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
-  const auto value = [&](int i, double s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
+template <class Real, class Piece>
+void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
+  const auto value = [&](int i, Real s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
   const auto slope = [&](int i) { return row.b[i] - row.a[i]; };
   int line = 0;
-  double height = value(0, s0);
+  Real height = value(0, s0);
   for (int i = 1; i < row.lines; ++i) {
-    const double h = value(i, s0);
+    const Real h = value(i, s0);
     if (!(h >= height) || (h == height && slope(i) < slope(line))) {
       line = i;
       height = h;
     }
   }
-  for (double s = s0;;) {
+  for (Real s = s0;;) {
     // The next line to take over falls faster and meets the present one first. Fractions gap/fall
     // are compared by cross-multiplication: one division per piece instead of one per line.
     int next = -1;
-    double gap = s1 - s;
-    double fall = 1;
+    Real gap = s1 - s;
+    Real fall = 1;
     for (int i = 0; i < row.lines; ++i) {
-      const double f = slope(line) - slope(i);
+      const Real f = slope(line) - slope(i);
       if (!(f > 0)) continue;
-      const double g = std::max(value(i, s) - height, 0.0);
-      const double left = g * fall;
-      const double right = gap * f;
+      const Real g = std::max(value(i, s) - height, Real(0));
+      const Real left = g * fall;
+      const Real right = gap * f;
       if (left < right || (left == right && next >= 0 && slope(i) < slope(next))) {
         next = i;
         gap = g;
@@ -76,10 +78,10 @@ void walk_envelope(const Row& row, double s0, double s1, const Piece& piece) {
       piece(s, height, s1, value(line, s1));
       return;
     }
-    const double end = std::min(s + gap / fall, s1);
+    const Real end = std::min(s + gap / fall, s1);
     // By the flatter of the two lines: along a needle the other one may be a million times steeper.
     const bool flatter = std::abs(slope(next)) < std::abs(slope(line));
-    const double end_height = value(flatter ? next : line, end);
+    const Real end_height = value(flatter ? next : line, end);
     if (end > s) piece(s, height, end, end_height);
     s = end;
     height = end_height;
@@ -144,22 +146,23 @@ inline void add_capped(double u1, double v1, double u2, double v2,
 }
 
 // An edge of x in the frame of y, its start also relative to y's reference point.
-struct PlacedEdge {
-  PlacedEdge(const PlacedPotential& x, const PlacedPotential& y, int e, double dx, double dy)
-      : px(x.x[e] + dx),
-        py(x.y[e] + dy),
+template <class Real>
+struct BasicEdge {
+  BasicEdge(const PlacedPotential& x, const PlacedPotential& y, int e, double dx, double dy)
+      : px(Real(x.x[e]) + dx),
+        py(Real(x.y[e]) + dy),
         qx(px - y.reference.x()),
         qy(py - y.reference.y()),
-        ex(x.x[e + 1] - x.x[e]),
-        ey(x.y[e + 1] - x.y[e]) {
+        ex(Real(x.x[e + 1]) - x.x[e]),
+        ey(Real(x.y[e + 1]) - x.y[e]) {
     shorten(y);
   }
-  double px, py, qx, qy, ex, ey;
-  double first = 0, last = 1;  // the part of the edge that this is
+  Real px, py, qx, qy, ex, ey;
+  Real first = 0, last = 1;  // the part of the edge that this is
   bool shortened = false;
 
   /// Where s of this part is on the whole edge, 0 ... 1.
-  [[nodiscard]] double share(double s) const { return first + s * (last - first); }
+  [[nodiscard]] Real share(Real s) const { return first + s * (last - first); }
 
  private:
   // Of an edge that is long against y only the part around the foot of y's reference point counts:
@@ -167,33 +170,32 @@ struct PlacedEdge {
   // kilometre.
   void shorten(const PlacedPotential& y) {
     constexpr double kLong = 8;
-    const double length2 = ex * ex + ey * ey;
+    const Real length2 = ex * ex + ey * ey;
     if (!(length2 > kLong * kLong * y.radius * y.radius) || y.radius == 0) return;
-    const double length = std::sqrt(length2);
-    const double tx = ex / length;
-    const double ty = ey / length;
-    const double foot = -(tx * qx + ty * qy);  // along the edge, from its start
-    const double height = tx * qy - ty * qx;   // of the edge's line over the reference point
-    const double from = foot - 2 * y.radius;
-    const double until = foot + 2 * y.radius;
+    const Real length = std::sqrt(length2);
+    const Real tx = ex / length;
+    const Real ty = ey / length;
+    const Real foot = -(tx * qx + ty * qy);  // along the edge, from its start
+    const Real height = tx * qy - ty * qx;   // of the edge's line over the reference point
+    const Real from = foot - 2 * y.radius;
+    const Real until = foot + 2 * y.radius;
     if (until <= 0 || from >= length) return;
-    const Vec2 start =
-        from <= 0 ? Vec2(qx, qy)
-                  : Vec2(-ty * height - 2 * y.radius * tx, tx * height - 2 * y.radius * ty);
-    const Vec2 end = until >= length
-                         ? Vec2(qx + ex, qy + ey)
-                         : Vec2(-ty * height + 2 * y.radius * tx, tx * height + 2 * y.radius * ty);
-    qx = start.x();
-    qy = start.y();
+    const Real end_x = until >= length ? qx + ex : -ty * height + 2 * y.radius * tx;
+    const Real end_y = until >= length ? qy + ey : tx * height + 2 * y.radius * ty;
+    if (from > 0) {
+      qx = -ty * height - 2 * y.radius * tx;
+      qy = tx * height - 2 * y.radius * ty;
+    }
     px = qx + y.reference.x();
     py = qy + y.reference.y();
-    ex = end.x() - start.x();
-    ey = end.y() - start.y();
-    first = std::max(0.0, from / length);
-    last = std::min(1.0, until / length);
+    ex = end_x - qx;
+    ey = end_y - qy;
+    first = std::max(Real(0), from / length);
+    last = std::min(Real(1), until / length);
     shortened = true;
   }
 };
+using PlacedEdge = BasicEdge<double>;
 
 inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, double inside,
                        Half& half) {
@@ -233,8 +235,8 @@ double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx,
 }
 
 /// Heights of edge e of x (from `heights`) over the edges of y; `spare` has room for two rows.
-inline Row row_of(const PlacedEdge& edge, int e, const PlacedPotential& y, const double* rows,
-                  double* spare) {
+inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
+                          const double* rows, double* spare) {
   const int width = y.size + (y.capped ? 1 : 0);
   if (!edge.shortened) return {rows + e * width, rows + (e + 1) * width, y.size, width};
   height_row(y, edge.px, edge.py, spare);

@@ -13,6 +13,8 @@ namespace {
 constexpr double kSameHeight = 1e-13;
 // An inradius below so many roundings of the polygon's size is noise.
 constexpr double kThinnest = 8 * 0x1p-52;
+// Beyond this ratio of size and inradius the envelope takes more digits than doubles have.
+constexpr double kNeedle = 1e3;
 
 void require_convex(const Polygon& polygon) {
   if (const auto reflex = polygon.first_reflex_vertex()) {
@@ -31,6 +33,26 @@ std::vector<Vec2> inward_normals(const Polygon& polygon) {
     normals[i] = Vec2(-d.y(), d.x()) / std::hypot(d.x(), d.y());
   }
   return normals;
+}
+
+// Height of the envelope's maximum over a needle, where double precision has few digits of it left.
+double top_of_needle(const Polygon& polygon, const Potential& potential) {
+  using Fine = long double;
+  using FineVec = lower_envelope::Vec<Fine>;
+  std::vector<FineVec> ring;
+  for (const Vec2& v : polygon.vertices())
+    ring.push_back(v.cast<Fine>() - polygon.origin().cast<Fine>());
+  std::vector<lower_envelope::Line<Fine>> lines;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const FineVec d = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+    const FineVec g =
+        FineVec(-d.y(), d.x()) * (potential.gradients[i].cast<Fine>().norm() / d.norm());
+    lines.push_back({g, -g.dot(ring[i])});
+  }
+  Fine top = 0;
+  for (const auto& corner : lower_envelope::corners(lines, ring))
+    top = std::max(top, corner.height);
+  return static_cast<double>(top);
 }
 
 // Height and place of the envelope's maximum.
@@ -65,9 +87,9 @@ Potential envelope_potential(const Polygon& polygon, std::vector<Vec2> gradients
   potential.vertices = polygon.local_vertices();
   potential.gradients = std::move(gradients);
   find_top(potential);
-  const double smallest =
-      kThinnest * bounding_box(polygon).extent() * potential.gradients[0].norm();
-  if (!(potential.top > smallest) || !std::isfinite(1 / potential.top)) {
+  const double extent = bounding_box(polygon).extent() * potential.gradients[0].norm();
+  if (extent > kNeedle * potential.top) potential.top = top_of_needle(polygon, potential);
+  if (!(potential.top > kThinnest * extent) || !std::isfinite(1 / potential.top)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);
   }
   return potential;
