@@ -47,6 +47,11 @@ std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
   return files;
 }
 
+CellTable cells_of(const std::string& data, const FieldSource& source) {
+  const HistoryTable table = read_history(data + "/reference/" + source.reference);
+  return cell_table(table, source.column, source.cell);
+}
+
 class FigureReader {
  public:
   FigureReader(const std::string& data, Figure& figure, const std::string& file)
@@ -269,6 +274,7 @@ class FigureReader {
     source.reference = reference.string;
     source.column = column.string;
     source.cell = cell;
+    if (cells_of(data_, source).centres.empty()) in_.fail(reference, "has no rows");
   }
 
   Scene scene_of(const JsonValue& scene) {
@@ -318,10 +324,6 @@ CurveFigure Figure::drawn(const std::string& data, const std::string& runs) cons
 }
 
 DrawnFields Figure::drawn_fields(const std::string& data, const std::string& runs) const {
-  const auto cells_of = [&](const FieldSource& source) {
-    return cell_table(read_history(data + "/reference/" + source.reference), source.column,
-                      source.cell);
-  };
   DrawnFields result{shown_fields, {}};
   for (size_t p = 0; p < field_sources.size(); ++p) {
     FieldPanel& panel = result.figure.panels[p];
@@ -330,7 +332,7 @@ DrawnFields Figure::drawn_fields(const std::string& data, const std::string& run
       const FieldSource& source = field_sources[p][i];
       ShownField& one = panel.fields[i];
       if (!source.reference.empty()) {
-        one.field = field_of(cells_of(source));
+        one.field = field_of(cells_of(data, source));
         continue;
       }
       const Frame frame = read_frame(runs + "/" + source.scene, source.time, source.latest);
@@ -341,7 +343,7 @@ DrawnFields Figure::drawn_fields(const std::string& data, const std::string& run
       }
       if (!source.compared) continue;
       const FieldError error =
-          field_error(frame, *panel.quantity, source.rigid, cells_of(*reference));
+          field_error(frame, *panel.quantity, source.rigid, cells_of(data, *reference));
       const auto state = [&](const char* kind, double value, double tolerance) {
         result.numbers.push_back(
             {source.scene,

@@ -14,9 +14,10 @@ namespace {
 
 // Lengths in points.
 constexpr double kWide = 620, kHigh = 460;  // of a panel's frames together, at most
-constexpr double kLeft = 62, kRight = 96, kTop = 44, kBottom = 8;
-constexpr double kPanelTitle = 26, kLabel = 22;              // above a panel, above a frame
-constexpr double kBelow = 40, kColumnGap = 22, kRowGap = 8;  // kBelow: numbers and name of x
+constexpr double kHighAlone = 340;          // of frames in one row
+constexpr double kLeft = 62, kRight = 96, kTop = 36, kBottom = 8;
+constexpr double kPanelTitle = 34, kLabel = 22, kTwoLabels = 36;  // above a panel, above a frame
+constexpr double kBelow = 40, kColumnGap = 22, kRowGap = 8;       // kBelow: numbers and name of x
 constexpr double kBarGap = 26, kBarWidth = 14, kBarHigh = 230;
 constexpr double kShortest = 60;  // side of a frame
 constexpr double kFigureFont = 14, kTitleFont = 12, kLabelFont = 10.5;
@@ -88,7 +89,9 @@ std::vector<Colour> paint(const Field& field, const Box& window, double low, dou
                           int height) {
   std::vector<Colour> pixels(static_cast<size_t>(width) * static_cast<size_t>(height), kEmpty);
   const Raster raster(window, width, height);
-  const auto colour = [&](double value) { return viridis((value - low) / (high - low)); };
+  const auto colour = [&](double value) {
+    return std::isfinite(value) ? viridis((value - low) / (high - low)) : kGrey;
+  };
   std::vector<double> crossings, weights;
   std::vector<Vec2> relative;
   for (int e = 0; e < field.mesh.element_count(); ++e) {
@@ -165,12 +168,18 @@ Spread spread(const Field& field, const Box& window) {
 
 struct Layout {
   Box window;
-  double low, high;  // of the colours
+  double low, high_value;  // of the colours
+  bool values_below, values_above;
   int columns, rows;
-  double wide, high_frame;  // of a frame
-  [[nodiscard]] double height() const {
-    return kPanelTitle + rows * (kLabel + high_frame) + (rows - 1) * kRowGap + kBelow;
+  double wide, high;                // of a frame
+  double label;                     // height of what stands above it
+  std::vector<std::string> ranges;  // of the fields' values
+  [[nodiscard]] double frames_width() const { return columns * wide + (columns - 1) * kColumnGap; }
+  [[nodiscard]] double width() const { return kLeft + frames_width() + kRight; }
+  [[nodiscard]] double frames_height() const {
+    return rows * high + (rows - 1) * (label + kRowGap);
   }
+  [[nodiscard]] double height() const { return kPanelTitle + label + frames_height() + kBelow; }
 };
 
 Box box_around(const std::vector<ShownField>& fields) {
@@ -181,8 +190,13 @@ Box box_around(const std::vector<ShownField>& fields) {
   return box.grown(kMargin * std::min(box.x1 - box.x0, box.y1 - box.y0));
 }
 
+std::string number(double value) {
+  const std::string digits = fmt::format("{:.3g}", std::abs(value));
+  return (value < 0 && digits != "0" ? "−" : "") + digits;
+}
+
 // As many columns as make the frames largest.
-Layout lay_out(const FieldPanel& panel) {
+Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   Layout layout{};
   layout.window = panel.window ? *panel.window : box_around(panel.fields);
   const double w = layout.window.x1 - layout.window.x0;
@@ -191,66 +205,67 @@ Layout lay_out(const FieldPanel& panel) {
   double best = 0;
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
-    const double scale = std::min((kWide - (columns - 1) * kColumnGap) / columns / w,
-                                  (kHigh - (rows - 1) * (kRowGap + kLabel)) / rows / h);
+    const double scale =
+        std::min((kWide - (columns - 1) * kColumnGap) / columns / w,
+                 ((rows == 1 ? kHighAlone : kHigh) - (rows - 1) * (kRowGap + kLabel)) / rows / h);
     if (!(scale > best * (1 + 1e-9))) continue;
     best = scale;
     layout.columns = columns;
     layout.rows = rows;
   }
   layout.wide = std::max(kShortest, std::round(best * w));
-  layout.high_frame = std::max(kShortest, std::round(best * h));
+  layout.high = std::max(kShortest, std::round(best * h));
   // A frame that is wider or higher than its share shows more around.
   const double more_x = std::max(0., layout.wide / best - w) / 2;
-  const double more_y = std::max(0., layout.high_frame / best - h) / 2;
+  const double more_y = std::max(0., layout.high / best - h) / 2;
   layout.window = {layout.window.x0 - more_x, layout.window.y0 - more_y, layout.window.x1 + more_x,
                    layout.window.y1 + more_y};
-  if (panel.range) {
-    layout.low = panel.range->x();
-    layout.high = panel.range->y();
-    return layout;
-  }
+  layout.label = kLabel;
   Spread all;
-  for (const ShownField& shown : panel.fields) {
-    const Spread one = spread(shown.field, layout.window);
+  for (const auto& [label, field] : panel.fields) {
+    const Spread one = spread(field, layout.window);
+    layout.ranges.emplace_back();
+    if (!(one.low <= one.high)) continue;
     all.include(panel.scale * one.low);
     all.include(panel.scale * one.high);
+    layout.ranges.back() = fmt::format("{} … {} {}", number(panel.scale * one.low),
+                                       number(panel.scale * one.high), panel.unit);
+    const double text = ruler.text_width(label + "   " + layout.ranges.back(), kLabelFont);
+    if (text > layout.wide) layout.label = kTwoLabels;
   }
-  if (!(all.low < all.high)) {  // one value everywhere, or none
+  layout.low = panel.range ? panel.range->x() : all.low;
+  layout.high_value = panel.range ? panel.range->y() : all.high;
+  layout.values_below = all.low < layout.low;
+  layout.values_above = all.high > layout.high_value;
+  if (!(layout.low < layout.high_value)) {  // one value everywhere, or none
     const double middle = std::isfinite(all.low) ? all.low : 0;
     const double half = middle == 0 ? 1 : std::abs(middle) / 2;
-    all = {middle - half, middle + half};
+    layout.low = middle - half;
+    layout.high_value = middle + half;
   }
-  layout.low = all.low;
-  layout.high = all.high;
   return layout;
 }
 
-std::string number(double value) {
-  const std::string digits = fmt::format("{:.3g}", std::abs(value));
-  return (value < 0 && digits != "0" ? "−" : "") + digits;
-}
-
-void draw_panel(Canvas& canvas, const FieldPanel& panel, const Layout& layout, double top) {
+void draw_panel(Canvas& canvas, const FieldPanel& panel, const Layout& layout, const Vec2& corner) {
+  const double left = corner.x() + kLeft;
   std::string title = panel.quantity->meaning;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   if (!panel.title.empty()) title += ": " + panel.title;
-  canvas.text({kLeft, top + kPanelTitle / 2}, title, {kTitleFont});
-  const double first = top + kPanelTitle + kLabel;
+  canvas.text({left, corner.y() + kPanelTitle - 10}, title, {kTitleFont});
+  const double first = corner.y() + kPanelTitle + layout.label;
   const int pixels = canvas.pixels_per_point();
-  bool below = false, above = false;
+  const int wide = static_cast<int>(layout.wide) * pixels;
+  const int high = static_cast<int>(layout.high) * pixels;
   for (size_t i = 0; i < panel.fields.size(); ++i) {
     const auto& [label, field] = panel.fields[i];
     const int column = static_cast<int>(i) % layout.columns;
     const int row = static_cast<int>(i) / layout.columns;
-    const double x = kLeft + column * (layout.wide + kColumnGap);
-    const double y = first + row * (layout.high_frame + kLabel + kRowGap);
-    const Box frame{x, y, x + layout.wide, y + layout.high_frame};
-    const int wide = static_cast<int>(layout.wide) * pixels;
-    const int high = static_cast<int>(layout.high_frame) * pixels;
+    const double x = left + column * (layout.wide + kColumnGap);
+    const double y = first + row * (layout.high + layout.label + kRowGap);
+    const Box frame{x, y, x + layout.wide, y + layout.high};
     canvas.image(frame, wide, high,
-                 paint(field, layout.window, layout.low / panel.scale, layout.high / panel.scale,
-                       wide, high));
+                 paint(field, layout.window, layout.low / panel.scale,
+                       layout.high_value / panel.scale, wide, high));
     const Axes axes(frame, layout.window, {"x", "m"}, {"y", "m"});
     canvas.clip(frame);
     for (const std::vector<Vec2>& line : outlines(field.mesh)) {
@@ -259,43 +274,36 @@ void draw_panel(Canvas& canvas, const FieldPanel& panel, const Layout& layout, d
     canvas.unclip();
     const bool lowest = i + static_cast<size_t>(layout.columns) >= panel.fields.size();
     axes.draw(canvas, lowest, column == 0);
-    const Spread found = spread(field, layout.window);
-    canvas.text({frame.x0, frame.y0 - kLabel / 2}, label, {kLabelFont});
-    if (!(found.low <= found.high)) continue;
-    const double low = panel.scale * found.low, high_value = panel.scale * found.high;
-    below = below || low < layout.low;
-    above = above || high_value > layout.high;
-    canvas.text({frame.x1, frame.y0 - kLabel / 2},
-                fmt::format("{} … {} {}", number(low), number(high_value), panel.unit),
-                {kLabelFont, Align::right});
+    canvas.text({x, y - layout.label + kLabel / 2}, label, {kLabelFont});
+    canvas.text({frame.x1, y - kLabel / 2}, layout.ranges[i], {kLabelFont, Align::right});
   }
-  const double whole = layout.rows * layout.high_frame + (layout.rows - 1) * (kLabel + kRowGap);
-  const double bar = std::min(whole, kBarHigh);
-  const double x =
-      kLeft + layout.columns * layout.wide + (layout.columns - 1) * kColumnGap + kBarGap;
-  const double y = std::round(first + (whole - bar) / 2);
-  draw_colour_scale(canvas, {x, y, x + kBarWidth, y + std::round(bar)},
-                    {panel.quantity->symbol, panel.unit}, layout.low, layout.high, below, above);
+  const double bar = std::round(std::min(layout.frames_height(), kBarHigh));
+  const double x = left + layout.frames_width() + kBarGap;
+  const double y = std::round(first + (layout.frames_height() - bar) / 2);
+  draw_colour_scale(canvas, {x, y, x + kBarWidth, y + bar}, {panel.quantity->symbol, panel.unit},
+                    layout.low, layout.high_value, layout.values_below, layout.values_above);
 }
 
 }  // namespace
 
 std::string draw_fields(const FieldFigure& figure, PictureFormat format) {
-  std::vector<Layout> layouts;
-  double width = 0, height = kTop + kBottom;
-  for (const FieldPanel& panel : figure.panels) {
-    layouts.push_back(lay_out(panel));
-    const Layout& l = layouts.back();
-    width = std::max(width, kLeft + l.columns * l.wide + (l.columns - 1) * kColumnGap + kRight);
-    height += l.height();
-  }
   const Canvas ruler(format, 1, 1);
-  width = std::max(width, 2 * kLeft + ruler.text_width(figure.title, kFigureFont));
-  Canvas canvas(format, std::ceil(width), height);
-  canvas.text({std::ceil(width) / 2, kTop / 2}, figure.title, {kFigureFont, Align::centre});
+  std::vector<Layout> layouts;
+  double width = 2 * kLeft + ruler.text_width(figure.title, kFigureFont);
+  double height = kTop + kBottom;
+  for (const FieldPanel& panel : figure.panels) {
+    layouts.push_back(lay_out(panel, ruler));
+    width = std::max(width, layouts.back().width());
+    height += layouts.back().height();
+  }
+  width = 2 * std::ceil(width / 2);
+  Canvas canvas(format, width, height);
+  canvas.text({width / 2, kTop / 2}, figure.title, {kFigureFont, Align::centre});
   double top = kTop;
   for (size_t p = 0; p < layouts.size(); ++p) {
-    draw_panel(canvas, figure.panels[p], layouts[p], top);
+    // At whole points, for the images.
+    draw_panel(canvas, figure.panels[p], layouts[p],
+               {std::floor((width - layouts[p].width()) / 2), top});
     top += layouts[p].height();
   }
   return canvas.finish();
