@@ -226,8 +226,9 @@ class FigureReader {
       frame(object, source, *scene);
     } else {
       const JsonValue& column = object.required("column", "a column");
-      const Vec2 cell = in_.vec2(object.required("cell", "[width, height] of the cells in m"), "m");
-      if (!(cell.x() > 0 && cell.y() > 0)) in_.fail(value, "the cells must have positive sizes");
+      const JsonValue& size = object.required("cell", "[width, height] of the cells in m");
+      const Vec2 cell = in_.vec2(size, "m");
+      if (!(cell.x() > 0 && cell.y() > 0)) in_.fail(size, "must hold two positive lengths in m");
       cells(source, *reference, column, cell);
     }
     object.finish();
