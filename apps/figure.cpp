@@ -15,6 +15,17 @@ std::string scene_file(const std::string& data, const std::string& scene) {
   return data + "/scenes/" + scene + ".json";
 }
 
+const FieldSource* first_reference(const std::vector<FieldSource>& sources) {
+  const auto found = std::find_if(sources.begin(), sources.end(),
+                                  [](const FieldSource& s) { return !s.reference.empty(); });
+  return found == sources.end() ? nullptr : &*found;
+}
+
+std::string time_in_words(double time) {
+  return time == 0 || time >= .1 ? fmt::format("{:.4g} s", time)
+                                 : fmt::format("{:.4g} ms", 1e3 * time);
+}
+
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -36,6 +47,11 @@ std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
   return files;
 }
 
+CellTable cells_of(const std::string& data, const FieldSource& source) {
+  const HistoryTable table = read_history(data + "/reference/" + source.reference);
+  return cell_table(table, source.column, source.cell);
+}
+
 class FigureReader {
  public:
   FigureReader(const std::string& data, Figure& figure, const std::string& file)
@@ -44,18 +60,25 @@ class FigureReader {
   void read(const JsonValue& document) {
     JsonObject top(in_, document);
     figure_.shown.title = in_.string(top.required("title", "string"));
+    figure_.shown_fields.title = figure_.shown.title;
     if (const JsonValue* v = top.optional("about")) figure_.about = in_.string(*v);
     if (const JsonValue* v = top.optional("panels")) {
-      for (const JsonValue& item : in_.array(*v)) panel(item);
+      for (const JsonValue& item : in_.array(*v)) {
+        if (item.find("field")) {
+          field_panel(item);
+        } else {
+          panel(item);
+        }
+      }
     }
     if (const JsonValue* v = top.optional("numbers")) {
       for (const JsonValue& item : in_.array(*v)) {
-        columns_of(item);
+        scene_of(item);
         figure_.numbers[in_.string(item)].clear();
       }
     }
     top.finish();
-    if (figure_.scenes.empty() && figure_.shown.panels.empty()) {
+    if (figure_.scenes.empty() && figure_.shown.panels.empty() && figure_.field_sources.empty()) {
       in_.fail(document, "has neither panels nor numbers");
     }
   }
@@ -127,7 +150,7 @@ class FigureReader {
     }
     (is_scene ? source.scene : source.reference) = in_.string(name);
     const std::vector<std::vector<std::string>> tables =
-        is_scene ? columns_of(name) : columns_of_table(name);
+        is_scene ? recorded_columns(scene_of(name)) : columns_of_table(name);
     const std::vector<std::string>& columns = holding(tables, y);
     source.y.column = y.string;
     if (x) source.x.column = holding({columns}, *x).at(index_of(columns, x->string));
@@ -150,14 +173,119 @@ class FigureReader {
     in_.fail(column, "there is no column " + suggest(column.string, all));
   }
 
-  std::vector<std::vector<std::string>> columns_of(const JsonValue& scene) {
+  void field_panel(const JsonValue& value) {
+    JsonObject object(in_, value);
+    FieldPanel& panel = figure_.shown_fields.panels.emplace_back();
+    figure_.field_sources.emplace_back();
+    std::vector<std::string> names;
+    for (const FieldQuantity& q : kFieldQuantities) names.emplace_back(q.name);
+    const JsonValue& quantity = object.required("field", "a quantity");
+    panel.quantity = &kFieldQuantities[in_.choice(quantity, names)];
+    panel.unit = panel.quantity->unit;
+    if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
+    const JsonValue* scale = object.optional("scale");
+    const JsonValue* unit = object.optional("unit");
+    if (scale) panel.scale = in_.positive(*scale, "");
+    if (unit) panel.unit = in_.string(*unit);
+    if (!scale != !unit) in_.fail(scale ? *scale : *unit, "goes with a \"unit\" and a \"scale\"");
+    if (const JsonValue* v = object.optional("window")) panel.window = window(*v);
+    if (const JsonValue* v = object.optional("range")) panel.range = range(*v);
+    const JsonValue& fields = object.required("fields", "array of fields");
+    for (const JsonValue& item : in_.array(fields)) field(item, panel);
+    object.finish();
+    if (panel.fields.empty()) in_.fail(fields, "must hold at least one field");
+    const std::vector<FieldSource>& sources = figure_.field_sources.back();
+    for (size_t i = 0; i < sources.size(); ++i) {
+      if (sources[i].compared && !first_reference(sources)) {
+        in_.fail(fields.items[i], "is compared with a \"reference\" of the same panel; add one");
+      }
+    }
+  }
+
+  Box window(const JsonValue& value) {
+    const std::vector<JsonValue>& corners = in_.array(value);
+    if (corners.size() != 2) in_.fail(value, "must be [[x0, y0], [x1, y1]] in m");
+    const Vec2 low = in_.vec2(corners[0], "m"), high = in_.vec2(corners[1], "m");
+    if (!(low.x() < high.x() && low.y() < high.y())) {
+      in_.fail(value, "must be [[x0, y0], [x1, y1]] with x0 below x1 and y0 below y1");
+    }
+    return {low.x(), low.y(), high.x(), high.y()};
+  }
+
+  void field(const JsonValue& value, FieldPanel& panel) {
+    JsonObject object(in_, value);
+    ShownField& shown = panel.fields.emplace_back();
+    FieldSource& source = figure_.field_sources.back().emplace_back();
+    if (const JsonValue* v = object.optional("label")) shown.label = in_.string(*v);
+    const JsonValue* scene = object.optional("scene");
+    const JsonValue* reference = object.optional("reference");
+    if (!scene == !reference) {
+      in_.fail(value, "must give either \"scene\" or \"reference\"");
+    }
+    if (scene) {
+      frame(object, source, *scene);
+    } else {
+      const JsonValue& column = object.required("column", "a column");
+      const JsonValue& size = object.required("cell", "[width, height] of the cells in m");
+      const Vec2 cell = in_.vec2(size, "m");
+      if (!(cell.x() > 0 && cell.y() > 0)) in_.fail(size, "must hold two positive lengths in m");
+      cells(source, *reference, column, cell);
+    }
+    object.finish();
+  }
+
+  void frame(JsonObject& object, FieldSource& source, const JsonValue& name) {
+    const JsonValue& time = object.required("time", "s");
+    source.time = in_.number(time, "s");
+    if (const JsonValue* v = object.optional("compare")) {
+      JsonObject compare(in_, *v);
+      const auto part = [&](const char* key) {
+        return in_.positive(compare.required(key, "a part of the reference's largest value"), "");
+      };
+      const double rms = part("rms");
+      source.compared = {rms, part("max")};
+      compare.finish();
+    }
+    const Scene scene = scene_of(name);
+    source.scene = name.string;
+    if (scene.model.deformables.empty()) in_.fail(name, "has no body with a mesh to show");
+    source.rigid = static_cast<int>(scene.model.bodies.size());
+    source.statics = scene.time.statics;
+    const int frames = source.statics ? scene.time.load_steps : scene.output.frames;
+    const double interval = scene.time.end / std::max(frames, 1);
+    const double count = std::round(source.time / interval);
+    if (count < 0 || count > std::max(frames, 1) ||
+        std::abs(source.time - count * interval) > 1e-6 * interval) {
+      in_.fail(time, fmt::format("is not the time of a frame: those of {} are {} s apart, to {} s",
+                                 name.string, interval, scene.time.end));
+    }
+    source.latest = source.time + interval / 2;
+    figure_.numbers[source.scene];  // without quantities: all are stated
+  }
+
+  void cells(FieldSource& source, const JsonValue& reference, const JsonValue& column,
+             const Vec2& cell) {
+    const std::vector<std::vector<std::string>> tables = columns_of_table(reference);
+    for (const char* name : {"x", "y"}) {
+      if (index_of(tables[0], name) == tables[0].size()) {
+        in_.fail(reference, fmt::format("has no column \"{}\" of its cells' centres", name));
+      }
+    }
+    holding(tables, column);
+    source.reference = reference.string;
+    source.column = column.string;
+    source.cell = cell;
+    if (cells_of(data_, source).centres.empty()) in_.fail(reference, "has no rows");
+  }
+
+  Scene scene_of(const JsonValue& scene) {
     const std::string& name = in_.string(scene);
     const std::vector<std::string> known = names_in(data_ + "/scenes");
     if (index_of(known, name) == known.size()) {
       in_.fail(scene, "there is no scene " + suggest(name, known));
     }
     if (index_of(figure_.scenes, name) == figure_.scenes.size()) figure_.scenes.push_back(name);
-    return recorded_columns(read_scene(scene_file(data_, name)));
+    return read_scene(scene_file(data_, name));
   }
 
   std::vector<std::vector<std::string>> columns_of_table(const JsonValue& reference) {
@@ -191,6 +319,42 @@ CurveFigure Figure::drawn(const std::string& data, const std::string& runs) cons
                                      : read_history_of(runs + "/" + source.scene, source.y.column);
       for (const double x : *table.column(source.x.column)) curve.x.push_back(source.x.shown(x));
       for (const double y : *table.column(source.y.column)) curve.y.push_back(source.y.shown(y));
+    }
+  }
+  return result;
+}
+
+DrawnFields Figure::drawn_fields(const std::string& data, const std::string& runs) const {
+  DrawnFields result{shown_fields, {}};
+  for (size_t p = 0; p < field_sources.size(); ++p) {
+    FieldPanel& panel = result.figure.panels[p];
+    const FieldSource* reference = first_reference(field_sources[p]);
+    for (size_t i = 0; i < panel.fields.size(); ++i) {
+      const FieldSource& source = field_sources[p][i];
+      ShownField& one = panel.fields[i];
+      if (!source.reference.empty()) {
+        one.field = field_of(cells_of(data, source));
+        continue;
+      }
+      const Frame frame = read_frame(runs + "/" + source.scene, source.time, source.latest);
+      one.field = field_of(frame, *panel.quantity, source.rigid);
+      if (!source.statics) {
+        if (!one.label.empty()) one.label += ", ";
+        one.label += "t = " + time_in_words(frame.time);
+      }
+      if (!source.compared) continue;
+      const FieldError error =
+          field_error(frame, *panel.quantity, source.rigid, cells_of(data, *reference));
+      const auto state = [&](const char* kind, double value, double tolerance) {
+        result.numbers.push_back(
+            {source.scene,
+             fmt::format("{} at {}: {} error in cells, of the reference's "
+                         "largest value",
+                         panel.quantity->meaning, time_in_words(frame.time), kind),
+             0, value, tolerance, value <= tolerance});
+      };
+      state("rms", error.rms, source.compared->rms);
+      state("largest", error.largest, source.compared->largest);
     }
   }
   return result;

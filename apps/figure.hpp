@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "output/curves.hpp"
+#include "output/field_picture.hpp"
+#include "output/report.hpp"
 #include "scene/scene.hpp"
 
 namespace apothem {
@@ -25,11 +27,36 @@ struct CurveSource {
   Axis x{"time"}, y;
 };
 
+/// Where a field comes from: a frame of a scene, or a table of cells in data/reference.
+struct FieldSource {
+  std::string scene;  ///< name; or
+  double time = 0;    ///< s
+  double latest = 0;  ///< s; of the frame that is shown
+  int rigid = 0;      ///< rigid bodies of the scene
+  bool statics = false;
+  std::string reference;  ///< file
+  std::string column;
+  Vec2 cell = Vec2::Zero();  ///< m
+  /// Of the differences to the panel's first reference, as parts of its largest value.
+  struct Tolerance {
+    double rms, largest;
+  };
+  std::optional<Tolerance> compared;
+};
+
+/// Fields as drawn, and how far they are from their references.
+struct DrawnFields {
+  FieldFigure figure;
+  std::vector<ReportNumber> numbers;
+};
+
 struct Figure {
-  std::string name;                               ///< of its file
-  std::string about;                              ///< may be empty
-  CurveFigure shown;                              ///< its curves still without points
-  std::vector<std::vector<CurveSource>> sources;  ///< by panel and curve
+  std::string name;                                     ///< of its file
+  std::string about;                                    ///< may be empty
+  CurveFigure shown;                                    ///< its curves still without points
+  std::vector<std::vector<CurveSource>> sources;        ///< by panel and curve
+  FieldFigure shown_fields;                             ///< its panels still without fields
+  std::vector<std::vector<FieldSource>> field_sources;  ///< by panel and field
   /// Scenes whose expectations are stated, with the quantities; without any, all of them.
   std::map<std::string, std::vector<std::string>> numbers;
   std::vector<std::string> scenes;  ///< to run, each once
@@ -37,6 +64,9 @@ struct Figure {
   /// The curves with the points of the runs in `runs`/SCENE and of the tables in `data`/reference.
   /// Throws std::runtime_error naming a table that cannot be read.
   [[nodiscard]] CurveFigure drawn(const std::string& data, const std::string& runs) const;
+
+  /// The same for fields. Throws std::runtime_error naming what cannot be read, or compared.
+  [[nodiscard]] DrawnFields drawn_fields(const std::string& data, const std::string& runs) const;
 };
 
 /// Names of the figures in a data folder, in reading order (fig-4 before fig-13). Throws SceneError

@@ -115,7 +115,7 @@ class Reproduction {
       std::vector<std::string> files;
       switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
         case Plotted::yes:
-          report.picture = folder + "/picture.png";
+          report.pictures.push_back(folder + "/picture.png");
           files.insert(files.begin(), {"picture.png", "picture.svg"});
           break;
         case Plotted::no_gnuplot:
@@ -130,6 +130,32 @@ class Reproduction {
       for (const std::string& file : files) report.links.push_back(figure.name + "/" + file);
     }
     for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
+    if (!figure.field_sources.empty()) draw_fields(figure, folder, report);
+  }
+
+  void draw_fields(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    try {
+      const DrawnFields drawn = figure.drawn_fields(data_, runs());
+      write_fields(folder, drawn.figure);
+      report.pictures.push_back(folder + "/fields.png");
+      for (const char* file : {"fields.png", "fields.svg"}) {
+        report.links.push_back(figure.name + "/" + file);
+      }
+      for (const ReportNumber& number : drawn.numbers) state(number, report);
+    } catch (const SystemFailure&) {
+      throw;
+    } catch (const std::runtime_error& error) {  // a run that ended before its time
+      report.faults.push_back(fmt::format("No picture: {}.", error.what()));
+      fmt::print("  {}: no picture: {}\n", figure.name, error.what());
+    }
+  }
+
+  void state(const ReportNumber& number, ReportFigure& report) {
+    report.numbers.push_back(number);
+    ++numbers_;
+    if (number.met) return;
+    ++missed_;
+    fmt::print("  MISSED {}: {}\n", number.scene, number.what);
   }
 
   void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
@@ -146,14 +172,9 @@ class Reproduction {
         continue;
       }
       const Json& value = e.at("value");  // null where the run has no row for it
-      report.numbers.push_back({scene, in_words(e), e.at("expected"),
-                                value.is_null() ? std::nan("") : value.get<double>(),
-                                e.at("tolerance"), e.at("met")});
-      ++numbers_;
-      if (!report.numbers.back().met) {
-        ++missed_;
-        fmt::print("  MISSED {}: {}\n", scene, report.numbers.back().what);
-      }
+      state({scene, in_words(e), e.at("expected"),
+             value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met")},
+            report);
     }
   }
 

@@ -210,9 +210,9 @@ class Run {
   void write(HistoryWriter& history, bool row, FrameWriter& frames, bool picture) {
     const Clock::time_point before = Clock::now();
     if (row) {
-      history.add(
-          simulation_.state(), simulation_.energies(), simulation_.momenta(),
-          {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass()});
+      history.add(simulation_.state(), simulation_.energies(), simulation_.momenta(),
+                  {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass(),
+                   simulation_.stresses(scene_.output.points)});
     }
     if (picture) {
       history.flush();

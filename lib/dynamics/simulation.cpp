@@ -631,6 +631,14 @@ std::vector<CauchyStress> Simulation::stresses() const {
                       : std::vector<CauchyStress>{};
 }
 
+std::vector<CauchyStress> Simulation::stresses(const std::vector<TrackedPoint>& points) const {
+  std::vector<CauchyStress> result;
+  for (const TrackedPoint& p : points) {
+    result.push_back(deformables_->elements().stress(state_.displacement, p.body, p.element));
+  }
+  return result;
+}
+
 const std::vector<double>& Simulation::node_mass() const {
   static const std::vector<double> none;
   return deformables_ ? deformables_->elements().mass() : none;

@@ -110,6 +110,8 @@ class Simulation {
   [[nodiscard]] std::vector<SurfaceRecord> surfaces() const;
   /// Mean stress of the elements of all deformable bodies.
   [[nodiscard]] std::vector<CauchyStress> stresses() const;
+  /// Of the elements that hold the points.
+  [[nodiscard]] std::vector<CauchyStress> stresses(const std::vector<TrackedPoint>& points) const;
   /// Of their nodes, kg.
   [[nodiscard]] const std::vector<double>& node_mass() const;
   [[nodiscard]] const Extremes& extremes() const { return extremes_; }

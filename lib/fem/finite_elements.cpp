@@ -322,30 +322,56 @@ double FiniteElements::strain_energy(std::span<const double> u) {
   return run(Task::energy, u, {}, {});
 }
 
-// f(element's struct, its numbers, run, set, number in its mesh, displacements of its corners)
+// The k-th element of a run: f(element's struct, its numbers, corners, set, number in its mesh,
+// displacements of its corners)
+template <class F>
+void FiniteElements::visit(const Chunk& chunk, const Run& part, int k, std::span<const double> u,
+                           std::vector<Point<double>>& corners, F&& f) const {
+  const ElementSet& set = sets_[chunk.set];
+  const int element = order_[part.first + k];
+  corners.clear();
+  for (const int node : set.mesh->element(element)) {
+    const size_t at = 2 * static_cast<size_t>(set.first_node + node);
+    corners.push_back({u[at], u[at + 1]});
+  }
+  with_element(set.kind, [&]<class Element>(Element e) {
+    const size_t block = static_cast<size_t>(Element::stored(part.corners)) * kLanes;
+    const Stored<double> data{&data_[part.data + (k / kLanes) * block + k % kLanes]};
+    f(e, data, part.corners, chunk.set, element, corners.data());
+  });
+}
+
 template <class F>
 void FiniteElements::each_element(std::span<const double> u, F&& f) const {
   std::vector<Point<double>> corners;
   for (const Chunk& chunk : chunks_) {
-    const ElementSet& set = sets_[chunk.set];
     for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
-      const Run& part = runs_[r];
-      for (int k = 0; k < part.elements; ++k) {
-        const int element = order_[part.first + k];
-        corners.clear();
-        for (const int node : set.mesh->element(element)) {
-          const size_t at = 2 * static_cast<size_t>(set.first_node + node);
-          corners.push_back({u[at], u[at + 1]});
-        }
-        with_element(set.kind, [&]<class Element>(Element e) {
-          const size_t block = static_cast<size_t>(Element::stored(part.corners)) * kLanes;
-          const Stored<double> data{&data_[part.data + (k / kLanes) * block + k % kLanes]};
-          f(e, data, part.corners, chunk.set, element, corners.data());
-        });
-      }
+      for (int k = 0; k < runs_[r].elements; ++k) visit(chunk, runs_[r], k, u, corners, f);
     }
   }
 }
+
+namespace {
+
+template <class Element>
+CauchyStress mean_stress(const Elastic& material, const Stored<double>& data, int corners,
+                         const Point<double>* w) {
+  CauchyStress s;
+  with_law(material, [&](const auto& law) {
+    const Tensor<double> h = Element::mean_gradient(data, corners, w);
+    const Tensor<double> p = law.stress(h);
+    const double stretch = law.thickness_stretch(h);
+    const double j = (1 + h.xx + h.yy + determinant(h)) * stretch;
+    s.xx = (p.xx * (1 + h.xx) + p.xy * h.xy) / j;
+    s.yy = (p.yx * h.yx + p.yy * (1 + h.yy)) / j;
+    s.xy = (p.xx * h.yx + p.xy * (1 + h.yy)) / j;
+    s.zz = law.transverse_stress(h) * stretch * stretch / j;
+    s.energy_density = law.energy(h);
+  });
+  return s;
+}
+
+}  // namespace
 
 std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) const {
   std::vector<CauchyStress> result(elements_);
@@ -353,21 +379,27 @@ std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) co
   for (const ElementSet& set : sets_) first.push_back(first.back() + set.mesh->element_count());
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int set,
                                      int element, const Point<double>* w) {
-    const Elastic& material = sets_[set].material;
-    with_law(material, [&](const auto& law) {
-      const Tensor<double> h = Element::mean_gradient(data, corners, w);
-      const Tensor<double> p = law.stress(h);
-      const double stretch = law.thickness_stretch(h);
-      const double j = (1 + h.xx + h.yy + determinant(h)) * stretch;
-      CauchyStress s;
-      s.xx = (p.xx * (1 + h.xx) + p.xy * h.xy) / j;
-      s.yy = (p.yx * h.yx + p.yy * (1 + h.yy)) / j;
-      s.xy = (p.xx * h.yx + p.xy * (1 + h.yy)) / j;
-      s.zz = law.transverse_stress(h) * stretch * stretch / j;
-      s.energy_density = law.energy(h);
-      result[first[set] + element] = s;
-    });
+    result[first[set] + element] = mean_stress<Element>(sets_[set].material, data, corners, w);
   });
+  return result;
+}
+
+CauchyStress FiniteElements::stress(std::span<const double> u, int set, int element) const {
+  CauchyStress result;
+  std::vector<Point<double>> corners;
+  for (const Chunk& chunk : chunks_) {
+    for (size_t r = chunk.runs; chunk.set == set && r < chunk.runs_end; ++r) {
+      const auto begin = order_.begin() + runs_[r].first;
+      const auto end = begin + runs_[r].elements;
+      const auto found = std::find(begin, end, element);
+      if (found == end) continue;
+      visit(chunk, runs_[r], static_cast<int>(found - begin), u, corners,
+            [&]<class Element>(Element, const Stored<double>& data, int count, int, int,
+                               const Point<double>* w) {
+              result = mean_stress<Element>(sets_[set].material, data, count, w);
+            });
+    }
+  }
   return result;
 }
 

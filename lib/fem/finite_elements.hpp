@@ -61,6 +61,9 @@ class FiniteElements {
   /// Mean stress of every element, in the order of the sets. Without damping.
   [[nodiscard]] std::vector<CauchyStress> stresses(std::span<const double> u) const;
 
+  /// The same of one element, by its set and its number in the set's mesh. Looks for it.
+  [[nodiscard]] CauchyStress stress(std::span<const double> u, int set, int element) const;
+
   /// The smallest ratio of an element's present area to its reference area, and which element it
   /// is: at zero it is turned inside out.
   struct Collapse {
@@ -91,6 +94,9 @@ class FiniteElements {
   void add_chunk(int index, const ElementSet& set, std::span<const int> elements);
   void find_shared_nodes();
   double run(Task task, std::span<const double> u, std::span<const double> v, std::span<double> f);
+  template <class F>
+  void visit(const Chunk& chunk, const Run& part, int k, std::span<const double> u,
+             std::vector<Point<double>>& corners, F&& f) const;
   template <class F>
   void each_element(std::span<const double> u, F&& f) const;
 

@@ -45,9 +45,11 @@ struct DeformableBody {
   double spin = 0;               ///< rad/s, about the mass centre
 };
 
-/// A point of a deformable body: the weighted mean of nodes.
+/// A point of a deformable body: the weighted mean of nodes; its stress is that of an element.
 struct TrackedPoint {
   std::string name;        ///< heads its columns
+  int body = 0;            ///< deformable one
+  int element = 0;         ///< of its mesh, the one that holds the point
   std::vector<int> nodes;  ///< in the nodal arrays of the state
   std::vector<double> weights;
 };

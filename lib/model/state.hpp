@@ -79,8 +79,10 @@ inline constexpr std::array kBodyColumns{
     Column{"vx", "m/s"}, Column{"vy", "m/s"}, Column{"spin", "rad/s"},
     Column{"fx", "N"},   Column{"fy", "N"},   Column{"friction", "N"}};
 /// Of a point of a deformable body.
-inline constexpr std::array kPointColumns{Column{"ux", "m"}, Column{"uy", "m"}, Column{"vx", "m/s"},
-                                          Column{"vy", "m/s"}};
+inline constexpr std::array kPointColumns{
+    Column{"ux", "m"},   Column{"uy", "m"},   Column{"vx", "m/s"},
+    Column{"vy", "m/s"}, Column{"sxx", "Pa"}, Column{"syy", "Pa"},
+    Column{"sxy", "Pa"}, Column{"s1", "Pa"},  Column{"s2", "Pa"}};
 inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
                                            "gravity",       "friction_loss", "damping_loss",
                                            "external_work", "total_error"};

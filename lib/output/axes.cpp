@@ -81,7 +81,7 @@ std::vector<Vec2> Axes::operator()(std::vector<Vec2> data) const {
   return data;
 }
 
-void Axes::draw(Canvas& canvas) const {
+void Axes::draw(Canvas& canvas, bool below, bool left) const {
   const Pen pen{{.25, .25, .25}, .8};
   canvas.stroke({{frame_.x0, frame_.y0},
                  {frame_.x1, frame_.y0},
@@ -93,20 +93,52 @@ void Axes::draw(Canvas& canvas) const {
   for (size_t i = 0; i < x.places.size(); ++i) {
     const double at = (*this)({x.places[i], window_.y0}).x();
     canvas.stroke({{at, frame_.y1}, {at, frame_.y1 + kTick}}, false, pen);
-    canvas.text({at, frame_.y1 + 12}, x.numbers[i], {kNumbers, Align::centre});
+    if (below) canvas.text({at, frame_.y1 + 12}, x.numbers[i], {kNumbers, Align::centre});
   }
-  canvas.text({(frame_.x0 + frame_.x1) / 2, frame_.y1 + 29}, x.name, {kNames, Align::centre});
+  if (below) {
+    canvas.text({(frame_.x0 + frame_.x1) / 2, frame_.y1 + 29}, x.name, {kNames, Align::centre});
+  }
   const Ticks y = make_ticks(y_, window_.y0, window_.y1,
                              std::max(2, static_cast<int>((frame_.y1 - frame_.y0) / 35)));
   double widest = 0;
   for (size_t i = 0; i < y.places.size(); ++i) {
     const double at = (*this)({window_.x0, y.places[i]}).y();
     canvas.stroke({{frame_.x0 - kTick, at}, {frame_.x0, at}}, false, pen);
-    canvas.text({frame_.x0 - 7, at}, y.numbers[i], {kNumbers, Align::right});
+    if (left) canvas.text({frame_.x0 - 7, at}, y.numbers[i], {kNumbers, Align::right});
     widest = std::max(widest, canvas.text_width(y.numbers[i], kNumbers));
   }
+  if (!left) return;
   canvas.text({frame_.x0 - 18 - widest, (frame_.y0 + frame_.y1) / 2}, y.name,
               {kNames, Align::centre, true});
+}
+
+void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,
+                       bool values_below, bool values_above) {
+  const Pen pen{{.25, .25, .25}, .8};
+  constexpr int kColours = 256;
+  std::vector<Colour> colours;
+  for (int i = 0; i < kColours; ++i) colours.push_back(viridis((kColours - .5 - i) / kColours));
+  canvas.image(frame, 1, kColours, colours);
+  canvas.stroke(
+      {{frame.x0, frame.y0}, {frame.x1, frame.y0}, {frame.x1, frame.y1}, {frame.x0, frame.y1}},
+      true, pen);
+  const double height = (frame.x1 - frame.x0) * .8;
+  const auto point = [&](double from, double to, const Colour& colour) {
+    const std::vector<Vec2> ring{
+        {frame.x0, from}, {frame.x1, from}, {(frame.x0 + frame.x1) / 2, to}};
+    canvas.fill(ring, colour);
+    canvas.stroke(ring, true, pen);
+  };
+  if (values_below) point(frame.y1, frame.y1 + height, viridis(0));
+  if (values_above) point(frame.y0, frame.y0 - height, viridis(1));
+  const Ticks ticks =
+      make_ticks(axis, low, high, std::max(2, static_cast<int>((frame.y1 - frame.y0) / 25)));
+  for (size_t i = 0; i < ticks.places.size(); ++i) {
+    const double at = frame.y1 - (ticks.places[i] - low) / (high - low) * (frame.y1 - frame.y0);
+    canvas.stroke({{frame.x1, at}, {frame.x1 + kTick, at}}, false, pen);
+    canvas.text({frame.x1 + 7, at}, ticks.numbers[i], {kNumbers});
+  }
+  canvas.text({frame.x0, frame.y0 - height - 10}, ticks.name, {kNames});
 }
 
 void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>& bounds,

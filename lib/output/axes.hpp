@@ -27,14 +27,19 @@ class Axes {
   [[nodiscard]] Vec2 operator()(const Vec2& data) const;
   [[nodiscard]] std::vector<Vec2> operator()(std::vector<Vec2> data) const;
 
-  /// Frame, ticks, numbers and names. Far from zero the numbers count from a round one that the
-  /// name tells; powers of a thousand go to the unit.
-  void draw(Canvas& canvas) const;
+  /// Frame and ticks; numbers and names of x below, of y on the left. Far from zero the numbers
+  /// count from a round one that the name tells; powers of a thousand go to the unit.
+  void draw(Canvas& canvas, bool below = true, bool left = true) const;
 
  private:
   Box frame_, window_;
   Axis x_, y_;
 };
+
+/// Vertical: the colours of [low, high] without steps, numbers at round values, its name above.
+/// Points at the ends show that there are values beyond.
+void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,
+                       bool values_below, bool values_above);
 
 /// Vertical: bands between ascending bounds, each in its colour; numbers at every `stride`-th
 /// bound.

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 
 namespace apothem {
 namespace {
 
-constexpr double kPixelsPerPoint = 2;
+constexpr int kPixelsPerPoint = 2;
+constexpr int kPixelsPerPointInSvg = 4;
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
@@ -105,6 +107,38 @@ void Canvas::stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen) 
   cairo_stroke(surface_->cairo);
 }
 
+void Canvas::image(const Box& frame, int width, int height, const std::vector<Colour>& colours) {
+  cairo_t* cairo = surface_->cairo;
+  cairo_surface_t* image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+  cairo_surface_flush(image);
+  unsigned char* data = cairo_image_surface_get_data(image);
+  const auto stride = static_cast<size_t>(cairo_image_surface_get_stride(image));
+  const auto byte = [](double part) { return static_cast<std::uint32_t>(std::lround(255 * part)); };
+  for (size_t i = 0; data && i < colours.size(); ++i) {
+    const Colour& c = colours[i];
+    const std::uint32_t pixel = byte(c.alpha) << 24U | byte(c.alpha * c.red) << 16U |
+                                byte(c.alpha * c.green) << 8U | byte(c.alpha * c.blue);
+    std::memcpy(data + i / width * stride + i % width * sizeof pixel, &pixel, sizeof pixel);
+  }
+  cairo_surface_mark_dirty(image);
+  cairo_save(cairo);
+  cairo_translate(cairo, frame.x0, frame.y0);
+  cairo_scale(cairo, (frame.x1 - frame.x0) / width, (frame.y1 - frame.y0) / height);
+  cairo_set_source_surface(cairo, image, 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_NEAREST);
+  cairo_paint(cairo);
+  cairo_restore(cairo);
+  cairo_surface_destroy(image);
+}
+
+void Canvas::clip(const Box& frame) {
+  cairo_save(surface_->cairo);
+  cairo_rectangle(surface_->cairo, frame.x0, frame.y0, frame.x1 - frame.x0, frame.y1 - frame.y0);
+  cairo_clip(surface_->cairo);
+}
+
+void Canvas::unclip() { cairo_restore(surface_->cairo); }
+
 void Canvas::circle(const Vec2& centre, double radius, const Colour& inside, const Pen& rim) {
   cairo_new_path(surface_->cairo);
   cairo_arc(surface_->cairo, centre.x(), centre.y(), radius, 0, 2 * M_PI);
@@ -126,6 +160,10 @@ void Canvas::text(const Vec2& at, const std::string& text, const Font& font) {
   cairo_move_to(cairo, -start * width, kCapitals / 2 * font.size);
   cairo_show_text(cairo, text.c_str());
   cairo_restore(cairo);
+}
+
+int Canvas::pixels_per_point() const {
+  return surface_->format == PictureFormat::svg ? kPixelsPerPointInSvg : kPixelsPerPoint;
 }
 
 double Canvas::text_width(const std::string& text, double size) const {

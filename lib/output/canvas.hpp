@@ -48,9 +48,17 @@ class Canvas {
 
   void fill(const std::vector<Vec2>& ring, const Colour& colour);
   void stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen);
+  /// Colours by rows from the top; those with alpha 0 leave what is below. At pixels_per_point() of
+  /// the frame's size, with its corners at whole points, each is one pixel of a PNG.
+  void image(const Box& frame, int width, int height, const std::vector<Colour>& colours);
+  /// Nothing is drawn outside the frame until unclip().
+  void clip(const Box& frame);
+  void unclip();
   void circle(const Vec2& centre, double radius, const Colour& inside, const Pen& rim);
   /// At the middle of the capitals' height.
   void text(const Vec2& at, const std::string& text, const Font& font = {});
+  /// What an image should have: more in an SVG, which may be enlarged.
+  [[nodiscard]] int pixels_per_point() const;
   [[nodiscard]] double text_width(const std::string& text, double size) const;
 
   /// The picture as the bytes of a file; ends the drawing. Throws std::runtime_error if the picture

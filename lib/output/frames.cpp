@@ -4,14 +4,20 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUtilities.h>
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "mesh/measure.hpp"
 #include "output/files.hpp"
@@ -42,11 +48,9 @@ class StressArrays {
   void add(const CauchyStress& s) {
     arrays_[0]->InsertNextTuple3(s.xx, s.yy, s.xy);
     arrays_[1]->InsertNextValue(s.zz);
-    const double middle = (s.xx + s.yy) / 2;
-    const double radius = std::hypot((s.xx - s.yy) / 2, s.xy);
-    arrays_[2]->InsertNextTuple2(middle + radius, middle - radius);
-    const double xy = s.xx - s.yy, yz = s.yy - s.zz, zx = s.zz - s.xx;
-    arrays_[3]->InsertNextValue(std::sqrt((xy * xy + yz * yz + zx * zx) / 2 + 3 * s.xy * s.xy));
+    const auto [major, minor] = principal_stresses(s);
+    arrays_[2]->InsertNextTuple2(major, minor);
+    arrays_[3]->InsertNextValue(von_mises(s));
     arrays_[4]->InsertNextValue(s.energy_density);
   }
   template <class Data>
@@ -250,6 +254,76 @@ std::string collection(const char* series, const std::vector<double>& times) {
 }
 
 }  // namespace
+
+namespace {
+
+// (time, file) of the frames of the bodies.
+std::vector<std::pair<double, std::string>> frame_list(const std::string& folder) {
+  const std::string file = folder + "/frames.pvd";
+  vtkSmartPointer<vtkXMLDataElement> document;
+  document.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
+  vtkXMLDataElement* list = document ? document->FindNestedElementWithName("Collection") : nullptr;
+  if (!list) throw std::runtime_error(file + ": cannot be read");
+  std::vector<std::pair<double, std::string>> frames;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* entry = list->GetNestedElement(i);
+    double time = 0;
+    if (!entry->GetScalarAttribute("timestep", time) || !entry->GetAttribute("file")) continue;
+    frames.emplace_back(time, folder + "/" + entry->GetAttribute("file"));
+  }
+  return frames;
+}
+
+}  // namespace
+
+Frame read_frame(const std::string& folder, double time, double latest) {
+  std::string file;
+  Frame frame;
+  for (const auto& [at, name] : frame_list(folder)) {
+    if (at < time - 1e-6 * (latest - time) || at > latest) continue;
+    frame.time = at;
+    file = name;
+    break;
+  }
+  if (file.empty()) {
+    throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
+  }
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  const auto array = [&](vtkDataSetAttributes* data, const char* name) {
+    vtkDataArray* found = data->GetArray(name);
+    if (!found) throw std::runtime_error(fmt::format("{}: has no array \"{}\"", file, name));
+    return found;
+  };
+  const auto vectors = [&](const char* name) {
+    vtkDataArray* values = array(grid->GetPointData(), name);
+    std::vector<Vec2> result;
+    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
+      result.emplace_back(values->GetComponent(i, 0), values->GetComponent(i, 1));
+    }
+    return result;
+  };
+  frame.displacement = vectors("displacement");
+  frame.velocity = vectors("velocity");
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
+    const double* p = grid->GetPoint(i);
+    frame.mesh.nodes.emplace_back(Vec2(p[0], p[1]) - frame.displacement[i]);
+  }
+  vtkDataArray* body = array(grid->GetCellData(), "body");
+  vtkDataArray* stress = array(grid->GetCellData(), "stress");
+  vtkDataArray* across = array(grid->GetCellData(), "stress_zz");
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    grid->GetCellPoints(c, corners);
+    frame.mesh.add_element(std::vector<int>(corners->begin(), corners->end()));
+    frame.body.push_back(static_cast<int>(body->GetTuple1(c)));
+    frame.stress.push_back({stress->GetComponent(c, 0), stress->GetComponent(c, 1),
+                            stress->GetComponent(c, 2), across->GetTuple1(c)});
+  }
+  return frame;
+}
 
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
     : folder_(std::move(folder)), model_(model), times_(std::move(times)) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/polygon_mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 
@@ -30,6 +31,20 @@ class FrameWriter {
   const Model& model_;
   std::vector<double> times_;
 };
+
+/// Bodies as a frame shows them: a rigid one is a cell of its own, and so is an element.
+struct Frame {
+  double time = 0;                   ///< s
+  Mesh mesh;                         ///< where it was before the run, m
+  std::vector<Vec2> displacement;    ///< of the nodes, m
+  std::vector<Vec2> velocity;        ///< m/s
+  std::vector<CauchyStress> stress;  ///< of the cells, without energy; of rigid bodies zero
+  std::vector<int> body;             ///< of the cells; rigid ones first
+};
+
+/// The first frame at or after `time`, but not later than `latest`, in a folder of results. Throws
+/// std::runtime_error if there is none, or if it cannot be read.
+Frame read_frame(const std::string& folder, double time, double latest);
 
 /// The cells as polygons with shared points; cell data: cell (index), area in m^2. Throws
 /// SystemFailure.

@@ -110,7 +110,8 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
                    m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
                    m.velocity.x(), m.velocity.y(), m.spin, f.fx, f.fy, f.friction);
   }
-  for (const TrackedPoint& point : settings_.points) {
+  for (size_t i = 0; i < settings_.points.size(); ++i) {
+    const TrackedPoint& point = settings_.points[i];
     std::array<double, 4> value{};
     for (size_t k = 0; k < point.nodes.size(); ++k) {
       const size_t c = 2 * static_cast<size_t>(point.nodes[k]);
@@ -119,8 +120,10 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
         value[2 + axis] += point.weights[k] * state.node_velocity[c + axis];
       }
     }
-    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{}"), value[0], value[1],
-                   value[2], value[3]);
+    const CauchyStress& s = observed.stress[i];
+    const auto [major, minor] = principal_stresses(s);
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"), value[0],
+                   value[1], value[2], value[3], s.xx, s.yy, s.xy, major, minor);
   }
   rows += '\n';
   add_row(energy_.rows, state.time, e.kinetic, e.strain, e.contact, e.gravity, e.friction_loss,

@@ -69,11 +69,11 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-std::string picture(const ReportFigure& figure) {
-  std::ifstream stream(figure.picture, std::ios::binary);
+std::string picture(const std::string& file, const std::string& title) {
+  std::ifstream stream(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   return fmt::format("<p><img src=\"data:image/png;base64,{}\" alt=\"{}\"></p>\n", base64(bytes),
-                     escaped(figure.title));
+                     escaped(title));
 }
 
 std::string row(const ReportNumber& n) {
@@ -97,7 +97,7 @@ std::string section(const ReportFigure& figure) {
   for (const std::string& fault : figure.faults) {
     text += fmt::format("<p class=\"fault\">{}</p>\n", escaped(fault));
   }
-  if (!figure.picture.empty()) text += picture(figure);
+  for (const std::string& file : figure.pictures) text += picture(file, figure.title);
   if (!figure.numbers.empty()) {
     text +=
         "<table>\n<tr><th>scene</th><th>quantity</th><th>reference</th><th>result</th>"

@@ -18,10 +18,10 @@ struct ReportNumber {
 struct ReportFigure {
   std::string name;  ///< of its heading's anchor
   std::string title;
-  std::string about;                ///< may be empty
-  std::string picture;              ///< PNG file; empty: none
-  std::vector<std::string> links;   ///< files, relative to the report
-  std::vector<std::string> faults;  ///< what went wrong, a sentence each
+  std::string about;                  ///< may be empty
+  std::vector<std::string> pictures;  ///< PNG files
+  std::vector<std::string> links;     ///< files, relative to the report
+  std::vector<std::string> faults;    ///< what went wrong, a sentence each
   std::vector<ReportNumber> numbers;
 };
 

@@ -634,6 +634,8 @@ class SceneReader {
         find_point(body.mesh, in_.vec2(point, "m") - model_.origin);
     if (!found) in_.fail(point, fmt::format("lies outside \"{}\"", body.name));
     TrackedPoint tracked;
+    tracked.body = static_cast<int>(&body - model_.deformables.data());
+    tracked.element = found->element;
     for (const int node : body.mesh.element(found->element)) {
       tracked.nodes.push_back(body.first_node + node);
     }

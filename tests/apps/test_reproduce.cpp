@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "output/history.hpp"
+#include "pixels.hpp"
 #include "program.hpp"
 
 using namespace apothem;
@@ -26,6 +27,25 @@ const char* const kFigure = R"({ "title": "Free fall & more", "about": "A stone.
                 { "label": "theory", "reference": "fall.csv", "y": "speed", "style": "marks" },
                 { "points": [[0, 500], [10, 600]], "style": "dashed", "colour": 1 } ] } ] })";
 
+// A block pulled along x by 1 MPa, in two load steps; a table of its stress with one wrong cell.
+const char* const kPulled =
+    R"({ "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+  "bodies": [ { "name": "block", "material": "rock", "mesh": { "rectangle": { "size": [2, 1], "cells": [8, 4] } },
+    "supports": [ { "where": { "group": "left" }, "fix": ["x"] }, { "where": { "nearest": [0, 0] }, "fix": ["y"] } ],
+    "loads": [ { "where": { "group": "right" }, "traction": [1e6, 0], "history": [[0, 0], [1, 1]] } ] } ],
+  "time": { "end": 1, "mode": "static", "load_steps": 2 },
+  "output": { "history": { "track": [ { "body": "block", "point": [1, 0.5], "name": "A" } ] } },
+  "expect": [ { "quantity": "A.sxx", "value": 1e6, "relative": 2e-4 },
+              { "quantity": "A.s1", "take": "max", "between": [0.4, 0.6], "value": 0.5e6, "relative": 2e-4 },
+              { "quantity": "A.s2", "take": "max_abs", "value": 0, "tolerance": 100 },
+              { "quantity": "A.sxy", "take": "max_abs", "value": 0, "tolerance": 100 } ] })";
+const char* const kFields = R"({ "title": "Pulled", "panels": [
+  { "field": "sxx", "title": "along", "unit": "MPa", "scale": 1e-6, "range": [0, 2], "window": [[-0.5, -0.5], [2.5, 1.5]],
+    "fields": [ { "label": "ours", "scene": "pulled", "time": 1, "compare": { "rms": 0.2, "max": 0.4 } },
+                { "label": "table", "reference": "pulled.csv", "column": "sxx", "cell": [0.5, 0.5] } ] },
+  { "field": "ux", "fields": [ { "scene": "pulled", "time": 0.5 } ] },
+  { "x": "time [s]", "y": "stress [Pa]", "curves": [ { "scene": "fall", "y": "stone.vy" } ] } ] })";
+
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const size_t at = text.find(what);
   REQUIRE(at != std::string::npos);
@@ -39,6 +59,14 @@ std::string data_folder(const Folder& folder, const std::string& figure = kFigur
   }
   folder.write("data/scenes/fall.json", kScene);
   folder.write("data/reference/fall.csv", "time [ms],speed [mm/s]\n0,500\n5,550\n10,600\n");
+  folder.write("data/scenes/pulled.json", kPulled);
+  std::string cells = "x,y,sxx\n";
+  for (int i = 0; i < 8; ++i) {
+    cells += std::to_string(.25 + .5 * (i % 4)) + "," + (i < 4 ? "0.25," : "0.75,") +
+             (i == 6 ? "2e6\n" : "1e6\n");
+  }
+  folder.write("data/reference/pulled.csv", cells);
+  folder.write("data/reference/empty.csv", "x,y,sxx\n");
   folder.write("data/figures/fig-7.json", figure);
   return folder / "data";
 }
@@ -134,6 +162,102 @@ TEST_CASE("a figure of numbers alone, and a scene that fails", "[reproduce]") {
   CHECK(report.find("1 figures, 3 numbers, 1 missed") != std::string::npos);
   CHECK(report.find("soft: bodies &quot;flat&quot; and &quot;square&quot; overlap") !=
         std::string::npos);
+}
+
+TEST_CASE("a figure of fields becomes a picture, and its error is stated", "[reproduce]") {
+  const Folder folder;
+  const std::string data = data_folder(folder, kFields);
+  const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "out"}, folder);
+  INFO(r.out << r.err);
+  REQUIRE(r.code == 0);
+  // 1e6 of 2e6 in one of eight cells.
+  const std::string report = content(folder / "out/report.html");
+  for (const char* text : {"stress xx at 1 s: rms error in cells", "<td class=\"number\">0.1767",
+                           "<td class=\"number\">0.4999", "1 figures, 7 numbers, 2 missed",
+                           "href=\"fig-7/fields.svg\""}) {
+    INFO(text);
+    CHECK(report.find(text) != std::string::npos);
+  }
+  CHECK(r.out.find("MISSED pulled: stress xx at 1 s: largest error") != std::string::npos);
+  CHECK(content(folder / "out/fig-7/fields.svg").find("<image") != std::string::npos);
+  // 1 MPa is the middle of the scale: of our 2 m^2 and of all cells of the table but one.
+  const test::Pixels pixels = test::decode(content(folder / "out/fig-7/fields.png"));
+  const auto share_of = [&](const Colour& colour) {
+    const auto is = [&](std::uint32_t pixel) { return test::has_colour(pixel, colour); };
+    return static_cast<double>(std::count_if(pixels.colours.begin(), pixels.colours.end(), is));
+  };
+  const double cell = share_of(viridis(1));
+  CHECK(cell > 1000);
+  CHECK(share_of(viridis(.5)) / cell == Approx(15).epsilon(.1));
+}
+
+TEST_CASE("a run that ends before its picture leaves a report", "[reproduce]") {
+  const Folder folder;
+  const std::string data = data_folder(
+      folder,
+      R"({ "title": "T", "panels": [ { "field": "v", "fields": [ { "scene": "torn", "time": 1 } ] } ] })");
+  folder.write("data/scenes/torn.json", replaced(kPulled, "\"right\" }, \"traction\": [1e6, 0]",
+                                                 "\"right\" }, \"traction\": [-1e12, 0]"));
+  const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "out"}, folder);
+  INFO(r.out << r.err);
+  CHECK(r.code == 3);
+  CHECK(content(folder / "out/report.html").find("No picture: ") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "out/fig-7/fields.png"));
+}
+
+TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reproduce]") {
+  const Folder folder;
+  const std::string data = data_folder(folder);
+  for (const auto& [what, by, place] :
+       {std::tuple("\"sxx\", \"title\"", "\"sx\", \"title\"",
+                   ":2: /panels/0/field: unknown value \"sx\""),
+        std::tuple("\"title\": \"along\"", "\"titel\": \"along\"",
+                   ":2: /panels/0/titel: unknown key"),
+        std::tuple("\"unit\": \"MPa\", ", "", ":2: /panels/0/scale: goes with a \"unit\""),
+        std::tuple("1e-6", "-1", ":2: /panels/0/scale: "),
+        std::tuple("[0, 2]", "[2, 0]", ":2: /panels/0/range: "),
+        std::tuple("[2.5, 1.5]", "[2.5, -1.5]",
+                   ":2: /panels/0/window: must be [[x0, y0], [x1, y1]]"),
+        std::tuple("\"pulled\", \"time\": 1,", "\"pullet\", \"time\": 1,",
+                   ":3: /panels/0/fields/0/scene: there is no scene \"pullet\"; did you mean"),
+        std::tuple("\"pulled\", \"time\": 1,", "\"fall\", \"time\": 0,",
+                   ":3: /panels/0/fields/0/scene: has no body with a mesh"),
+        std::tuple("\"time\": 1,", "\"time\": 0.7,",
+                   ":3: /panels/0/fields/0/time: is not the time of a frame: those of pulled are "
+                   "0.5 s apart"),
+        std::tuple("\"time\": 1,", "\"time\": 1.5,", ":3: /panels/0/fields/0/time: is not"),
+        std::tuple("\"time\": 1,", "", ":3: /panels/0/fields/0"),
+        std::tuple("\"max\": 0.4", "\"largest\": 0.4", ":3: /panels/0/fields/0/compare"),
+        std::tuple("pulled.csv", "pushed.csv", ":4: /panels/0/fields/1/reference: "),
+        std::tuple("pulled.csv", "empty.csv", ":4: /panels/0/fields/1/reference: has no rows"),
+        std::tuple("pulled.csv\", \"column\": \"sxx\"", "fall.csv\", \"column\": \"time\"",
+                   ":4: /panels/0/fields/1/reference: has no column \"x\""),
+        std::tuple("\"column\": \"sxx\"", "\"column\": \"sxy\"", "did you mean \"sxx\""),
+        std::tuple("[0.5, 0.5]", "[0.5, 0]", ":4: /panels/0/fields/1/cell: "),
+        std::tuple("\"reference\": \"pulled.csv\", \"column\": \"sxx\", \"cell\": [0.5, 0.5]",
+                   "\"scene\": \"pulled\", \"time\": 1",
+                   ":3: /panels/0/fields/0: is compared with a \"reference\""),
+        std::tuple("\"scene\": \"pulled\", \"time\": 0.5", "\"label\": \"\"",
+                   ":5: /panels/1/fields/0: must give either \"scene\" or \"reference\""),
+        std::tuple("[ { \"scene\": \"pulled\", \"time\": 0.5 } ]", "[]",
+                   ":5: /panels/1/fields: must hold at least one field")}) {
+    folder.write("data/figures/fig-7.json", replaced(kFields, what, by));
+    const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "bad"}, folder);
+    INFO(by << ": " << r.err);
+    CHECK(r.code == 2);
+    CHECK(test::lines(r.err) == 1);
+    CHECK(r.err.find("fig-7.json") != std::string::npos);
+    CHECK(r.err.find(place) != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "bad"));
+  }
+}
+
+TEST_CASE("the stress of the impacted beam is that of the independent code", "[reproduce]") {
+  const Folder folder;
+  const Result r = run({"reproduce", "fig-28", "--verify", "-o", folder / "out"}, folder);
+  INFO(r.out << r.err);
+  CHECK(r.code == 0);
+  CHECK(std::filesystem::exists(folder / "out/fig-28/fields.png"));
 }
 
 TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[reproduce]") {

@@ -1,7 +1,6 @@
 // Pictures and VTK files of a polygon's potential.
 #include "output/picture.hpp"
 
-#include <cairo.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -13,7 +12,6 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <numeric>
 #include <sstream>
 
@@ -22,6 +20,7 @@
 #include "output/axes.hpp"
 #include "output/files.hpp"
 #include "output/polygon_vtk.hpp"
+#include "pixels.hpp"
 #include "shapes.hpp"
 #include "support.hpp"
 
@@ -37,48 +36,6 @@ std::string draw(const Polygon& polygon, double share, PictureFormat format) {
   const SingularArea singular = singular_area(skeleton, r);
   const InscribedCircle circle = largest_inscribed_circle(polygon);
   return draw_potential({polygon, skeleton, circle, singular, r, "given"}, format);
-}
-
-struct Pixels {
-  int width = 0, height = 0;
-  std::vector<std::uint32_t> colours;
-};
-
-Pixels decode(const std::string& png) {
-  struct Source {
-    const std::string& bytes;
-    size_t at;
-  } source{png, 0};
-  cairo_surface_t* surface = cairo_image_surface_create_from_png_stream(
-      [](void* from, unsigned char* data, unsigned int length) {
-        auto& s = *static_cast<Source*>(from);
-        if (s.bytes.size() - s.at < length) return CAIRO_STATUS_READ_ERROR;
-        s.bytes.copy(reinterpret_cast<char*>(data), length, s.at);
-        s.at += length;
-        return CAIRO_STATUS_SUCCESS;
-      },
-      &source);
-  REQUIRE(cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS);
-  Pixels pixels{
-      cairo_image_surface_get_width(surface), cairo_image_surface_get_height(surface), {}};
-  const unsigned char* data = cairo_image_surface_get_data(surface);
-  for (int y = 0; y < pixels.height; ++y) {
-    for (int x = 0; x < pixels.width; ++x) {
-      std::uint32_t colour;
-      std::memcpy(&colour, data + y * cairo_image_surface_get_stride(surface) + 4 * x, 4);
-      pixels.colours.push_back(colour & 0xffffff);
-    }
-  }
-  cairo_surface_destroy(surface);
-  return pixels;
-}
-
-// Up to the rounding of the surface.
-bool has_colour(std::uint32_t pixel, const Colour& c) {
-  const auto near = [&](int shift, double part) {
-    return std::abs(static_cast<double>(pixel >> shift & 0xff) - 255 * part) <= 1;
-  };
-  return near(16, c.red) && near(8, c.green) && near(0, c.blue);
 }
 
 vtkNew<vtkXMLUnstructuredGridReader> read(const std::string& file) {

@@ -8,6 +8,7 @@
 #include <valijson/validator.hpp>
 
 #include "folder.hpp"
+#include "mesh/locate.hpp"
 #include "scene/polygon_file.hpp"
 #include "scene/scene.hpp"
 #include "support.hpp"
@@ -250,6 +251,9 @@ TEST_CASE("a meshed body becomes elements, supports, loads and points", "[scene]
   CHECK(beam.pressures[0].edges.size() == 20);
   REQUIRE(scene.output.points.size() == 1);
   CHECK(scene.output.points[0].name == "beam");
+  CHECK(scene.output.points[0].body == 0);
+  const std::optional<MeshPoint> place = find_point(beam.mesh, Vec2(10, .5) - scene.model.origin);
+  CHECK(scene.output.points[0].element == place->element);
   CHECK(scene.output.track_deformables == std::vector<int>{0});
   CHECK(scene.model.contact.surface == ContactSurface::body);
   CHECK(scene.model.contact.distribution == ForceDistribution::variational);

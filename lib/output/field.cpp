@@ -1,0 +1,128 @@
+#include "output/field.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "mesh/measure.hpp"
+
+namespace apothem {
+namespace {
+
+// Number of the cell of a lattice through `start`.
+std::pair<long, long> lattice_cell(const Vec2& p, const Vec2& start, const Vec2& size) {
+  return {std::lround((p.x() - start.x()) / size.x()), std::lround((p.y() - start.y()) / size.y())};
+}
+
+FieldSample node_sample(const Frame& frame, int node) {
+  return {{}, frame.displacement[node], frame.velocity[node]};
+}
+
+// Adds `weight` times the sample of an element.
+void add(FieldSample& sum, const Frame& frame, int element, double weight) {
+  constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,
+                              &CauchyStress::zz};
+  for (const auto part : kParts) sum.stress.*part += weight * frame.stress[element].*part;
+  const std::span<const int> nodes = frame.mesh.element(element);
+  for (const int node : nodes) {
+    sum.displacement += weight / static_cast<double>(nodes.size()) * frame.displacement[node];
+    sum.velocity += weight / static_cast<double>(nodes.size()) * frame.velocity[node];
+  }
+}
+
+}  // namespace
+
+Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid) {
+  Field field;
+  field.mesh = frame.mesh;
+  field.nodal = quantity.nodal;
+  for (size_t i = 0; i < field.mesh.nodes.size(); ++i) {
+    field.mesh.nodes[i] += frame.displacement[i];
+    if (quantity.nodal) {
+      field.values.push_back(quantity.value(node_sample(frame, static_cast<int>(i))));
+    }
+  }
+  for (size_t e = 0; e < frame.body.size(); ++e) {
+    field.blank.push_back(frame.body[e] < rigid);
+    if (!quantity.nodal) field.values.push_back(quantity.value({frame.stress[e]}));
+  }
+  return field;
+}
+
+CellTable cell_table(const HistoryTable& table, const std::string& column, const Vec2& size) {
+  CellTable cells{size, {}, *table.column(column)};
+  const std::vector<double>& x = *table.column("x");
+  const std::vector<double>& y = *table.column("y");
+  for (size_t i = 0; i < x.size(); ++i) cells.centres.emplace_back(x[i], y[i]);
+  return cells;
+}
+
+Field field_of(const CellTable& cells) {
+  Field field;
+  std::map<std::pair<long, long>, int> nodes;  // of the lattice of corners
+  const Vec2 half = cells.size / 2;
+  for (const Vec2& centre : cells.centres) {
+    std::array<int, 4> corners{};
+    constexpr std::array<std::array<int, 2>, 4> kSigns{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+    for (size_t k = 0; k < 4; ++k) {
+      const Vec2 corner = centre + Vec2(kSigns[k][0] * half.x(), kSigns[k][1] * half.y());
+      const auto [at, is_new] =
+          nodes.try_emplace(lattice_cell(corner, cells.centres[0] - half, cells.size),
+                            static_cast<int>(field.mesh.nodes.size()));
+      if (is_new) field.mesh.nodes.push_back(corner);
+      corners[k] = at->second;
+    }
+    field.mesh.add_element(corners);
+  }
+  field.values = cells.values;
+  field.blank.assign(cells.values.size(), false);
+  return field;
+}
+
+FieldError field_error(const Frame& frame, const FieldQuantity& quantity, int rigid,
+                       const CellTable& reference) {
+  struct Sum {
+    FieldSample sample;
+    double area = 0;
+  };
+  std::map<std::pair<long, long>, Sum> sums;
+  const auto cell_at = [&](const Vec2& p) {
+    return lattice_cell(p, reference.centres[0], reference.size);
+  };
+  for (int e = 0; e < frame.mesh.element_count(); ++e) {
+    if (frame.body[e] < rigid) continue;
+    const std::span<const int> nodes = frame.mesh.element(e);
+    Vec2 middle = Vec2::Zero();
+    for (const int node : nodes) middle += frame.mesh.nodes[node];
+    Sum& sum = sums[cell_at(middle / static_cast<double>(nodes.size()))];
+    const double area = element_area(frame.mesh, e);
+    add(sum.sample, frame, e, area);
+    sum.area += area;
+  }
+  double squares = 0, worst = 0, scale = 0;
+  for (size_t i = 0; i < reference.centres.size(); ++i) {
+    const Vec2& centre = reference.centres[i];
+    const auto found = sums.find(cell_at(centre));
+    if (found == sums.end()) {
+      throw std::runtime_error(fmt::format(
+          "no element to compare has its centroid in the cell around ({}, {}) of the reference",
+          centre.x(), centre.y()));
+    }
+    FieldSample mean = found->second.sample;
+    const double share = 1 / found->second.area;
+    mean.stress = {share * mean.stress.xx, share * mean.stress.yy, share * mean.stress.xy,
+                   share * mean.stress.zz};
+    mean.displacement *= share;
+    mean.velocity *= share;
+    const double error = std::abs(quantity.value(mean) - reference.values[i]);
+    squares += error * error;
+    worst = std::max(worst, error);
+    scale = std::max(scale, std::abs(reference.values[i]));
+  }
+  const double cells = static_cast<double>(reference.values.size());
+  return {std::sqrt(squares / cells) / scale, worst / scale};
+}
+
+}  // namespace apothem
