@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "contact/placed_shapes.hpp"
 #include "dynamics/simulation.hpp"
@@ -201,6 +202,30 @@ void impact_steps(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
+// The whole impacted beam, contacts by the bodies' surfaces (0) or by potentials of elements (1).
+// The shares of the phases are of the time in steps.
+void beam_run(benchmark::State& state) {
+  Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impacted-beam.json");
+  if (state.range(0) == 1) {
+    scene.model.contact.surface = ContactSurface::element;
+    scene.model.contact.distribution = ForceDistribution::resultant;
+  }
+  double steps = 0;
+  std::array<double, kPhaseNames.size()> seconds{};
+  for (auto _ : state) {
+    Simulation simulation(scene.model, scene.time, scene.output.frames, 1);
+    while (simulation.state().time < scene.time.end) simulation.step();
+    steps += static_cast<double>(simulation.own_steps());
+    for (size_t i = 0; i < seconds.size(); ++i) seconds[i] += simulation.phase_seconds()[i];
+  }
+  state.counters["steps/s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  const double all = std::accumulate(seconds.begin(), seconds.end(), 0.);
+  for (const Phase phase : {Phase::elements, Phase::contact, Phase::integrate}) {
+    const auto i = static_cast<size_t>(phase);
+    state.counters[kPhaseNames[i]] = seconds[i] / all;
+  }
+}
+
 // A pack of quadrilaterals inside the skin of their neighbours: the whole step per body.
 void pack_step(benchmark::State& state) {
   Model model;
@@ -236,6 +261,7 @@ BENCHMARK(quad_pair_oracle);
 BENCHMARK(cross_pair_edge)->ArgName("distance_field")->Arg(0)->Arg(1);
 BENCHMARK(cross_pair_patches)->ArgName("distance_field")->Arg(0)->Arg(1);
 BENCHMARK(impact_steps);
+BENCHMARK(beam_run)->ArgName("elements")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(pack_step)->Arg(300)->Arg(3000);
 
 }  // namespace

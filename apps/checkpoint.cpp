@@ -28,6 +28,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, veloc
                                    displacement, node_velocity, node_force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeformableBalance, load_work, mass_damping_loss,
                                    summed_damping_loss, damping_power)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EquilibriumMemory, outside, loads, body_loads)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LoadStep, time, iterations, residual, imbalance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSlip, edge, partner, spring, stiffness)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SlipMemory, slips, energy, friction_loss)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)
@@ -67,6 +69,8 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
                       {"mass_damping_loss", s.mass_damping_loss},
                       {"deformables", s.deformables},
                       {"slips", s.slips},
+                      {"equilibrium", s.equilibrium},
+                      {"load_steps", checkpoint.load_steps},
                       {"state", s.state},
                       {"balance", s.balance},
                       {"extremes", s.extremes},
@@ -76,7 +80,7 @@ void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint) {
 }
 
 Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                           const State& like) {
+                           const Snapshot& like) {
   const std::string name = file(folder);
   std::error_code error_code;
   if (!std::filesystem::exists(name, error_code)) {
@@ -100,6 +104,8 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
     json.at("mass_damping_loss").get_to(s.mass_damping_loss);
     json.at("deformables").get_to(s.deformables);
     json.at("slips").get_to(s.slips);
+    json.at("equilibrium").get_to(s.equilibrium);
+    json.at("load_steps").get_to(c.load_steps);
     json.at("state").get_to(s.state);
     json.at("balance").get_to(s.balance);
     json.at("extremes").get_to(s.extremes);
@@ -112,12 +118,15 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
                      "belongs to another scene, or the scene has been changed; run it anew");
   }
   const State& state = c.snapshot.state;
-  const size_t size = like.position.size();
-  const size_t nodes = like.displacement.size();
+  const size_t size = like.state.position.size();
+  const size_t nodes = like.state.displacement.size();
   if (state.position.size() != size || state.remainder.size() != size ||
       state.velocity.size() != size || state.force.size() != size ||
       state.displacement.size() != nodes || state.node_velocity.size() != nodes ||
-      state.node_force.size() != nodes || !(c.snapshot.step_size > 0)) {
+      state.node_force.size() != nodes ||
+      c.snapshot.equilibrium.outside.size() != like.equilibrium.outside.size() ||
+      c.snapshot.equilibrium.body_loads.size() != like.equilibrium.body_loads.size() ||
+      !(c.snapshot.step_size > 0)) {
     throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
   }
   for (size_t i = 0; i < kHistoryFiles.size(); ++i) {

@@ -15,15 +15,16 @@ struct Checkpoint {
   HistoryWriter::Sizes history_sizes{};
   std::vector<double> frame_times;
   std::int64_t next_row = 1, next_frame = 1;
+  std::vector<LoadStep> load_steps;  ///< of static runs
 };
 
 /// Throws SystemFailure; an older checkpoint is then intact.
 void write_checkpoint(const std::string& folder, const Checkpoint& checkpoint);
 
 /// Throws SceneError if there is none, if it is damaged, if it belongs to another scene (whose
-/// state has another size than `like`) or if the histories it continues are not there any more.
+/// arrays have other sizes than `like`) or if the histories it continues are not there any more.
 Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                           const State& like);
+                           const Snapshot& like);
 
 void remove_checkpoint(const std::string& folder);
 

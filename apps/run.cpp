@@ -170,11 +170,8 @@ class Run {
 
   int execute() {
     Checkpoint from;
-    if (options_.resume && scene_.time.statics) {
-      throw scene_.error_at("/time/mode", "a static run cannot be resumed; start it again");
-    }
     if (options_.resume) {
-      from = read_checkpoint(folder_, scene_hash_, simulation_.state());
+      from = read_checkpoint(folder_, scene_hash_, simulation_.snapshot());
       simulation_.restore(from.snapshot);
     } else {
       prepare_folder(folder_, options_.overwrite);
@@ -184,7 +181,7 @@ class Run {
     try {
       HistoryWriter history(folder_, scene_.model, scene_.output, from.history_sizes);
       FrameWriter frames(folder_, scene_.model, from.frame_times);
-      code = scene_.time.statics ? load_steps(history, frames) : loop(history, frames, from);
+      code = scene_.time.statics ? load_steps(history, frames, from) : loop(history, frames, from);
     } catch (const Unstable& error) {
       code = exit_code::unstable;
       status_ = "unstable";
@@ -222,29 +219,34 @@ class Run {
     output_seconds_ += std::chrono::duration<double>(Clock::now() - before).count();
   }
 
-  int load_steps(HistoryWriter& history, FrameWriter& frames) {
-    const int count = scene_.time.load_steps;
-    write(history, true, frames, true);
-    for (int i = 1; i <= count && !interrupted; ++i) {
-      const double time = i < count ? scene_.time.end * i / count : scene_.time.end;
-      if (time > end_ * (1 + 1e-12)) break;
-      load_steps_.push_back(simulation_.balance(time));
-      const LoadStep& step = load_steps_.back();
+  int load_steps(HistoryWriter& history, FrameWriter& frames, const Checkpoint& from) {
+    const std::int64_t count = scene_.time.load_steps;
+    load_steps_ = from.load_steps;
+    if (!options_.resume) write(history, true, frames, true);
+    const auto time_of = [&](std::int64_t i) {
+      return i < count ? scene_.time.end * static_cast<double>(i) / static_cast<double>(count)
+                       : scene_.time.end;
+    };
+    const auto next = [&] { return simulation_.state().step + 1; };
+    const auto left = [&] { return next() <= count && time_of(next()) <= end_ * (1 + 1e-12); };
+    while (left()) {
+      const LoadStep step = simulation_.balance(time_of(next()), [] { return interrupted != 0; });
+      if (!step.complete) break;
+      load_steps_.push_back(step);
       write(history, true, frames, true);
       if (options_.quiet) continue;
       fmt::print(
           stderr,
-          "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g}\n", i,
-          count, step.iterations, step.residual, step.imbalance);
+          "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g}\n",
+          simulation_.state().step, count, step.iterations, step.residual, step.imbalance);
     }
-    if (!interrupted) {
-      status_ = "done";
-      return exit_code::done;
+    history.flush();
+    if (next() > count) {
+      remove_checkpoint(folder_);
+    } else {
+      checkpoint(history, frames, 1, 1);
     }
-    status_ = "interrupted";
-    message_ = fmt::format("interrupted at t = {:.9g} s; all files are complete",
-                           simulation_.state().time);
-    return exit_code::interrupted;
+    return ended(!left());
   }
 
   int loop(HistoryWriter& history, FrameWriter& frames, const Checkpoint& from) {
@@ -259,11 +261,7 @@ class Run {
       if (picture) last_picture = simulation_.state().step;
       if (row || picture) write(history, row, frames, picture);
     };
-    const auto checkpoint = [&] {
-      history.flush();
-      write_checkpoint(folder_, {scene_hash_, simulation_.snapshot(), history.sizes(),
-                                 frames.times(), rows.next(), pictures.next()});
-    };
+    const auto save = [&] { checkpoint(history, frames, rows.next(), pictures.next()); };
     const auto reached = [&](double time) {
       return simulation_.state().time >= time - 1e-6 * simulation_.step_size();
     };
@@ -281,7 +279,7 @@ class Run {
         progress.update(simulation_);
         const std::optional<double>& interval = scene_.output.checkpoint_interval;
         if (interval && Clock::now() - last_checkpoint > std::chrono::duration<double>(*interval)) {
-          checkpoint();
+          save();
           last_checkpoint = Clock::now();
         }
       }
@@ -290,7 +288,7 @@ class Run {
       if (reached(scene_.time.end)) {
         remove_checkpoint(folder_);
       } else {
-        checkpoint();
+        save();
         record(true, true);  // shows where the run stopped; a resumed run takes it back
         history.flush();
       }
@@ -299,7 +297,18 @@ class Run {
       history.flush();
       throw;
     }
-    if (reached(end_)) {
+    return ended(reached(end_));
+  }
+
+  void checkpoint(HistoryWriter& history, const FrameWriter& frames, std::int64_t next_row,
+                  std::int64_t next_frame) {
+    history.flush();
+    write_checkpoint(folder_, {scene_hash_, simulation_.snapshot(), history.sizes(), frames.times(),
+                               next_row, next_frame, load_steps_});
+  }
+
+  int ended(bool all_done) {
+    if (all_done) {
       status_ = "done";
       return exit_code::done;
     }

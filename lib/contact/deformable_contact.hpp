@@ -170,6 +170,8 @@ class DeformableContact {
   [[nodiscard]] double thickness() const { return thickness_; }
   /// Searches so far.
   [[nodiscard]] int searches() const { return searches_; }
+  /// Has the next update search anew.
+  void forget_search() { kept_.clear(); }
 
   /// Mean normal pressure on each edge, Pa.
   void pressures(std::vector<double>& pressure) const;

@@ -91,6 +91,8 @@ class ElementContact {
   [[nodiscard]] size_t touching() const { return touching_; }
   /// Searches so far.
   [[nodiscard]] int searches() const { return searches_; }
+  /// Has the next update search anew.
+  void forget_search() { kept_.clear(); }
   /// One per pair of bodies that touch, ascending.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 

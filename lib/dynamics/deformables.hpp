@@ -2,6 +2,7 @@
 // the ledgers. The same velocity Verlet scheme as for rigid bodies.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "dynamics/ledger.hpp"
@@ -45,7 +46,7 @@ class Deformables {
   /// Internal forces, loads at `state.time` and contacts; books nothing.
   void find_static_forces(State& state, const SurfaceContact* contact);
   /// The weight of each coordinate that is not held, N; empty without gravity.
-  [[nodiscard]] std::vector<double> weights() const;
+  [[nodiscard]] const std::vector<double>& weights() const { return weight_; }
   [[nodiscard]] bool held(size_t coordinate) const { return inverse_mass_[coordinate] == 0; }
   /// Loads and reactions of moving supports on each coordinate, N.
   [[nodiscard]] std::vector<double> outside_forces(const State& state) const;
@@ -80,12 +81,17 @@ class Deformables {
   void add_loads(State& state) const;
   void apply_loads(const State& state);
   void book(const State& state, double h);
+  /// Moment of the weights at these places about the origin; over displacements, what they add.
+  [[nodiscard]] double weight_torque(std::span<const double> place) const;
 
   const Model& model_;
   FiniteElements elements_;
   std::vector<double> inverse_mass_;  // per coordinate, 0 where held
   std::vector<double> acceleration_;  // of gravity on free coordinates; empty without gravity
-  std::vector<double> damping_;       // alpha per coordinate; empty without mass damping
+  std::vector<double> weight_;        // the same as forces, N
+  std::vector<double> start_;         // of the nodes in the mesh as given, m
+  double start_torque_ = 0;           // of the weights there, N m
+  double torque_ = 0;                 // of the weights now
   std::vector<int> held_;             // coordinates
   std::vector<Driven> driven_;
   // Loads at the present time: force and place of each coordinate they act on.

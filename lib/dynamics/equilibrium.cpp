@@ -199,11 +199,19 @@ void Equilibrium::move(State& state, bool first) {
   for (size_t c = 0; c < n; ++c) state.displacement[c] += kStep * velocity_[c];
 }
 
-LoadStep Equilibrium::find(State& state, double time) {
+void Equilibrium::restore(const EquilibriumMemory& memory) {
+  outside_ = memory.outside;
+  loads_ = memory.loads;
+  body_loads_ = memory.body_loads;
+}
+
+LoadStep Equilibrium::find(State& state, double time, const std::function<bool()>& stop) {
   const double from = state.time, steps = ramp(from, time);
   const std::vector<double> before = state.displacement;
   LoadStep result{time};
   ++state.step;
+  // The scaled masses depend on what is near: the same bits from a checkpoint.
+  if (contact_) contact_->forget_search();
   for (std::int64_t step = 0;; ++step) {
     const double share = std::min(1., static_cast<double>(step + 1) / steps);
     if (state.time != time) {
@@ -229,6 +237,10 @@ LoadStep Equilibrium::find(State& state, double time) {
       }
     }
     move(state, step == 0);
+    if (stop && stop()) {
+      result.complete = false;
+      return result;
+    }
   }
   check_shapes(state);
   const std::vector<double> outside = deformables_.outside_forces(state);

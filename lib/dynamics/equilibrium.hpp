@@ -1,6 +1,7 @@
 // Static scenes: the equilibrium of deformable bodies under the loads of one instant.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "dynamics/deformables.hpp"
@@ -14,6 +15,14 @@ struct LoadStep {
   std::int64_t iterations = 0;  ///< steps of dynamic relaxation
   double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
   double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
+  bool complete = true;         ///< false: stopped on the way
+};
+
+/// What a checkpoint needs to continue with the next load step.
+struct EquilibriumMemory {
+  std::vector<double> outside;     ///< forces at the last equilibrium, N
+  double loads = 0;                ///< largest norm so far, N
+  std::vector<double> body_loads;  ///< largest sum of sizes so far, N
 };
 
 /// Dynamic relaxation. Rigid bodies must be fixed or prescribed.
@@ -25,8 +34,12 @@ class Equilibrium {
 
   /// Moves loads, supports and prescribed bodies to where they are at `time` and finds the
   /// equilibrium there; books the work of loads and supports (trapezoid rule over the load step).
-  /// Throws Unstable if there is none in reach; the state is then not to be trusted.
-  LoadStep find(State& state, double time);
+  /// Not complete if `stop`, asked after each step of relaxation, says so. Then, and where it
+  /// throws Unstable because there is no equilibrium in reach, the state is not to be trusted.
+  LoadStep find(State& state, double time, const std::function<bool()>& stop);
+
+  [[nodiscard]] EquilibriumMemory memory() const { return {outside_, loads_, body_loads_}; }
+  void restore(const EquilibriumMemory& memory);
 
  private:
   [[nodiscard]] double ramp(double from, double until) const;

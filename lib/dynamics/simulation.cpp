@@ -203,7 +203,8 @@ Snapshot Simulation::snapshot() const {
           tangential_ ? tangential_->memory() : TangentialMemory{},
           mass_damping_loss_,
           deformables_ ? deformables_->balance() : DeformableBalance{},
-          surface_ ? surface_->memory() : SlipMemory{}};
+          surface_ ? surface_->memory() : SlipMemory{},
+          equilibrium_ ? equilibrium_->memory() : EquilibriumMemory{}};
 }
 
 void Simulation::restore(const Snapshot& s) {
@@ -220,6 +221,7 @@ void Simulation::restore(const Snapshot& s) {
   if (tangential_) tangential_->restore(s.tangential);
   if (deformables_) deformables_->restore(s.deformables, state_);
   if (surface_) surface_->restore(s.slips, state_);
+  if (equilibrium_) equilibrium_->restore(s.equilibrium);
   for (int i = 0; i < shapes_.size(); ++i) {
     const double* x = &state_.position[3 * static_cast<size_t>(i)];
     shapes_.place(i, x[0], x[1], x[2]);
@@ -265,7 +267,8 @@ void Simulation::step() {
   if (state_.step % kWatchedEvery == 0) watch();
 }
 
-LoadStep Simulation::balance(double time) {
+LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
+  const Snapshot before = snapshot();
   for (const int i : driven_) {
     const RigidBody& body = model_.bodies[i];
     const std::array<double, 3> from = body.history.displacement(state_.time);
@@ -273,7 +276,11 @@ LoadStep Simulation::balance(double time) {
     for (int k = 0; k < 3; ++k) moved_[3 * i + k] = until[k] - from[k];
   }
   ledger_->half_step(state_, 0, moved_);
-  const LoadStep result = equilibrium_->find(state_, time);
+  const LoadStep result = equilibrium_->find(state_, time, stop);
+  if (!result.complete) {
+    restore(before);
+    return result;
+  }
   for (const int i : driven_) {
     const std::array<double, 3> rate = model_.bodies[i].history.rate(time);
     std::copy(rate.begin(), rate.end(), state_.velocity.begin() + 3 * i);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -67,6 +68,7 @@ struct Snapshot {
   double mass_damping_loss = 0;
   DeformableBalance deformables = {};
   SlipMemory slips = {};
+  EquilibriumMemory equilibrium = {};
 };
 
 class Simulation {
@@ -79,9 +81,10 @@ class Simulation {
   void step();
 
   /// Static scenes: the next load step, which brings loads, supports and prescribed bodies to where
-  /// they are at `time`. Throws Unstable if it finds no equilibrium; the state is then not to be
-  /// trusted.
-  LoadStep balance(double time);
+  /// they are at `time`. Not complete if `stop`, asked after each step of relaxation, says so:
+  /// nothing has changed then. Throws Unstable if it finds no equilibrium; the state is then not to
+  /// be trusted.
+  LoadStep balance(double time, const std::function<bool()>& stop = {});
 
   [[nodiscard]] Snapshot snapshot() const;
   /// Continues from a snapshot of the same model and settings.

@@ -45,6 +45,10 @@ class SurfaceContact {
   /// The bodies of the deepest contact.
   [[nodiscard]] std::pair<int, int> deepest() const;
   [[nodiscard]] int searches() const;
+  /// Has the next evaluation search anew.
+  void forget_search() {
+    std::visit([](auto& contact) { contact.forget_search(); }, contact_);
+  }
   [[nodiscard]] size_t candidates() const;
   [[nodiscard]] size_t touching() const;
 

@@ -150,8 +150,66 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
   }
   CHECK(read_history(folder / "blocks/history.csv").columns[0].size() == 4);
   CHECK(content(folder / "blocks/surfaces.pvd").find("surfaces_000003.vtu") != std::string::npos);
-  CHECK(run({"run", scene, "-o", folder / "blocks", "--resume"}, folder).code == 2);
   CHECK(run({"check", scene}, folder).out.find("5 load steps") != std::string::npos);
+
+  const Result rest = run({"run", scene, "-o", folder / "blocks", "--resume", "--verify"}, folder);
+  INFO(rest.err);
+  CHECK(rest.code == 0);
+  CHECK(rest.err.find("load step 4 of 5") != std::string::npos);
+  CHECK(rest.err.find("load step 3 of 5") == std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "blocks/checkpoint.json"));
+  CHECK(run({"run", scene, "-o", folder / "blocks", "--resume"}, folder).code == 2);
+}
+
+TEST_CASE("Ctrl-C during a load step keeps the one before, and --resume goes on from it",
+          "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("bent.json", R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+    "contact": { "normal_stiffness": 20e9 },
+    "bodies": [
+      { "name": "die", "material": "rock", "polygon": [[1.7, 0.1], [2.1, 0.8], [1.5, 0.8]],
+        "motion": { "velocity": [[0, 0, -0.05]] } },
+      { "name": "beam", "material": "rock",
+        "mesh": { "rectangle": { "size": [2, 0.1], "cells": [80, 4] } },
+        "supports": [ { "where": { "x": 0 }, "fix": ["x", "y"] } ] } ],
+    "time": { "end": 1, "mode": "static", "load_steps": 10 },
+    "output": { "history": { "track": [ { "body": "die" }, { "body": "beam", "point": [2, 0.05] } ] } } })");
+  REQUIRE(run({"run", file, "-o", folder / "whole"}, folder).code == 0);
+  const Result r =
+      run({"run", file, "-o", folder / "parts"}, folder,
+          {.interrupt_after = 1e-3, .once_exists = folder / "parts/frames/bodies_000001.vtu"});
+  INFO(r.err);
+  REQUIRE(r.code == 130);
+  CHECK(r.err.find("--resume continues") != std::string::npos);
+  const Json stopped = Json::parse(content(folder / "parts/run.json"));
+  CHECK(stopped["status"] == "interrupted");
+  const size_t done = stopped["load_steps"].size();
+  CHECK(done >= 1);
+  CHECK(done < 10);
+  CHECK(stopped["steps"] == done);
+  CHECK(stopped["time"] == stopped["load_steps"].back()["time"]);
+  CHECK(read_history(folder / "parts/history.csv").columns[0].size() == done + 1);
+  CHECK(read_history(folder / "parts/history.csv").columns[0].back() == stopped["time"]);
+
+  REQUIRE(run({"run", file, "-o", folder / "parts", "--resume", "--threads", "3"}, folder).code ==
+          0);
+  REQUIRE(run({"run", file, "-o", folder / "cut", "--until", "0.35"}, folder).code == 0);
+  CHECK(Json::parse(content(folder / "cut/run.json"))["steps"] == 3);
+  REQUIRE(run({"run", file, "-o", folder / "cut", "--resume"}, folder).code == 0);
+  const Json whole = Json::parse(content(folder / "whole/run.json"));
+  for (const std::string other : {"parts/", "cut/"}) {
+    for (const char* name : {"history.csv", "energy.csv", "momentum.csv", "frames.pvd",
+                             "frames/bodies_000010.vtu", "frames/surfaces_000010.vtu"}) {
+      INFO(other << name);
+      CHECK((content(folder / (std::string("whole/") + name)) == content(folder / (other + name))));
+    }
+    const Json json = Json::parse(content(folder / (other + "run.json")));
+    for (const char* key : {"final_state_hash", "load_steps", "largest_penetration",
+                            "largest_contact_force", "largest_energy_error"}) {
+      CHECK(whole[key] == json[key]);
+    }
+  }
 }
 
 TEST_CASE("a static run without an equilibrium says what is loose", "[program]") {
