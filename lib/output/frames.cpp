@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "mesh/measure.hpp"
@@ -257,9 +258,15 @@ std::string collection(const char* series, const std::vector<double>& times) {
 
 namespace {
 
+// VTK would print a message of its own.
+void require_file(const std::string& file) {
+  if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": there is no such file");
+}
+
 // (time, file) of the frames of the bodies.
 std::vector<std::pair<double, std::string>> frame_list(const std::string& folder) {
   const std::string file = folder + "/frames.pvd";
+  require_file(file);
   vtkSmartPointer<vtkXMLDataElement> document;
   document.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
   vtkXMLDataElement* list = document ? document->FindNestedElementWithName("Collection") : nullptr;
@@ -288,6 +295,7 @@ Frame read_frame(const std::string& folder, double time, double latest) {
   if (file.empty()) {
     throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
   }
+  require_file(file);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();

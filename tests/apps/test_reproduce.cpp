@@ -39,7 +39,7 @@ const char* const kPulled =
               { "quantity": "A.s1", "take": "max", "between": [0.4, 0.6], "value": 0.5e6, "relative": 2e-4 },
               { "quantity": "A.s2", "take": "max_abs", "value": 0, "tolerance": 100 },
               { "quantity": "A.sxy", "take": "max_abs", "value": 0, "tolerance": 100 } ] })";
-const char* const kFields = R"({ "title": "Pulled", "panels": [
+const char* const kFieldFigure = R"({ "title": "Pulled", "panels": [
   { "field": "sxx", "title": "along", "unit": "MPa", "scale": 1e-6, "range": [0, 2], "window": [[-0.5, -0.5], [2.5, 1.5]],
     "fields": [ { "label": "ours", "scene": "pulled", "time": 1, "compare": { "rms": 0.2, "max": 0.4 } },
                 { "label": "table", "reference": "pulled.csv", "column": "sxx", "cell": [0.5, 0.5] } ] },
@@ -166,14 +166,14 @@ TEST_CASE("a figure of numbers alone, and a scene that fails", "[reproduce]") {
 
 TEST_CASE("a figure of fields becomes a picture, and its error is stated", "[reproduce]") {
   const Folder folder;
-  const std::string data = data_folder(folder, kFields);
+  const std::string data = data_folder(folder, kFieldFigure);
   const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "out"}, folder);
   INFO(r.out << r.err);
   REQUIRE(r.code == 0);
   // 1e6 of 2e6 in one of eight cells.
   const std::string report = content(folder / "out/report.html");
   for (const char* text : {"stress xx at 1 s: rms error in cells", "<td class=\"number\">0.1767",
-                           "<td class=\"number\">0.4999", "1 figures, 7 numbers, 2 missed",
+                           "<td class=\"number\">0.4999", "1 figures, 8 numbers, 2 missed",
                            "href=\"fig-7/fields.svg\""}) {
     INFO(text);
     CHECK(report.find(text) != std::string::npos);
@@ -210,7 +210,7 @@ TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reprodu
   const std::string data = data_folder(folder);
   for (const auto& [what, by, place] :
        {std::tuple("\"sxx\", \"title\"", "\"sx\", \"title\"",
-                   ":2: /panels/0/field: unknown value \"sx\""),
+                   ":2: /panels/0/field: unknown choice \"sx\""),
         std::tuple("\"title\": \"along\"", "\"titel\": \"along\"",
                    ":2: /panels/0/titel: unknown key"),
         std::tuple("\"unit\": \"MPa\", ", "", ":2: /panels/0/scale: goes with a \"unit\""),
@@ -241,7 +241,7 @@ TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reprodu
                    ":5: /panels/1/fields/0: must give either \"scene\" or \"reference\""),
         std::tuple("[ { \"scene\": \"pulled\", \"time\": 0.5 } ]", "[]",
                    ":5: /panels/1/fields: must hold at least one field")}) {
-    folder.write("data/figures/fig-7.json", replaced(kFields, what, by));
+    folder.write("data/figures/fig-7.json", replaced(kFieldFigure, what, by));
     const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "bad"}, folder);
     INFO(by << ": " << r.err);
     CHECK(r.code == 2);
