@@ -626,15 +626,16 @@ class SceneReader {
                "points are tracked in bodies with a mesh; of a rigid body leave it out: "
                "place and angle say it all");
     }
-    tracked_point(model_.deformables[deformable], *point, label);
+    tracked_point(deformable, *point, label);
   }
 
-  void tracked_point(const DeformableBody& body, const JsonValue& point, const JsonValue* label) {
+  void tracked_point(int index, const JsonValue& point, const JsonValue* label) {
+    const DeformableBody& body = model_.deformables[index];
     const std::optional<MeshPoint> found =
         find_point(body.mesh, in_.vec2(point, "m") - model_.origin);
     if (!found) in_.fail(point, fmt::format("lies outside \"{}\"", body.name));
     TrackedPoint tracked;
-    tracked.body = static_cast<int>(&body - model_.deformables.data());
+    tracked.body = index;
     tracked.element = found->element;
     for (const int node : body.mesh.element(found->element)) {
       tracked.nodes.push_back(body.first_node + node);
