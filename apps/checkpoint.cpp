@@ -29,7 +29,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(State, time, step, position, remainder, veloc
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeformableBalance, load_work, mass_damping_loss,
                                    summed_damping_loss, damping_power)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EquilibriumMemory, outside, loads, body_loads)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LoadStep, time, iterations, residual, imbalance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LoadStep, time, iterations, residual, imbalance, worst, load,
+                                   off)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EdgeSlip, edge, partner, spring, stiffness)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SlipMemory, slips, energy, friction_loss)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impulse, x, y, angular)

@@ -149,6 +149,11 @@ class FigureReader {
       if (const JsonValue* v = object.optional(key + "_scale")) axis->scale = in_.number(*v, "");
     }
     (is_scene ? source.scene : source.reference) = in_.string(name);
+    if (is_scene) {
+      if (const JsonValue* body = object.optional("surface")) {
+        return surface(object, source, name, *body, x, y);
+      }
+    }
     const std::vector<std::vector<std::string>> tables =
         is_scene ? recorded_columns(scene_of(name)) : columns_of_table(name);
     const std::vector<std::string>& columns = holding(tables, y);
@@ -157,6 +162,20 @@ class FigureReader {
     if (!is_scene) return;
     std::vector<std::string>& stated = figure_.numbers[source.scene];
     if (index_of(stated, y.string) == stated.size()) stated.push_back(y.string);
+  }
+
+  void surface(JsonObject& object, CurveSource& source, const JsonValue& name,
+               const JsonValue& body, const JsonValue* x, const JsonValue& y) {
+    const Scene scene = scene_of(name);
+    source.frame = frame_time(object.required("time", "s"), scene);
+    const std::vector<DeformableBody>& bodies = scene.model.deformables;
+    std::vector<std::string> names;
+    for (const DeformableBody& b : bodies) names.push_back(b.name);
+    source.surface = static_cast<int>(scene.model.bodies.size()) + in_.choice(body, names);
+    source.x.column = x ? std::vector<std::string>{"x", "y"}[in_.choice(*x, {"x", "y"})] : "x";
+    source.y.column =
+        std::vector<std::string>{"pressure", "traction"}[in_.choice(y, {"pressure", "traction"})];
+    figure_.numbers[source.scene];  // without quantities: all are stated
   }
 
   static size_t index_of(const std::vector<std::string>& list, const std::string& name) {
@@ -236,7 +255,6 @@ class FigureReader {
 
   void frame(JsonObject& object, FieldSource& source, const JsonValue& name) {
     const JsonValue& time = object.required("time", "s");
-    source.time = in_.number(time, "s");
     if (const JsonValue* v = object.optional("compare")) {
       JsonObject compare(in_, *v);
       const auto part = [&](const char* key) {
@@ -251,16 +269,21 @@ class FigureReader {
     if (scene.model.deformables.empty()) in_.fail(name, "has no body with a mesh to show");
     source.rigid = static_cast<int>(scene.model.bodies.size());
     source.statics = scene.time.statics;
-    const int frames = source.statics ? scene.time.load_steps : scene.output.frames;
-    const double interval = scene.time.end / std::max(frames, 1);
-    const double count = std::round(source.time / interval);
-    if (count < 0 || count > std::max(frames, 1) ||
-        std::abs(source.time - count * interval) > 1e-6 * interval) {
-      in_.fail(time, fmt::format("is not the time of a frame: those of {} are {} s apart, to {} s",
-                                 name.string, interval, scene.time.end));
-    }
-    source.latest = source.time + interval / 2;
+    source.frame = frame_time(time, scene);
     figure_.numbers[source.scene];  // without quantities: all are stated
+  }
+
+  FrameTime frame_time(const JsonValue& value, const Scene& scene) {
+    const double time = in_.number(value, "s");
+    const int frames = scene.time.statics ? scene.time.load_steps : scene.output.frames;
+    const double interval = scene.time.end / std::max(frames, 1);
+    const double count = std::round(time / interval);
+    if (count < 0 || count > std::max(frames, 1) ||
+        std::abs(time - count * interval) > 1e-6 * interval) {
+      in_.fail(value, fmt::format("is not the time of a frame: those of {} are {} s apart, to {} s",
+                                  scene.model.name, interval, scene.time.end));
+    }
+    return {time, time + interval / 2};
   }
 
   void cells(FieldSource& source, const JsonValue& reference, const JsonValue& column,
@@ -301,6 +324,21 @@ class FigureReader {
   JsonReader in_;
 };
 
+// Points (middle of an edge, contact on it) of a body's pressed edges, from left to right.
+std::vector<Vec2> profile(const CurveSource& source, const std::string& runs) {
+  std::vector<Vec2> points;
+  for (const SurfaceRecord& s :
+       read_surfaces(runs + "/" + source.scene, source.frame.from, source.frame.latest)) {
+    if (s.body != source.surface || s.pressure == 0) continue;
+    const Vec2 middle = (s.from + s.to) / 2;
+    points.emplace_back(source.x.shown(source.x.column == "x" ? middle.x() : middle.y()),
+                        source.y.shown(source.y.column == "pressure" ? s.pressure : s.traction));
+  }
+  std::sort(points.begin(), points.end(),
+            [](const Vec2& a, const Vec2& b) { return a.x() < b.x(); });
+  return points;
+}
+
 }  // namespace
 
 CurveFigure Figure::drawn(const std::string& data, const std::string& runs) const {
@@ -309,11 +347,12 @@ CurveFigure Figure::drawn(const std::string& data, const std::string& runs) cons
     for (size_t c = 0; c < sources[p].size(); ++c) {
       const CurveSource& source = sources[p][c];
       Curve& curve = result.panels[p].curves[c];
-      for (const Vec2& point : source.points) {
+      const bool profiled = source.surface >= 0;
+      for (const Vec2& point : profiled ? profile(source, runs) : source.points) {
         curve.x.push_back(point.x());
         curve.y.push_back(point.y());
       }
-      if (!source.points.empty()) continue;
+      if (profiled || !source.points.empty()) continue;
       const HistoryTable table = source.scene.empty()
                                      ? read_history(data + "/reference/" + source.reference)
                                      : read_history_of(runs + "/" + source.scene, source.y.column);
@@ -336,7 +375,8 @@ DrawnFields Figure::drawn_fields(const std::string& data, const std::string& run
         one.field = field_of(cells_of(data, source));
         continue;
       }
-      const Frame frame = read_frame(runs + "/" + source.scene, source.time, source.latest);
+      const Frame frame =
+          read_frame(runs + "/" + source.scene, source.frame.from, source.frame.latest);
       one.field = field_of(frame, *panel.quantity, source.rigid);
       if (!source.statics) {
         if (!one.label.empty()) one.label += ", ";

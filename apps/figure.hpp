@@ -13,8 +13,13 @@
 
 namespace apothem {
 
-/// Where a curve comes from: columns of a scene's histories, of a table in data/reference, or
-/// points. Shown is (value + offset) scale.
+/// When a frame of a scene is, s.
+struct FrameTime {
+  double from = 0, latest = 0;
+};
+
+/// Where a curve comes from: columns of a scene's histories, of a table in data/reference, contact
+/// on a body's surface in a frame, or points. Shown is (value + offset) scale.
 struct CurveSource {
   struct Axis {
     std::string column;
@@ -25,14 +30,15 @@ struct CurveSource {
   std::string reference;  ///< file; or
   std::vector<Vec2> points;
   Axis x{"time"}, y;
+  int surface = -1;  ///< the body (rigid ones first) whose pressed edges are shown, at
+  FrameTime frame;
 };
 
 /// Where a field comes from: a frame of a scene, or a table of cells in data/reference.
 struct FieldSource {
   std::string scene;  ///< name; or
-  double time = 0;    ///< s
-  double latest = 0;  ///< s; of the frame that is shown
-  int rigid = 0;      ///< rigid bodies of the scene
+  FrameTime frame;
+  int rigid = 0;  ///< rigid bodies of the scene
   bool statics = false;
   std::string reference;  ///< file
   std::string column;

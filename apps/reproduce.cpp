@@ -111,43 +111,49 @@ class Reproduction {
     report.title = figure.shown.title;
     report.about = figure.about;
     const std::string folder = options_.folder + "/" + figure.name;
-    if (!figure.sources.empty()) {
-      std::vector<std::string> files;
-      switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
-        case Plotted::yes:
-          report.pictures.push_back(folder + "/picture.png");
-          files.insert(files.begin(), {"picture.png", "picture.svg"});
-          break;
-        case Plotted::no_gnuplot:
-          no_gnuplot_ = true;
-          report.faults.emplace_back("No picture: there was no gnuplot.");
-          break;
-        case Plotted::failed:
-          broken_ = folder;
-          report.faults.emplace_back("No picture: gnuplot failed.");
-          break;
-      }
-      for (const std::string& file : files) report.links.push_back(figure.name + "/" + file);
-    }
+    const auto unless_cut_short =
+        [&](void (Reproduction::*part)(const Figure&, const std::string&, ReportFigure&)) {
+          try {
+            (this->*part)(figure, folder, report);
+          } catch (const SystemFailure&) {
+            throw;
+          } catch (const std::runtime_error& error) {  // a run that ended before its time
+            report.faults.push_back(fmt::format("No picture: {}.", error.what()));
+            fmt::print("  {}: no picture: {}\n", figure.name, error.what());
+          }
+        };
+    if (!figure.sources.empty()) unless_cut_short(&Reproduction::draw_curves);
     for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
-    if (!figure.field_sources.empty()) draw_fields(figure, folder, report);
+    if (!figure.field_sources.empty()) unless_cut_short(&Reproduction::draw_fields);
+  }
+
+  void draw_curves(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    std::vector<std::string> files;
+    switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
+      case Plotted::yes:
+        report.pictures.push_back(folder + "/picture.png");
+        files.insert(files.begin(), {"picture.png", "picture.svg"});
+        break;
+      case Plotted::no_gnuplot:
+        no_gnuplot_ = true;
+        report.faults.emplace_back("No picture: there was no gnuplot.");
+        break;
+      case Plotted::failed:
+        broken_ = folder;
+        report.faults.emplace_back("No picture: gnuplot failed.");
+        break;
+    }
+    for (const std::string& file : files) report.links.push_back(figure.name + "/" + file);
   }
 
   void draw_fields(const Figure& figure, const std::string& folder, ReportFigure& report) {
-    try {
-      const DrawnFields drawn = figure.drawn_fields(data_, runs());
-      write_fields(folder, drawn.figure);
-      report.pictures.push_back(folder + "/fields.png");
-      for (const char* file : {"fields.png", "fields.svg"}) {
-        report.links.push_back(figure.name + "/" + file);
-      }
-      for (const ReportNumber& number : drawn.numbers) state(number, report);
-    } catch (const SystemFailure&) {
-      throw;
-    } catch (const std::runtime_error& error) {  // a run that ended before its time
-      report.faults.push_back(fmt::format("No picture: {}.", error.what()));
-      fmt::print("  {}: no picture: {}\n", figure.name, error.what());
+    const DrawnFields drawn = figure.drawn_fields(data_, runs());
+    write_fields(folder, drawn.figure);
+    report.pictures.push_back(folder + "/fields.png");
+    for (const char* file : {"fields.png", "fields.svg"}) {
+      report.links.push_back(figure.name + "/" + file);
     }
+    for (const ReportNumber& number : drawn.numbers) state(number, report);
   }
 
   void state(const ReportNumber& number, ReportFigure& report) {

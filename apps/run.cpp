@@ -209,7 +209,9 @@ class Run {
     if (row) {
       history.add(simulation_.state(), simulation_.energies(), simulation_.momenta(),
                   {simulation_.friction(), simulation_.deformable_forces(), simulation_.node_mass(),
-                   simulation_.stresses(scene_.output.points)});
+                   simulation_.stresses(scene_.output.points),
+                   scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{}
+                                                        : simulation_.surfaces()});
     }
     if (picture) {
       history.flush();
@@ -235,10 +237,11 @@ class Run {
       load_steps_.push_back(step);
       write(history, true, frames, true);
       if (options_.quiet) continue;
-      fmt::print(
-          stderr,
-          "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g}\n",
-          simulation_.state().step, count, step.iterations, step.residual, step.imbalance);
+      fmt::print(stderr,
+                 "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces "
+                 "{:.2g} on \"{}\"\n",
+                 simulation_.state().step, count, step.iterations, step.residual, step.imbalance,
+                 scene_.model.deformables[step.worst].name);
     }
     history.flush();
     if (next() > count) {
@@ -381,7 +384,17 @@ class Run {
         found.push_back({{"time", s.time},
                          {"iterations", s.iterations},
                          {"residual", s.residual},
-                         {"imbalance", s.imbalance}});
+                         {"imbalance", s.imbalance},
+                         {"of", scene_.model.deformables[s.worst].name}});
+      }
+      Json& balance = json["balance"] = Json::array();
+      if (!load_steps_.empty()) {
+        const LoadStep& last = load_steps_.back();
+        for (size_t i = 0; i < last.off.size(); ++i) {
+          balance.push_back({{"body", scene_.model.deformables[i].name},
+                             {"force", last.off[i]},
+                             {"of_load", of_load(last, i)}});
+        }
       }
     }
     if (!message_.empty()) json["message"] = message_;
@@ -401,6 +414,10 @@ class Run {
                json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }
 
+  static double of_load(const LoadStep& step, size_t body) {
+    return step.load > 0 ? step.off[body] / step.load : 0;
+  }
+
   void print_summary() const {
     const State& state = simulation_.state();
     const Extremes& extremes = simulation_.extremes();
@@ -409,6 +426,15 @@ class Run {
                state.time, folder_);
     fmt::print("largest penetration {:.9g} m, contact force {:.9g} N, energy error {:.3g} J\n",
                extremes.penetration.value, extremes.force.value, extremes.energy_error);
+    if (!load_steps_.empty()) {
+      const LoadStep& last = load_steps_.back();
+      const auto worst = static_cast<size_t>(std::max_element(last.off.begin(), last.off.end()) -
+                                             last.off.begin());
+      fmt::print(
+          "force balance: of all bodies \"{}\" is farthest from it, by {:.3g} N, {:.2g} of the "
+          "load\n",
+          scene_.model.deformables[worst].name, last.off[worst], of_load(last, worst));
+    }
     for (size_t i = 0; i < outcomes_.size(); ++i) {
       const Expectation& e = scene_.expectations[i];
       fmt::print("  {} {:<24} {:>18.10g}   expected {:.10g} +- {:.2g}\n",

@@ -2,7 +2,9 @@
 // all nodes stop whenever the kinetic energy has passed a maximum (Barnes 1988). The masses are not
 // the bodies' own but m_i = 1.1/4 (SUM_j |K_ij| + contacts), with a unit of time that makes the
 // stability limit 1 or more: every node then moves as fast as its own stiffness allows. Loads,
-// supports and prescribed bodies move to their new places over the first steps.
+// supports and prescribed bodies move to their new places over the first steps. A little damping in
+// proportion to the stiffness is needed besides: stopped every two steps, a mode whose period is
+// four steps, as those of stiff contacts are, would ring on and stop all others too early.
 
 #include "dynamics/equilibrium.hpp"
 
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kMass = 1.1 / 4;
 constexpr double kStep = 0.75;
+constexpr double kLag = 0.1;      // of the force's change over a step, added to it: -K v times kLag
 constexpr double kStride = 0.02;  // of the shortest edge, per step: no contact is jumped over
 constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
@@ -38,7 +41,8 @@ Equilibrium::Equilibrium(const Model& model, Deformables& deformables, SurfaceCo
       weight_(deformables.weights()),
       body_loads_(model.deformables.size()) {
   const size_t n = 2 * static_cast<size_t>(deformables.elements().node_count());
-  for (std::vector<double>* v : {&element_, &mass_, &inverse_, &rest_, &velocity_, &outside_}) {
+  for (std::vector<double>* v :
+       {&element_, &mass_, &inverse_, &rest_, &drive_, &velocity_, &outside_}) {
     v->assign(n, 0);
   }
   surface_.assign(n / 2, 0);
@@ -124,13 +128,15 @@ void Equilibrium::check_shapes(const State& state) const {
 // Whether the residual, and the sum of the forces on each body, are small against the loads.
 bool Equilibrium::reached(const State& state, LoadStep& result) {
   const std::vector<double> outside = deformables_.outside_forces(state);
-  double loads = 0, residual = 0, noise = 0;
-  result.imbalance = 0;
+  double loads = 0, residual = 0, noise = 0, most = -1;
+  result.imbalance = result.load = 0;
+  result.worst = 0;
+  result.off.assign(model_.deformables.size(), 0);
   bool balanced = true;
   for (size_t b = 0; b < model_.deformables.size(); ++b) {
     const DeformableBody& body = model_.deformables[b];
     Vec2 sum = Vec2::Zero();
-    double sizes = 0, own_noise = 0;
+    double sizes = 0, own_noise = 0, own_residual = 0;
     for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
       for (int axis = 0; axis < 2; ++axis) {
         const size_t c = 2 * (body.first_node + i) + axis;
@@ -139,24 +145,30 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
         if (deformables_.held(c)) f = -state.node_force[c];
         loads += f * f;
         sizes += std::abs(f);
-        residual += rest_[c] * rest_[c];
+        own_residual += rest_[c] * rest_[c];
         sum[axis] += rest_[c];
         const double rounded = element_[c] * std::abs(state.displacement[c]) +
                                surface_[c / 2] * std::abs(body.mesh.nodes[i][axis]);
         own_noise += rounded * rounded;
       }
     }
+    result.load += sizes;
     if (contact_) {
       const BodyForce f = contact_->on_deformable(static_cast<int>(b));
       sizes += std::hypot(f.fx, f.fy);
     }
     body_loads_[b] = std::max(body_loads_[b], sizes);
     noise += own_noise;
-    const double off = sum.norm();
+    residual += own_residual;
+    if (own_residual > most) {
+      most = own_residual;
+      result.restless = static_cast<int>(b);
+    }
+    const double off = result.off[b] = sum.norm();
     balanced = balanced && off <= tolerance_ * body_loads_[b] + kNoise * std::sqrt(own_noise);
     if (off > result.imbalance * body_loads_[b]) {
       result.imbalance = off / body_loads_[b];
-      worst_ = static_cast<int>(b);
+      result.worst = static_cast<int>(b);
     }
   }
   if (contact_) {
@@ -176,7 +188,8 @@ void Equilibrium::move(State& state, bool first) {
   const size_t n = velocity_.size();
   double kinetic = 0, fastest = 0;
   for (size_t c = 0; c < n; ++c) {
-    velocity_[c] += kStep * (inverse_[c] * rest_[c]);
+    drive_[c] = first ? rest_[c] : rest_[c] + kLag * (rest_[c] - last_[c]);
+    velocity_[c] += kStep * (inverse_[c] * drive_[c]);
     kinetic += mass_[c] * velocity_[c] * velocity_[c];
     fastest = std::max(fastest, std::abs(velocity_[c]));
   }
@@ -184,7 +197,7 @@ void Equilibrium::move(State& state, bool first) {
     kinetic = fastest = 0;
     for (size_t c = 0; c < n; ++c) {
       // Half a step: velocities are those between the steps.
-      velocity_[c] = kStep / 2 * (inverse_[c] * rest_[c]);
+      velocity_[c] = kStep / 2 * (inverse_[c] * drive_[c]);
       kinetic += mass_[c] * velocity_[c] * velocity_[c];
       fastest = std::max(fastest, std::abs(velocity_[c]));
     }
@@ -196,6 +209,7 @@ void Equilibrium::move(State& state, bool first) {
     kinetic *= slower * slower;
   }
   kinetic_ = kinetic;
+  last_ = rest_;
   for (size_t c = 0; c < n; ++c) state.displacement[c] += kStep * velocity_[c];
 }
 
@@ -228,12 +242,14 @@ LoadStep Equilibrium::find(State& state, double time, const std::function<bool()
       if (reached(state, result)) break;
       if (!std::isfinite(result.residual) || step >= kMostSteps) {
         throw Unstable(fmt::format(
-            "no equilibrium of \"{}\" at t = {:.9g} s (load step {}) after {} steps of relaxation: "
-            "residual {:.3g} and sum of the forces on a body {:.3g} of the loads, where "
-            "time.tolerance is {:g}; support what can move freely, reduce the load, or raise "
-            "time.load_steps or time.tolerance",
-            model_.deformables[worst_].name, time, state.step, step, result.residual,
-            result.imbalance, tolerance_));
+            "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: nodal "
+            "forces "
+            "out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of the "
+            "forces "
+            "on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what can move "
+            "freely, reduce the load, or raise time.load_steps or time.tolerance",
+            time, state.step, step, result.residual, model_.deformables[result.restless].name,
+            model_.deformables[result.worst].name, result.imbalance, tolerance_));
       }
     }
     move(state, step == 0);

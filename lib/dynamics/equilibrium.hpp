@@ -15,6 +15,10 @@ struct LoadStep {
   std::int64_t iterations = 0;  ///< steps of dynamic relaxation
   double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
   double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
+  int worst = -1;               ///< the deformable body it is of
+  int restless = -1;            ///< the body with most of the residual
+  double load = 0;              ///< sum of the sizes of all loads and reactions on nodes, N
+  std::vector<double> off{};    ///< size of the sum of all forces on each deformable body, N
   bool complete = true;         ///< false: stopped on the way
 };
 
@@ -57,7 +61,8 @@ class Equilibrium {
   std::vector<double> weight_;             // of each coordinate; empty without gravity
   std::vector<double> element_, surface_;  // stiffness of elements and contacts, N/m
   std::vector<double> mass_, inverse_;     // scaled; inverse 0 where held
-  std::vector<double> rest_, velocity_;    // forces out of balance, N; velocity
+  std::vector<double> rest_, last_;        // forces out of balance, and a step before, N
+  std::vector<double> drive_, velocity_;   // what accelerates, N; velocity
   std::vector<double> outside_;            // forces at the last equilibrium, N
   std::vector<double> rigid_force_;
   double far_ = 0;                  // m
@@ -65,7 +70,6 @@ class Equilibrium {
   std::vector<double> body_loads_;  // largest sum of sizes so far, N
   double kinetic_ = 0;              // at the step before
   int searches_ = -1;
-  int worst_ = 0;  // the body that is farthest from balance
 };
 
 }  // namespace apothem

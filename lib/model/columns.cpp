@@ -11,6 +11,7 @@ std::vector<HistoryColumn> history_columns(const Model& model, const OutputSetti
   };
   for (const int i : settings.track) add(model.bodies[i].name, kBodyColumns);
   for (const int i : settings.track_deformables) add(model.deformables[i].name, kBodyColumns);
+  for (const int i : settings.track_surfaces) add(model.deformables[i].name, kSurfaceColumns);
   for (const TrackedPoint& point : settings.points) add(point.name, kPointColumns);
   return result;
 }

@@ -14,7 +14,7 @@ struct HistoryColumn {
   const char* unit;
 };
 
-/// After the time: rigid bodies, deformable ones, points.
+/// After the time: rigid bodies, deformable ones, surfaces, points.
 std::vector<HistoryColumn> history_columns(const Model& model, const OutputSettings& settings);
 
 }  // namespace apothem

@@ -28,6 +28,7 @@ struct OutputSettings {
   std::optional<double> history_interval;  ///< s; empty: end / 1000
   std::vector<int> track;                  ///< rigid bodies in history.csv
   std::vector<int> track_deformables;      ///< deformable bodies as a whole
+  std::vector<int> track_surfaces;         ///< deformable bodies whose contact pressure counts
   std::vector<TrackedPoint> points;
   std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
 };

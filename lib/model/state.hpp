@@ -83,6 +83,8 @@ inline constexpr std::array kPointColumns{
     Column{"ux", "m"},   Column{"uy", "m"},   Column{"vx", "m/s"},
     Column{"vy", "m/s"}, Column{"sxx", "Pa"}, Column{"syy", "Pa"},
     Column{"sxy", "Pa"}, Column{"s1", "Pa"},  Column{"s2", "Pa"}};
+/// Of the contacts of a deformable body.
+inline constexpr std::array kSurfaceColumns{Column{"pressure", "Pa"}, Column{"half_width", "m"}};
 inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
                                            "gravity",       "friction_loss", "damping_loss",
                                            "external_work", "total_error"};

@@ -263,47 +263,46 @@ void require_file(const std::string& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": there is no such file");
 }
 
-// (time, file) of the frames of the bodies.
-std::vector<std::pair<double, std::string>> frame_list(const std::string& folder) {
-  const std::string file = folder + "/frames.pvd";
+// File of the first frame of a series at or after `time`, but not later than `latest`.
+std::pair<double, std::string> frame_file(const std::string& folder, const char* series,
+                                          double time, double latest) {
+  const std::string file = fmt::format("{}/{}.pvd", folder, series);
   require_file(file);
   vtkSmartPointer<vtkXMLDataElement> document;
   document.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
   vtkXMLDataElement* list = document ? document->FindNestedElementWithName("Collection") : nullptr;
   if (!list) throw std::runtime_error(file + ": cannot be read");
-  std::vector<std::pair<double, std::string>> frames;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* entry = list->GetNestedElement(i);
-    double time = 0;
-    if (!entry->GetScalarAttribute("timestep", time) || !entry->GetAttribute("file")) continue;
-    frames.emplace_back(time, folder + "/" + entry->GetAttribute("file"));
+    double at = 0;
+    if (!entry->GetScalarAttribute("timestep", at) || !entry->GetAttribute("file")) continue;
+    if (at < time - 1e-6 * (latest - time) || at > latest) continue;
+    const std::string frame = folder + "/" + entry->GetAttribute("file");
+    require_file(frame);
+    return {at, frame};
   }
-  return frames;
+  throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
+}
+
+// Throws std::runtime_error if there is none.
+vtkDataArray* array_of(vtkDataSetAttributes* data, const char* name, const std::string& file) {
+  vtkDataArray* found = data->GetArray(name);
+  if (!found) throw std::runtime_error(fmt::format("{}: has no array \"{}\"", file, name));
+  return found;
 }
 
 }  // namespace
 
 Frame read_frame(const std::string& folder, double time, double latest) {
-  std::string file;
   Frame frame;
-  for (const auto& [at, name] : frame_list(folder)) {
-    if (at < time - 1e-6 * (latest - time) || at > latest) continue;
-    frame.time = at;
-    file = name;
-    break;
-  }
-  if (file.empty()) {
-    throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
-  }
-  require_file(file);
+  std::string file;
+  std::tie(frame.time, file) = frame_file(folder, "frames", time, latest);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
   const auto array = [&](vtkDataSetAttributes* data, const char* name) {
-    vtkDataArray* found = data->GetArray(name);
-    if (!found) throw std::runtime_error(fmt::format("{}: has no array \"{}\"", file, name));
-    return found;
+    return array_of(data, name, file);
   };
   const auto vectors = [&](const char* name) {
     vtkDataArray* values = array(grid->GetPointData(), name);
@@ -355,6 +354,29 @@ void FrameWriter::write(const State& state, const std::vector<ContactRecord>& co
   }
   write_file(folder_ + "/frames.pvd", collection("bodies", times_));
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
+}
+
+std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest) {
+  const std::string file = frame_file(folder, "surfaces", time, latest).second;
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  vtkDataArray* body = array_of(grid->GetCellData(), "body", file);
+  vtkDataArray* pressure = array_of(grid->GetCellData(), "contact_pressure", file);
+  vtkDataArray* traction = array_of(grid->GetCellData(), "tangential_traction", file);
+  std::vector<SurfaceRecord> surfaces;
+  vtkNew<vtkIdList> ends;
+  const auto end = [&](vtkIdType i) {
+    const double* p = grid->GetPoint(ends->GetId(i));
+    return Vec2(p[0], p[1]);
+  };
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    grid->GetCellPoints(c, ends);
+    surfaces.push_back({static_cast<int>(body->GetTuple1(c)), end(0), end(1),
+                        pressure->GetTuple1(c), traction->GetTuple1(c)});
+  }
+  return surfaces;
 }
 
 void write_mesh(const std::string& file, const PolygonMesh& mesh) {

@@ -46,6 +46,9 @@ struct Frame {
 /// std::runtime_error if there is none, or if it cannot be read.
 Frame read_frame(const std::string& folder, double time, double latest);
 
+/// The same for the boundaries of bodies in contact with meshes.
+std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest);
+
 /// The cells as polygons with shared points; cell data: cell (index), area in m^2. Throws
 /// SystemFailure.
 void write_mesh(const std::string& file, const PolygonMesh& mesh);

@@ -64,6 +64,35 @@ MeanMotion mean_motion(const DeformableBody& body, const State& state,
   return mean;
 }
 
+// Largest pressure on a surface, and twice the root of the pressure's mean square distance from its
+// centre: the half-width of the ellipse of Hertz.
+struct Pressed {
+  double pressure = 0, half_width = 0;
+};
+Pressed pressed(const std::vector<SurfaceRecord>& surfaces, int body) {
+  Pressed result;
+  double whole = 0;
+  Vec2 centre = Vec2::Zero();
+  for (const SurfaceRecord& s : surfaces) {
+    if (s.body != body) continue;
+    const double force = s.pressure * (s.to - s.from).norm();
+    result.pressure = std::max(result.pressure, s.pressure);
+    whole += force;
+    centre += force * (s.from + s.to) / 2;
+  }
+  if (!(whole > 0)) return result;
+  centre /= whole;
+  double square = 0;
+  for (const SurfaceRecord& s : surfaces) {
+    if (s.body != body) continue;
+    const double length = (s.to - s.from).norm();
+    const double mean = ((s.from + s.to) / 2 - centre).squaredNorm() + length * length / 12;
+    square += s.pressure * length * mean;
+  }
+  result.half_width = 2 * std::sqrt(square / whole);
+  return result;
+}
+
 template <class Names>
 std::string header(const Names& names) {
   std::string row = "time";
@@ -109,6 +138,11 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
                    m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
                    m.velocity.x(), m.velocity.y(), m.spin, f.fx, f.fy, f.friction);
+  }
+  for (const int i : settings_.track_surfaces) {
+    const Pressed contact = pressed(observed.surfaces, static_cast<int>(model_.bodies.size()) + i);
+    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{}"), contact.pressure,
+                   contact.half_width);
   }
   for (size_t i = 0; i < settings_.points.size(); ++i) {
     const TrackedPoint& point = settings_.points[i];

@@ -8,6 +8,8 @@
 #include "mesh/check.hpp"
 #include "mesh/disc_mesh.hpp"
 #include "mesh/fill_mesh.hpp"
+#include "mesh/half_disc_mesh.hpp"
+#include "mesh/mirror.hpp"
 #include "mesh/rectangle_mesh.hpp"
 #include "scene/mesh_file.hpp"
 #include "scene/polygon_value.hpp"
@@ -35,12 +37,14 @@ class MeshReader {
       way = &w;
     }
     element_value_ = object.optional("element");
+    const JsonValue* mirror_value = object.optional("mirror");
     object.finish();
     if (source == nullptr) {
-      in_.fail(value_, "must give one of rectangle, disc, fill, voronoi, file");
+      in_.fail(value_, "must give one of rectangle, disc, half_disc, fill, voronoi, file");
     }
     if (element_value_ != nullptr) read_element();
     MeshSpec spec{made(*source, *way), {}};
+    if (mirror_value != nullptr) mirror_at(*mirror_value, spec.mesh);
     spec.element = element_ != nullptr ? element_->kind : fitting(spec.mesh);
     if (element_ != nullptr) require_fit(spec.mesh);
     return spec;
@@ -51,7 +55,18 @@ class MeshReader {
     const char* key;
     Mesh (MeshReader::*make)(const JsonValue&) const;
   };
-  static const std::array<Way, 5> kWays;
+  static const std::array<Way, 6> kWays;
+
+  void mirror_at(const JsonValue& value, Mesh& mesh) const {
+    JsonObject object(in_, value);
+    const JsonValue* x = object.optional("x");
+    const JsonValue* y = object.optional("y");
+    object.finish();
+    if ((x == nullptr) == (y == nullptr)) {
+      in_.fail(value, "must give the line: one of \"x\" and \"y\"");
+    }
+    mirror(mesh, x != nullptr ? 0 : 1, in_.number(x != nullptr ? *x : *y, "m"));
+  }
 
   void read_element() {
     std::vector<std::string> names;
@@ -99,6 +114,19 @@ class MeshReader {
     if (const JsonValue* v = object.optional("grading")) cells.grading = in_.number(*v, "");
     object.finish();
     return disc_mesh(centre, radius, cells, shape());
+  }
+
+  Mesh half_disc(const JsonValue& value) const {
+    JsonObject object(in_, value);
+    const double radius = in_.positive(object.required("radius", "in m"), "m");
+    HalfDiscCells cells{};
+    cells.fine =
+        in_.positive(object.required("fine", "half-width of the fine part, in m"), "m") / radius;
+    cells.cells = in_.count(object.required("cells", "of the fine part's half-width"));
+    if (const JsonValue* v = object.optional("growth")) cells.growth = in_.number(*v, "");
+    const Vec2 pole = vec2_or_zero(object, "pole");
+    object.finish();
+    return half_disc_mesh(pole, radius, cells, shape());
   }
 
   Mesh fill(const JsonValue& value) const {
@@ -187,8 +215,9 @@ class MeshReader {
   const ElementName* element_ = nullptr;  // null: the scene does not say
 };
 
-const std::array<MeshReader::Way, 5> MeshReader::kWays{{{"rectangle", &MeshReader::rectangle},
+const std::array<MeshReader::Way, 6> MeshReader::kWays{{{"rectangle", &MeshReader::rectangle},
                                                         {"disc", &MeshReader::disc},
+                                                        {"half_disc", &MeshReader::half_disc},
                                                         {"fill", &MeshReader::fill},
                                                         {"voronoi", &MeshReader::voronoi},
                                                         {"file", &MeshReader::file}}};

@@ -600,6 +600,7 @@ class SceneReader {
     JsonObject object(in_, item);
     const JsonValue& name = object.required("body", "the name of a body");
     const JsonValue* point = object.optional("point");
+    const JsonValue* surface = object.optional("surface");
     const JsonValue* label = object.optional("name");
     object.finish();
     const auto place = std::find(names_.begin(), names_.end(), in_.string(name));
@@ -611,6 +612,7 @@ class SceneReader {
     };
     const int rigid = index_in(model_.bodies);
     const int deformable = index_in(model_.deformables);
+    if (surface) return tracked_surface(deformable, *surface, point);
     if (!point) {
       if (label) in_.fail(*label, "goes with a \"point\"; leave it out");
       std::vector<int>& list = rigid >= 0 ? output.track : output.track_deformables;
@@ -627,6 +629,20 @@ class SceneReader {
                "place and angle say it all");
     }
     tracked_point(deformable, *point, label);
+  }
+
+  void tracked_surface(int deformable, const JsonValue& value, const JsonValue* point) {
+    std::vector<int>& list = scene_.output.track_surfaces;
+    in_.choice(value, {"contact"});
+    if (point) in_.fail(value, "and a \"point\" are tracked apart; make two entries");
+    if (deformable < 0) in_.fail(value, "is recorded of bodies with a mesh");
+    if (model_.contact.surface != ContactSurface::body) {
+      in_.fail(value, "is not recorded with \"surface\": \"element\"");
+    }
+    if (std::find(list.begin(), list.end(), deformable) != list.end()) {
+      in_.fail(value, "is tracked already; leave it out");
+    }
+    list.push_back(deformable);
   }
 
   void tracked_point(int index, const JsonValue& point, const JsonValue* label) {

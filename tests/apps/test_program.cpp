@@ -6,6 +6,7 @@
 
 #include "folder.hpp"
 #include "geometry/voronoi.hpp"
+#include "output/frames.hpp"
 #include "output/history.hpp"
 #include "program.hpp"
 
@@ -210,6 +211,114 @@ TEST_CASE("Ctrl-C during a load step keeps the one before, and --resume goes on 
       CHECK(whole[key] == json[key]);
     }
   }
+}
+
+namespace {
+
+// A disc and an angle with their mirror images in a smooth box, under a plate with 4e6 N/m.
+const char* const kPress = R"({
+  "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0.2, "plane": "strain" } },
+  "contact": { "normal_stiffness": 1e9 },
+  "bodies": [
+    { "name": "box", "material": "rock", "motion": "fixed",
+      "polygon": [[-3,-1],[3,-1],[3,3],[2,3],[2,0],[-2,0],[-2,3],[-3,3]] },
+    { "name": "disc-right", "material": "rock", "mesh": { "disc": { "radius": 0.5, "centre": [1.5, 0.5], "cells": 5 } } },
+    { "name": "disc-left", "material": "rock",
+      "mesh": { "disc": { "radius": 0.5, "centre": [1.5, 0.5], "cells": 5 }, "mirror": { "x": 0 } } },
+    { "name": "angle-right", "material": "rock",
+      "mesh": { "fill": { "polygon": [[0,0],[1,0],[1,0.4],[0.5,0.6],[0.6,1],[0,1]], "size": 0.15 } } },
+    { "name": "angle-left", "material": "rock",
+      "mesh": { "fill": { "polygon": [[0,0],[1,0],[1,0.4],[0.5,0.6],[0.6,1],[0,1]], "size": 0.15 }, "mirror": { "x": 0 } } },
+    { "name": "plate", "material": "rock",
+      "mesh": { "rectangle": { "size": [3.9, 0.3], "cells": [26, 2], "origin": [-1.95, 1] } },
+      "supports": [ { "where": { "nearest": [0, 1.3] }, "fix": ["x"] } ],
+      "loads": [ { "where": { "group": "top" }, "force": [0, -4e6] } ] } ],
+  "time": { "end": 1, "mode": "static", "load_steps": 1 },
+  "output": { "history": { "track": [ { "body": "plate", "surface": "contact" } ] } } })";
+
+}  // namespace
+
+TEST_CASE("bodies pressed in a box: balance of each, mirror images", "[program]") {
+  const Folder folder;
+  const std::string scene = folder.write("press.json", kPress);
+  const Result r = run({"run", scene, "-o", folder / "press"}, folder);
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  CHECK(r.err.find("steps of relaxation, residual ") != std::string::npos);
+  CHECK(r.out.find("force balance: ") != std::string::npos);
+  const Json balance = Json::parse(content(folder / "press/run.json"))["balance"];
+  REQUIRE(balance.size() == 5);
+  for (const Json& body : balance) {
+    CHECK(body["of_load"] < 3e-6);  // twice the load is on the plate, and tolerance is 1e-6
+    CHECK(body["of_load"].get<double>() * 4e6 == Approx(body["force"].get<double>()).epsilon(.3));
+  }
+
+  const Frame frame = read_frame(folder / "press", 1, 1.5);
+  const auto cells_of = [&](int body) {
+    std::vector<int> cells;
+    for (size_t c = 0; c < frame.body.size(); ++c) {
+      if (frame.body[c] == body) cells.push_back(static_cast<int>(c));
+    }
+    return cells;
+  };
+  double largest = 0, worst = 0;
+  for (const int right : {1, 3}) {
+    const std::vector<int> here = cells_of(right), there = cells_of(right + 1);
+    REQUIRE(here.size() == there.size());
+    const auto place = [&](int cell) {
+      Vec2 sum = Vec2::Zero();
+      for (const int node : frame.mesh.element(cell)) {
+        sum += frame.mesh.nodes[node] + frame.displacement[node];
+      }
+      return Vec2(sum / static_cast<double>(frame.mesh.element(cell).size()));
+    };
+    for (const int a : here) {
+      const Vec2 image(-place(a).x(), place(a).y());
+      const int b = *std::min_element(there.begin(), there.end(), [&](int i, int j) {
+        return (place(i) - image).norm() < (place(j) - image).norm();
+      });
+      CHECK((place(b) - image).norm() < 1e-12);
+      const CauchyStress &s = frame.stress[a], &t = frame.stress[b];
+      largest = std::max(largest, std::abs(s.yy));
+      worst =
+          std::max({worst, std::abs(s.xx - t.xx), std::abs(s.yy - t.yy), std::abs(s.xy + t.xy)});
+    }
+  }
+  CHECK(largest > 1e6);
+  CHECK(worst < 1e-9 * largest);
+
+  // The pressure of the whole is what the surface has.
+  double force = 0, most = 0;
+  for (const SurfaceRecord& s : read_surfaces(folder / "press", 1, 1.5)) {
+    if (s.body != 5) continue;
+    force += s.pressure * (s.to - s.from).norm();
+    most = std::max(most, s.pressure);
+  }
+  CHECK(force == Approx(4e6).epsilon(1e-3));
+  const HistoryTable history = read_history(folder / "press/history.csv");
+  CHECK(history.column("plate.pressure")->back() == Approx(most).epsilon(1e-12));
+  CHECK_THROWS_AS(read_surfaces(folder / "press", 2, 3), std::runtime_error);
+}
+
+TEST_CASE("the pressure under a block, and its half-width", "[program]") {
+  const Folder folder;
+  const std::string scene = folder.write("block.json", R"({
+  "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0 } },
+  "contact": { "normal_stiffness": 1e10 },
+  "bodies": [
+    { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-3,-1],[3,-1],[3,0],[-3,0]] },
+    { "name": "block", "material": "rock",
+      "mesh": { "rectangle": { "size": [2, 1], "cells": [4, 2], "origin": [-1, 0] } },
+      "supports": [ { "where": { "nearest": [0, 1] }, "fix": ["x"] } ],
+      "loads": [ { "where": { "group": "top" }, "traction": [0, -1e5] } ] } ],
+  "time": { "end": 1, "mode": "static", "load_steps": 1 },
+  "output": { "history": { "track": [ { "body": "block", "surface": "contact" } ] } },
+  "expect": [ { "quantity": "block.pressure", "value": 1e5, "relative": 1e-3 },
+              { "quantity": "block.half_width", "value": 1.154700538, "relative": 1e-4 },
+              { "quantity": "block.half_width", "take": "first", "value": 0, "tolerance": 0 } ] })");
+  const Result r = run({"run", scene, "-o", folder / "block", "--verify"}, folder);
+  INFO(r.err << r.out);
+  CHECK(r.code == 0);
 }
 
 TEST_CASE("a static run without an equilibrium says what is loose", "[program]") {

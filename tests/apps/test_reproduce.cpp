@@ -133,6 +133,44 @@ TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
   CHECK(run(strict, folder).code == 1);
 }
 
+TEST_CASE("a curve along a surface", "[reproduce]") {
+  const Folder folder;
+  const std::string figure = R"({ "title": "Pressure",
+  "panels": [ { "x": "x [mm]", "y": "pressure [kPa]",
+    "curves": [ { "scene": "press", "surface": "block", "time": 1, "x_scale": 1e3, "y": "pressure", "y_scale": 1e-3 } ] } ] })";
+  const std::string data = data_folder(folder, figure);
+  folder.write("data/scenes/press.json", R"({
+  "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0 } },
+  "contact": { "normal_stiffness": 1e10 },
+  "bodies": [
+    { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-3,-1],[3,-1],[3,0],[-3,0]] },
+    { "name": "block", "material": "rock",
+      "mesh": { "rectangle": { "size": [2, 1], "cells": [4, 2], "origin": [-1, 0] } },
+      "supports": [ { "where": { "nearest": [0, 1] }, "fix": ["x"] } ],
+      "loads": [ { "where": { "group": "top" }, "traction": [0, -1e5] } ] } ],
+  "time": { "end": 1, "mode": "static", "load_steps": 1 } })");
+  const std::vector<std::string> all{"reproduce", "fig-7", "--data", data, "-o", folder / "out"};
+  const Result r = run(all, folder);
+  INFO(r.out << r.err);
+  REQUIRE(r.code == 0);
+  const HistoryTable curve = read_history(folder / "out/fig-7/curve-1-1.csv");
+  REQUIRE(curve.columns[0].size() == 4);
+  for (int i = 0; i < 4; ++i) {
+    CHECK(curve.columns[0][i] == Approx(500 * i - 750).epsilon(1e-3));
+    CHECK(curve.columns[1][i] == Approx(100).epsilon(1e-3));
+  }
+  for (const auto& [from, to, what] :
+       {std::array{"\"block\"", "\"floor\"", "must be \"block\""},
+        {"\"time\": 1", "\"time\": 0.7", "is not the time of a frame"},
+        {"\"y\": \"pressure\"", "\"y\": \"presure\"", "pressure"}}) {
+    folder.write("data/figures/fig-7.json", replaced(figure, from, to));
+    const Result wrong = run(all, folder);
+    INFO(wrong.err);
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find(what) != std::string::npos);
+  }
+}
+
 TEST_CASE("without gnuplot there are curves and a report all the same", "[reproduce]") {
   const Folder folder;
   const std::string data = data_folder(folder);

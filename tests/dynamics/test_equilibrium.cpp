@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "dynamics/half_disc.hpp"
 #include "dynamics/simulation.hpp"
 #include "fem/static_solution.hpp"
-#include "mesh/check.hpp"
+#include "mesh/half_disc_mesh.hpp"
+#include "mesh/mirror.hpp"
 #include "mesh/rectangle_mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/select.hpp"
@@ -180,14 +180,11 @@ Hertz hertz(double b_over_radius, int cells, double stiffness) {
   const double peak = std::sqrt(force * modulus / (std::numbers::pi * radius));
   DeformableBody upper, lower;
   upper.name = "upper";
-  upper.mesh = test::half_disc({1.5 * b, 3 * cells / 2, 1.1});
+  upper.mesh = half_disc_mesh({0, 0}, 1, {1.5 * b, 3 * cells / 2}, ElementShape::quadrilateral);
   lower.name = "lower";
   lower.mesh = upper.mesh;
-  for (Vec2& x : lower.mesh.nodes) x = -x;
-  for (DeformableBody* body : {&upper, &lower}) {
-    REQUIRE_NOTHROW(check_mesh(body->mesh));
-    reorder_along_curve(body->mesh);
-  }
+  mirror(lower.mesh, 1, 0);
+  for (DeformableBody* body : {&upper, &lower}) reorder_along_curve(body->mesh);
   lower.supports = {{nodes_where(lower.mesh, {.y = -1}), {true, true}, {}}};
   upper.supports = {{nodes_where(upper.mesh, {.y = 1}), {true, false}, {}}};
   upper.dead_loads = {side_load(upper, {.y = 1}, {0, -force})};

@@ -1,7 +1,9 @@
-// Structured meshes: rectangle and disc.
+// Structured meshes: rectangle, disc, half a disc; mirror images.
 #include <numbers>
 
 #include "mesh/disc_mesh.hpp"
+#include "mesh/half_disc_mesh.hpp"
+#include "mesh/mirror.hpp"
 #include "mesh/rectangle_mesh.hpp"
 #include "mesh_laws.hpp"
 
@@ -93,4 +95,73 @@ TEST_CASE("graded and shifted discs", "[mesh]") {
     CHECK_THROWS_AS(disc_mesh({0, 0}, 1, wrong, ElementShape::triangle), std::invalid_argument);
   }
   CHECK_THROWS_AS(disc_mesh({0, 0}, 0, {4}, ElementShape::triangle), std::invalid_argument);
+}
+
+TEST_CASE("half discs", "[mesh]") {
+  struct Case {
+    HalfDiscCells cells;
+    double jacobian, angle;  // smallest ones; angle in degrees
+  };
+  for (const auto& [cells, jacobian, angle] :
+       {Case{{.03, 18}, .5, 10}, {{.05, 1}, .3, 10}, {{.25, 6, 1.3}, .5, 10}, {{.5, 16}, .1, 5}}) {
+    INFO(cells.fine << " " << cells.cells);
+    const Vec2 pole(.5, -2);
+    const Mesh mesh = half_disc_mesh(pole, 2, cells, ElementShape::quadrilateral);
+    double area = 0;  // of the polygon
+    const std::vector<std::array<int, 2>>& arc = group(mesh, "arc").edges;
+    for (const auto& [a, b] : arc) {
+      const Vec2 centre = pole + Vec2(0, 2);
+      area += cross(mesh.nodes[a] - centre, mesh.nodes[b] - centre) / 2;
+      CHECK((mesh.nodes[a] - centre).norm() == Approx(2).epsilon(1e-14));
+    }
+    check_laws(mesh, area);
+    check_share_boundary(mesh, {"arc", "straight"});
+    for (const int node : group(mesh, "straight").nodes) CHECK(mesh.nodes[node].y() == 0);
+    CHECK(mesh_quality(mesh).smallest_scaled_jacobian > jacobian);
+    const Mesh triangles = half_disc_mesh(pole, 2, cells, ElementShape::triangle);
+    check_laws(triangles, area);
+    CHECK(mesh_quality(triangles).smallest_angle > angle * std::numbers::pi / 180);
+
+    // Its own mirror image, to the last bit about the origin; edges of the fine part are equal.
+    const Mesh here = half_disc_mesh({0, 0}, 2, cells, ElementShape::quadrilateral);
+    std::set<std::pair<double, double>> places;
+    for (const Vec2& p : here.nodes) places.emplace(p.x(), p.y());
+    for (const Vec2& p : here.nodes) CHECK(places.count({-p.x() + 0., p.y()}));
+    int fine = 0;
+    for (const auto& [a, b] : arc) {
+      const Vec2 middle = (mesh.nodes[a] + mesh.nodes[b]) / 2 - pole;
+      if (std::abs(middle.x()) > 2 * cells.fine) continue;
+      CHECK((mesh.nodes[a] - mesh.nodes[b]).norm() ==
+            Approx(4 * std::sin(std::asin(cells.fine) / cells.cells / 2)).epsilon(1e-12));
+      ++fine;
+    }
+    CHECK(fine == 2 * cells.cells);
+  }
+  for (const HalfDiscCells& wrong :
+       {HalfDiscCells{.6, 4}, {0, 4}, {std::nan(""), 4}, {.1, 0}, {.1, 4, 1}, {.1, 2000}}) {
+    CHECK_THROWS_AS(half_disc_mesh({0, 0}, 1, wrong, ElementShape::triangle),
+                    std::invalid_argument);
+  }
+  CHECK_THROWS_AS(half_disc_mesh({0, 0}, -1, {.1, 4}, ElementShape::triangle),
+                  std::invalid_argument);
+}
+
+TEST_CASE("mirror images", "[mesh]") {
+  const Mesh mesh = rectangle_mesh({2, 1}, {4, 3}, {1, 0}, ElementShape::triangle);
+  for (const int axis : {0, 1}) {
+    Mesh image = mesh;
+    mirror(image, axis, .5);
+    check_laws(image, 2);
+    check_share_boundary(image, {"left", "right", "bottom", "top"});
+    for (size_t i = 0; i < mesh.nodes.size(); ++i) {
+      CHECK(image.nodes[i][axis] == 1 - mesh.nodes[i][axis]);
+      CHECK(image.nodes[i][1 - axis] == mesh.nodes[i][1 - axis]);
+    }
+    CHECK(group(image, "left").nodes == group(mesh, "left").nodes);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      CHECK(image.element(e).front() == mesh.element(e).front());
+    }
+    mirror(image, axis, .5);
+    CHECK(image.corners == mesh.corners);
+  }
 }

@@ -161,6 +161,8 @@ const std::vector<Broken> kBroken{
     {"\"frames\": 10", "\"frames\": 1.5", ":13: /output/frames", "whole number"},
     {"{ \"body\": \"falling\" }", "{ \"body\": \"fallin\" }", ":13: /output/history/track/0/body",
      "did you mean \"falling\"", false},
+    {"{ \"body\": \"falling\" }", "{ \"body\": \"falling\", \"surface\": \"contact\" }",
+     ":13: /output/history/track/0/surface", "bodies with a mesh", false},
     {"{ \"body\": \"falling\" }", "\"falling\"", ":13: /output/history/track/0",
      "must be an object"},
     {"\"falling.y\"", "\"falling.z\"", ":14: /expect/0/quantity", "no history has a column", false},
