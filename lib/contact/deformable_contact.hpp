@@ -8,6 +8,7 @@
 // part with their polygons; pairs of two rigid bodies do not belong here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -77,11 +78,20 @@ struct EdgeFaceContact {
 
 /// All that happens between two bodies.
 struct BodyContact {
-  int a, b;                   ///< a < b
-  Vec2 force = Vec2::Zero();  ///< on a, N
-  Vec2 point = Vec2::Zero();  ///< centre of the pressure, m
-  double penetration = 0;     ///< largest depth below a surface, m
+  int a, b;                      ///< a < b
+  Vec2 force = Vec2::Zero();     ///< on a, without friction, N
+  Vec2 point = Vec2::Zero();     ///< centre of the pressure, m
+  double penetration = 0;        ///< largest depth below a surface, m
+  Vec2 friction = Vec2::Zero();  ///< on a, N
 };
+
+/// The one of two bodies in an ascending list that has it.
+inline BodyContact& find_contact(std::vector<BodyContact>& contacts, int a, int b) {
+  const std::pair<int, int> key = std::minmax(a, b);
+  return *std::lower_bound(
+      contacts.begin(), contacts.end(), key,
+      [](const BodyContact& c, const std::pair<int, int>& k) { return std::pair(c.a, c.b) < k; });
+}
 
 class DeformableContact {
  public:

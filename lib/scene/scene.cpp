@@ -41,7 +41,7 @@ class SceneReader {
     }
     bodies(list);
     contact_rules();
-    smooth_elements();
+    meshed_contact();
     time(top.required("time", "{\"end\": ...} in s"));
     if (scene_.time.statics) statics();
     const JsonValue* output_value = top.optional("output");
@@ -184,6 +184,7 @@ class SceneReader {
         std::vector<std::string> names;
         for (const NamedFrictionLaw& l : kFrictionLaws) names.emplace_back(l.name);
         law.friction_law = kFrictionLaws[in_.choice(*v, names)].law;
+        friction_law_ = v;
       }
     }
     object.finish();
@@ -203,18 +204,6 @@ class SceneReader {
     object.finish();
   }
 
-  // Friction of elements would lose its history on every border between them.
-  void smooth_elements() {
-    if (by_element_ == nullptr || model_.deformables.empty()) return;
-    const ContactLaw& law = model_.contact;
-    bool rough = law.friction.coefficient > 0;
-    for (const ContactRule& rule : law.rules) rough = rough || rule.friction.coefficient > 0;
-    if (rough) {
-      in_.fail(*by_element_,
-               "\"element\" has no friction: set every \"coefficient\" to 0, or use \"body\"");
-    }
-  }
-
   // After the bodies, whose names it may use.
   void contact_rules() {
     if (contact_pairs_ == nullptr) return;
@@ -228,6 +217,17 @@ class SceneReader {
       const Friction rule = friction(object.required("friction", "{\"coefficient\": ...}"), false);
       model_.contact.rules.push_back({{a, b}, rule});
       object.finish();
+    }
+  }
+
+  // What bodies with a mesh cannot take.
+  void meshed_contact() {
+    if (model_.deformables.empty()) return;
+    if (model_.contact.friction_law == FrictionLaw::per_edge) {
+      in_.fail(
+          *friction_law_,
+          "\"per_edge\" is for rigid bodies only; bodies with a mesh have a spring per boundary "
+          "edge, or per pair of elements with \"surface\": \"element\": leave it out");
     }
   }
 
@@ -725,6 +725,7 @@ class SceneReader {
   Model& model_;
   JsonReader in_;
   const JsonValue* contact_pairs_ = nullptr;
+  const JsonValue* friction_law_ = nullptr;
   const JsonValue* by_element_ = nullptr;  // the surface, where it is "element"
   std::vector<std::string> names_;         // of all bodies
   std::vector<int> has_poisson_;           // materials that say their Poisson's ratio

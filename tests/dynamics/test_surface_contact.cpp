@@ -118,6 +118,24 @@ TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", 
   }
 }
 
+TEST_CASE("discs that rub by their elements keep momenta; the ledger knows the loss", "[surface]") {
+  for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
+    Model model = empty_model();
+    model.contact.surface = ContactSurface::element;
+    model.contact.distribution = ForceDistribution::resultant;
+    model.contact.friction = {.3, 12e9};
+    add(model, "one", disc({0, 0}, shape), element_of(shape), {2, 0}, 5);
+    add(model, "two", disc({.96, .3}, shape), element_of(shape), {-2, 0});
+    const Result result = collide(model, .1, 3e-3);
+    CAPTURE(static_cast<int>(shape), result.energy, result.last.friction_loss);
+    CHECK(result.touched);
+    CHECK(result.energy < 5e-4);
+    CHECK(result.momentum < 1e-8);
+    CHECK(result.last.friction_loss > .1);
+    CHECK(collide(model, .1, 3e-3, 3).last.kinetic == result.last.kinetic);
+  }
+}
+
 TEST_CASE("a deformable body bounces on a rigid one as on a meshed one", "[surface]") {
   Model rigid = empty_model();
   add_floor(rigid);

@@ -225,9 +225,9 @@ const std::vector<Broken> kBrokenMeshed{
     {"\"supports\"", "\"motion\": \"fixed\", \"supports\"", ":6: /bodies/0/motion", "\"free\"",
      false},
     {"  \"bodies\"",
-     "  \"contact\": { \"normal_stiffness\": 1, \"surface\": \"element\", \"friction\": { "
+     "  \"contact\": { \"normal_stiffness\": 1, \"friction\": { \"law\": \"per_edge\", "
      "\"coefficient\": 0.5, \"tangential_stiffness\": 1 } },\n  \"bodies\"",
-     ":3: /contact/surface", "has no friction", false},
+     ":3: /contact/friction/law", "rigid bodies only", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
 };
 
