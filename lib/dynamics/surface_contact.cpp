@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/unstable.hpp"
+#include "geometry/predicates.hpp"
 
 namespace apothem {
 namespace {
@@ -18,6 +20,59 @@ double shortest_reference(const Model& model) {
     shortest = std::min(shortest, boundary_inradius(body.mesh, boundary(body.mesh)));
   }
   return shortest;
+}
+
+// Closed lines around a body as it is given, with what is inside on the left.
+struct Outline {
+  std::vector<std::vector<Vec2>> loops;
+  double reach;  // of its potentials, m
+  Box box;
+};
+
+Outline outline_of(const RigidBody& body) {
+  Outline outline{{{}}, 1 / body.potential.steepest, {}};
+  const Eigen::Rotation2Dd rotation(body.angle);
+  for (const Vec2& v : body.potential.vertices) {
+    outline.loops[0].emplace_back(body.position + rotation * v);
+  }
+  return outline;
+}
+
+Outline outline_of(const DeformableBody& body) {
+  Outline outline{{}, 0, {}};
+  for (const BoundaryLoop& loop : boundary(body.mesh).loops) {
+    std::vector<Vec2>& ring = outline.loops.emplace_back();
+    for (const int n : loop.nodes) ring.push_back(body.mesh.nodes[n]);
+    const std::vector<double> radii = inradii(body.mesh, loop);
+    outline.reach = std::max(outline.reach, *std::max_element(radii.begin(), radii.end()));
+  }
+  return outline;
+}
+
+double distance(const Outline& outline, const Vec2& p) {
+  double least = HUGE_VAL;
+  for (const std::vector<Vec2>& ring : outline.loops) {
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 edge = ring[(i + 1) % ring.size()] - ring[i];
+      const double along = std::clamp((p - ring[i]).dot(edge) / edge.squaredNorm(), 0., 1.);
+      least = std::min(least, (ring[i] + along * edge - p).norm());
+    }
+  }
+  return least;
+}
+
+// A vertex of a that is farther inside b than potentials reach.
+std::optional<Vec2> buried(const Outline& a, const Outline& b) {
+  if (apart(a.box, b.box)) return {};
+  for (const std::vector<Vec2>& ring : a.loops) {
+    for (const Vec2& p : ring) {
+      if (apart({p.x(), p.y(), p.x(), p.y()}, b.box)) continue;
+      bool inside = false;
+      for (const std::vector<Vec2>& other : b.loops) inside ^= strictly_inside(other, p);
+      if (inside && distance(b, p) > b.reach) return p;
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -36,8 +91,11 @@ SurfaceContact::Surface SurfaceContact::make_surface(const Model& model, int thr
       const Potential& p = model.bodies[i].potential;
       contact.add_rigid(p.vertices, i, 1 / p.steepest);
     }
+    const PotentialChoice& choice = model.contact.potential;
+    std::optional<double> reference;
+    if (choice.reference == PotentialChoice::Reference::length) reference = choice.length;
     for (const DeformableBody& body : model.deformables) {
-      contact.add_deformable(body.mesh, boundary(body.mesh), body.first_node);
+      contact.add_deformable(body.mesh, boundary(body.mesh), body.first_node, reference);
     }
     return ByBody{std::move(contact)};
   }
@@ -60,7 +118,32 @@ SurfaceContact::Surface SurfaceContact::make_surface(const Model& model, int thr
 SurfaceContact::SurfaceContact(const Model& model, const State& state, int threads)
     : model_(model), surface_(make_surface(model, threads)) {
   add_friction();
+  find_buried(state);
   refresh(state);
+}
+
+// Contact is felt near surfaces only: a body deep inside another one would feel nothing.
+void SurfaceContact::find_buried(const State& state) const {
+  std::vector<Outline> outlines;
+  for (const RigidBody& body : model_.bodies) outlines.push_back(outline_of(body));
+  for (const DeformableBody& body : model_.deformables) outlines.push_back(outline_of(body));
+  for (Outline& outline : outlines) {
+    for (const std::vector<Vec2>& ring : outline.loops) {
+      for (const Vec2& p : ring) outline.box.include(p.x(), p.y());
+    }
+  }
+  const int rigid = static_cast<int>(model_.bodies.size());
+  for (int a = 0; a < static_cast<int>(outlines.size()); ++a) {
+    for (int b = a < rigid ? rigid : 0; b < static_cast<int>(outlines.size()); ++b) {
+      if (a == b) continue;
+      if (const std::optional<Vec2> place = buried(outlines[a], outlines[b])) {
+        throw Unrunnable(fmt::format("\"{}\" is inside \"{}\" {}, deeper than contact reaches: "
+                                     "move them apart",
+                                     name(a), name(b), at(*place, state)),
+                         "bodies", -1);
+      }
+    }
+  }
 }
 
 void SurfaceContact::add_friction() {

@@ -67,6 +67,7 @@ class SurfaceContact {
   using Surface = std::variant<ByBody, ByElement>;
   static Surface make_surface(const Model& model, int threads);
   void add_friction();
+  void find_buried(const State& state) const;
   void refresh(const State& state);
   [[nodiscard]] const std::string& name(int body) const;
   [[nodiscard]] DeformableContact::Resultant sum(int body) const;
