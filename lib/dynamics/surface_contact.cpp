@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/fold_watch.hpp"
 #include "dynamics/unstable.hpp"
 #include "geometry/predicates.hpp"
 
@@ -216,10 +217,7 @@ void SurfaceContact::guard(const DeformableContact& contact, const State& state)
                           "contact.normal_stiffness"));
   }
   if (const auto& self = contact.self_contact()) {
-    throw Unstable(
-        fmt::format("\"{}\" folds onto itself {}: contact of a body with itself is not "
-                    "modelled; divide it into two bodies",
-                    name(self->body), at(self->place, state)));
+    refuse_fold(model_, state, self->body, self->place);
   }
 }
 

@@ -278,6 +278,24 @@ TEST_CASE("a resumed run of rubbing meshes continues bit for bit", "[program]") 
   }
 }
 
+TEST_CASE("a body that folds onto itself stops with the place", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("tongs.json", R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+    "bodies": [ { "name": "tongs", "material": "rock",
+      "mesh": { "fill": { "polygon": [[0,0],[1,0],[1,0.1],[0.1,0.1],[0.1,0.2],[1,0.2],[1,0.3],[0,0.3]], "size": 0.05 } },
+      "supports": [ { "where": { "y": 0 }, "fix": ["x", "y"] },
+                    { "where": { "box": [[0.9, 0.2], [1, 0.3]] }, "velocity": [[0, 0, -20]] } ] } ],
+    "time": { "end": 0.02 }, "output": { "frames": 5, "history": { "interval": 1e-4 } } })");
+  const Result r = run({"run", file, "-o", folder / "tongs"}, folder);
+  INFO(r.err);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("\"tongs\" folds onto itself at (") != std::string::npos);
+  CHECK(r.err.find("divide it into two bodies") != std::string::npos);
+  CHECK(lines(r.err) == 1);
+  CHECK(content(folder / "tongs/frames.pvd").find("bodies_000001.vtu") != std::string::npos);
+}
+
 TEST_CASE("a load too heavy for the material stops with the place", "[program]") {
   const Folder folder;
   const std::string file = folder.write("crushed.json", R"({

@@ -94,6 +94,94 @@ TEST_CASE("threads change no bit of deformable contact", "[surface]") {
   }
 }
 
+TEST_CASE("friction of a pair overrides that of the scene, and is in the records", "[surface]") {
+  for (const ContactSurface surface : {ContactSurface::body, ContactSurface::element}) {
+    Model model = empty_model();
+    model.contact.surface = surface;
+    model.contact.distribution = surface == ContactSurface::body ? ForceDistribution::variational
+                                                                 : ForceDistribution::resultant;
+    model.contact.friction = {.3, 12e9};
+    add_floor(model);
+    for (const double side : {-1., 1.}) {
+      add(model, side < 0 ? "rough" : "smooth",
+          rectangle_mesh({.5, .2}, {5, 2}, {side - .25, -1e-5}, ElementShape::quadrilateral),
+          ElementKind::quad4, {1, 0});
+    }
+    model.contact.rules = {{{{{true, 0}, {true, 2}}}, {0, 0}}};  // floor and "smooth"
+    TimeSettings time;
+    time.end = 1;
+    Simulation simulation(model, time, 1, 1);
+    for (int i = 0; i < 4; ++i) simulation.step();
+    const std::vector<BodyForce> on = simulation.deformable_forces();
+    CHECK(on[0].friction > 0);
+    CHECK(on[1].friction == 0);
+    const std::vector<ContactRecord> records = simulation.contacts();
+    REQUIRE(records.size() == 2);
+    // On the floor, along the motion; what is not normal force is friction.
+    CHECK(records[0].tangential.x() > .01 * records[0].normal.norm());
+    CHECK((records[0].tangential + records[0].normal + Vec2(on[0].fx, on[0].fy)).norm() <
+          1e-12 * records[0].normal.norm());
+    CHECK(records[0].tangential.norm() <= .3 * records[0].normal.norm() * (1 + 1e-12));
+    CHECK(records[0].penetration > 0);
+    CHECK(records[1].tangential == Vec2::Zero());
+    // The lower side of the block carries the same.
+    double traction = 0, pressure = 0;
+    for (const SurfaceRecord& s : simulation.surfaces()) {
+      const Vec2 edge = s.to - s.from;
+      if (s.body != 1 || std::abs(edge.y()) > .1 * std::abs(edge.x())) continue;
+      traction += s.traction * edge.x();
+      pressure += s.pressure * edge.x();
+    }
+    CHECK(pressure == Approx(-records[0].normal.y()).epsilon(1e-3));
+    CHECK(traction == Approx(-records[0].tangential.x()).epsilon(1e-2));
+  }
+}
+
+TEST_CASE("a long strip that is bent until its ends meet is refused", "[surface]") {
+  for (const bool alone : {true, false}) {
+    Model model = empty_model();
+    model.contact.surface = alone ? ContactSurface::body : ContactSurface::element;
+    model.contact.distribution = ForceDistribution::resultant;
+    if (!alone) add_floor(model);
+    // Most of a circle of 1 m about (0, 3); the free end comes up to the held one.
+    Mesh strip = rectangle_mesh({5.9, .1}, {59, 2}, {.2, .95}, ElementShape::quadrilateral);
+    for (Vec2& x : strip.nodes) {
+      const double angle = x.x(), radius = 2 - x.y();
+      x = Vec2(0, 3) + radius * Vec2(std::cos(angle), std::sin(angle));
+    }
+    reorder_along_curve(strip);
+    const auto end = [&](double angle) {
+      std::vector<int> nodes;
+      for (int i = 0; i < static_cast<int>(strip.nodes.size()); ++i) {
+        const Vec2 arm = strip.nodes[i] - Vec2(0, 3);
+        const Vec2 direction(std::cos(angle), std::sin(angle));
+        if (std::abs(cross(direction, arm)) < 1e-9 && arm.dot(direction) > 0) nodes.push_back(i);
+      }
+      REQUIRE(nodes.size() == 3);
+      return nodes;
+    };
+    MotionHistory up;
+    up.velocity = {{0, {0, 20}}};
+    const std::vector<Support> supports{{end(.2), {true, true}, {}}, {end(6.1), {true, true}, up}};
+    add(model, "strip", std::move(strip), ElementKind::quad4, {0, 0});
+    model.deformables[0].supports = supports;
+    TimeSettings time;
+    time.end = .05;
+    Simulation simulation(model, time, 1, 1);
+    std::string what;
+    try {
+      while (simulation.state().time < time.end) simulation.step();
+    } catch (const Unstable& error) {
+      what = error.what();
+    }
+    CAPTURE(what, simulation.state().time);
+    CHECK(what.find("\"strip\" folds onto itself at (") == 0);
+    CHECK(what.find("divide it into two bodies") != std::string::npos);
+    // The ends are sin(.2) + sin(.183) of the radius apart.
+    CHECK(simulation.state().time == Approx(.38 / 20).epsilon(.1));
+  }
+}
+
 TEST_CASE("contact beyond the method's range stops the run with the place", "[surface]") {
   Model model = empty_model();
   model.contact.normal_stiffness = 1e6;
