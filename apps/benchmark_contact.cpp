@@ -95,7 +95,7 @@ void deformable_friction(benchmark::State& state) {
   Interface bars(static_cast<int>(state.range(0)));
   bars.contact.update(bars.displacement, {});
   bars.contact.evaluate();
-  DeformableFriction friction({0, 0}, 1, {{.5, .6}});
+  DeformableFriction friction({{0, 0}, 1, {{.5, .6}}});
   for (auto _ : state) friction.update(bars.contact, bars.displacement, {}, 1e-3);
   per(state, "ns_per_contact", bars.contact.contacts().size());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));

@@ -24,16 +24,22 @@ void include(Box& box, const Box& other) {
 
 }  // namespace
 
+std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop) {
+  std::vector<double> radii;
+  for (const int element : loop.elements) {
+    std::vector<Vec2> corners;
+    for (const int n : mesh.element(element)) corners.push_back(mesh.nodes[n]);
+    const Polygon polygon(corners);
+    radii.push_back(polygon.is_convex() ? inscribed_circle(polygon).radius
+                                        : largest_inscribed_circle(polygon).radius);
+  }
+  return radii;
+}
+
 double boundary_inradius(const Mesh& mesh, const Boundary& boundary) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const BoundaryLoop& loop : boundary.loops) {
-    for (const int element : loop.elements) {
-      std::vector<Vec2> corners;
-      for (const int n : mesh.element(element)) corners.push_back(mesh.nodes[n]);
-      const Polygon polygon(corners);
-      smallest = std::min(smallest, polygon.is_convex() ? inscribed_circle(polygon).radius
-                                                        : largest_inscribed_circle(polygon).radius);
-    }
+    for (const double r : inradii(mesh, loop)) smallest = std::min(smallest, r);
   }
   return smallest;
 }
@@ -41,6 +47,7 @@ double boundary_inradius(const Mesh& mesh, const Boundary& boundary) {
 int DeformableContact::add_deformable(const Mesh& mesh, const Boundary& boundary, int first_node,
                                       std::optional<double> reference) {
   const int first = outlines_.size();
+  double r = std::numeric_limits<double>::infinity();
   std::vector<Vec2> places;
   std::vector<int> nodes;
   for (const BoundaryLoop& loop : boundary.loops) {
@@ -49,24 +56,28 @@ int DeformableContact::add_deformable(const Mesh& mesh, const Boundary& boundary
       places.push_back(mesh.nodes[n]);
       nodes.push_back(first_node + n);
     }
-    add_loop(places, nodes);
+    const std::vector<double> caps =
+        reference ? std::vector<double>(nodes.size(), *reference) : inradii(mesh, loop);
+    r = std::min(r, *std::min_element(caps.begin(), caps.end()));
+    add_loop(places, nodes, caps);
   }
-  const double r = reference ? *reference : boundary_inradius(mesh, boundary);
-  close_body({first, outlines_.size(), -1, r, r});
+  close_body({first, outlines_.size(), -1, r});
   return static_cast<int>(outlines_.bodies.size()) - 1;
 }
 
 int DeformableContact::add_rigid(const std::vector<Vec2>& vertices, int entry, double reference) {
   const int first = outlines_.size();
-  add_loop(vertices, {});
-  close_body({first, outlines_.size(), entry, reference, reference});
+  add_loop(vertices, {}, std::vector<double>(vertices.size(), reference));
+  close_body({first, outlines_.size(), entry, reference});
   return static_cast<int>(outlines_.bodies.size()) - 1;
 }
 
-void DeformableContact::add_loop(const std::vector<Vec2>& places, std::span<const int> nodes) {
+void DeformableContact::add_loop(const std::vector<Vec2>& places, std::span<const int> nodes,
+                                 std::span<const double> caps) {
   Outlines& o = outlines_;
   const int first = o.size();
   const int n = static_cast<int>(places.size());
+  o.cap.insert(o.cap.end(), caps.begin(), caps.end());
   for (int i = 0; i < n; ++i) {
     o.x0.push_back(places[i].x());
     o.y0.push_back(places[i].y());
@@ -83,7 +94,7 @@ void DeformableContact::close_body(const Outlines::Body& body) {
   o.bodies.push_back(body);
   const size_t n = o.x.size();
   for (std::vector<double>* v : {&o.mx, &o.my, &o.tx, &o.ty, &o.length, &o.depth}) v->resize(n);
-  o.clearance.resize(n, body.cap);
+  o.clearance.insert(o.clearance.end(), o.cap.begin() + body.first, o.cap.end());
   slope_.resize(n, stiffness_ / body.reference);
   body_stiffness_.resize(o.bodies.size());
   fx_.resize(n), fy_.resize(n);
@@ -275,12 +286,13 @@ void DeformableContact::find_clearance(int b) {
   Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
   // A vertex and a front come within the cap of each other from farther away than twice the cap,
-  // the more so the sharper the reflex corner.
+  // the more so the sharper the reflex corner: here from three times the larger cap of the two, no
+  // cap being smaller than r.
   std::vector<Box>& boxes = body_boxes_;
   boxes.clear();
   for (int i = body.first; i < body.end; ++i) {
-    o.clearance[i] = body.cap;
-    boxes.push_back(edge_boxes_[i].grown(1.5 * body.cap));
+    o.clearance[i] = o.cap[i];
+    boxes.push_back(edge_boxes_[i].grown(3 * o.cap[i] - 1.5 * body.reference));
   }
   grid_.find_pairs(boxes, pairs_);
   const auto meet = [&](int v, int f) {  // vertex v, front f

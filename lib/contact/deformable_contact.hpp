@@ -8,6 +8,7 @@
 // part with their polygons; pairs of two rigid bodies do not belong here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -26,7 +27,6 @@ struct Outlines {
     int first, end;         ///< its vertices
     int entry;              ///< rigid: number of the body in the arrays of positions; otherwise -1
     double reference;       ///< r, m; frozen
-    double cap;             ///< largest depth of its collar, m
     double cx = 0, cy = 0;  ///< where the origin of its frame is, m
 
     [[nodiscard]] bool rigid() const { return entry >= 0; }
@@ -35,6 +35,7 @@ struct Outlines {
   std::vector<int> body, next, previous;  ///< of each vertex
   std::vector<int> node;                  ///< in the nodal arrays; -1 for vertices of rigid bodies
   std::vector<double> x0, y0;             ///< in the mesh as given, or in the frame of the body
+  std::vector<double> cap;                ///< largest depth of the collar at each edge, m
   // As they are now:
   std::vector<double> x, y;       ///< m
   std::vector<double> mx, my;     ///< direction of the bisector at each vertex
@@ -77,11 +78,20 @@ struct EdgeFaceContact {
 
 /// All that happens between two bodies.
 struct BodyContact {
-  int a, b;                   ///< a < b
-  Vec2 force = Vec2::Zero();  ///< on a, N
-  Vec2 point = Vec2::Zero();  ///< centre of the pressure, m
-  double penetration = 0;     ///< largest depth below a surface, m
+  int a, b;                      ///< a < b
+  Vec2 force = Vec2::Zero();     ///< on a, without friction, N
+  Vec2 point = Vec2::Zero();     ///< centre of the pressure, m
+  double penetration = 0;        ///< largest depth below a surface, m
+  Vec2 friction = Vec2::Zero();  ///< on a, N
 };
+
+/// The one of two bodies in an ascending list that has it.
+inline BodyContact& find_contact(std::vector<BodyContact>& contacts, int a, int b) {
+  const std::pair<int, int> key = std::minmax(a, b);
+  return *std::lower_bound(
+      contacts.begin(), contacts.end(), key,
+      [](const BodyContact& c, const std::pair<int, int>& k) { return std::pair(c.a, c.b) < k; });
+}
 
 class DeformableContact {
  public:
@@ -94,8 +104,8 @@ class DeformableContact {
         threads_(threads) {}
 
   /// Adds the outline of a mesh whose node 0 is `first_node` in the nodal arrays and returns the
-  /// number of the body. r: the smallest inradius of the elements on the boundary if not given, in
-  /// m. The collar is as deep as r at most: phi = 1 there.
+  /// number of the body. The collar of an edge is as deep as the inradius of its element at most,
+  /// and r is the smallest of them; or both are `reference`, in m.
   int add_deformable(const Mesh& mesh, const Boundary& boundary, int first_node,
                      std::optional<double> reference = {});
 
@@ -179,7 +189,8 @@ class DeformableContact {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 
  private:
-  void add_loop(const std::vector<Vec2>& places, std::span<const int> nodes);
+  void add_loop(const std::vector<Vec2>& places, std::span<const int> nodes,
+                std::span<const double> caps);
   void close_body(const Outlines::Body& body);
   void place(std::span<const double> displacement, std::span<const double> position);
   void find_edges();
@@ -223,7 +234,9 @@ class DeformableContact {
   Depth depth_;
 };
 
-/// The smallest inradius of the elements on the boundary, m.
+/// Inradii of the elements at the edges of a line of the boundary, m.
+std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop);
+/// The smallest of all lines.
 double boundary_inradius(const Mesh& mesh, const Boundary& boundary);
 
 }  // namespace apothem

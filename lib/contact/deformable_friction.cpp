@@ -1,6 +1,7 @@
 #include "contact/deformable_friction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace apothem {
 namespace {
@@ -20,6 +21,21 @@ SlipRate slip_rate(const Outlines& o, const EdgeFaceContact& c, double weight) {
   const double b = ((tx * px + ty * py) * sum + (tx * dx + ty * dy) * first) / length;
   const double couple = ((tx * py - ty * px) * sum + (tx * dy - ty * dx) * first) / length;
   return {sum - first, first, b - sum, -b, couple};
+}
+
+// Of the spring that a contact belongs to.
+std::pair<int, int> key_of(const Outlines& o, const EdgeFaceContact& c) {
+  return {c.edge, o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face]};
+}
+
+std::pair<int, int> key_of(const EdgeSlip& s) { return {s.edge, s.partner}; }
+
+// One past the last contact of the same spring.
+size_t end_of(const Outlines& o, const std::vector<EdgeFaceContact>& contacts, size_t first) {
+  const auto key = key_of(o, contacts[first]);
+  size_t end = first + 1;
+  while (end < contacts.size() && key_of(o, contacts[end]) == key) ++end;
+  return end;
 }
 
 }  // namespace
@@ -58,18 +74,13 @@ void DeformableFriction::update(const DeformableContact& contact,
   now_.energy = 0;
   now_.friction_loss = before_.friction_loss;
 
-  const auto key = [](const EdgeSlip& s) { return std::pair(s.edge, s.partner); };
   auto old = before_.slips.begin();
-  const auto partner = [&](const EdgeFaceContact& c) {
-    return o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face];
-  };
   for (size_t first = 0, end; first < contacts.size(); first = end) {
-    EdgeSlip slip{contacts[first].edge, partner(contacts[first]), 0, 0};
-    for (end = first; end < contacts.size() && contacts[end].edge == slip.edge &&
-                      partner(contacts[end]) == slip.partner;)
-      ++end;
+    end = end_of(o, contacts, first);
+    const auto [edge, partner] = key_of(o, contacts[first]);
+    EdgeSlip slip{edge, partner, 0, 0};
     const int body = o.body[slip.edge], other = o.body[contacts[first].face];
-    const Friction& friction = between(body, other);
+    const Friction& friction = table_.between(body, other);
     if (!(friction.coefficient > 0)) continue;
 
     double normal = 0, rate = 0;
@@ -86,8 +97,8 @@ void DeformableFriction::update(const DeformableContact& contact,
       rate += o.tx[a] * x + o.ty[a] * y +
               k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
     }
-    while (old != before_.slips.end() && key(*old) < key(slip)) ++old;
-    const bool known = old != before_.slips.end() && key(*old) == key(slip);
+    while (old != before_.slips.end() && key_of(*old) < key_of(slip)) ++old;
+    const bool known = old != before_.slips.end() && key_of(*old) == key_of(slip);
     if (!(normal > 0)) continue;
     // New contact joins without a slip of its own; contact that ends takes its share along.
     const double spring = known ? old->spring * std::min(1., slip.stiffness / old->stiffness) : 0;
@@ -133,14 +144,57 @@ void DeformableFriction::add_forces(const DeformableContact& contact,
   }
 }
 
+// The part of its spring's force that each contact has, along the face on the edge's body.
+template <class Use>
+void DeformableFriction::each_share(const DeformableContact& contact, Use&& use) const {
+  const Outlines& o = contact.outlines();
+  const std::vector<EdgeFaceContact>& contacts = contact.contacts();
+  auto slip = now_.slips.begin();
+  for (size_t first = 0, end; first < contacts.size() && slip != now_.slips.end(); first = end) {
+    end = end_of(o, contacts, first);
+    if (key_of(*slip) != key_of(o, contacts[first])) continue;
+    double normal = 0;
+    for (size_t i = first; i < end; ++i) {
+      normal += contact.slope(contacts[i]) * contacts[i].piece.sum;
+    }
+    for (size_t i = first; i < end; ++i) {
+      use(contacts[i], slip->spring * contact.slope(contacts[i]) * contacts[i].piece.sum / normal);
+    }
+    ++slip;
+  }
+}
+
+double DeformableFriction::size(const DeformableContact& contact, int body) const {
+  const Outlines& o = contact.outlines();
+  double sum = 0;
+  for (const EdgeSlip& slip : now_.slips) {
+    const int own = o.body[slip.edge];
+    const int other = o.bodies[own].rigid() ? o.body[slip.partner] : slip.partner;
+    if (own == body || other == body) sum += std::abs(slip.spring);
+  }
+  return sum;
+}
+
+void DeformableFriction::add_to(const DeformableContact& contact,
+                                std::vector<BodyContact>& contacts) const {
+  const Outlines& o = contact.outlines();
+  each_share(contact, [&](const EdgeFaceContact& c, double force) {
+    const int own = o.body[c.edge], other = o.body[c.face];
+    BodyContact& found = find_contact(contacts, own, other);
+    found.friction += (own == found.a ? force : -force) * Vec2(o.tx[c.face], o.ty[c.face]);
+  });
+}
+
+// The faces look the other way.
 void DeformableFriction::tractions(const DeformableContact& contact,
                                    std::vector<double>& traction) const {
   const Outlines& o = contact.outlines();
   traction.assign(o.size(), 0);
-  // The faces look the other way.
-  for (const EdgeSlip& s : now_.slips) {
-    traction[s.edge] -= s.spring / (o.length[s.edge] * contact.thickness());
-  }
+  each_share(contact, [&](const EdgeFaceContact& c, double force) {
+    for (const int i : {c.edge, c.face}) {
+      traction[i] -= force / (o.length[i] * contact.thickness());
+    }
+  });
 }
 
 }  // namespace apothem

@@ -11,36 +11,13 @@
 #include <vector>
 
 #include "contact/deformable_contact.hpp"
-#include "contact/law.hpp"
+#include "contact/slip.hpp"
 
 namespace apothem {
 
-/// The spring of an edge on another body. Edges of rigid bodies are long: they have one per face of
-/// the deformable body, which the face takes with it.
-struct EdgeSlip {
-  int edge;
-  int partner;       ///< the other body; for edges of rigid bodies the face
-  double spring;     ///< friction force along the faces, N
-  double stiffness;  ///< N/m
-
-  [[nodiscard]] double energy() const {
-    return stiffness > 0 ? spring * spring / (2 * stiffness) : 0;
-  }
-};
-
-/// Everything that friction carries from one step to the next.
-struct SlipMemory {
-  std::vector<EdgeSlip> slips;  ///< ascending by edge and partner
-  double energy = 0;            ///< of the springs, J
-  double friction_loss = 0;     ///< J since time 0
-};
-
 class DeformableFriction {
  public:
-  /// Bodies of the contact, in its order, belong to one of `kinds` kinds; `table` has the friction
-  /// between kinds p and q at p kinds + q, and is symmetric.
-  DeformableFriction(std::vector<int> kind, int kinds, std::vector<Friction> table)
-      : kind_(std::move(kind)), kinds_(kinds), table_(std::move(table)) {}
+  explicit DeformableFriction(FrictionTable table) : table_(std::move(table)) {}
 
   /// One step further, after an evaluation of the contact: half-step velocities of all nodes (two
   /// entries each) and rigid bodies (three). With dt = 0 the forces of the memory. Slip that is
@@ -51,12 +28,18 @@ class DeformableFriction {
 
   /// Adds the forces (x and y of each node, N).
   void add_forces(const DeformableContact& contact, std::span<double> node_force) const;
-  /// On the vertices of the outlines, N: for DeformableContact::resultant.
-  [[nodiscard]] std::span<const double> fx() const { return fx_; }
-  [[nodiscard]] std::span<const double> fy() const { return fy_; }
+  /// Force on a body, and the moment about the mass centre of a rigid one.
+  [[nodiscard]] DeformableContact::Resultant resultant(const DeformableContact& contact,
+                                                       int body) const {
+    return contact.resultant(body, fx_, fy_);
+  }
+  /// The sizes of the springs' forces on a body, summed, N.
+  [[nodiscard]] double size(const DeformableContact& contact, int body) const;
+  /// Adds the friction of each pair of bodies.
+  void add_to(const DeformableContact& contact, std::vector<BodyContact>& contacts) const;
   /// Tangential stiffness of a body's springs, N/m.
   [[nodiscard]] double stiffness(int body) const { return body_stiffness_[body]; }
-  /// Tangential traction on each edge by its own springs, along its direction, Pa.
+  /// Mean tangential traction on each edge, along its direction, Pa.
   void tractions(const DeformableContact& contact, std::vector<double>& traction) const;
 
   [[nodiscard]] const SlipMemory& memory() const { return now_; }
@@ -67,14 +50,11 @@ class DeformableFriction {
  private:
   void find_velocities(const DeformableContact& contact, std::span<const double> node_velocity,
                        std::span<const double> velocity);
-  [[nodiscard]] const Friction& between(int a, int b) const {
-    return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
-  }
   [[nodiscard]] double power() const;
+  template <class Use>
+  void each_share(const DeformableContact& contact, Use&& use) const;
 
-  std::vector<int> kind_;
-  int kinds_;
-  std::vector<Friction> table_;
+  FrictionTable table_;
   SlipMemory now_, before_;
   std::vector<double> vx_, vy_, fx_, fy_;  // of the vertices
   std::vector<double> body_stiffness_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "mesh/locate.hpp"
@@ -23,6 +24,7 @@ int ElementContact::add_deformable(const Mesh& mesh, const Boundary& boundary, i
   const int body = static_cast<int>(bodies_.size());
   bodies_.push_back({0, false});
   std::vector<int> outermost;
+  std::set<std::pair<int, int>> edges;
   std::vector<double> share(mesh.nodes.size());
   for (const BoundaryLoop& loop : boundary.loops) {
     outermost.insert(outermost.end(), loop.elements.begin(), loop.elements.end());
@@ -30,6 +32,7 @@ int ElementContact::add_deformable(const Mesh& mesh, const Boundary& boundary, i
       const int p = loop.nodes[i], q = loop.nodes[i + 1 == loop.nodes.size() ? 0 : i + 1];
       const double half = (mesh.nodes[q] - mesh.nodes[p]).norm() / 2;
       share[p] += half, share[q] += half;
+      edges.emplace(p, q);
     }
   }
   for (int n = 0; n < static_cast<int>(share.size()); ++n) {
@@ -39,9 +42,11 @@ int ElementContact::add_deformable(const Mesh& mesh, const Boundary& boundary, i
   outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
   for (const int element : outermost) {
     const int first = static_cast<int>(nodes_.size());
-    for (const int n : mesh.element(element)) {
-      nodes_.push_back(first_node + n);
-      start_.push_back(mesh.nodes[n]);
+    const std::span<const int> ring = mesh.element(element);
+    for (size_t k = 0; k < ring.size(); ++k) {
+      nodes_.push_back(first_node + ring[k]);
+      start_.push_back(mesh.nodes[ring[k]]);
+      outer_.push_back(edges.contains({ring[k], ring[(k + 1) % ring.size()]}));
     }
     const Polygon polygon({start_.begin() + first, start_.end()});
     if (!polygon.is_convex()) {
@@ -56,7 +61,6 @@ int ElementContact::add_deformable(const Mesh& mesh, const Boundary& boundary, i
     bodies_[body].slope = std::max(bodies_[body].slope, potential.steepest);
     const size_t corners = polygon.vertices().size();
     ring_.resize(std::max(ring_.size(), corners));
-    weights_.resize(ring_.size());
   }
   kept_.clear();  // search anew
   return body;
@@ -141,7 +145,7 @@ void ElementContact::evaluate() {
   normal_.evaluate(shapes_, places_, pairs_);
   forces_.clear();
   sums_.assign(bodies_.size(), {Vec2::Zero(), 0});
-  touching_ = 0;
+  touches_.clear();
   depth_ = {};
   fault_.reset();
   for (size_t p = 0; p < pairs_.size(); ++p) {
@@ -155,7 +159,6 @@ void ElementContact::evaluate() {
                 reference(convex_[a] ? (bodies_[body_b].rigid ? a : b) : a)};
       return;
     }
-    ++touching_;
     if (pair.penetration > depth_.largest) depth_ = {pair.penetration, body_a, body_b};
     const Vec2 force = stiffness_ * pair.force;
     sums_[body_a].force += force;
@@ -163,8 +166,9 @@ void ElementContact::evaluate() {
     if (bodies_[body_a].rigid) sums_[body_a].moment += stiffness_ * pair.moment_a;
     if (bodies_[body_b].rigid) sums_[body_b].moment += stiffness_ * pair.moment_b;
     const Vec2 offset = reference(a) - reference(b);
+    const Vec2 point = loading_point(pair);
+    touches_.push_back({a, b, force, point, offset, stiffness_ * pair.weight});
     if (distribution_ == ForceDistribution::resultant) {
-      const Vec2 point = loading_point(pair);
       distribute(a, force, point);
       distribute(b, -force, point + offset);
       continue;
@@ -177,18 +181,66 @@ void ElementContact::evaluate() {
   }
 }
 
+void ElementContact::find_corners(int polygon, const Vec2& point, Corners& corners) const {
+  corners.nodes = {};
+  if (entry(polygon) >= 0) return;
+  const PlacedPotential view = shapes_.view(polygon);
+  const auto count = static_cast<size_t>(view.size);
+  corners.nodes = std::span(nodes_).subspan(static_cast<size_t>(pieces_[polygon].corners), count);
+  corners.ring.resize(count), corners.weights.resize(count);
+  for (size_t k = 0; k < count; ++k) corners.ring[k] = Vec2(view.x[k], view.y[k]) - point;
+  interpolation_weights(corners.ring, corners.weights);
+}
+
 // A force at a point relative to the polygon's reference point.
 void ElementContact::distribute(int piece, const Vec2& force, const Vec2& point) {
-  if (pieces_[piece].entry >= 0) return;
-  const PlacedPotential view = shapes_.view(piece);
-  const auto count = static_cast<size_t>(view.size);
-  for (size_t k = 0; k < count; ++k) ring_[k] = Vec2(view.x[k], view.y[k]) - point;
-  const std::span<double> weights(weights_.data(), count);
-  interpolation_weights({ring_.data(), count}, weights);
-  for (size_t k = 0; k < count; ++k) {
-    forces_.push_back(
-        {nodes_[static_cast<size_t>(pieces_[piece].corners) + k], weights[k] * force});
+  find_corners(piece, point, corners_);
+  for (size_t k = 0; k < corners_.nodes.size(); ++k) {
+    forces_.push_back({corners_.nodes[k], corners_.weights[k] * force});
   }
+}
+
+std::vector<ElementContact::SurfaceEdge> ElementContact::surface() const {
+  std::vector<SurfaceEdge> edges;
+  for (int p = 0; p < static_cast<int>(pieces_.size()); ++p) {
+    const PlacedPotential view = shapes_.view(p);
+    for (int k = 0; k < view.size; ++k) {
+      if (entry(p) < 0 && !outer_[static_cast<size_t>(pieces_[p].corners + k)]) continue;
+      edges.push_back({p, reference(p) + Vec2(view.x[k], view.y[k]),
+                       reference(p) + Vec2(view.x[k + 1], view.y[k + 1])});
+    }
+  }
+  return edges;
+}
+
+int ElementContact::nearest_edge(const std::vector<SurfaceEdge>& surface, int polygon,
+                                 const Vec2& point) const {
+  const Vec2 place = reference(polygon) + point;
+  const auto [first, last] = std::equal_range(
+      surface.begin(), surface.end(), SurfaceEdge{polygon, {}, {}},
+      [](const SurfaceEdge& e, const SurfaceEdge& f) { return e.polygon < f.polygon; });
+  const auto distance = [&](const SurfaceEdge& e) {
+    const double along = std::clamp((place - e.from).dot(e.along()), 0., e.length());
+    return (e.from + along * e.along() - place).norm();
+  };
+  return static_cast<int>(std::min_element(first, last,
+                                           [&](const SurfaceEdge& e, const SurfaceEdge& f) {
+                                             return distance(e) < distance(f);
+                                           }) -
+                          surface.begin());
+}
+
+std::vector<double> ElementContact::pressures(const std::vector<SurfaceEdge>& surface) const {
+  std::vector<double> pressure(surface.size());
+  for (const Touch& t : touches_) {
+    const auto add = [&](int polygon, const Vec2& force, const Vec2& point) {
+      const int i = nearest_edge(surface, polygon, point);
+      pressure[i] += cross(surface[i].along(), force) / (surface[i].length() * thickness_);
+    };
+    add(t.a, t.force, t.point);
+    add(t.b, -t.force, t.point + t.offset);
+  }
+  return pressure;
 }
 
 void ElementContact::add_forces(std::span<double> node_force) const {

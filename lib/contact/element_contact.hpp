@@ -30,6 +30,7 @@ class ElementContact {
   ElementContact(double normal_stiffness, double thickness, double skin,
                  ForceDistribution distribution, int threads)
       : stiffness_(normal_stiffness * thickness),
+        thickness_(thickness),
         skin_(skin),
         distribution_(distribution),
         normal_(threads) {}
@@ -61,6 +62,46 @@ class ElementContact {
   /// Of the last evaluation, J. Not for every step.
   [[nodiscard]] double energy() const;
 
+  /// Two polygons that touch.
+  struct Touch {
+    int a, b;         ///< polygons
+    Vec2 force;       ///< on a, N
+    Vec2 point;       ///< where it acts, relative to a's reference point, m
+    Vec2 offset;      ///< a's reference point minus b's, m
+    double pressure;  ///< the sum of the sizes of what the force is the sum of, N
+  };
+  /// Ascending.
+  [[nodiscard]] const std::vector<Touch>& touches() const { return touches_; }
+  [[nodiscard]] double thickness() const { return thickness_; }
+  [[nodiscard]] size_t body_count() const { return bodies_.size(); }
+  /// The body of a polygon.
+  [[nodiscard]] int body(int polygon) const { return pieces_[polygon].body; }
+  /// Of a rigid body its number in the arrays of positions; -1 for elements.
+  [[nodiscard]] int entry(int polygon) const { return pieces_[polygon].entry; }
+
+  /// A point of an element as the weighted mean of its corners.
+  struct Corners {
+    std::span<const int> nodes;   ///< in the nodal arrays
+    std::vector<double> weights;  ///< one for each
+    std::vector<Vec2> ring;       ///< for those who find them
+  };
+  /// `point`: relative to the polygon's reference point, m. Rigid bodies have no nodes.
+  void find_corners(int polygon, const Vec2& point, Corners& corners) const;
+
+  /// An edge of the boundary of an element, or of a rigid body.
+  struct SurfaceEdge {
+    int polygon;
+    Vec2 from, to;  ///< m
+    [[nodiscard]] double length() const { return (to - from).norm(); }
+    [[nodiscard]] Vec2 along() const { return (to - from) / length(); }
+  };
+  [[nodiscard]] std::vector<SurfaceEdge> surface() const;
+  /// What acts on polygons goes to the nearest edge of their boundary: its index in `surface`.
+  [[nodiscard]] int nearest_edge(const std::vector<SurfaceEdge>& surface, int polygon,
+                                 const Vec2& point) const;
+  /// Mean normal pressure on each of these edges, Pa.
+  [[nodiscard]] std::vector<double> pressures(const std::vector<SurfaceEdge>& surface) const;
+
   /// The deepest pair.
   struct Depth {
     double largest = 0;         ///< extent of an overlap along its force, m
@@ -88,7 +129,7 @@ class ElementContact {
 
   [[nodiscard]] const std::vector<BoxPair>& candidates() const { return pairs_; }
   /// Pairs of polygons that touch.
-  [[nodiscard]] size_t touching() const { return touching_; }
+  [[nodiscard]] size_t touching() const { return touches_.size(); }
   /// Searches so far.
   [[nodiscard]] int searches() const { return searches_; }
   /// Has the next update search anew.
@@ -119,12 +160,13 @@ class ElementContact {
   [[nodiscard]] bool too_deep(int a, int b, const PairIntegral& pair) const;
   void distribute(int piece, const Vec2& force, const Vec2& point);
 
-  double stiffness_, skin_;
+  double stiffness_, thickness_, skin_;
   ForceDistribution distribution_;
   std::vector<Body> bodies_;
   std::vector<Piece> pieces_;
   std::vector<int> nodes_;   // of all corners, in the nodal arrays
   std::vector<Vec2> start_;  // their places in the mesh as given
+  std::vector<char> outer_;  // whether the edges from them are on the boundary
   struct Share {
     int node, body;
     double length;
@@ -135,7 +177,7 @@ class ElementContact {
   std::vector<double> places_;  // x, y, angle of the reference point of each polygon
   std::vector<char> convex_;    // of each polygon
   std::vector<Vec2> ring_;
-  std::vector<double> weights_;
+  Corners corners_;
   std::vector<Box> kept_;  // grown boxes of the last search
   BoxGrid grid_;
   std::vector<BoxPair> pairs_;
@@ -147,7 +189,7 @@ class ElementContact {
   std::vector<PairIntegral> patches_;
   std::vector<NodeForce> forces_;
   std::vector<DeformableContact::Resultant> sums_;
-  size_t touching_ = 0;
+  std::vector<Touch> touches_;
   Depth depth_;
   std::optional<Fault> fault_;
 };

@@ -7,10 +7,6 @@
 namespace apothem {
 namespace {
 
-// A normal force that is so much smaller than the pressures it is the sum of has no direction worth
-// following.
-constexpr double kNoResultant = 1e-9;
-
 // Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;

@@ -12,6 +12,10 @@
 
 namespace apothem {
 
+/// A normal force that is so much smaller than the pressures it is the sum of has no direction
+/// worth following.
+inline constexpr double kNoResultant = 1e-9;
+
 /// Along which friction acts: (-n_y, n_x), n the direction of the normal force; zero if there is
 /// none.
 inline Vec2 tangent_of(const Vec2& normal_force) {

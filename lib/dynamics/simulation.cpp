@@ -110,6 +110,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   }
   if (!model.deformables.empty()) deformables_.emplace(model, state_, threads);
   if (SurfaceContact::needed(model)) surface_.emplace(model, state_, threads);
+  if (FoldWatch::needed(model)) folds_.emplace(model);
   if (time.statics && deformables_) {
     equilibrium_.emplace(model, *deformables_, surface_ ? &*surface_ : nullptr, time.tolerance);
   }
@@ -281,6 +282,7 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
     restore(before);
     return result;
   }
+  if (folds_) folds_->look(state_);
   for (const int i : driven_) {
     const std::array<double, 3> rate = model_.bodies[i].history.rate(time);
     std::copy(rate.begin(), rate.end(), state_.velocity.begin() + 3 * i);
@@ -303,6 +305,7 @@ void Simulation::watch() {
                     "can bear, or the step is too long; reduce the load or time.safety",
                     element, at_time()));
   }
+  if (folds_) folds_->look(state_);
 }
 
 void Simulation::kick(double h) {

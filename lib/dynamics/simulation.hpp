@@ -18,6 +18,7 @@
 #include "contact/tangential.hpp"
 #include "dynamics/deformables.hpp"
 #include "dynamics/equilibrium.hpp"
+#include "dynamics/fold_watch.hpp"
 #include "dynamics/ledger.hpp"
 #include "dynamics/surface_contact.hpp"
 #include "dynamics/time_step.hpp"
@@ -155,6 +156,7 @@ class Simulation {
   std::optional<TangentialContact> tangential_;  // only where there is friction or damping
   std::optional<Deformables> deformables_;       // only where there are finite elements
   std::optional<SurfaceContact> surface_;        // only where they can touch something
+  std::optional<FoldWatch> folds_;               // only where contact would not notice
   std::optional<Equilibrium> equilibrium_;       // only in static scenes
   std::optional<Ledger> ledger_;
   std::vector<double> moved_;

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "contact/deformable_friction.hpp"
-#include "contact/element_contact.hpp"
+#include "contact/element_friction.hpp"
 #include "dynamics/time_step.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
@@ -26,7 +26,7 @@ class SurfaceContact {
 
   /// Adds the same bound as a stiffness of each node that is near another body, N/m.
   void add_stiffness(std::span<double> node_stiffness) const {
-    std::visit([&](const auto& contact) { contact.add_stiffness(node_stiffness); }, contact_);
+    std::visit([&](const auto& s) { s.contact.add_stiffness(node_stiffness); }, surface_);
   }
 
   /// Forces where the bodies are now. Throws Unstable where they are out of the method's range:
@@ -55,27 +55,33 @@ class SurfaceContact {
   /// What acts on a deformable body from contacts.
   [[nodiscard]] BodyForce on_deformable(int deformable) const;
   [[nodiscard]] std::vector<ContactRecord> records() const;
-  /// None where elements touch by potentials of their own.
   [[nodiscard]] std::vector<SurfaceRecord> surfaces() const;
 
-  [[nodiscard]] SlipMemory memory() const { return friction_ ? friction_->memory() : SlipMemory{}; }
+  [[nodiscard]] SlipMemory memory() const;
   void restore(const SlipMemory& memory, const State& state);
 
  private:
-  using Contact = std::variant<DeformableContact, ElementContact>;
-  static Contact make_contact(const Model& model, int threads);
+  template <class C, class F>
+  struct Rubbing {
+    C contact;
+    std::optional<F> friction = {};
+  };
+  using ByBody = Rubbing<DeformableContact, DeformableFriction>;
+  using ByElement = Rubbing<ElementContact, ElementFriction>;
+  using Surface = std::variant<ByBody, ByElement>;
+  static Surface make_surface(const Model& model, int threads);
   void add_friction();
+  void find_buried(const State& state) const;
   void refresh(const State& state);
   [[nodiscard]] const std::string& name(int body) const;
-  [[nodiscard]] double friction_on(int body) const;
-  [[nodiscard]] DeformableContact::Resultant friction_sum(int body) const;
+  [[nodiscard]] DeformableContact::Resultant sum(int body) const;
+  [[nodiscard]] double remembered(double SlipMemory::*value) const;
   void guard(const DeformableContact& contact, const State& state) const;
   void guard(const ElementContact& contact, const State& state) const;
   [[nodiscard]] std::string at(const Vec2& place, const State& state) const;
 
   const Model& model_;
-  Contact contact_;
-  std::optional<DeformableFriction> friction_;  // of DeformableContact only
+  Surface surface_;
 };
 
 }  // namespace apothem

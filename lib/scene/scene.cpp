@@ -41,9 +41,9 @@ class SceneReader {
     }
     bodies(list);
     contact_rules();
-    smooth_elements();
     time(top.required("time", "{\"end\": ...} in s"));
     if (scene_.time.statics) statics();
+    meshed_contact();
     const JsonValue* output_value = top.optional("output");
     const JsonValue* expect_value = top.optional("expect");
     top.finish();
@@ -126,13 +126,15 @@ class SceneReader {
       std::vector<std::string> names;
       for (const NamedPotential& p : kPotentials) names.emplace_back(p.name);
       law.potential.kind = kPotentials[in_.choice(*v, names)].kind;
+      potential_ = v;
     }
     law.normal_stiffness =
         in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
     if (const JsonValue* v = object.optional("field")) field(*v);
     if (const JsonValue* v = object.optional("reference")) reference(*v);
     if (const JsonValue* v = object.optional("friction")) law.friction = friction(*v, true);
-    if (const JsonValue* v = object.optional("damping")) damping(*v);
+    contact_damping_ = object.optional("damping");
+    if (contact_damping_) damping(*contact_damping_);
     contact_pairs_ = object.optional("pairs");
     surface(object);
     object.finish();
@@ -184,6 +186,7 @@ class SceneReader {
         std::vector<std::string> names;
         for (const NamedFrictionLaw& l : kFrictionLaws) names.emplace_back(l.name);
         law.friction_law = kFrictionLaws[in_.choice(*v, names)].law;
+        friction_law_ = v;
       }
     }
     object.finish();
@@ -203,18 +206,6 @@ class SceneReader {
     object.finish();
   }
 
-  // Friction of elements would lose its history on every border between them.
-  void smooth_elements() {
-    if (by_element_ == nullptr || model_.deformables.empty()) return;
-    const ContactLaw& law = model_.contact;
-    bool rough = law.friction.coefficient > 0;
-    for (const ContactRule& rule : law.rules) rough = rough || rule.friction.coefficient > 0;
-    if (rough) {
-      in_.fail(*by_element_,
-               "\"element\" has no friction: set every \"coefficient\" to 0, or use \"body\"");
-    }
-  }
-
   // After the bodies, whose names it may use.
   void contact_rules() {
     if (contact_pairs_ == nullptr) return;
@@ -228,6 +219,29 @@ class SceneReader {
       const Friction rule = friction(object.required("friction", "{\"coefficient\": ...}"), false);
       model_.contact.rules.push_back({{a, b}, rule});
       object.finish();
+    }
+  }
+
+  // What bodies with a mesh cannot take.
+  void meshed_contact() {
+    if (model_.deformables.empty()) return;
+    if (model_.contact.friction_law == FrictionLaw::per_edge) {
+      in_.fail(
+          *friction_law_,
+          "\"per_edge\" is for rigid bodies only; bodies with a mesh have a spring per boundary "
+          "edge, or per pair of elements with \"surface\": \"element\": leave it out");
+    }
+    if (contact_damping_) {
+      in_.fail(*contact_damping_,
+               "acts between rigid bodies only; where a body has a mesh leave it out, and give the "
+               "material \"damping\"");
+    }
+    const ContactLaw& law = model_.contact;
+    if (law.potential.kind == PotentialChoice::Kind::area && law.surface == ContactSurface::body) {
+      in_.fail(
+          *potential_,
+          "\"area\" is for triangles; the surface of a body with a mesh has the depth below it: "
+          "use \"distance\", or \"surface\": \"element\" with triangles");
     }
   }
 
@@ -744,6 +758,9 @@ class SceneReader {
   Model& model_;
   JsonReader in_;
   const JsonValue* contact_pairs_ = nullptr;
+  const JsonValue* potential_ = nullptr;
+  const JsonValue* friction_law_ = nullptr;
+  const JsonValue* contact_damping_ = nullptr;
   const JsonValue* by_element_ = nullptr;  // the surface, where it is "element"
   std::vector<std::string> names_;         // of all bodies
   std::vector<int> has_poisson_;           // materials that say their Poisson's ratio

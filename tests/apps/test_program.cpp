@@ -417,9 +417,14 @@ TEST_CASE("a resumed run of elements with damping continues bit for bit", "[prog
 
 TEST_CASE("a resumed run of rubbing meshes continues bit for bit", "[program]") {
   const Folder folder;
-  const std::string file = folder.write("discs.json", R"({
+  const std::string surface = GENERATE("body", "element");
+  const std::string file = folder.write(
+      "discs.json",
+      R"({
     "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
-    "contact": { "normal_stiffness": 20e9, "friction": { "coefficient": 0.3, "tangential_stiffness": 12e9 } },
+    "contact": { "surface": ")" +
+          surface +
+          R"(", "normal_stiffness": 20e9, "friction": { "coefficient": 0.3, "tangential_stiffness": 12e9 } },
     "bodies": [
       { "name": "one", "material": "rock", "velocity": [2, 0], "mesh": { "disc": { "radius": 0.5, "cells": 4 } } },
       { "name": "two", "material": "rock", "velocity": [-2, 0], "mesh": { "disc": { "radius": 0.5, "cells": 4, "centre": [0.943, 0.3] } } } ],
@@ -429,12 +434,33 @@ TEST_CASE("a resumed run of rubbing meshes continues bit for bit", "[program]") 
   REQUIRE(Json::parse(content(folder / "parts/checkpoint.json"))["slips"]["slips"].size() > 0);
   REQUIRE(run({"run", file, "-o", folder / "parts", "--resume", "--threads", "2"}, folder).code ==
           0);
+  const HistoryTable history = read_history(folder / "whole/history.csv");
+  const std::vector<double>& friction = *history.column("one.friction");
+  CHECK(*std::max_element(friction.begin(), friction.end()) > 1e5);
   for (const char* name : {"history.csv", "energy.csv", "momentum.csv", "frames/bodies_000005.vtu",
-                           "frames/surfaces_000005.vtu"}) {
-    INFO(name);
+                           "frames/surfaces_000005.vtu", "frames/contacts_000003.vtu"}) {
+    INFO(surface << " " << name);
     CHECK((content(folder / (std::string("whole/") + name)) ==
            content(folder / (std::string("parts/") + name))));
   }
+}
+
+TEST_CASE("a body that folds onto itself stops with the place", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("tongs.json", R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+    "bodies": [ { "name": "tongs", "material": "rock",
+      "mesh": { "fill": { "polygon": [[0,0],[1,0],[1,0.1],[0.1,0.1],[0.1,0.2],[1,0.2],[1,0.3],[0,0.3]], "size": 0.05 } },
+      "supports": [ { "where": { "y": 0 }, "fix": ["x", "y"] },
+                    { "where": { "box": [[0.9, 0.2], [1, 0.3]] }, "velocity": [[0, 0, -20]] } ] } ],
+    "time": { "end": 0.02 }, "output": { "frames": 5, "history": { "interval": 1e-4 } } })");
+  const Result r = run({"run", file, "-o", folder / "tongs"}, folder);
+  INFO(r.err);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("\"tongs\" folds onto itself at (") != std::string::npos);
+  CHECK(r.err.find("divide it into two bodies") != std::string::npos);
+  CHECK(lines(r.err) == 1);
+  CHECK(content(folder / "tongs/frames.pvd").find("bodies_000001.vtu") != std::string::npos);
 }
 
 TEST_CASE("a load too heavy for the material stops with the place", "[program]") {

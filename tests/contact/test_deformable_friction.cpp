@@ -10,7 +10,7 @@ using namespace apothem::test;
 namespace {
 
 DeformableFriction friction_of_two(double mu, double stiffness) {
-  return {{0, 0}, 1, {{mu, stiffness}}};
+  return DeformableFriction({{0, 0}, 1, {{mu, stiffness}}});
 }
 
 std::vector<double> random_velocities(samples::Random& random, size_t n) {
@@ -37,8 +37,8 @@ TEST_CASE("friction keeps linear and angular momentum", "[deformable_friction]")
     ++pairs;
     DeformableFriction friction = friction_of_two(.7, 2);
     friction.update(pair->contact, random_velocities(random, pair->force.size()), {}, .01);
-    const auto a = pair->contact.resultant(0, friction.fx(), friction.fy());
-    const auto b = pair->contact.resultant(1, friction.fx(), friction.fy());
+    const auto a = friction.resultant(pair->contact, 0);
+    const auto b = friction.resultant(pair->contact, 1);
     const double size = spring_sum(friction);
     REQUIRE(size > 0);
     worst = std::max(worst, (a.force + b.force).norm() / size);
@@ -83,7 +83,7 @@ TEST_CASE("a block dragged over a row of edges meets mu times the normal force",
     for (size_t i = 2 * nodes_a; i < v.size(); i += 2) pair.displacement[i] += dt * speed;
     pair.evaluate();
     friction.update(pair.contact, v, {}, dt);
-    const auto on_block = pair.contact.resultant(1, friction.fx(), friction.fy());
+    const auto on_block = friction.resultant(pair.contact, 1);
     const double share = -on_block.force.x() / (mu * pair.contact.resultant(1).force.y());
     CHECK(share <= 1 + 1e-12);
     if (step > 1000) least = std::min(least, share);
@@ -114,7 +114,7 @@ TEST_CASE("friction gives back no more than it was given", "[deformable_friction
       pair.evaluate();
       // Half the work by the force before, half by the force after the slip.
       friction.update(pair.contact, v, {}, dt);
-      const auto on = pair.contact.resultant(1, friction.fx(), friction.fy());
+      const auto on = friction.resultant(pair.contact, 1);
       work -= dt / 2 * (on.force + before).dot(Vec2(vx, vy));
       before = on.force;
       CHECK(friction.memory().friction_loss >= loss - 1e-6 * size);
@@ -132,7 +132,7 @@ TEST_CASE("bodies without friction cost and feel none", "[deformable_friction]")
   std::optional<OutlinePair> pair;
   while (!(pair = random_pair(random, 8, .6))) {
   }
-  DeformableFriction friction({0, 1}, 2, {{.5, 1}, {0, 0}, {0, 0}, {.5, 1}});
+  DeformableFriction friction({{0, 1}, 2, {{.5, 1}, {0, 0}, {0, 0}, {.5, 1}}});
   friction.update(pair->contact, random_velocities(random, pair->force.size()), {}, 1);
   CHECK(friction.memory().slips.empty());
   CHECK(spring_sum(friction) == 0);
@@ -152,12 +152,12 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   friction.update(contact, still, std::vector<double>{1e-3, 0, 0}, 1);
   // Stick: both bodies in turn, k_s (l/r_t + l/r_c) times the slip along the faces of the floor and
   // the block's bottom; its sides do not slip along themselves.
-  const auto on_floor = contact.resultant(1, friction.fx(), friction.fy());
+  const auto on_floor = friction.resultant(contact, 1);
   const double both = friction.stiffness(1);
   const double along = .5 * ((1 + 2 * d) / .5 + (1 - 2 * d) / .1);
   CHECK(both == Approx(along + .5 * 2 * d / .1));
   CHECK(on_floor.force.x() == Approx(-1e-3 * along).epsilon(1e-10));
-  const auto on_block = contact.resultant(0, friction.fx(), friction.fy());
+  const auto on_block = friction.resultant(contact, 0);
   CHECK(on_block.force.x() == Approx(1e-3 * along).epsilon(1e-10));
   // Moment about the world's origin: that of the rigid body is about its centre.
   const double moment =
@@ -167,8 +167,11 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   DeformableFriction other = friction_of_two(.5, .5);
   other.restore(friction.memory());
   other.update(contact, still, std::vector<double>{1e-3, 0, 0}, 0);
-  CHECK(std::equal(other.fx().begin(), other.fx().end(), friction.fx().begin()));
-  CHECK(std::equal(other.fy().begin(), other.fy().end(), friction.fy().begin()));
+  std::vector<double> forces(32), again(32);
+  friction.add_forces(contact, forces);
+  other.add_forces(contact, again);
+  CHECK((forces == again));
+  CHECK(other.resultant(contact, 1).moment == on_floor.moment);
   CHECK(other.memory().friction_loss == friction.memory().friction_loss);
 
   const double energy = friction.memory().energy;

@@ -1,73 +1,14 @@
 // Deformable bodies that touch each other and rigid bodies, in the step loop.
 #include <catch2/catch.hpp>
 
-#include "dynamics/simulation.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/fill_mesh.hpp"
+#include "dynamics/surface_models.hpp"
 #include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
 #include "mesh/select.hpp"
-#include "support.hpp"
 
 using namespace apothem;
+using namespace apothem::test;
 
 namespace {
-
-enum class Shape { quads, triangles, voronoi };
-
-Mesh disc(const Vec2& centre, Shape shape) {
-  if (shape == Shape::voronoi) {
-    std::vector<Vec2> ring;
-    for (int i = 0; i < 24; ++i) {
-      ring.emplace_back(.5 * std::cos(2 * M_PI * i / 24), .5 * std::sin(2 * M_PI * i / 24));
-    }
-    const Polygon region(samples::shifted(Polygon(ring), centre));
-    VoronoiOptions options;
-    options.cells = 80;
-    Mesh mesh = mesh_of_cells(region, in_world(region, voronoi_mesh(region, options).mesh));
-    reorder_along_curve(mesh);
-    return mesh;
-  }
-  Mesh mesh =
-      disc_mesh(centre, .5, {.quarter = 6},
-                shape == Shape::quads ? ElementShape::quadrilateral : ElementShape::triangle);
-  reorder_along_curve(mesh);
-  return mesh;
-}
-
-ElementKind element_of(Shape shape) {
-  return shape == Shape::quads       ? ElementKind::quad4
-         : shape == Shape::triangles ? ElementKind::tri3
-                                     : ElementKind::polygon;
-}
-
-Model empty_model() {
-  Model model;
-  model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::stress, 20e9, .2}}};
-  model.contact.normal_stiffness = 20e9;
-  return model;
-}
-
-void add(Model& model, const char* name, Mesh mesh, ElementKind kind, const Vec2& velocity,
-         double spin = 0) {
-  DeformableBody body;
-  body.name = name;
-  body.element = kind;
-  body.mesh = std::move(mesh);
-  body.velocity = velocity;
-  body.spin = spin;
-  body.first_node = model.node_count();
-  model.deformables.push_back(std::move(body));
-}
-
-void add_floor(Model& model) {
-  RigidBody floor;
-  floor.name = "floor";
-  floor.motion = Motion::fixed;
-  set_shape(floor, Polygon({{-3, -1}, {3, -1}, {3, 0}, {-3, 0}}), model);
-  model.bodies.push_back(floor);
-}
 
 // Three discs of different elements between four walls; their contact by the bodies' surfaces, or
 // by potentials of elements.
@@ -92,34 +33,6 @@ Model box_of_three(std::optional<ForceDistribution> elements) {
   return model;
 }
 
-struct Result {
-  double energy = 0;    // largest error over the initial kinetic energy
-  double momentum = 0;  // largest error over the first body's momentum
-  bool touched = false;
-  Energies last;
-};
-
-Result collide(const Model& model, double safety, double end, int threads = 1) {
-  TimeSettings time;
-  time.end = end;
-  time.element_safety = time.safety = safety;
-  Simulation simulation(model, time, 1, threads);
-  const double kinetic = simulation.energies().kinetic;
-  Result result;
-  while (simulation.state().time < end) {
-    simulation.step();
-    if (simulation.state().step % 5 != 0) continue;
-    result.last = simulation.energies();
-    const Momenta p = simulation.momenta();
-    result.energy = std::max(result.energy, std::abs(result.last.total_error) / kinetic);
-    for (const double error : {p.x_error, p.y_error, p.angular_error}) {
-      result.momentum = std::max(result.momentum, std::abs(error));
-    }
-    result.touched = result.touched || result.last.contact > 0;
-  }
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", "[surface]") {
@@ -138,6 +51,24 @@ TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", 
       CHECK(coarse.momentum < 1e-8);
       if (mu > 0) CHECK(coarse.last.friction_loss > 1);
     }
+  }
+}
+
+TEST_CASE("discs that rub by their elements keep momenta; the ledger knows the loss", "[surface]") {
+  for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
+    Model model = empty_model();
+    model.contact.surface = ContactSurface::element;
+    model.contact.distribution = ForceDistribution::resultant;
+    model.contact.friction = {.3, 12e9};
+    add(model, "one", disc({0, 0}, shape), element_of(shape), {2, 0}, 5);
+    add(model, "two", disc({.96, .3}, shape), element_of(shape), {-2, 0});
+    const Result result = collide(model, .1, 3e-3);
+    CAPTURE(static_cast<int>(shape), result.energy, result.last.friction_loss);
+    CHECK(result.touched);
+    CHECK(result.energy < 5e-4);
+    CHECK(result.momentum < 1e-8);
+    CHECK(result.last.friction_loss > .1);
+    CHECK(collide(model, .1, 3e-3, 3).last.kinetic == result.last.kinetic);
   }
 }
 
@@ -187,6 +118,94 @@ TEST_CASE("threads change no bit of deformable contact", "[surface]") {
     CHECK(simulation.energies().contact > 0);
     if (threads == 1) serial = simulation.state().displacement;
     CHECK((simulation.state().displacement == serial));
+  }
+}
+
+TEST_CASE("friction of a pair overrides that of the scene, and is in the records", "[surface]") {
+  for (const ContactSurface surface : {ContactSurface::body, ContactSurface::element}) {
+    Model model = empty_model();
+    model.contact.surface = surface;
+    model.contact.distribution = surface == ContactSurface::body ? ForceDistribution::variational
+                                                                 : ForceDistribution::resultant;
+    model.contact.friction = {.3, 12e9};
+    add_floor(model);
+    for (const double side : {-1., 1.}) {
+      add(model, side < 0 ? "rough" : "smooth",
+          rectangle_mesh({.5, .2}, {5, 2}, {side - .25, -1e-5}, ElementShape::quadrilateral),
+          ElementKind::quad4, {1, 0});
+    }
+    model.contact.rules = {{{{{true, 0}, {true, 2}}}, {0, 0}}};  // floor and "smooth"
+    TimeSettings time;
+    time.end = 1;
+    Simulation simulation(model, time, 1, 1);
+    for (int i = 0; i < 4; ++i) simulation.step();
+    const std::vector<BodyForce> on = simulation.deformable_forces();
+    CHECK(on[0].friction > 0);
+    CHECK(on[1].friction == 0);
+    const std::vector<ContactRecord> records = simulation.contacts();
+    REQUIRE(records.size() == 2);
+    // On the floor, along the motion; what is not normal force is friction.
+    CHECK(records[0].tangential.x() > .01 * records[0].normal.norm());
+    CHECK((records[0].tangential + records[0].normal + Vec2(on[0].fx, on[0].fy)).norm() <
+          1e-12 * records[0].normal.norm());
+    CHECK(records[0].tangential.norm() <= .3 * records[0].normal.norm() * (1 + 1e-12));
+    CHECK(records[0].penetration > 0);
+    CHECK(records[1].tangential == Vec2::Zero());
+    // The lower side of the block carries the same.
+    double traction = 0, pressure = 0;
+    for (const SurfaceRecord& s : simulation.surfaces()) {
+      const Vec2 edge = s.to - s.from;
+      if (s.body != 1 || std::abs(edge.y()) > .1 * std::abs(edge.x())) continue;
+      traction += s.traction * edge.x();
+      pressure += s.pressure * edge.x();
+    }
+    CHECK(pressure == Approx(-records[0].normal.y()).epsilon(1e-3));
+    CHECK(traction == Approx(-records[0].tangential.x()).epsilon(1e-2));
+  }
+}
+
+TEST_CASE("a long strip that is bent until its ends meet is refused", "[surface]") {
+  for (const bool alone : {true, false}) {
+    Model model = empty_model();
+    model.contact.surface = alone ? ContactSurface::body : ContactSurface::element;
+    model.contact.distribution = ForceDistribution::resultant;
+    if (!alone) add_floor(model);
+    // Most of a circle of 1 m about (0, 3); the free end comes up to the held one.
+    Mesh strip = rectangle_mesh({5.9, .1}, {59, 2}, {.2, .95}, ElementShape::quadrilateral);
+    for (Vec2& x : strip.nodes) {
+      const double angle = x.x(), radius = 2 - x.y();
+      x = Vec2(0, 3) + radius * Vec2(std::cos(angle), std::sin(angle));
+    }
+    reorder_along_curve(strip);
+    const auto end = [&](double angle) {
+      std::vector<int> nodes;
+      for (int i = 0; i < static_cast<int>(strip.nodes.size()); ++i) {
+        const Vec2 arm = strip.nodes[i] - Vec2(0, 3);
+        const Vec2 direction(std::cos(angle), std::sin(angle));
+        if (std::abs(cross(direction, arm)) < 1e-9 && arm.dot(direction) > 0) nodes.push_back(i);
+      }
+      REQUIRE(nodes.size() == 3);
+      return nodes;
+    };
+    MotionHistory up;
+    up.velocity = {{0, {0, 20}}};
+    const std::vector<Support> supports{{end(.2), {true, true}, {}}, {end(6.1), {true, true}, up}};
+    add(model, "strip", std::move(strip), ElementKind::quad4, {0, 0});
+    model.deformables[0].supports = supports;
+    TimeSettings time;
+    time.end = .05;
+    Simulation simulation(model, time, 1, 1);
+    std::string what;
+    try {
+      while (simulation.state().time < time.end) simulation.step();
+    } catch (const Unstable& error) {
+      what = error.what();
+    }
+    CAPTURE(what, simulation.state().time);
+    CHECK(what.find("\"strip\" folds onto itself at (") == 0);
+    CHECK(what.find("divide it into two bodies") != std::string::npos);
+    // The ends are sin(.2) + sin(.183) of the radius apart.
+    CHECK(simulation.state().time == Approx(.38 / 20).epsilon(.1));
   }
 }
 

@@ -228,9 +228,24 @@ const std::vector<Broken> kBrokenMeshed{
     {"\"supports\"", "\"motion\": \"fixed\", \"supports\"", ":6: /bodies/0/motion", "\"free\"",
      false},
     {"  \"bodies\"",
-     "  \"contact\": { \"normal_stiffness\": 1, \"surface\": \"element\", \"friction\": { "
+     "  \"contact\": { \"normal_stiffness\": 1, \"friction\": { \"law\": \"per_edge\", "
      "\"coefficient\": 0.5, \"tangential_stiffness\": 1 } },\n  \"bodies\"",
-     ":3: /contact/surface", "has no friction", false},
+     ":3: /contact/friction/law", "rigid bodies only", false},
+    {"  \"bodies\"",
+     "  \"contact\": { \"normal_stiffness\": 1, \"damping\": { \"model\": \"normal_viscous\", "
+     "\"ratio\": 0.1 } },\n  \"bodies\"",
+     ":3: /contact/damping", "between rigid bodies only", false},
+    {"  \"bodies\"",
+     "  \"contact\": { \"normal_stiffness\": 1, \"damping\": { \"model\": \"mass\", \"rate\": 3 } "
+     "},\n  \"bodies\"",
+     ":3: /contact/damping", "give the material", false},
+    {"  \"bodies\"",
+     "  \"contact\": { \"normal_stiffness\": 1, \"potential\": \"area\" },\n  \"bodies\"",
+     ":3: /contact/potential", "use \"distance\"", false},
+    {"  \"bodies\"",
+     "  \"contact\": { \"normal_stiffness\": 1, \"pairs\": [ { \"between\": [\"rock\", \"beam\"], "
+     "\"friction\": { \"coefficient\": 0 }, \"normal_stiffness\": 2 } ] },\n  \"bodies\"",
+     ":3: /contact/pairs/0/normal_stiffness", "unknown key", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
 };
 
@@ -455,6 +470,18 @@ TEST_CASE("a static scene refuses what has no meaning in it", "[scene]") {
        "\"contact\": { \"normal_stiffness\": 1e9, \"friction\": { \"coefficient\": 1, "
        "\"tangential_stiffness\": 1e9 } }, \"bodies\": [",
        "/contact/friction: has no meaning"},
+      {"\"bodies\": [",
+       "\"contact\": { \"normal_stiffness\": 1e9, \"damping\": { \"model\": \"normal_viscous\", "
+       "\"ratio\": 0.1 } }, \"bodies\": [",
+       "/contact/damping: has no meaning"},
+      {"\"bodies\": [",
+       "\"contact\": { \"normal_stiffness\": 1e9, \"pairs\": [ { \"between\": [\"rock\", "
+       "\"rock\"], "
+       "\"friction\": { \"coefficient\": 0 } } ] }, \"bodies\": [",
+       "/contact/pairs: has no meaning"},
+      {"\"bodies\": [",
+       "\"contact\": { \"normal_stiffness\": 1e9, \"surface\": \"element\" }, \"bodies\": [",
+       "/contact/surface: a static run needs \"body\""},
   };
   for (const Case& c : cases) {
     const std::string error = error_of(folder.write("broken.json", replaced(good, c.what, c.by)));
