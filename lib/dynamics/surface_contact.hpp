@@ -47,7 +47,7 @@ class SurfaceContact {
   [[nodiscard]] int searches() const;
   /// Has the next evaluation search anew.
   void forget_search() {
-    std::visit([](auto& contact) { contact.forget_search(); }, contact_);
+    std::visit([](auto& s) { s.contact.forget_search(); }, surface_);
   }
   [[nodiscard]] size_t candidates() const;
   [[nodiscard]] size_t touching() const;
