@@ -71,6 +71,47 @@ TEST_CASE("candidates miss no contact while bodies move and deform", "[deformabl
   CHECK(contact.searches() < std::max(2, steps / 2));
 }
 
+TEST_CASE("bodies that meet, part and meet again feel what they would at first sight",
+          "[deformable_contact]") {
+  const std::vector<Vec2> ring = split(samples::block(0, 0, 1, 1).vertices(), 5);
+  const auto pair = [&] {
+    DeformableContact contact(1, 1, .05, 1);
+    add_ring(contact, ring, 0, .3);
+    add_ring(contact, ring, static_cast<int>(ring.size()), .3);
+    return contact;
+  };
+  DeformableContact contact = pair();
+  std::vector<double> u(4 * ring.size());
+  int touched = 0, apart = 0;
+  for (int step = 0; step < 2000; ++step) {
+    // The second body goes round the first one; its corners swing as well.
+    const double t = .003 * step;
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 x = samples::turned(ring[i], .3 * std::sin(3 * t));
+      const size_t c = 2 * (ring.size() + i);
+      u[c] = x.x() - ring[i].x() + (1.35 + .3 * std::cos(2.3 * t)) * std::cos(t);
+      u[c + 1] = x.y() - ring[i].y() + (1.35 + .3 * std::cos(2.3 * t)) * std::sin(t);
+    }
+    contact.update(u, {});
+    contact.evaluate();
+    std::vector<double> f(u.size()), expected(u.size());
+    contact.add_forces(f);
+    DeformableContact fresh = pair();
+    fresh.update(u, {});
+    fresh.evaluate();
+    fresh.add_forces(expected);
+    // Where a collar ends is measured at a search.
+    if (std::max(contact.depth().ratio, fresh.depth().ratio) > .5) continue;
+    REQUIRE(touching(contact) == touching(fresh));
+    REQUIRE(contact.energy() == fresh.energy());
+    REQUIRE((f == expected));
+    (touching(fresh).empty() ? apart : touched)++;
+  }
+  CHECK(touched > 200);
+  CHECK(apart > 200);
+  CHECK(contact.searches() < 1000);
+}
+
 TEST_CASE("a rigid body feels what its polygon feels", "[deformable_contact]") {
   samples::Random random(22);
   double worst = 0;
