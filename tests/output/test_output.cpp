@@ -227,7 +227,7 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
       const std::vector<double> friction{0, any()};
-      writer.add(state, e, p, {friction, {}, {}, {}});
+      writer.add(state, e, p, {.friction = friction});
       rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
                       p.angular_error, friction[1]});
     }
@@ -262,7 +262,7 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {}, {{0, 0}, {}, {}, {}});
+    writer.add(state, {}, {}, {.friction = {0, 0}});
   }
   writer.flush();
   const double top = 3 + model.origin.y();
