@@ -217,6 +217,10 @@ TEST_CASE("a figure of fields becomes a picture, and its error is stated", "[rep
     CHECK(report.find(text) != std::string::npos);
   }
   CHECK(r.out.find("MISSED pulled: stress xx at 1 s: largest error") != std::string::npos);
+  const size_t first = report.find("src=\"data:image/png;base64,iVBORw0KGgo");
+  CHECK(first != std::string::npos);
+  CHECK((report.find("src=\"data:image/png", first + 1) != std::string::npos) ==
+        std::filesystem::exists(folder / "out/fig-7/picture.png"));
   CHECK(content(folder / "out/fig-7/fields.svg").find("<image") != std::string::npos);
   // 1 MPa is the middle of the scale: of our 2 m^2 and of all cells of the table but one.
   const test::Pixels pixels = test::decode(content(folder / "out/fig-7/fields.png"));
