@@ -15,11 +15,11 @@ namespace apothem {
 
 /// What histories record besides the state and the ledgers.
 struct Observed {
-  std::vector<double> friction;         ///< of each rigid body, summed sizes, N
-  std::vector<BodyForce> contact;       ///< on each deformable body
-  std::vector<double> node_mass;        ///< kg
-  std::vector<CauchyStress> stress;     ///< of the element of each tracked point
-  std::vector<SurfaceRecord> surfaces;  ///< needed only where surfaces are tracked
+  std::vector<double> friction;           ///< of each rigid body, summed sizes, N
+  std::vector<BodyForce> contact;         ///< on each deformable body
+  std::vector<double> node_mass;          ///< kg
+  std::vector<CauchyStress> stress;       ///< of the element of each tracked point
+  std::vector<SurfaceRecord> surfaces{};  ///< needed only where surfaces are tracked
 };
 
 class HistoryWriter {
