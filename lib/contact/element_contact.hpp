@@ -132,7 +132,9 @@ class ElementContact {
   [[nodiscard]] size_t touching() const { return touches_.size(); }
   /// Searches so far.
   [[nodiscard]] int searches() const { return searches_; }
-  /// One per pair of bodies that touch, ascending.
+  /// The number of each touch's patch; ascending pairs of bodies. Not for every step.
+  [[nodiscard]] std::vector<int> patches() const;
+  /// One per patch, in that order.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 
  private:
