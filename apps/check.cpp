@@ -34,6 +34,7 @@ int check_command(const CheckOptions& options) {
     if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
   }
   const bool contact = model.bodies.size() > 1 && fixed < static_cast<int>(model.bodies.size());
+  const bool meshes = SurfaceContact::needed(model);
   const double steps = std::ceil(scene.time.end / simulation.step_size());
   const auto say = [](const char* what, const std::string& text) {
     fmt::print("{:<12} {}\n", what, text);
@@ -75,7 +76,15 @@ int check_command(const CheckOptions& options) {
                  "{} potential, k_n = {:g} Pa",
                  model.contact.potential.kind == PotentialChoice::Kind::area ? "area" : "distance",
                  model.contact.normal_stiffness)
-           : "nothing can touch");
+       : meshes ? "no two rigid bodies can touch"
+                : "nothing can touch");
+  uses("contact of meshes", meshes,
+       !meshes ? ""
+       : model.contact.surface == ContactSurface::body
+           ? fmt::format("potentials of their surfaces, k_n = {:g} Pa",
+                         model.contact.normal_stiffness)
+           : fmt::format("potentials of their elements, k_n = {:g} Pa",
+                         model.contact.normal_stiffness));
   const bool height =
       fields > 0 && model.contact.potential.reference == PotentialChoice::Reference::roof;
   uses("straight skeleton", roofs > 0 || height,

@@ -324,12 +324,19 @@ class FigureReader {
   JsonReader in_;
 };
 
-// Points (middle of an edge, contact on it) of a body's pressed edges, from left to right.
+// Points (middle of an edge, contact on it) of a body's pressed edges, from left to right. An edge
+// that dips in by one end, beside the contact, is not one of them.
 std::vector<Vec2> profile(const CurveSource& source, const std::string& runs) {
+  constexpr double kPressed = 1e-4;  // of the largest pressure
+  const std::vector<SurfaceRecord> surfaces =
+      read_surfaces(runs + "/" + source.scene, source.frame.from, source.frame.latest);
+  double largest = 0;
+  for (const SurfaceRecord& s : surfaces) {
+    if (s.body == source.surface) largest = std::max(largest, s.pressure);
+  }
   std::vector<Vec2> points;
-  for (const SurfaceRecord& s :
-       read_surfaces(runs + "/" + source.scene, source.frame.from, source.frame.latest)) {
-    if (s.body != source.surface || s.pressure == 0) continue;
+  for (const SurfaceRecord& s : surfaces) {
+    if (s.body != source.surface || !(s.pressure > kPressed * largest)) continue;
     const Vec2 middle = (s.from + s.to) / 2;
     points.emplace_back(source.x.shown(source.x.column == "x" ? middle.x() : middle.y()),
                         source.y.shown(source.y.column == "pressure" ? s.pressure : s.traction));

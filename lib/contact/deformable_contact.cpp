@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
+#include "contact/groups.hpp"
 #include "geometry/inscribed_circle.hpp"
 
 namespace apothem {
@@ -482,35 +484,69 @@ void DeformableContact::pressures(std::vector<double>& pressure) const {
   }
 }
 
+// The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
+// outline.
+std::vector<int> DeformableContact::patches() const {
+  const Outlines& o = outlines_;
+  const auto before = [](const EdgeFaceContact& c, const std::pair<int, int>& key) {
+    return std::pair(c.edge, c.face) < key;
+  };
+  const auto from = [&](int edge, int face) {
+    return std::lower_bound(contacts_.begin(), contacts_.end(), std::pair(edge, face), before);
+  };
+  Groups groups(contacts_.size());
+  std::vector<std::pair<int, int>> keys;
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    const EdgeFaceContact& c = contacts_[i];
+    keys.push_back(std::minmax(o.body[c.edge], o.body[c.face]));
+    const auto join = [&](auto other) {
+      groups.join(i, static_cast<int>(other - contacts_.begin()));
+    };
+    const auto back = from(c.face, c.edge);
+    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) join(back);
+    const Outlines::Body& body = o.bodies[o.body[c.face]];
+    const auto each = [&](int edge, auto&& goes_on) {
+      for (auto it = from(edge, body.first);
+           it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
+        if (goes_on(*it)) join(it);
+      }
+    };
+    const bool to_end = c.piece.to >= 1;
+    each(c.edge, [&](const EdgeFaceContact& d) {
+      return (d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
+             d.piece.from <= c.piece.to && c.piece.from <= d.piece.to;
+    });
+    if (to_end) {
+      each(o.next[c.edge], [](const EdgeFaceContact& d) { return d.piece.from <= 0; });
+    }
+  }
+  return groups.numbers(keys);
+}
+
 std::vector<BodyContact> DeformableContact::body_contacts() const {
   const Outlines& o = outlines_;
-  std::vector<BodyContact> result;
-  std::vector<double> weights;
-  for (const EdgeFaceContact& c : contacts_) {
-    const int own = o.body[c.edge], other = o.body[c.face];
-    const BodyContact key{std::min(own, other), std::max(own, other)};
-    const auto before = [](const BodyContact& p, const BodyContact& q) {
-      return std::pair(p.a, p.b) < std::pair(q.a, q.b);
-    };
-    auto it = std::lower_bound(result.begin(), result.end(), key, before);
-    const auto index = it - result.begin();
-    if (it == result.end() || before(key, *it)) {
-      it = result.insert(it, key);
-      weights.insert(weights.begin() + index, 0.);
-    }
+  const std::vector<int> patch = patches();
+  std::vector<BodyContact> result(
+      patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1);
+  std::vector<double> weights(result.size());
+  for (size_t i = 0; i < contacts_.size(); ++i) {
+    const EdgeFaceContact& c = contacts_[i];
+    BodyContact& sum = result[patch[i]];
+    const int own = o.body[c.edge];
+    std::tie(sum.a, sum.b) = std::minmax(own, o.body[c.face]);
     const CollarPiece<double>& p = c.piece;
     const double force = slope(c) * p.sum * o.length[c.edge];
     const Vec2 inward(-o.ty[c.edge], o.tx[c.edge]);
     const double area = slope(c) * p.area;
     const Vec2 gives(-o.ty[c.face], o.tx[c.face]);
     // What the edge of a feels, or what the face of a gives.
-    it->force += own == it->a ? Vec2(force * inward) : Vec2(area * gives);
+    sum.force += own == sum.a ? Vec2(force * inward) : Vec2(area * gives);
     const int q = o.next[c.edge];
     const double u = p.sum > 0 ? p.first / p.sum : 0;
-    it->point += force * Vec2(o.x[c.edge] + u * (o.x[q] - o.x[c.edge]),
+    sum.point += force * Vec2(o.x[c.edge] + u * (o.x[q] - o.x[c.edge]),
                               o.y[c.edge] + u * (o.y[q] - o.y[c.edge]));
-    weights[index] += force;
-    it->penetration = std::max(it->penetration, p.deepest);
+    weights[patch[i]] += force;
+    sum.penetration = std::max(sum.penetration, p.deepest);
   }
   for (size_t i = 0; i < result.size(); ++i) {
     if (weights[i] > 0) result[i].point /= weights[i];

@@ -8,7 +8,6 @@
 // part with their polygons; pairs of two rigid bodies do not belong here.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -76,7 +75,7 @@ struct EdgeFaceContact {
   CollarPiece<double> piece;
 };
 
-/// All that happens between two bodies.
+/// What happens in a contact patch, a connected part of the overlap of two bodies.
 struct BodyContact {
   int a, b;                      ///< a < b
   Vec2 force = Vec2::Zero();     ///< on a, without friction, N
@@ -84,14 +83,6 @@ struct BodyContact {
   double penetration = 0;        ///< largest depth below a surface, m
   Vec2 friction = Vec2::Zero();  ///< on a, N
 };
-
-/// The one of two bodies in an ascending list that has it.
-inline BodyContact& find_contact(std::vector<BodyContact>& contacts, int a, int b) {
-  const std::pair<int, int> key = std::minmax(a, b);
-  return *std::lower_bound(
-      contacts.begin(), contacts.end(), key,
-      [](const BodyContact& c, const std::pair<int, int>& k) { return std::pair(c.a, c.b) < k; });
-}
 
 class DeformableContact {
  public:
@@ -185,7 +176,9 @@ class DeformableContact {
 
   /// Mean normal pressure on each edge, Pa.
   void pressures(std::vector<double>& pressure) const;
-  /// One per pair of bodies that touch, ascending.
+  /// The number of each contact's patch; ascending pairs of bodies. Not for every step.
+  [[nodiscard]] std::vector<int> patches() const;
+  /// One per patch, in that order.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 
  private:

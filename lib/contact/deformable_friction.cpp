@@ -158,7 +158,7 @@ void DeformableFriction::each_share(const DeformableContact& contact, Use&& use)
       normal += contact.slope(contacts[i]) * contacts[i].piece.sum;
     }
     for (size_t i = first; i < end; ++i) {
-      use(contacts[i], slip->spring * contact.slope(contacts[i]) * contacts[i].piece.sum / normal);
+      use(i, slip->spring * contact.slope(contacts[i]) * contacts[i].piece.sum / normal);
     }
     ++slip;
   }
@@ -178,10 +178,12 @@ double DeformableFriction::size(const DeformableContact& contact, int body) cons
 void DeformableFriction::add_to(const DeformableContact& contact,
                                 std::vector<BodyContact>& contacts) const {
   const Outlines& o = contact.outlines();
-  each_share(contact, [&](const EdgeFaceContact& c, double force) {
-    const int own = o.body[c.edge], other = o.body[c.face];
-    BodyContact& found = find_contact(contacts, own, other);
-    found.friction += (own == found.a ? force : -force) * Vec2(o.tx[c.face], o.ty[c.face]);
+  const std::vector<int> patch = contact.patches();
+  each_share(contact, [&](size_t i, double force) {
+    const EdgeFaceContact& c = contact.contacts()[i];
+    BodyContact& found = contacts[patch[i]];
+    found.friction +=
+        (o.body[c.edge] == found.a ? force : -force) * Vec2(o.tx[c.face], o.ty[c.face]);
   });
 }
 
@@ -190,7 +192,8 @@ void DeformableFriction::tractions(const DeformableContact& contact,
                                    std::vector<double>& traction) const {
   const Outlines& o = contact.outlines();
   traction.assign(o.size(), 0);
-  each_share(contact, [&](const EdgeFaceContact& c, double force) {
+  each_share(contact, [&](size_t k, double force) {
+    const EdgeFaceContact& c = contact.contacts()[k];
     for (const int i : {c.edge, c.face}) {
       traction[i] -= force / (o.length[i] * contact.thickness());
     }

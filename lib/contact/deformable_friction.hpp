@@ -35,7 +35,7 @@ class DeformableFriction {
   }
   /// The sizes of the springs' forces on a body, summed, N.
   [[nodiscard]] double size(const DeformableContact& contact, int body) const;
-  /// Adds the friction of each pair of bodies.
+  /// Adds the friction of each patch of DeformableContact::body_contacts.
   void add_to(const DeformableContact& contact, std::vector<BodyContact>& contacts) const;
   /// Tangential stiffness of a body's springs, N/m.
   [[nodiscard]] double stiffness(int body) const { return body_stiffness_[body]; }

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "contact/groups.hpp"
 #include "mesh/locate.hpp"
 
 namespace apothem {
@@ -287,26 +288,55 @@ void ElementContact::add_stiffness(std::span<double> node_stiffness) const {
   }
 }
 
-std::vector<BodyContact> ElementContact::body_contacts() const {
-  struct Sum {
-    BodyContact contact;
-    double weight = 0;
+// Pairs of polygons belong together if on both sides the polygons are the same or share a node.
+std::vector<int> ElementContact::patches() const {
+  const auto nodes = [&](int polygon) {
+    return entry(polygon) >= 0 ? std::span<const int>()
+                               : std::span(nodes_).subspan(size_t(pieces_[polygon].corners),
+                                                           size_t(corner_count(polygon)));
   };
-  std::map<std::pair<int, int>, Sum> sums;
-  for (size_t p = 0; p < pairs_.size(); ++p) {
-    const PairIntegral& pair = normal_.integrals()[p];
-    if (!pair.touching()) continue;
-    const int a = pieces_[pairs_[p].first].body, b = pieces_[pairs_[p].second].body;
-    Sum& sum = sums.try_emplace({a, b}, Sum{{a, b}}).first->second;
-    sum.contact.force += stiffness_ * pair.force;
-    sum.contact.point += pair.weight * (reference(pairs_[p].first) + loading_point(pair));
-    sum.contact.penetration = std::max(sum.contact.penetration, pair.penetration);
-    sum.weight += pair.weight;
+  const auto adjacent = [&](int p, int q) {
+    if (p == q) return true;
+    const std::span<const int> of_p = nodes(p), of_q = nodes(q);
+    return std::find_first_of(of_p.begin(), of_p.end(), of_q.begin(), of_q.end()) != of_p.end();
+  };
+  Groups groups(touches_.size());
+  std::vector<std::pair<int, int>> keys;
+  std::map<int, std::vector<int>> at_node;  // touches of elements there
+  for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
+    const Touch& t = touches_[i];
+    keys.emplace_back(body(t.a), body(t.b));
+    for (const int node : nodes(entry(t.a) < 0 ? t.a : t.b)) {
+      for (const int j : at_node[node]) {
+        const Touch& u = touches_[j];
+        if (keys[j] == keys[i] && adjacent(t.a, u.a) && adjacent(t.b, u.b)) groups.join(i, j);
+      }
+      at_node[node].push_back(i);
+    }
   }
-  std::vector<BodyContact> result;
-  for (auto& [bodies, sum] : sums) {
-    if (sum.weight > 0) sum.contact.point /= sum.weight;
-    result.push_back(sum.contact);
+  return groups.numbers(keys);
+}
+
+std::vector<BodyContact> ElementContact::body_contacts() const {
+  const std::vector<int> patch = patches();
+  std::vector<BodyContact> result(
+      patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1);
+  std::vector<double> weights(result.size());
+  size_t next = 0;  // touch
+  for (size_t p = 0; p < pairs_.size() && next < touches_.size(); ++p) {
+    const Touch& t = touches_[next];
+    if (pairs_[p] != BoxPair{t.a, t.b}) continue;
+    const PairIntegral& pair = normal_.integrals()[p];
+    const int k = patch[next++];
+    BodyContact& sum = result[k];
+    sum.a = body(t.a), sum.b = body(t.b);
+    sum.force += t.force;
+    sum.point += pair.weight * (reference(t.a) + t.point);
+    sum.penetration = std::max(sum.penetration, pair.penetration);
+    weights[k] += pair.weight;
+  }
+  for (size_t i = 0; i < result.size(); ++i) {
+    if (weights[i] > 0) result[i].point /= weights[i];
   }
   return result;
 }

@@ -134,7 +134,9 @@ class ElementContact {
   [[nodiscard]] int searches() const { return searches_; }
   /// Has the next update search anew.
   void forget_search() { kept_.clear(); }
-  /// One per pair of bodies that touch, ascending.
+  /// The number of each touch's patch; ascending pairs of bodies. Not for every step.
+  [[nodiscard]] std::vector<int> patches() const;
+  /// One per patch, in that order.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
 
  private:

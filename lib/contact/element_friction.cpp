@@ -24,7 +24,7 @@ void ElementFriction::update(const ElementContact& contact, std::span<const doub
   now_.slips.clear();
   now_.energy = 0;
   now_.friction_loss = before_.friction_loss;
-  forces_.clear(), node_forces_.clear();
+  forces_.clear(), node_forces_.clear(), touches_.clear();
   sums_.assign(contact.body_count(), {Vec2::Zero(), 0});
 
   // Of the material at a point.
@@ -54,6 +54,7 @@ void ElementFriction::update(const ElementContact& contact, std::span<const doub
     slip.spring = std::clamp((known ? old->spring : 0) - slip.stiffness * (rate.dot(tangent) * dt),
                              -limit, limit);
     now_.slips.push_back(slip);
+    touches_.push_back(static_cast<int>(&t - contact.touches().data()));
     now_.energy += slip.energy();
     const Vec2 force = slip.spring * tangent;
     apply(contact, {t.a, force, t.point}, of_a_);
@@ -108,10 +109,9 @@ double ElementFriction::size(const ElementContact& contact, int body) const {
 
 void ElementFriction::add_to(const ElementContact& contact,
                              std::vector<BodyContact>& contacts) const {
-  for (size_t i = 0; i < forces_.size(); i += 2) {
-    const int a = contact.body(forces_[i].polygon), b = contact.body(forces_[i + 1].polygon);
-    BodyContact& found = find_contact(contacts, a, b);
-    found.friction += forces_[a == found.a ? i : i + 1].force;
+  const std::vector<int> patch = contact.patches();
+  for (size_t i = 0; i < touches_.size(); ++i) {
+    contacts[patch[touches_[i]]].friction += forces_[2 * i].force;  // on a
   }
 }
 

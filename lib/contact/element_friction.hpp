@@ -34,7 +34,7 @@ class ElementFriction {
   }
   /// The sizes of the springs' forces on a body, summed, N.
   [[nodiscard]] double size(const ElementContact& contact, int body) const;
-  /// Adds the friction of each pair of bodies.
+  /// Adds the friction of each patch of ElementContact::body_contacts.
   void add_to(const ElementContact& contact, std::vector<BodyContact>& contacts) const;
   /// Mean tangential traction on each edge of the surface, along its direction, Pa.
   [[nodiscard]] std::vector<double> tractions(
@@ -60,6 +60,7 @@ class ElementFriction {
   FrictionTable table_;
   SlipMemory now_, before_;
   std::vector<Force> forces_;  // two per spring
+  std::vector<int> touches_;   // of the springs
   std::vector<NodeForce> node_forces_;
   std::vector<DeformableContact::Resultant> sums_;  // of each body
   ElementContact::Corners of_a_, of_b_;

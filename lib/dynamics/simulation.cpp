@@ -562,9 +562,15 @@ Energies Simulation::energies() {
   }
   if (surface_) {
     dissipation.friction += surface_->friction_loss();
-    for (const ContactRecord& r : surface_->records()) {
-      const double force = r.normal.norm();
-      if (force > extremes_.force.value) extremes_.force = {force, state_.time, r.a, r.b};
+    const std::vector<ContactRecord> records = surface_->records();
+    Vec2 force = Vec2::Zero();  // of the patches of a pair
+    for (size_t i = 0; i < records.size(); ++i) {
+      const int a = records[i].a, b = records[i].b;
+      force += records[i].normal;
+      const bool more = i + 1 < records.size() && records[i + 1].a == a && records[i + 1].b == b;
+      if (more) continue;
+      if (force.norm() > extremes_.force.value) extremes_.force = {force.norm(), state_.time, a, b};
+      force = Vec2::Zero();
     }
   }
   const Energies nodes = deformables_ ? deformables_->energies(state_, dt_) : Energies{};

@@ -327,13 +327,16 @@ TEST_CASE("a rigid block bounces on elements", "[element_contact][contact][defor
     simulation.step();
     const std::vector<ContactRecord> contacts = simulation.contacts();
     if (contacts.empty()) continue;
-    REQUIRE(contacts.size() == 1);
-    CHECK(contacts[0].a == 0);
-    CHECK(contacts[0].b == 1);
+    double normal = 0;  // of all patches: the bar bends away from under the block's middle
+    for (const ContactRecord& r : contacts) {
+      CHECK(r.a == 0);
+      CHECK(r.b == 1);
+      normal += r.normal.y();
+    }
     const BodyForce on_bar = simulation.deformable_forces()[0];
-    CHECK(contacts[0].normal.y() == Approx(-on_bar.fy).epsilon(1e-12));
-    CHECK(contacts[0].normal.y() == Approx(simulation.state().force[1]).epsilon(1e-12));
-    pressed = std::max(pressed, contacts[0].normal.y());
+    CHECK(normal == Approx(-on_bar.fy).epsilon(1e-12));
+    CHECK(normal == Approx(simulation.state().force[1]).epsilon(1e-12));
+    pressed = std::max(pressed, normal);
   }
   CHECK(pressed > 0);
   CHECK(simulation.state().velocity[1] > -4);

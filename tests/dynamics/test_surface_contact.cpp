@@ -164,6 +164,50 @@ TEST_CASE("friction of a pair overrides that of the scene, and is in the records
   }
 }
 
+TEST_CASE("a body on two feet has two contact patches", "[surface]") {
+  for (const ContactSurface surface : {ContactSurface::body, ContactSurface::element}) {
+    for (const bool meshed_floor : {false, true}) {
+      Model model = empty_model();
+      model.contact.surface = surface;
+      model.contact.distribution = surface == ContactSurface::body ? ForceDistribution::variational
+                                                                   : ForceDistribution::resultant;
+      model.contact.friction = {.3, 12e9};
+      if (meshed_floor) {
+        add(model, "floor",
+            rectangle_mesh({3, .4}, {20, 3}, {-1, -.4}, ElementShape::quadrilateral),
+            ElementKind::quad4, {0, 0});
+      } else {
+        add_floor(model);
+      }
+      const Polygon table({{0, 0}, {.2, 0}, {.2, .3}, {.8, .3}, {.8, 0}, {1, 0}, {1, .5}, {0, .5}});
+      Mesh mesh = fill_mesh(table, {}, .1, ElementShape::triangle);
+      for (Vec2& x : mesh.nodes) x.y() -= 1e-5;
+      reorder_along_curve(mesh);
+      add(model, "table", std::move(mesh), ElementKind::tri3, {1, 0});
+      TimeSettings time;
+      time.end = 1;
+      Simulation simulation(model, time, 1, 1);
+      for (int i = 0; i < 4; ++i) simulation.step();
+      const std::vector<ContactRecord> records = simulation.contacts();
+      REQUIRE(records.size() == 2);
+      Vec2 sum = Vec2::Zero();
+      std::vector<double> x;
+      for (const ContactRecord& r : records) {
+        x.push_back(r.point.x());
+        sum += r.normal + r.tangential;
+        CHECK(r.normal.y() < 0);
+        CHECK(r.tangential.x() > 0);
+        CHECK(std::abs(r.point.y()) < 1e-4);
+      }
+      std::sort(x.begin(), x.end());
+      CHECK(x[0] == Approx(.1).margin(.05));
+      CHECK(x[1] == Approx(.9).margin(.05));
+      const BodyForce on = simulation.deformable_forces().back();
+      CHECK((sum + Vec2(on.fx, on.fy)).norm() < 1e-9 * sum.norm());
+    }
+  }
+}
+
 TEST_CASE("a long strip that is bent until its ends meet is refused", "[surface]") {
   for (const bool alone : {true, false}) {
     Model model = empty_model();
