@@ -160,7 +160,7 @@ TEST_CASE("a curve along a surface", "[reproduce]") {
     CHECK(curve.columns[1][i + 1] == Approx(100).epsilon(1e-3));
   }
   for (const auto& [from, to, what] :
-       {std::array{"\"block\"", "\"floor\"", "must be \"block\""},
+       {std::array{"\"block\"", "\"floor\"", "unknown choice \"floor\""},
         {"\"time\": 1", "\"time\": 0.7", "is not the time of a frame"},
         {"\"y\": \"pressure\"", "\"y\": \"presure\"", "pressure"}}) {
     folder.write("data/figures/fig-7.json", replaced(figure, from, to));
