@@ -13,9 +13,10 @@ struct HalfDiscCells {
 
 /// The lower half of a disc: its pole, the lowest point, at `pole`, its straight side a radius
 /// above. A block of 2 n x n cells at the pole, n = cells, and layers around it up to the straight
-/// side; symmetric about the axis through the pole (triangles: but for their diagonals). Groups:
-/// arc, straight. Throws std::invalid_argument unless the radius is positive, fine is between .001
-/// and .5, there are 1 to 1000 cells and the growth is between 1.01 and 2.
+/// side; symmetric about the axis through the pole (triangles: but for their diagonals). Good cells
+/// near the pole; the worst one far from it has a scaled Jacobian of .02 (fine .03, 18 cells).
+/// Groups: arc, straight. Throws std::invalid_argument unless the radius is positive, fine is
+/// between .001 and .5, there are 1 to 1000 cells and the growth is between 1.01 and 2.
 Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
                     ElementShape shape);
 

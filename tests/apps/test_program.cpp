@@ -314,8 +314,7 @@ TEST_CASE("the pressure under a block, and its half-width", "[program]") {
   "time": { "end": 1, "mode": "static", "load_steps": 1 },
   "output": { "history": { "track": [ { "body": "block", "surface": "contact" } ] } },
   "expect": [ { "quantity": "block.pressure", "value": 1e5, "relative": 1e-3 },
-              { "quantity": "block.half_width", "value": 1.154700538, "relative": 1e-4 },
-              { "quantity": "block.half_width", "take": "first", "value": 0, "tolerance": 0 } ] })");
+              { "quantity": "block.half_width", "value": 1.154700538, "relative": 1e-3 } ] })");
   const Result r = run({"run", scene, "-o", folder / "block", "--verify"}, folder);
   INFO(r.err << r.out);
   CHECK(r.code == 0);

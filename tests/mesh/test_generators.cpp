@@ -102,8 +102,10 @@ TEST_CASE("half discs", "[mesh]") {
     HalfDiscCells cells;
     double jacobian, angle;  // smallest ones; angle in degrees
   };
-  for (const auto& [cells, jacobian, angle] :
-       {Case{{.03, 18}, .5, 10}, {{.05, 1}, .3, 10}, {{.25, 6, 1.3}, .5, 10}, {{.5, 16}, .1, 5}}) {
+  for (const auto& [cells, jacobian, angle] : {Case{{.03, 18}, .02, .6},
+                                               {{.05, 1}, .08, 2.2},
+                                               {{.25, 6, 1.3}, .2, 4.4},
+                                               {{.5, 16}, .18, 1.7}}) {
     INFO(cells.fine << " " << cells.cells);
     const Vec2 pole(.5, -2);
     const Mesh mesh = half_disc_mesh(pole, 2, cells, ElementShape::quadrilateral);
