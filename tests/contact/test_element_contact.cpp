@@ -13,15 +13,15 @@ using namespace apothem::test;
 
 namespace {
 
-// Square elements of 1 m (r = .5 m) with their top at y = 0, and a right-angled tip above.
-struct DraggedTip {
-  DraggedTip(ContactSurface surface, double depth, double x) {
+// Square elements of 1 m (r = .5 m) with their top at y = 0, and a tool on them, given with its
+// lowest point at y = 0.
+struct Dragged {
+  Dragged(ContactSurface surface, const Polygon& tool, double depth, double x) {
     const Mesh row = rectangle_mesh({9, 1}, {9, 1}, {-4.5, -1}, ElementShape::quadrilateral);
-    const std::vector<Vec2> tip{{0, 0}, {1, 1}, {-1, 1}};
-    const Polygon polygon(tip);
-    const Potential potential = translated(make_potential(polygon), area_moments(polygon).centroid);
+    const Vec2 centroid = area_moments(tool).centroid + tool.origin();
+    const Potential potential = translated(make_potential(tool), centroid - tool.origin());
     const std::vector<double> u(2 * row.nodes.size());
-    const std::vector<double> place{x, 2. / 3 - depth, 0};
+    const std::vector<double> place{x + centroid.x(), centroid.y() - depth, 0};
     if (surface == ContactSurface::body) {
       DeformableContact contact(1, 1, .1, 1);
       contact.add_rigid(potential.vertices, 0, 1 / potential.steepest);
@@ -44,10 +44,11 @@ struct DraggedTip {
 
 // Largest |Fx/Fy| over one element, and how much less Fy is than in its middle.
 std::pair<double, double> drag(ContactSurface surface, double depth) {
+  const Polygon tip({{0, 0}, {1, 1}, {-1, 1}});
   double tangential = 0, least = HUGE_VAL;
-  const double middle = DraggedTip(surface, depth, 0).force.y();
+  const double middle = Dragged(surface, tip, depth, 0).force.y();
   for (int i = 0; i <= 100; ++i) {
-    const Vec2 f = DraggedTip(surface, depth, .01 * i).force;
+    const Vec2 f = Dragged(surface, tip, depth, .01 * i).force;
     tangential = std::max(tangential, std::abs(f.x() / f.y()));
     least = std::min(least, f.y());
   }
@@ -278,6 +279,27 @@ TEST_CASE("a tip dragged over a row of elements meets their borders",
     CHECK(tangential == Approx(.17).margin(.005));
     CHECK(none < 1e-12);
     CHECK(std::abs(even) < 1e-12);
+  }
+}
+
+TEST_CASE("a flat punch dragged over a row of elements loses force to their borders",
+          "[element_contact][contact]") {
+  constexpr double r_element = .5, r_punch = 1;
+  for (const double d : {.025, .05, .1, .24}) {
+    for (const double width : {2., 2.3}) {
+      const Polygon punch = samples::block(-width / 2, 0, width / 2, 2);
+      const double whole = width * d / r_element + (width * d - d * d) / r_punch;
+      for (int i = 0; i <= 50; ++i) {
+        CAPTURE(d, width, i);
+        const Vec2 body = Dragged(ContactSurface::body, punch, d, .02 * i).force;
+        CHECK(std::abs(body.x()) < 1e-12 * std::abs(body.y()));
+        CHECK(std::abs(body.y()) == Approx(whole).epsilon(1e-12));
+        if (width != 2) continue;
+        // Each metre of the punch meets the borders of one element.
+        const Vec2 element = Dragged(ContactSurface::element, punch, d, .02 * i).force;
+        CHECK(std::abs(element.y()) == Approx(whole - width * d * d / r_element).epsilon(1e-10));
+      }
+    }
   }
 }
 
