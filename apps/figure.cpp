@@ -138,6 +138,7 @@ class FigureReader {
       for (const JsonValue& item : in_.array(*points)) {
         source.points.push_back(in_.vec2(item, "what is shown"));
       }
+      if (source.points.empty()) in_.fail(*points, "must hold at least one point");
     } else {
       table(object, source, scene, scene ? *scene : *reference);
     }

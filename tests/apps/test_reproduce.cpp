@@ -325,6 +325,7 @@ TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[repr
         std::tuple("\"y\": \"speed\"", "\"y\": \"sped\"", "did you mean \"speed\""),
         std::tuple("\"fall.csv\"", "\"bare.csv\"",
                    ":4: /panels/0/curves/1/reference: has no column \"time\""),
+        std::tuple("[[0, 500], [10, 600]]", "[]", ":5: /panels/0/curves/2/points: must hold"),
         std::tuple("\"marks\"", "\"mark\"", "did you mean \"marks\""),
         std::tuple("\"points\"", "\"scene\": \"fall\", \"points\"", ":5: /panels/0/curves/2: ")}) {
     folder.write("data/figures/fig-7.json", replaced(kFigure, what, by));
