@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -121,13 +122,17 @@ Checkpoint read_checkpoint(const std::string& folder, const std::string& scene_h
   const State& state = c.snapshot.state;
   const size_t size = like.state.position.size();
   const size_t nodes = like.state.displacement.size();
+  const size_t bodies = like.equilibrium.body_loads.size();
+  const auto fits = [&](const LoadStep& s) {
+    return s.off.size() == bodies && s.worst >= 0 && static_cast<size_t>(s.worst) < bodies;
+  };
   if (state.position.size() != size || state.remainder.size() != size ||
       state.velocity.size() != size || state.force.size() != size ||
       state.displacement.size() != nodes || state.node_velocity.size() != nodes ||
       state.node_force.size() != nodes ||
       c.snapshot.equilibrium.outside.size() != like.equilibrium.outside.size() ||
-      c.snapshot.equilibrium.body_loads.size() != like.equilibrium.body_loads.size() ||
-      !(c.snapshot.step_size > 0)) {
+      c.snapshot.equilibrium.body_loads.size() != bodies ||
+      !std::all_of(c.load_steps.begin(), c.load_steps.end(), fits) || !(c.snapshot.step_size > 0)) {
     throw SceneError(name, 0, "", "is damaged: its state does not fit the scene; run it anew");
   }
   for (size_t i = 0; i < kHistoryFiles.size(); ++i) {

@@ -11,6 +11,9 @@
 namespace apothem {
 namespace {
 
+constexpr size_t kMostFields = 100;  // of a panel: frames get too small to see
+constexpr double kFarthest = 1e60;   // m, as of polygons
+
 std::string scene_file(const std::string& data, const std::string& scene) {
   return data + "/scenes/" + scene + ".json";
 }
@@ -135,6 +138,7 @@ class FigureReader {
       for (const JsonValue& item : in_.array(*points)) {
         source.points.push_back(in_.vec2(item, "what is shown"));
       }
+      if (source.points.empty()) in_.fail(*points, "must hold at least one point");
     } else {
       table(object, source, scene, scene ? *scene : *reference);
     }
@@ -159,6 +163,9 @@ class FigureReader {
     const std::vector<std::string>& columns = holding(tables, y);
     source.y.column = y.string;
     if (x) source.x.column = holding({columns}, *x).at(index_of(columns, x->string));
+    if (index_of(columns, source.x.column) == columns.size()) {
+      in_.fail(name, "has no column \"" + source.x.column + "\": give \"x\"");
+    }
     if (!is_scene) return;
     std::vector<std::string>& stated = figure_.numbers[source.scene];
     if (index_of(stated, y.string) == stated.size()) stated.push_back(y.string);
@@ -213,6 +220,9 @@ class FigureReader {
     for (const JsonValue& item : in_.array(fields)) field(item, panel);
     object.finish();
     if (panel.fields.empty()) in_.fail(fields, "must hold at least one field");
+    if (panel.fields.size() > kMostFields) {
+      in_.fail(fields, fmt::format("must hold at most {} fields", kMostFields));
+    }
     const std::vector<FieldSource>& sources = figure_.field_sources.back();
     for (size_t i = 0; i < sources.size(); ++i) {
       if (sources[i].compared && !first_reference(sources)) {
@@ -227,6 +237,9 @@ class FigureReader {
     const Vec2 low = in_.vec2(corners[0], "m"), high = in_.vec2(corners[1], "m");
     if (!(low.x() < high.x() && low.y() < high.y())) {
       in_.fail(value, "must be [[x0, y0], [x1, y1]] with x0 below x1 and y0 below y1");
+    }
+    if (std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()) > kFarthest) {
+      in_.fail(value, fmt::format("must lie within {:g} m of the origin", kFarthest));
     }
     return {low.x(), low.y(), high.x(), high.y()};
   }
@@ -298,7 +311,13 @@ class FigureReader {
     source.reference = reference.string;
     source.column = column.string;
     source.cell = cell;
-    if (cells_of(data_, source).centres.empty()) in_.fail(reference, "has no rows");
+    bool none = false;
+    try {
+      none = cells_of(data_, source).centres.empty();
+    } catch (const std::runtime_error& error) {
+      in_.fail(reference, error.what());
+    }
+    if (none) in_.fail(reference, "has no rows");
   }
 
   Scene scene_of(const JsonValue& scene) {

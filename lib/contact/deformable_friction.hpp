@@ -44,8 +44,6 @@ class DeformableFriction {
 
   [[nodiscard]] const SlipMemory& memory() const { return now_; }
   void restore(const SlipMemory& memory) { now_ = memory; }
-  /// What has been lost so far does not count.
-  void start_ledger() { now_.friction_loss = 0; }
 
  private:
   void find_velocities(const DeformableContact& contact, std::span<const double> node_velocity,

@@ -442,6 +442,7 @@ FiniteElements::Collapse FiniteElements::smallest_ratio(std::span<const double> 
                                      int element, const Point<double>* w) {
     const Tensor<double> h = Element::mean_gradient(data, corners, w);
     const double ratio = 1 + h.xx + h.yy + determinant(h);
+    if (std::isnan(worst.ratio)) return;
     if (!(ratio >= worst.ratio)) worst = {ratio, set, element};
   });
   return worst;

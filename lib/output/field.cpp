@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "mesh/measure.hpp"
 
 namespace apothem {
 namespace {
+
+constexpr double kFarthest = 1e9;  // cells, along an axis
 
 // Number of the cell of a lattice through `start`.
 std::pair<long, long> lattice_cell(const Vec2& p, const Vec2& start, const Vec2& size) {
@@ -55,7 +58,20 @@ CellTable cell_table(const HistoryTable& table, const std::string& column, const
   CellTable cells{size, {}, *table.column(column)};
   const std::vector<double>& x = *table.column("x");
   const std::vector<double>& y = *table.column("y");
-  for (size_t i = 0; i < x.size(); ++i) cells.centres.emplace_back(x[i], y[i]);
+  std::set<std::pair<long, long>> known;
+  for (size_t i = 0; i < x.size(); ++i) {
+    const Vec2 steps = (Vec2(x[i], y[i]) - Vec2(x[0], y[0])).cwiseQuotient(size);
+    if (!(std::abs(steps.x()) < kFarthest && std::abs(steps.y()) < kFarthest)) {
+      throw std::runtime_error(
+          fmt::format("the cell around ({}, {}) lies more than {:g} cells from the first", x[i],
+                      y[i], kFarthest));
+    }
+    cells.centres.emplace_back(x[i], y[i]);
+    if (!known.insert(lattice_cell(cells.centres[i], cells.centres[0], size)).second) {
+      throw std::runtime_error(fmt::format(
+          "the cell around ({}, {}) has two rows: give the size of the table's cells", x[i], y[i]));
+    }
+  }
   return cells;
 }
 

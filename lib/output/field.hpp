@@ -69,7 +69,8 @@ struct CellTable {
   std::vector<double> values;
 };
 
-/// Columns x and y are the centres.
+/// Columns x and y are the centres. Throws std::runtime_error if two rows are of the same cell, or
+/// a cell is not within 1e9 cells of the first.
 CellTable cell_table(const HistoryTable& table, const std::string& column, const Vec2& size);
 
 Field field_of(const CellTable& cells);

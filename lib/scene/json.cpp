@@ -231,7 +231,8 @@ double JsonReader::number(const JsonValue& value, const std::string& unit) const
 
 double JsonReader::positive(const JsonValue& value, const std::string& unit) const {
   const double x = number(value, unit);
-  if (!(x > 0)) fail(value, fmt::format("must be positive (in {}), not {}", unit, x));
+  const std::string in = unit.empty() ? "" : " (in " + unit + ")";
+  if (!(x > 0)) fail(value, fmt::format("must be positive{}, not {}", in, x));
   return x;
 }
 

@@ -66,6 +66,7 @@ class MeshReader {
       in_.fail(value, "must give the line: one of \"x\" and \"y\"");
     }
     mirror(mesh, x != nullptr ? 0 : 1, in_.number(x != nullptr ? *x : *y, "m"));
+    check(mesh, value);
   }
 
   void read_element() {
@@ -78,8 +79,16 @@ class MeshReader {
   Mesh made(const JsonValue& source, const Way& way) const {
     try {
       Mesh mesh = (this->*way.make)(source);
-      check_mesh(mesh, rules());
+      check(mesh, source);
       return mesh;
+    } catch (const std::invalid_argument& error) {
+      in_.fail(source, error.what());
+    }
+  }
+
+  void check(const Mesh& mesh, const JsonValue& source) const {
+    try {
+      check_mesh(mesh, rules());
     } catch (const std::invalid_argument& error) {
       in_.fail(source, error.what());
     }

@@ -50,9 +50,9 @@ void OutputReader::tracked(const JsonValue& item) {
   };
   const int rigid = index_in(model_.bodies);
   const int deformable = index_in(model_.deformables);
+  if (label && !point) in_.fail(*label, "goes with a \"point\"; leave it out");
   if (surface) return tracked_surface(deformable, *surface, point);
   if (!point) {
-    if (label) in_.fail(*label, "goes with a \"point\"; leave it out");
     std::vector<int>& list = rigid >= 0 ? output_.track : output_.track_deformables;
     const int body = std::max(rigid, deformable);
     if (std::find(list.begin(), list.end(), body) != list.end()) {

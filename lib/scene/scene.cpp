@@ -359,6 +359,11 @@ class SceneReader {
     }
     if (const JsonValue* v = object.optional("start")) {
       time.settled = in_.choice(*v, {"as_given", "settled"}) == 1;
+      if (time.settled && !model_.deformables.empty()) {
+        in_.fail(*v,
+                 "\"settled\" is for rigid bodies only; where a body has a mesh leave it out, and "
+                 "find equilibria with \"mode\": \"static\"");
+      }
     }
     if (const JsonValue* v = object.optional("safety")) {
       time.safety = in_.positive(*v, "parts of the stability limit");

@@ -197,6 +197,12 @@ TEST_CASE("Ctrl-C during a load step keeps the one before, and --resume goes on 
           0);
   REQUIRE(run({"run", file, "-o", folder / "cut", "--until", "0.35"}, folder).code == 0);
   CHECK(Json::parse(content(folder / "cut/run.json"))["steps"] == 3);
+  const std::string checkpoint = content(folder / "cut/checkpoint.json");
+  Json damaged = Json::parse(checkpoint);
+  damaged["load_steps"][0]["worst"] = 1;  // of one body
+  folder.write("cut/checkpoint.json", damaged.dump());
+  CHECK(run({"run", file, "-o", folder / "cut", "--resume"}, folder).code == 2);
+  folder.write("cut/checkpoint.json", checkpoint);
   REQUIRE(run({"run", file, "-o", folder / "cut", "--resume"}, folder).code == 0);
   const Json whole = Json::parse(content(folder / "whole/run.json"));
   for (const std::string other : {"parts/", "cut/"}) {

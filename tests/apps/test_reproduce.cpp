@@ -66,7 +66,9 @@ std::string data_folder(const Folder& folder, const std::string& figure = kFigur
              (i == 6 ? "2e6\n" : "1e6\n");
   }
   folder.write("data/reference/pulled.csv", cells);
+  folder.write("data/reference/bare.csv", "t,speed\n0,500\n");
   folder.write("data/reference/empty.csv", "x,y,sxx\n");
+  folder.write("data/reference/lost.csv", "x,y,sxx\n0,0,1\n0,nan,1\n");
   folder.write("data/figures/fig-7.json", figure);
   return folder / "data";
 }
@@ -276,6 +278,9 @@ TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reprodu
                    ":4: /panels/0/fields/1/reference: has no column \"x\""),
         std::tuple("\"column\": \"sxx\"", "\"column\": \"sxy\"", "did you mean \"sxx\""),
         std::tuple("[0.5, 0.5]", "[0.5, 0]", ":4: /panels/0/fields/1/cell: "),
+        std::tuple("[0.5, 0.5]", "[2, 0.5]", ":4: /panels/0/fields/1/reference: the cell around "),
+        std::tuple("pulled.csv", "lost.csv", ":4: /panels/0/fields/1/reference: the cell around "),
+        std::tuple("[2.5, 1.5]", "[1e308, 1.5]", ":2: /panels/0/window: must lie within 1e+60 m"),
         std::tuple("\"reference\": \"pulled.csv\", \"column\": \"sxx\", \"cell\": [0.5, 0.5]",
                    "\"scene\": \"pulled\", \"time\": 1",
                    ":3: /panels/0/fields/0: is compared with a \"reference\""),
@@ -318,6 +323,9 @@ TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[repr
         std::tuple("stone.vy", "stone.vz", "did you mean \"stone.vx\""),
         std::tuple("\"fall.csv\"", "\"rise.csv\"", ":4: /panels/0/curves/1/reference: "),
         std::tuple("\"y\": \"speed\"", "\"y\": \"sped\"", "did you mean \"speed\""),
+        std::tuple("\"fall.csv\"", "\"bare.csv\"",
+                   ":4: /panels/0/curves/1/reference: has no column \"time\""),
+        std::tuple("[[0, 500], [10, 600]]", "[]", ":5: /panels/0/curves/2/points: must hold"),
         std::tuple("\"marks\"", "\"mark\"", "did you mean \"marks\""),
         std::tuple("\"points\"", "\"scene\": \"fall\", \"points\"", ":5: /panels/0/curves/2: ")}) {
     folder.write("data/figures/fig-7.json", replaced(kFigure, what, by));

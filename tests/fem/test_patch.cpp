@@ -79,6 +79,21 @@ TEST_CASE("patch test: constant stress, small and finite strain", "[fem]") {
   CHECK(worst < 1e-12);
 }
 
+TEST_CASE("an element that is nowhere is the worst one", "[fem]") {
+  const Mesh mesh = quad_grid(4, 4, 1, 1);
+  const ElementSet set{.kind = ElementKind::quad4,
+                       .mesh = &mesh,
+                       .material = {ElasticLaw::st_venant_kirchhoff, Plane::stress, 3, .3},
+                       .density = 1};
+  const FiniteElements fem(std::span(&set, 1), 1);
+  std::vector<double> u(2 * mesh.nodes.size());
+  CHECK(fem.smallest_ratio(u).ratio == 1);
+  u[2 * static_cast<size_t>(mesh.element(0)[0])] = std::nan("");
+  const FiniteElements::Collapse worst = fem.smallest_ratio(u);
+  CHECK(std::isnan(worst.ratio));
+  CHECK(worst.element == 0);
+}
+
 TEST_CASE("only rigid motions have no energy", "[fem]") {
   const Elastic material{ElasticLaw::st_venant_kirchhoff, Plane::stress, 3, .3};
   const auto softest = [&](ElementKind kind, const std::vector<Vec2>& corners) {

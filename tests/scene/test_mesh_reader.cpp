@@ -105,6 +105,8 @@ TEST_CASE("a mesh that cannot be is refused at its place", "[mesh][scene]") {
        "/mirror: must give the line"},
       {R"({"rectangle": {"size": [1, 1], "cells": [1, 2]}, "mirror": {"x": 0, "y": 0}})",
        "/mirror: must give the line"},
+      {R"({"rectangle": {"size": [1, 1], "cells": [1, 2]}, "mirror": {"x": 1e300}})",
+       "/mirror: node 0 has a coordinate beyond 1e60"},
       {R"({"fill": {"size": 1}})", "/fill: missing key \"polygon\""},
       {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "size": 0}})", "/fill/size: must be positive"},
       {R"({"fill": {"polygon": [[0,0],[1,0],[0,1]], "file": "x", "size": 1}})",

@@ -223,6 +223,10 @@ const std::vector<Broken> kBrokenMeshed{
     {"\"pressure\": 5", "\"pressure\": 5, \"traction\": [0, 1]", ":8: ", "one of"},
     {"\"top\"", "\"tip\"", ":8: ", "did you mean \"top\"", false},
     {"[10, 0.5]", "[11, 0.5]", ":11: ", "outside", false},
+    {"\"point\": [10, 0.5]", "\"name\": \"A\"", ":11: /output/history/track/0/name", "leave it out",
+     false},
+    {"\"point\": [10, 0.5]", "\"surface\": \"contact\", \"name\": \"A\"",
+     ":11: /output/history/track/0/name", "leave it out", false},
     {"\"mesh\":", "\"polygon\": [[0,0],[1,0],[0,1]], \"mesh\":", ":5: /bodies/0/polygon",
      "leave one out"},
     {"\"supports\"", "\"motion\": \"fixed\", \"supports\"", ":6: /bodies/0/motion", "\"free\"",
@@ -246,6 +250,8 @@ const std::vector<Broken> kBrokenMeshed{
      "  \"contact\": { \"normal_stiffness\": 1, \"pairs\": [ { \"between\": [\"rock\", \"beam\"], "
      "\"friction\": { \"coefficient\": 0 }, \"normal_stiffness\": 2 } ] },\n  \"bodies\"",
      ":3: /contact/pairs/0/normal_stiffness", "unknown key", false},
+    {"\"time\": { \"end\": 1 }", "\"time\": { \"end\": 1, \"start\": \"settled\" }",
+     ":10: /time/start", "rigid bodies only", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
 };
 
