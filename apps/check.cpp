@@ -105,7 +105,9 @@ int check_command(const CheckOptions& options) {
            ? fmt::format("mu = {:g}, {} rules by pair", law.friction.coefficient, law.rules.size())
            : "no tangential state is kept");
   uses("damping", law.normal_damping > 0 || law.mass_damping > 0,
-       law.normal_damping > 0 ? fmt::format("normal viscous, ratio {:g}", law.normal_damping)
+       law.normal_damping > 0
+           ? fmt::format("normal viscous, ratio {:g}{}", law.normal_damping,
+                         model.deformables.empty() ? "" : ", between rigid bodies")
        : law.mass_damping > 0 ? fmt::format("mass, {:g} 1/s", law.mass_damping)
                               : "");
   uses("finite elements", elements > 0, elements > 0 ? kinds : "all bodies are rigid");

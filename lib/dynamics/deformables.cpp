@@ -112,7 +112,8 @@ void Deformables::find_limit(const State& state) {
 
 void Deformables::damp(State& state, double h) {
   for (const DeformableBody& body : model_.deformables) {
-    const double damping = model_.materials[body.material].mass_damping;
+    const double damping =
+        model_.materials[body.material].mass_damping + model_.contact.mass_damping;
     if (damping == 0) continue;
     const double rest = std::exp(-damping * h);
     const size_t first = 2 * static_cast<size_t>(body.first_node);

@@ -111,18 +111,19 @@ void ContactReader::pairs() {
 
 // What bodies with a mesh cannot take.
 void ContactReader::refuse_with_meshes() const {
-  if (model_.deformables.empty()) return;
-  if (model_.contact.friction_law == FrictionLaw::per_edge) {
+  const ContactLaw& law = model_.contact;
+  // What is for rigid bodies only may stand where two of them can meet.
+  if (model_.deformables.empty() || model_.bodies.size() > 1) return;
+  if (law.friction_law == FrictionLaw::per_edge) {
     in_.fail(*friction_law_,
              "\"per_edge\" is for rigid bodies only; bodies with a mesh have a spring per boundary "
              "edge, or per pair of elements with \"surface\": \"element\": leave it out");
   }
-  if (damping_) {
+  if (law.normal_damping > 0) {
     in_.fail(*damping_,
-             "acts between rigid bodies only; where a body has a mesh leave it out, and give the "
-             "material \"damping\"");
+             "acts between rigid bodies only, and there are no two of them; leave it out, and give "
+             "the material of the mesh \"damping\"");
   }
-  const ContactLaw& law = model_.contact;
   if (law.potential.kind == PotentialChoice::Kind::area && law.surface == ContactSurface::body) {
     in_.fail(*potential_,
              "\"area\" is for triangles; the surface of a body with a mesh has the depth below it: "

@@ -13,7 +13,7 @@ class ContactReader {
   void read(const JsonValue& value);
   /// Rules for pairs; after the bodies, whose names these may use.
   void pairs();
-  /// Refuses what bodies with a mesh cannot take.
+  /// Refuses what would mean nothing because all that can touch has a mesh.
   void refuse_with_meshes() const;
   /// Where the scene asks for potentials of elements, or nullptr.
   [[nodiscard]] const JsonValue* element_surface() const { return element_surface_; }

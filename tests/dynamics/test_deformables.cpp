@@ -225,6 +225,26 @@ TEST_CASE("Rayleigh damping: decay of a bar, and the ledger closes", "[deformabl
   CHECK(late / early == Approx(std::exp(-ratio * 2 * M_PI * 10)).epsilon(.03));
 }
 
+TEST_CASE("mass damping slows meshes and rigid bodies alike", "[deformable]") {
+  Model model = model_of(block({1, .1}, {10, 1}, ElementKind::quad4), rock());
+  model.contact.mass_damping = 30;
+  model.materials[0].mass_damping = 10;
+  model.deformables[0].velocity = {2, -1};
+  TimeSettings time;
+  time.end = .02;
+  Simulation simulation(model, time, 1, 1);
+  const double kinetic = simulation.energies().kinetic;
+  while (simulation.state().time < time.end) simulation.step();
+  const double rest = std::exp(-40 * simulation.state().time);
+  for (size_t c = 0; c < simulation.state().node_velocity.size(); c += 2) {
+    CHECK(simulation.state().node_velocity[c] == Approx(2 * rest).epsilon(1e-9));
+    CHECK(simulation.state().node_velocity[c + 1] == Approx(-rest).epsilon(1e-9));
+  }
+  const Energies energies = simulation.energies();
+  CHECK(energies.damping_loss == Approx(kinetic * (1 - rest * rest)).epsilon(1e-9));
+  CHECK(std::abs(energies.total_error) < 1e-9 * kinetic);
+}
+
 TEST_CASE("supports, loads and gravity exchange momentum with what is outside", "[deformable]") {
   DeformableBody body = block({1, .4}, {10, 4}, ElementKind::quad4);
   body.supports = {{nodes_at(body.mesh, 0), {true, false}, {}},

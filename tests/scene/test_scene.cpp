@@ -240,10 +240,6 @@ const std::vector<Broken> kBrokenMeshed{
      "\"ratio\": 0.1 } },\n  \"bodies\"",
      ":3: /contact/damping", "between rigid bodies only", false},
     {"  \"bodies\"",
-     "  \"contact\": { \"normal_stiffness\": 1, \"damping\": { \"model\": \"mass\", \"rate\": 3 } "
-     "},\n  \"bodies\"",
-     ":3: /contact/damping", "give the material", false},
-    {"  \"bodies\"",
      "  \"contact\": { \"normal_stiffness\": 1, \"potential\": \"area\" },\n  \"bodies\"",
      ":3: /contact/potential", "use \"distance\"", false},
     {"  \"bodies\"",
