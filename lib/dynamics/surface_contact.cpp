@@ -147,21 +147,34 @@ void SurfaceContact::find_buried(const State& state) const {
   }
 }
 
+// Bodies of one material are of one kind, unless a rule names them.
 void SurfaceContact::add_friction() {
   const int bodies = static_cast<int>(model_.bodies.size() + model_.deformables.size());
-  bool rough = false;
-  std::vector<int> kind(bodies);
-  std::vector<Friction> table;
+  std::vector<char> named(bodies);
+  for (const ContactRule& rule : model_.contact.rules) {
+    for (const ContactRule::Party& party : rule.between) {
+      if (party.is_body) named[party.index] = 1;
+    }
+  }
+  std::vector<int> kind, first;  // of each body; the first body of each kind
+  std::vector<int> of_material(model_.materials.size(), -1);
   for (int a = 0; a < bodies; ++a) {
-    kind[a] = a;
-    for (int b = 0; b < bodies; ++b) {
+    int& known = of_material[model_.material_of(a)];
+    kind.push_back(named[a] || known < 0 ? static_cast<int>(first.size()) : known);
+    if (!named[a]) known = kind.back();
+    if (kind.back() == static_cast<int>(first.size())) first.push_back(a);
+  }
+  bool rough = false;
+  std::vector<Friction> table;
+  for (const int a : first) {
+    for (const int b : first) {
       table.push_back(
           friction_between(model_.contact, a, model_.material_of(a), b, model_.material_of(b)));
-      rough = rough || (a != b && table.back().coefficient > 0);
+      rough = rough || table.back().coefficient > 0;
     }
   }
   if (!rough) return;
-  FrictionTable friction(std::move(kind), bodies, std::move(table));
+  FrictionTable friction(std::move(kind), static_cast<int>(first.size()), std::move(table));
   std::visit([&](auto& s) { s.friction.emplace(std::move(friction)); }, surface_);
 }
 
