@@ -232,10 +232,9 @@ Vec2 loading_point(const PairIntegral& pair) {
 
 namespace {
 
-// Where one ulp of the coordinates moves phi by more than some 1e-13, single evaluations take more
-// digits. In the step loop they would be lost on vertices that have been turned.
+// Single evaluations of needles take more digits. In the step loop they would be lost on vertices
+// that have been turned.
 using Fine = long double;
-constexpr double kNeedle = 1e3;  // size of the pair over the shorter reference length
 
 bool is_needle(const Polygon& a, const Potential& potential_a, const Polygon& b,
                const Potential& potential_b) {

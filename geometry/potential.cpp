@@ -13,8 +13,6 @@ namespace {
 constexpr double kSameHeight = 1e-13;
 // An inradius below so many roundings of the polygon's size is noise.
 constexpr double kThinnest = 8 * 0x1p-52;
-// Beyond this ratio of size and inradius the envelope takes more digits than doubles have.
-constexpr double kNeedle = 1e3;
 
 void require_convex(const Polygon& polygon) {
   if (const auto reflex = polygon.first_reflex_vertex()) {

@@ -34,6 +34,10 @@ struct Potential {
   [[nodiscard]] bool capped() const { return top > 1; }
 };
 
+/// Size over r beyond which one ulp of the coordinates moves phi by more than some 1e-13: what is
+/// computed once or singly then takes long double.
+inline constexpr double kNeedle = 1e3;
+
 /// Largest inscribed circle of a convex polygon.
 struct InscribedCircle {
   double radius;              ///< m

@@ -68,7 +68,6 @@ void DeformableFriction::update(const DeformableContact& contact,
   fx_.resize(o.size()), fy_.resize(o.size());
   const double power_before = power();
   fx_.assign(o.size(), 0), fy_.assign(o.size(), 0);
-  body_stiffness_.assign(o.bodies.size(), 0);
   std::swap(now_, before_);
   now_.slips.clear();
   now_.energy = 0;
@@ -107,8 +106,6 @@ void DeformableFriction::update(const DeformableContact& contact,
     if (known) ++old;
     now_.slips.push_back(slip);
     now_.energy += slip.energy();
-    body_stiffness_[body] += slip.stiffness;
-    body_stiffness_[other] += slip.stiffness;
 
     for (size_t i = first; i < end; ++i) {
       const EdgeFaceContact& c = contacts[i];

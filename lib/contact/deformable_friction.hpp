@@ -37,8 +37,6 @@ class DeformableFriction {
   [[nodiscard]] double size(const DeformableContact& contact, int body) const;
   /// Adds the friction of each patch of DeformableContact::body_contacts.
   void add_to(const DeformableContact& contact, std::vector<BodyContact>& contacts) const;
-  /// Tangential stiffness of a body's springs, N/m.
-  [[nodiscard]] double stiffness(int body) const { return body_stiffness_[body]; }
   /// Mean tangential traction on each edge, along its direction, Pa.
   void tractions(const DeformableContact& contact, std::vector<double>& traction) const;
 
@@ -55,7 +53,6 @@ class DeformableFriction {
   FrictionTable table_;
   SlipMemory now_, before_;
   std::vector<double> vx_, vy_, fx_, fy_;  // of the vertices
-  std::vector<double> body_stiffness_;
 };
 
 }  // namespace apothem
