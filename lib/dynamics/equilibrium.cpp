@@ -243,11 +243,9 @@ LoadStep Equilibrium::find(State& state, double time, const std::function<bool()
       if (!std::isfinite(result.residual) || step >= kMostSteps) {
         throw Unstable(fmt::format(
             "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: nodal "
-            "forces "
-            "out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of the "
-            "forces "
-            "on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what can move "
-            "freely, reduce the load, or raise time.load_steps or time.tolerance",
+            "forces out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of "
+            "the forces on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what "
+            "can move freely, reduce the load, or raise time.load_steps or time.tolerance",
             time, state.step, step, result.residual, model_.deformables[result.restless].name,
             model_.deformables[result.worst].name, result.imbalance, tolerance_));
       }
