@@ -28,8 +28,6 @@ std::pair<int, int> key_of(const Outlines& o, const EdgeFaceContact& c) {
   return {c.edge, o.bodies[o.body[c.edge]].rigid() ? c.face : o.body[c.face]};
 }
 
-std::pair<int, int> key_of(const EdgeSlip& s) { return {s.edge, s.partner}; }
-
 // One past the last contact of the same spring.
 size_t end_of(const Outlines& o, const std::vector<EdgeFaceContact>& contacts, size_t first) {
   const auto key = key_of(o, contacts[first]);
@@ -96,8 +94,8 @@ void DeformableFriction::update(const DeformableContact& contact,
       rate += o.tx[a] * x + o.ty[a] * y +
               k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
     }
-    while (old != before_.slips.end() && key_of(*old) < key_of(slip)) ++old;
-    const bool known = old != before_.slips.end() && key_of(*old) == key_of(slip);
+    while (old != before_.slips.end() && old->key() < slip.key()) ++old;
+    const bool known = old != before_.slips.end() && old->key() == slip.key();
     if (!(normal > 0)) continue;
     // New contact joins without a slip of its own; contact that ends takes its share along.
     const double spring = known ? old->spring * std::min(1., slip.stiffness / old->stiffness) : 0;
@@ -149,7 +147,7 @@ void DeformableFriction::each_share(const DeformableContact& contact, Use&& use)
   auto slip = now_.slips.begin();
   for (size_t first = 0, end; first < contacts.size() && slip != now_.slips.end(); first = end) {
     end = end_of(o, contacts, first);
-    if (key_of(*slip) != key_of(o, contacts[first])) continue;
+    if (slip->key() != key_of(o, contacts[first])) continue;
     double normal = 0;
     for (size_t i = first; i < end; ++i) {
       normal += contact.slope(contacts[i]) * contacts[i].piece.sum;

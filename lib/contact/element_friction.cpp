@@ -8,8 +8,6 @@
 namespace apothem {
 namespace {
 
-std::pair<int, int> key_of(const EdgeSlip& s) { return {s.edge, s.partner}; }
-
 Vec2 rate_of(std::span<const double> velocity, int entry, const Vec2& point) {
   const double* v = &velocity[3 * static_cast<size_t>(entry)];
   return Vec2(v[0], v[1]) + cross(v[2], point);
@@ -45,8 +43,8 @@ void ElementFriction::update(const ElementContact& contact, std::span<const doub
     const double normal = t.force.norm();
     if (!(normal > kNoResultant * t.pressure)) continue;
     EdgeSlip slip{t.a, t.b, 0, friction.tangential_stiffness * contact.thickness()};
-    while (old != before_.slips.end() && key_of(*old) < key_of(slip)) ++old;
-    const bool known = old != before_.slips.end() && key_of(*old) == key_of(slip);
+    while (old != before_.slips.end() && old->key() < slip.key()) ++old;
+    const bool known = old != before_.slips.end() && old->key() == slip.key();
     const Vec2 tangent = tangent_of(t.force);
     const Vec2 point_b = t.point + t.offset;
     const Vec2 rate = velocity_at(t.a, t.point, of_a_) - velocity_at(t.b, point_b, of_b_);

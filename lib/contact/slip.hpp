@@ -17,6 +17,7 @@ struct EdgeSlip {
   double spring;  ///< friction force along the face, N; or on the first polygon, along tangent_of
   double stiffness;  ///< N/m
 
+  [[nodiscard]] std::pair<int, int> key() const { return {edge, partner}; }
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? spring * spring / (2 * stiffness) : 0;
   }
