@@ -7,15 +7,15 @@
 #include <map>
 
 #include "accuracy_methods.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/gnuplot.hpp"
+#include "apothem/scene/error.hpp"
+#include "apothem/scene/pair_file.hpp"
+#include "cases/hard_pairs.hpp"
+#include "cases/samples.hpp"
 #include "commands.hpp"
-#include "geometry/hard_pairs.hpp"
-#include "geometry/overlap.hpp"
-#include "geometry/samples.hpp"
-#include "geometry/skeleton.hpp"
-#include "output/files.hpp"
-#include "output/gnuplot.hpp"
-#include "scene/error.hpp"
-#include "scene/pair_file.hpp"
 
 namespace apothem {
 namespace {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/placed_shapes.hpp"
-#include "geometry/child_process.hpp"
-#include "geometry/exact_integral.hpp"
-#include "geometry/overlap.hpp"
-#include "peers.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/exact/exact_integral.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/skeleton/child_process.hpp"
+#include "peers/peers.hpp"
 
 namespace apothem {
 namespace {

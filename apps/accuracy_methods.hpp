@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/edge_integral.hpp"
+#include "apothem/geometry/integrals/edge_integral.hpp"
 
 namespace apothem {
 

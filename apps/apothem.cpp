@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <new>
 
+#include "apothem/output/files.hpp"
+#include "apothem/scene/error.hpp"
 #include "commands.hpp"
-#include "output/files.hpp"
-#include "scene/error.hpp"
 #include "version.hpp"
 
 namespace {

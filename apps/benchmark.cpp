@@ -11,13 +11,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/placed_shapes.hpp"
-#include "dynamics/simulation.hpp"
-#include "geometry/contact_patches.hpp"
-#include "geometry/exact_integral.hpp"
-#include "geometry/overlap.hpp"
-#include "geometry/samples.hpp"
-#include "scene/scene.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/geometry/exact/exact_integral.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
+#include "apothem/scene/scene.hpp"
+#include "cases/samples.hpp"
 
 namespace {
 

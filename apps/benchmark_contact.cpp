@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "contact/deformable_friction.hpp"
-#include "contact/element_contact.hpp"
-#include "geometry/samples.hpp"
-#include "mesh/rectangle_mesh.hpp"
+#include "apothem/contact/deformable_friction.hpp"
+#include "apothem/contact/element_contact.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "cases/samples.hpp"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "dynamics/deformables.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
+#include "apothem/dynamics/deformables.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "output/files.hpp"
-#include "scene/json.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace nlohmann {
 

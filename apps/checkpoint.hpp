@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/simulation.hpp"
-#include "output/history.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/output/history.hpp"
 
 namespace apothem {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/voronoi.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
 
 namespace apothem {
 

@@ -3,14 +3,14 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "apothem/contact/law.hpp"
+#include "apothem/geometry/exact/exact_integral.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/scene/json.hpp"
+#include "apothem/scene/pair_file.hpp"
+#include "apothem/scene/polygon_file.hpp"
 #include "commands.hpp"
-#include "contact/law.hpp"
-#include "geometry/exact_integral.hpp"
-#include "geometry/overlap.hpp"
 #include "polygon_input.hpp"
-#include "scene/json.hpp"
-#include "scene/pair_file.hpp"
-#include "scene/polygon_file.hpp"
 
 namespace apothem {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "model/columns.hpp"
-#include "output/history.hpp"
+#include "apothem/model/columns.hpp"
+#include "apothem/output/history.hpp"
 
 namespace apothem {
 namespace {

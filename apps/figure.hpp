@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "output/curves.hpp"
-#include "output/field_picture.hpp"
-#include "output/report.hpp"
-#include "scene/scene.hpp"
+#include "apothem/output/curves.hpp"
+#include "apothem/output/field_picture.hpp"
+#include "apothem/output/report.hpp"
+#include "apothem/scene/scene.hpp"
 
 namespace apothem {
 

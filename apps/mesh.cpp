@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/measure.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/scene/error.hpp"
+#include "apothem/scene/mesh_file.hpp"
+#include "apothem/scene/polygon_file.hpp"
 #include "commands.hpp"
-#include "mesh/boundary.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/measure.hpp"
-#include "output/files.hpp"
-#include "output/frames.hpp"
-#include "scene/error.hpp"
-#include "scene/mesh_file.hpp"
-#include "scene/polygon_file.hpp"
 
 namespace apothem {
 namespace {

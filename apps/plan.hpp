@@ -1,8 +1,8 @@
 // From a scene to something that can run, with the scene's own place in every error.
 #pragma once
 
-#include "dynamics/simulation.hpp"
-#include "scene/scene.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/scene/scene.hpp"
 
 namespace apothem {
 

@@ -3,15 +3,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/picture.hpp"
+#include "apothem/output/polygon_vtk.hpp"
+#include "apothem/scene/error.hpp"
+#include "apothem/scene/polygon_file.hpp"
 #include "commands.hpp"
-#include "geometry/inscribed_circle.hpp"
-#include "geometry/singular_area.hpp"
-#include "output/files.hpp"
-#include "output/picture.hpp"
-#include "output/polygon_vtk.hpp"
 #include "polygon_input.hpp"
-#include "scene/error.hpp"
-#include "scene/polygon_file.hpp"
 
 namespace apothem {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "contact/law.hpp"
-#include "scene/json.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "geometry/potential.hpp"
+#include "apothem/geometry/potential/potential.hpp"
 
 namespace apothem {
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "apothem/output/files.hpp"
+#include "apothem/output/report.hpp"
 #include "commands.hpp"
 #include "figure.hpp"
-#include "output/files.hpp"
-#include "output/report.hpp"
 #include "version.hpp"
 
 namespace apothem {

@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apothem/output/files.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/output/history.hpp"
 #include "checkpoint.hpp"
 #include "commands.hpp"
-#include "output/files.hpp"
-#include "output/frames.hpp"
-#include "output/history.hpp"
 #include "plan.hpp"
 #include "version.hpp"
 

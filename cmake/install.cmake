@@ -1,7 +1,7 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS apothem_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS apothem apothem_geometry EXPORT apothem
+install(TARGETS apothem apothem_files apothem_mechanics apothem_geometry EXPORT apothem
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY geometry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "output/canvas.hpp"
+#include "apothem/output/canvas.hpp"
 
 namespace apothem::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/polygon_file.hpp"
+#include "apothem/scene/polygon_file.hpp"
 
 namespace apothem::test {
 

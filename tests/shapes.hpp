@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/samples.hpp"
+#include "cases/samples.hpp"
 
 namespace apothem::test {
 

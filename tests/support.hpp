@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "geometry/edge_integral.hpp"
-#include "geometry/polygon.hpp"
-#include "geometry/potential.hpp"
-#include "geometry/samples.hpp"
+#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/geometry/potential/potential.hpp"
+#include "cases/samples.hpp"
 
 namespace apothem::test {
 

@@ -1,4 +1,4 @@
-#include "contact/deformable_contact.hpp"
+#include "apothem/contact/deformable_contact.hpp"
 
 #include <omp.h>
 
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "contact/groups.hpp"
-#include "geometry/inscribed_circle.hpp"
+#include "apothem/contact/groups.hpp"
+#include "apothem/geometry/potential/inscribed_circle.hpp"
 
 namespace apothem {
 namespace {

@@ -13,10 +13,10 @@
 #include <span>
 #include <vector>
 
-#include "contact/collar.hpp"
-#include "geometry/boxes.hpp"
-#include "mesh/boundary.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/contact/collar.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "contact/deformable_friction.hpp"
+#include "apothem/contact/deformable_friction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/deformable_contact.hpp"
-#include "contact/slip.hpp"
+#include "apothem/contact/deformable_contact.hpp"
+#include "apothem/contact/slip.hpp"
 
 namespace apothem {
 

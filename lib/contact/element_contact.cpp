@@ -1,4 +1,4 @@
-#include "contact/element_contact.hpp"
+#include "apothem/contact/element_contact.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "contact/groups.hpp"
-#include "mesh/locate.hpp"
+#include "apothem/contact/groups.hpp"
+#include "apothem/mesh/locate.hpp"
 
 namespace apothem {
 

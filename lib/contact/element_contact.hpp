@@ -15,11 +15,11 @@
 #include <span>
 #include <vector>
 
-#include "contact/deformable_contact.hpp"
-#include "contact/law.hpp"
-#include "contact/normal.hpp"
-#include "contact/placed_shapes.hpp"
-#include "geometry/contact_patches.hpp"
+#include "apothem/contact/deformable_contact.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/contact/normal.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "contact/element_friction.hpp"
+#include "apothem/contact/element_friction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/tangential.hpp"
+#include "apothem/contact/tangential.hpp"
 
 namespace apothem {
 namespace {

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/element_contact.hpp"
-#include "contact/slip.hpp"
+#include "apothem/contact/element_contact.hpp"
+#include "apothem/contact/slip.hpp"
 
 namespace apothem {
 

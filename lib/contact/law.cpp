@@ -1,4 +1,4 @@
-#include "contact/law.hpp"
+#include "apothem/contact/law.hpp"
 
 namespace apothem {
 namespace {

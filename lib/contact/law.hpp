@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/potential.hpp"
+#include "apothem/geometry/potential/potential.hpp"
 
 namespace apothem {
 

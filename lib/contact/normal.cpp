@@ -1,4 +1,4 @@
-#include "contact/normal.hpp"
+#include "apothem/contact/normal.hpp"
 
 #include <omp.h>
 

@@ -1,4 +1,4 @@
-#include "contact/pair_search.hpp"
+#include "apothem/contact/pair_search.hpp"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "contact/placed_shapes.hpp"
-#include "geometry/boxes.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "contact/placed_shapes.hpp"
+#include "apothem/contact/placed_shapes.hpp"
 
 #include <cmath>
 

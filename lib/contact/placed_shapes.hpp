@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/edge_integral.hpp"
+#include "apothem/geometry/integrals/edge_integral.hpp"
 
 namespace apothem {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/law.hpp"
+#include "apothem/contact/law.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "contact/tangential.hpp"
+#include "apothem/contact/tangential.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "contact/law.hpp"
-#include "contact/placed_shapes.hpp"
-#include "geometry/boxes.hpp"
-#include "geometry/contact_patches.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
 

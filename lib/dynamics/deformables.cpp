@@ -1,11 +1,11 @@
-#include "dynamics/deformables.hpp"
+#include "apothem/dynamics/deformables.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-#include "fem/spectrum.hpp"
+#include "apothem/fem/spectrum.hpp"
 
 namespace apothem {
 namespace {

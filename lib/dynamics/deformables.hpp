@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/ledger.hpp"
-#include "dynamics/surface_contact.hpp"
-#include "dynamics/time_step.hpp"
-#include "fem/finite_elements.hpp"
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "apothem/dynamics/ledger.hpp"
+#include "apothem/dynamics/surface_contact.hpp"
+#include "apothem/dynamics/time_step.hpp"
+#include "apothem/fem/finite_elements.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

@@ -6,14 +6,14 @@
 // proportion to the stiffness is needed besides: stopped every two steps, a mode whose period is
 // four steps, as those of stiff contacts are, would ring on and stop all others too early.
 
-#include "dynamics/equilibrium.hpp"
+#include "apothem/dynamics/equilibrium.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
-#include "dynamics/unstable.hpp"
+#include "apothem/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {

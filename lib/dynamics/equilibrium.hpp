@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "dynamics/deformables.hpp"
-#include "dynamics/surface_contact.hpp"
+#include "apothem/dynamics/deformables.hpp"
+#include "apothem/dynamics/surface_contact.hpp"
 
 namespace apothem {
 

@@ -1,12 +1,12 @@
-#include "dynamics/fold_watch.hpp"
+#include "apothem/dynamics/fold_watch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/surface_contact.hpp"
-#include "dynamics/unstable.hpp"
+#include "apothem/dynamics/surface_contact.hpp"
+#include "apothem/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {

@@ -2,9 +2,9 @@
 // body with itself is not computed.
 #pragma once
 
-#include "contact/deformable_contact.hpp"
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "apothem/contact/deformable_contact.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "dynamics/ledger.hpp"
+#include "apothem/dynamics/ledger.hpp"
 
 namespace apothem {
 namespace {

@@ -1,8 +1,8 @@
 // Energy and momentum ledgers: what the integrator cannot account for is an error, and is reported.
 #pragma once
 
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
 
 #include <fmt/format.h>
 

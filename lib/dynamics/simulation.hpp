@@ -13,19 +13,19 @@
 #include <stdexcept>
 #include <vector>
 
-#include "contact/normal.hpp"
-#include "contact/pair_search.hpp"
-#include "contact/tangential.hpp"
-#include "dynamics/deformables.hpp"
-#include "dynamics/equilibrium.hpp"
-#include "dynamics/fold_watch.hpp"
-#include "dynamics/ledger.hpp"
-#include "dynamics/surface_contact.hpp"
-#include "dynamics/time_step.hpp"
-#include "dynamics/unstable.hpp"
-#include "model/model.hpp"
-#include "model/settings.hpp"
-#include "model/state.hpp"
+#include "apothem/contact/normal.hpp"
+#include "apothem/contact/pair_search.hpp"
+#include "apothem/contact/tangential.hpp"
+#include "apothem/dynamics/deformables.hpp"
+#include "apothem/dynamics/equilibrium.hpp"
+#include "apothem/dynamics/fold_watch.hpp"
+#include "apothem/dynamics/ledger.hpp"
+#include "apothem/dynamics/surface_contact.hpp"
+#include "apothem/dynamics/time_step.hpp"
+#include "apothem/dynamics/unstable.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

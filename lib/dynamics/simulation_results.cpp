@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
 
 namespace apothem {
 namespace {

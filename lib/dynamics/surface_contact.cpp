@@ -1,4 +1,4 @@
-#include "dynamics/surface_contact.hpp"
+#include "apothem/dynamics/surface_contact.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/fold_watch.hpp"
-#include "dynamics/unstable.hpp"
-#include "geometry/predicates.hpp"
+#include "apothem/dynamics/fold_watch.hpp"
+#include "apothem/dynamics/unstable.hpp"
+#include "apothem/geometry/polygon/predicates.hpp"
 
 namespace apothem {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <variant>
 
-#include "contact/deformable_friction.hpp"
-#include "contact/element_friction.hpp"
-#include "dynamics/time_step.hpp"
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "apothem/contact/deformable_friction.hpp"
+#include "apothem/contact/element_friction.hpp"
+#include "apothem/dynamics/time_step.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "dynamics/time_step.hpp"
+#include "apothem/dynamics/time_step.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <array>
 #include <string>
 
-#include "contact/placed_shapes.hpp"
-#include "model/model.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/model/model.hpp"
 
 namespace apothem {
 

@@ -1,21 +1,22 @@
-#include "fem/finite_elements.hpp"
-
-#include <omp.h>
+#include "apothem/fem/finite_elements.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fem/mass.hpp"
+#include "apothem/fem/mass.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr int kChunk = 512;
-constexpr int kMostCorners = 64;
+constexpr int kChunk = 512;          // elements of a chunk
+constexpr double kElementTime = 15;  // of one element, ns
+constexpr double kSharedTime = 5;    // of one node that several chunks share, ns
+constexpr int kMostCorners = 64;     // of a polygonal element, for arrays on the stack
 
 using Pair = double __attribute__((vector_size(16)));
 using FourWide = double __attribute__((vector_size(32)));
 
+// The elements of one run and the local arrays of their chunk: the argument of a kernel.
 struct Blocks {
   const double* data;
   const std::uint16_t* local;
@@ -26,8 +27,8 @@ struct Blocks {
   double* f;
 };
 
-// The places (x, y) of eight nodes: eight loads of 16 bytes and a transposition, faster than a
-// gather instruction.
+// The vectors (x, y) of eight nodes: eight loads of 16 bytes and a transposition, which is faster
+// than a gather instruction.
 APOTHEM_INLINE Pair load(const double* from, std::uint16_t node) {
   return *reinterpret_cast<const Pair*>(from + 2 * node);
 }
@@ -45,7 +46,7 @@ APOTHEM_INLINE Point<Pack> gather(const double* from, const std::uint16_t* n) {
 APOTHEM_INLINE void add_pair(double* to, std::uint16_t node, Pair value) {
   *reinterpret_cast<Pair*>(to + 2 * node) += value;
 }
-// One lane after the other: two lanes may share a node.
+// Adds the forces of one lane after the other, because two lanes may share a node.
 APOTHEM_INLINE void add(const Point<Pack>& f, double* to, const std::uint16_t* node) {
   const Pack::Vector low = __builtin_shufflevector(f.x.v, f.y.v, 0, 8, 1, 9, 2, 10, 3, 11);
   const Pack::Vector high = __builtin_shufflevector(f.x.v, f.y.v, 4, 12, 5, 13, 6, 14, 7, 15);
@@ -65,7 +66,8 @@ APOTHEM_INLINE double sum_of_lanes(const Pack& p, int lanes) {
   return sum;
 }
 
-// Forces into blocks.f, returning the power of damping; or the energy alone.
+// Adds the forces into blocks.f and returns the power of damping or, if not `forces`, returns the
+// strain energy alone.
 template <class Element, class Law, bool damped, bool forces>
 APOTHEM_INLINE double work_through(const Blocks& blocks) {
   const ElementSet& set = blocks.set;
@@ -112,7 +114,8 @@ double with_sse2(const Blocks& blocks) {
 
 enum class Machine { sse2, avx2, avx512 };
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kAllMachines = false;  // three times the minutes of compilation, for the same sums
+constexpr bool kAllMachines = false;  // one set of instructions: three would triple the minutes of
+                                      // compilation, for the same sums
 #else
 constexpr bool kAllMachines = true;
 #endif
@@ -144,7 +147,7 @@ std::vector<Vec2> places(const Mesh& mesh, int element) {
 }  // namespace
 
 FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
-    : sets_(sets.begin(), sets.end()) {
+    : sets_(sets.begin(), sets.end()), threads_(threads) {
   for (int i = 0; i < static_cast<int>(sets_.size()); ++i) add_set(i, sets_[i]);
   find_shared_nodes();
   chunk_sums_.resize(chunks_.size());
@@ -152,7 +155,7 @@ FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
   for (const Chunk& c : chunks_) most = std::max(most, c.nodes_end - c.nodes);
   Scratch scratch;
   for (Aligned* a : {&scratch.u, &scratch.v, &scratch.f}) a->assign(2 * (most + 1), 0);
-  scratch_.assign(std::max(threads, 1), scratch);
+  scratch_.assign(threads_.count(), scratch);
 }
 
 void FiniteElements::add_set(int index, const ElementSet& set) {
@@ -172,7 +175,7 @@ void FiniteElements::add_set(int index, const ElementSet& set) {
   for (int e = 0; e < mesh.element_count(); e += kChunk) {
     members.clear();
     for (int k = e; k < std::min(e + kChunk, mesh.element_count()); ++k) members.push_back(k);
-    // Those with the same number of corners in one run.
+    // Elements with the same number of corners form one run.
     std::stable_sort(members.begin(), members.end(),
                      [&](int a, int b) { return mesh.element(a).size() < mesh.element(b).size(); });
     add_chunk(index, set, members);
@@ -207,7 +210,8 @@ void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const
     const int stored =
         with_element(set.kind, [&]<class Element>(Element) { return Element::stored(corners); });
     data_.resize(data_.size() + blocks * stored * kLanes);
-    // Lanes without an element repeat the last one and move a node that is nobody's.
+    // Lanes without an element repeat the data of the last one and use an additional local node,
+    // which has no place in the global arrays.
     local_.resize(local_.size() + blocks * corners * kLanes,
                   static_cast<std::uint16_t>(nodes.size()));
     for (size_t k = 0; k < blocks * kLanes; ++k) {
@@ -250,11 +254,9 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
                            std::span<double> f) {
   const int count = static_cast<int>(chunks_.size());
   const bool moving = task == Task::force && damped_;
-#pragma omp parallel num_threads(static_cast <int>(scratch_.size())) if (scratch_.size() > 1)
-  {
-    Scratch& s = scratch_[omp_get_thread_num()];
-#pragma omp for schedule(static)
-    for (int c = 0; c < count; ++c) {
+  threads_.chunks(count, kChunk * kElementTime, [&](int first, int end, int worker) {
+    Scratch& s = scratch_[worker];
+    for (int c = first; c < end; ++c) {
       const Chunk& chunk = chunks_[c];
       const ElementSet& set = sets_[chunk.set];
       const size_t n = chunk.nodes_end - chunk.nodes;
@@ -295,9 +297,11 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
         to[1] = -s.f[2 * i + 1];
       }
     }
-    if (task == Task::force) {
-#pragma omp for schedule(static)
-      for (int i = 0; i < static_cast<int>(shared_.size()); ++i) {
+  });
+  if (task == Task::force) {
+    const auto shared = static_cast<int>(shared_.size());
+    threads_.chunks(shared, kSharedTime, [&](int first, int end, int) {
+      for (int i = first; i < end; ++i) {
         double x = 0, y = 0;
         for (int k = slots_[i]; k < slots_[i + 1]; ++k) {
           x += halo_[2 * static_cast<size_t>(k)];
@@ -306,7 +310,7 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
         f[2 * static_cast<size_t>(shared_[i])] = x;
         f[2 * static_cast<size_t>(shared_[i]) + 1] = y;
       }
-    }
+    });
   }
   double sum = 0;
   for (const double part : chunk_sums_) sum += part;
@@ -322,8 +326,8 @@ double FiniteElements::strain_energy(std::span<const double> u) {
   return run(Task::energy, u, {}, {});
 }
 
-// The k-th element of a run: f(element's struct, its numbers, corners, set, number in its mesh,
-// displacements of its corners)
+// Calls f(element struct, stored numbers, number of corners, set, number in its mesh, displacements
+// of its corners) for the k-th element of a run. `corners` is working memory.
 template <class F>
 void FiniteElements::visit(const Chunk& chunk, const Run& part, int k, std::span<const double> u,
                            std::vector<Point<double>>& corners, F&& f) const {
@@ -404,7 +408,8 @@ CauchyStress FiniteElements::stress(std::span<const double> u, int set, int elem
 }
 
 void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double> sums) const {
-  constexpr double kProbe = 1e-6;  // of the shortest edge: linear, and far above round-off
+  constexpr double kProbe =
+      1e-6;  // times the shortest edge: a step in the linear range, far above round-off
   const double step = kProbe * shortest_edge_;
   std::fill(sums.begin(), sums.end(), 0.);
   std::vector<Point<double>> moved, plus, minus;

@@ -1,14 +1,17 @@
-// Internal forces of all finite elements: the hot loop.
+// Internal forces, masses, strain energy and stresses of all finite elements of a model.
 //
-//   elements in the order of a space-filling curve, 512 to a chunk, 8 to a block:
+// The evaluation of the internal forces takes most of a run's time. Elements come in the order of a
+// space-filling curve, 512 to a chunk and 8 to a SIMD block:
 //
-//     chunk:  nodes -> local copy of u (v)  ->  blocks of 8 (one SIMD pass each)  ->  local f
-//             local f of nodes that only this chunk has:  straight to the global array
-//             of nodes shared with other chunks:          to a slot of their own in the halo
-//     then:   each shared node sums its slots, in the order of the chunks
+//   for each chunk:  copy the nodal displacements (and velocities) into a local array
+//                    process the blocks of 8 elements, one SIMD pass each, into local forces
+//                    write the forces of nodes that only this chunk uses to the global array
+//                    write the forces of nodes that other chunks use too to the halo, in which each
+//                    (chunk, node) pair has a slot of its own
+//   afterwards:      each shared node sums its slots, in the order of the chunks
 //
-// A chunk works inside the first-level cache and writes nothing that another one writes, so chunks
-// run on any number of threads and give the same bits.
+// The working set of a chunk fits into the first-level cache. No chunk writes where another one
+// writes, so that the result is the same to the last bit for any number of threads.
 #pragma once
 
 #include <boost/align/aligned_allocator.hpp>
@@ -17,55 +20,67 @@
 #include <span>
 #include <vector>
 
-#include "fem/element.hpp"
-#include "fem/stress.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/execution/parallel.hpp"
+#include "apothem/fem/element.hpp"
+#include "apothem/fem/stress.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// The elements of one body.
+/// The finite elements of one body, with their material.
 struct ElementSet {
   ElementKind kind = ElementKind::quad4;
-  const Mesh* mesh = nullptr;  ///< elements and nodes in the order of a space-filling curve
-  int first_node = 0;          ///< in the arrays of all nodes
+  const Mesh* mesh = nullptr;  ///< must outlive its users; numbered along a space-filling curve
+  int first_node = 0;          ///< place of the mesh's node 0 in the arrays of all nodes
+  /// elastic law and constants
   Elastic material;
-  double density = 0;            ///< kg/m^3
-  double thickness = 1;          ///< m
-  double stiffness_damping = 0;  ///< Rayleigh's beta, s
+  double density = 0;    ///< kg/m^3
+  double thickness = 1;  ///< m
+  double stiffness_damping =
+      0;  ///< Rayleigh's coefficient beta of stiffness-proportional damping, s
 };
 
+/// The finite elements of all bodies. Nodal vectors (displacements, velocities, forces) hold x and
+/// y of each node, one body after another: 2 x node_count() numbers.
 class FiniteElements {
  public:
-  /// Nodal arrays of all functions: x, y of each node, one body after another.
+  /// Prepares the elements of all sets and their lumped masses. `threads` is the number of threads
+  /// that force() and strain_energy() may use. The meshes of the sets are not copied.
   FiniteElements(std::span<const ElementSet> sets, int threads);
 
   [[nodiscard]] int node_count() const { return static_cast<int>(mass_.size()); }
   [[nodiscard]] int element_count() const { return elements_; }
-  /// Lumped, kg.
+  /// Lumped mass of each node, kg.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  /// Whether any set has stiffness-proportional damping, so that force() reads velocities.
   [[nodiscard]] bool damped() const { return damped_; }
-  /// Of all elements in the reference configuration, m.
+  /// Length of the shortest edge of all elements in the reference configuration, m.
   [[nodiscard]] double shortest_edge() const { return shortest_edge_; }
 
-  /// Minus the internal forces, N, of displacements (m) and, where there is damping, velocities
-  /// (m/s). Returns the power that damping takes, W. No allocation.
+  /// Writes minus the internal forces, N, at the displacements `u` (m) and, if damped(), the
+  /// velocities `v` (m/s) into `f`. Returns the power that damping dissipates, W. Allocates no
+  /// memory.
   double force(std::span<const double> u, std::span<const double> v, std::span<double> f);
 
-  /// J.
+  /// Strain energy of all elements at the displacements `u` (m), J.
   [[nodiscard]] double strain_energy(std::span<const double> u);
 
-  /// For each coordinate an upper bound of SUM_j |K_ij|, N/m, of the tangent stiffness at u: the
-  /// sum over the elements' own matrices, by differences of their forces. Without damping.
+  /// Writes for each degree of freedom i an upper bound of the row sum SUM_j |K_ij|, N/m, of the
+  /// tangent stiffness K at the displacements `u` (m): the sum of the row sums of the elements' own
+  /// matrices, which come from central differences of their forces. Damping does not count.
   void stiffness_sums(std::span<const double> u, std::span<double> sums) const;
 
-  /// Mean stress of every element, in the order of the sets. Without damping.
+  /// Mean Cauchy stress of every element at the displacements `u` (m), in the order of the sets and
+  /// of the elements in each mesh. Stress of damping is not included.
   [[nodiscard]] std::vector<CauchyStress> stresses(std::span<const double> u) const;
 
-  /// The same of one element, by its set and its number in the set's mesh. Looks for it.
+  /// The mean Cauchy stress of one element, named by its set and its number in the set's mesh. The
+  /// time grows with the number of elements, because the element has to be searched for.
   [[nodiscard]] CauchyStress stress(std::span<const double> u, int set, int element) const;
 
-  /// The smallest ratio of an element's present area to its reference area, and which element it
-  /// is: at zero it is turned inside out.
+  /// The smallest ratio of an element's present area to its reference area, and that element's set
+  /// and number in the mesh. An element is turned inside out when the ratio reaches zero. NaN if an
+  /// element's ratio is NaN.
   struct Collapse {
     double ratio;
     int set, element;
@@ -73,18 +88,20 @@ class FiniteElements {
   [[nodiscard]] Collapse smallest_ratio(std::span<const double> u) const;
 
  private:
-  /// Blocks of elements with the same number of corners.
+  /// Consecutive SIMD blocks of elements of one chunk that have the same number of corners.
   struct Run {
     int corners, elements;
-    size_t data, local;  // where their numbers and local node numbers start
-    int first;           // of their places in order_
+    size_t data, local;  // where their stored numbers (data_) and local node numbers (local_) start
+    int first;           // where their element numbers (order_) start
   };
+  /// Up to 512 elements of one set, with the ranges of their runs (runs_) and nodes (nodes_).
   struct Chunk {
     int set;
     size_t runs, runs_end;
     size_t nodes, nodes_end;
   };
   using Aligned = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
+  /// Local copies of the displacements, velocities and forces of one chunk's nodes.
   struct Scratch {
     Aligned u, v, f;
   };
@@ -107,14 +124,16 @@ class FiniteElements {
   std::vector<double> mass_;
   std::vector<Chunk> chunks_;
   std::vector<Run> runs_;
-  Aligned data_;                      // blocks: a column of kLanes per number
-  std::vector<std::uint16_t> local_;  // blocks: a column of kLanes local nodes per corner
-  std::vector<int> order_;            // number in its mesh of each element
-  std::vector<int> nodes_;            // of the chunks' local nodes, in the global arrays
-  std::vector<int> target_;           // of their forces: a node, or -1 - a slot of the halo
-  std::vector<int> shared_, slots_;   // nodes with slots slots_[i] ... slots_[i + 1] - 1
-  std::vector<double> halo_;
-  std::vector<double> chunk_sums_;
+  // SIMD blocks: kLanes values of each stored number, and of each corner's local node, in a row.
+  Aligned data_;
+  std::vector<std::uint16_t> local_;
+  std::vector<int> order_;   // number of each element in its mesh, run after run
+  std::vector<int> nodes_;   // number in the global arrays of each chunk's local nodes
+  std::vector<int> target_;  // place of its force: node n as n, slot s of the halo as -1 - s
+  std::vector<int> shared_, slots_;  // shared node i has the slots slots_[i] ... slots_[i + 1] - 1
+  std::vector<double> halo_;         // forces on shared nodes, two numbers per slot
+  std::vector<double> chunk_sums_;   // energy or damping power of each chunk
+  Threads threads_;
   std::vector<Scratch> scratch_;  // one per thread
 };
 

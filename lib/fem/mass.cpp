@@ -1,15 +1,15 @@
-#include "fem/mass.hpp"
+#include "apothem/fem/mass.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "fem/quad4.hpp"
+#include "apothem/fem/quad4.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kLeastShare = 0.1;  // of the mean, before the tilt
+constexpr double kLeastShare = 0.1;  // least share of a corner over the mean share, before the tilt
 
 std::vector<double> quad_areas(std::span<const Vec2> x) {
   const auto [a, b, q] = quad::Reference(x);
@@ -26,7 +26,8 @@ std::vector<double> corner_areas(std::span<const Vec2> x) {
   if (n == 4) {
     std::vector<double> areas = quad_areas(x);
     const auto [least, most] = std::minmax_element(areas.begin(), areas.end());
-    if (*least > kLeastShare * *most) return areas;  // not where a corner is far inside
+    if (*least > kLeastShare * *most)
+      return areas;  // refused where a corner would get nearly nothing
   }
 
   Vec2 mean = Vec2::Zero();
@@ -45,12 +46,12 @@ std::vector<double> corner_areas(std::span<const Vec2> x) {
     share[j] += std::abs(triangle) / 2;
   }
   const Vec2 centroid = moment / area;
-  // A corner near the mean corner, as the inner one of an L, would have no mass.
+  // A corner close to the mean of the corners, like the inner one of an L, would get no mass.
   double mean_share = 0;
   for (const double w : share) mean_share += w / n;
   for (double& w : share) w = std::max(w, kLeastShare * mean_share);
-  // Newton for the tilt: SUM share exp(tilt.(x - centroid)) (x - centroid) = 0, the minimum of a
-  // convex function.
+  // Newton's method for the tilt t with SUM share exp(t.(x - centroid)) (x - centroid) = 0, the
+  // minimum of a convex function.
   Vec2 tilt = Vec2::Zero();
   std::vector<double> weight(n);
   const auto weigh = [&](const Vec2& t) {

@@ -1,48 +1,58 @@
-// Elastic materials (theory: Sec. 5.1; T. Belytschko et al., Nonlinear Finite Elements, 2014,
-// Sec. 5.4). A new law is a struct with the functions of StVenantKirchhoff, a name in kElasticLaws
-// and a line in with_law.
+// Elastic materials (docs/theory.md; T. Belytschko, W. K. Liu, B. Moran, K. Elkhodary, Nonlinear
+// Finite Elements for Continua and Structures, 2nd ed., 2014, Sec. 5.4). To add a law, write a
+// struct with the functions of StVenantKirchhoff and add its name to kElasticLaws and a line to
+// with_law.
+//
+// Throughout, h is the displacement gradient H = F - I in the plane, with h.xy = du_x/dY, and J is
+// the determinant of the deformation gradient F.
 #pragma once
 
 #include <array>
 #include <utility>
 
-#include "fem/tensor.hpp"
+#include "apothem/fem/tensor.hpp"
 
 namespace apothem {
 
+/// The elastic laws.
 enum class ElasticLaw { st_venant_kirchhoff, neo_hookean };
+/// Names of the laws, in the order of ElasticLaw.
 inline constexpr std::array kElasticLaws{"st_venant_kirchhoff", "neo_hookean"};
 
+/// Plane stress or plane strain.
 enum class Plane { stress, strain };
+/// Names of the plane states, in the order of Plane.
 inline constexpr std::array kPlanes{"stress", "strain"};
 
-/// An isotropic elastic material. Pa and 1.
+/// An isotropic elastic material. All moduli are in Pa.
 struct Elastic {
   ElasticLaw law = ElasticLaw::st_venant_kirchhoff;
   Plane plane = Plane::stress;
-  double young = 0;
-  double poisson = 0;
+  double young = 0;    ///< Young's modulus, Pa
+  double poisson = 0;  ///< Poisson's ratio
 
+  /// Shear modulus, Pa.
   [[nodiscard]] double shear() const { return young / (2 * (1 + poisson)); }
-  /// Lame's first constant.
+  /// Lame's first constant, Pa.
   [[nodiscard]] double lame() const {
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson));
   }
-  /// Of a stress in one direction of the plane alone.
+  /// Stress per strain, Pa, if the stress in the plane acts in one direction only (for plane strain
+  /// the strain across the plane is zero).
   [[nodiscard]] double uniaxial() const {
     return plane == Plane::stress ? young : young / (1 - poisson * poisson);
   }
-  /// Stress per strain in one direction of the plane while the other one is held.
+  /// Stress per strain in the same direction, Pa, if the other strain in the plane is zero.
   [[nodiscard]] double constrained() const {
     return plane == Plane::stress ? young / (1 - poisson * poisson) : lame() + 2 * shear();
   }
-  /// Stress per strain across.
+  /// Stress per strain in the perpendicular direction of the plane, Pa.
   [[nodiscard]] double coupled() const {
     return plane == Plane::stress ? young * poisson / (1 - poisson * poisson) : lame();
   }
 };
 
-/// Linear isotropic elasticity in the plane, between strains and stresses of any definition.
+/// Hooke's law for plane stress or plane strain: maps any strain measure to its conjugate stress.
 struct Hooke {
   double constrained, coupled, twice_shear;
   explicit Hooke(const Elastic& e)
@@ -54,7 +64,8 @@ struct Hooke {
   }
 };
 
-/// S = C : E, in both planes.
+/// St. Venant-Kirchhoff material: second Piola-Kirchhoff stress S = C : E of Green's strain E, for
+/// plane stress and plane strain. It collapses in strong compression.
 struct StVenantKirchhoff {
   Hooke hooke;
   double transverse;   // E_33 = -transverse (E_11 + E_22)
@@ -63,7 +74,7 @@ struct StVenantKirchhoff {
       : hooke(e),
         transverse(e.plane == Plane::stress ? e.poisson / (1 - e.poisson) : 0),
         lame_across(e.plane == Plane::stress ? 0 : e.lame()) {}
-  /// First Piola-Kirchhoff stress, Pa, of the displacement gradient.
+  /// First Piola-Kirchhoff stress, Pa, at the displacement gradient h.
   template <class N>
   APOTHEM_INLINE Tensor<N> stress(const Tensor<N>& h) const {
     return first_piola(h, hooke(green_strain(h)));
@@ -74,13 +85,13 @@ struct StVenantKirchhoff {
     const Symmetric<N> e = green_strain(h);
     return N(0.5) * product(hooke(e), e);
   }
-  /// Thickness over reference thickness.
+  /// Present thickness over reference thickness.
   template <class N>
   APOTHEM_INLINE N thickness_stretch(const Tensor<N>& h) const {
     const Symmetric<N> e = green_strain(h);
     return square_root(N(1) - N(2 * transverse) * (e.xx + e.yy));
   }
-  /// Second Piola-Kirchhoff stress across the plane, Pa.
+  /// Second Piola-Kirchhoff stress perpendicular to the plane, Pa.
   template <class N>
   APOTHEM_INLINE N transverse_stress(const Tensor<N>& h) const {
     const Symmetric<N> e = green_strain(h);
@@ -88,16 +99,20 @@ struct StVenantKirchhoff {
   }
 };
 
-/// psi = mu/2 (tr F^T F - 3) - mu ln J + lambda/2 (J - 1)^2; for small strains Hooke's law. In
-/// plane stress the thickness makes the stress across it vanish, in closed form.
+/// Compressible neo-Hookean material with the strain energy per reference volume
+/// psi = mu/2 (tr F^T F - 3) - mu ln J + lambda/2 (J - 1)^2, F and J in three dimensions; for small
+/// strains it is Hooke's law. In plane stress the thickness stretch follows in closed form from
+/// vanishing stress perpendicular to the plane. The functions are those of StVenantKirchhoff.
 template <Plane plane>
 struct NeoHookean {
   double mu, lambda;
   explicit NeoHookean(const Elastic& e) : mu(e.shear()), lambda(e.lame()) {}
 
+  /// First Piola-Kirchhoff stress, Pa.
   template <class N>
   APOTHEM_INLINE Tensor<N> stress(const Tensor<N>& h) const {
-    // F - F^-T = ((j - 1) F + F - cof F) / j, without cancellation; j = det F in the plane.
+    // With j = det F in the plane and grown = j - 1:
+    // F - F^-T = (grown F + F - cof F) / j. Written out in H, this form has no cancellation.
     const N grown = h.xx + h.yy + determinant(h);
     const N j = N(1) + grown;
     const Tensor<N> cofactor{N(1) + h.yy, -h.yx, -h.xy, N(1) + h.xx};
@@ -108,29 +123,33 @@ struct NeoHookean {
     const N swelling = N(lambda) * volume_change(grown, j) * thickness(grown, j);
     return part * (f_minus_cofactor + grown * f) + swelling * cofactor;
   }
+  /// Strain energy per reference volume, J/m^3.
   template <class N>
   APOTHEM_INLINE N energy(const Tensor<N>& h) const;
+  /// Present thickness over reference thickness.
   template <class N>
   APOTHEM_INLINE N thickness_stretch(const Tensor<N>& h) const {
     const N grown = h.xx + h.yy + determinant(h);
     return thickness(grown, N(1) + grown);
   }
+  /// Second Piola-Kirchhoff stress perpendicular to the plane, Pa.
   template <class N>
   APOTHEM_INLINE N transverse_stress(const Tensor<N>& h) const {
     if constexpr (plane == Plane::stress) return N(0);
     const N grown = h.xx + h.yy + determinant(h);
-    return N(lambda) * grown * (N(1) + grown);  // thickness 1: mu (1 - 1) + lambda (J - 1) J
+    return N(lambda) * grown *
+           (N(1) + grown);  // mu (t^2 - 1) + lambda (J - 1) J with thickness stretch t = 1
   }
 
  private:
-  // d psi/d lambda_3 = 0: (mu + lambda j^2) t^2 - lambda j t - mu = 0.
+  // Thickness stretch t: d psi/dt = 0 gives (mu + lambda j^2) t^2 - lambda j t - mu = 0.
   template <class N>
   APOTHEM_INLINE N thickness(const N& grown, const N& j) const {
     if constexpr (plane == Plane::strain) return N(1);
     return N(1) + thinning(grown, j);
   }
-  // t - 1, without cancellation: the root of (mu + lambda j^2) d^2 + (2 mu + lambda j (2j - 1)) d
-  // + lambda j (j - 1) = 0 near 0.
+  // d = t - 1 without cancellation: the root near 0 of
+  // (mu + lambda j^2) d^2 + (2 mu + lambda j (2j - 1)) d + lambda j (j - 1) = 0.
   template <class N>
   APOTHEM_INLINE N thinning(const N& grown, const N& j) const {
     const N m(mu), l = N(lambda) * j;
@@ -139,7 +158,7 @@ struct NeoHookean {
     const N c = l * grown;
     return N(-2) * c / (b + square_root(b * b - N(4) * a * c));
   }
-  // J - 1 with the thickness.
+  // J - 1 in three dimensions: j t - 1.
   template <class N>
   APOTHEM_INLINE N volume_change(const N& grown, const N& j) const {
     if constexpr (plane == Plane::strain) return grown;
@@ -147,6 +166,7 @@ struct NeoHookean {
   }
 };
 
+/// Natural logarithm of a scalar; the specialisation takes that of each lane of a pack.
 template <class N>
 inline N logarithm(const N& x) {
   using std::log;
@@ -171,7 +191,8 @@ APOTHEM_INLINE N NeoHookean<plane>::energy(const Tensor<N>& h) const {
          N(mu) * logarithm(N(1) + v) + N(0.5 * lambda) * v * v;
 }
 
-/// Calls f with the law's struct.
+/// Calls `f` with an object of the struct that implements the material's law, and returns what `f`
+/// returns.
 template <class F>
 decltype(auto) with_law(const Elastic& e, F&& f) {
   if (e.law == ElasticLaw::st_venant_kirchhoff) return std::forward<F>(f)(StVenantKirchhoff(e));

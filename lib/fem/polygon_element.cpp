@@ -1,22 +1,23 @@
-#include "fem/polygon_element.hpp"
+#include "apothem/fem/polygon_element.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
-#include "fem/quad4.hpp"
+#include "apothem/fem/quad4.hpp"
 
 namespace apothem {
 namespace {
 
-// kappa over modulus and thickness: softer cells give way under single nodal forces, stiffer ones
-// bend less accurately (docs/verification.md).
+// kappa over modulus and thickness. With smaller values cells yield too much to single nodal
+// forces, with larger ones they bend less accurately (docs/verification.md).
 constexpr double kRest = 0.1;
 
-// Four functionals of the displacements: a column of x, y per corner.
+// Four linear functionals of the displacements: one row each, columns x and y of each corner.
 using Functionals = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
+// A stress in the plane, and its traction on a normal.
 struct Stress {
   double xx, yy, xy;
   [[nodiscard]] Vec2 on(const Vec2& normal) const {
@@ -24,21 +25,21 @@ struct Stress {
   }
 };
 
-// The equilibrated stress fields that are linear in the place: Airy's cubics.
+// The equilibrated stress fields that are linear in the coordinates, from Airy's cubic functions.
 std::array<Stress, 4> linear_stresses(const Vec2& p) {
   return {Stress{p.y(), 0, 0}, Stress{0, p.x(), 0}, Stress{p.x(), 0, -p.y()},
           Stress{0, p.y(), -p.x()}};
 }
 
-// Strain energy density of two stresses.
+// Twice the mixed complementary energy density of two stresses, a : C^-1 : b.
 double complementary(const Elastic& e, const Stress& a, const Stress& b) {
   const double c = e.constrained(), d = e.coupled(), det = c * c - d * d;
   return (a.xx * (c * b.xx - d * b.yy) + a.yy * (c * b.yy - d * b.xx)) / det +
          a.xy * b.xy / e.shear();
 }
 
-// Those of Quad4: sqrt(stiffness) A.q and B.q, q the hourglass part of what is beside a linear
-// field.
+// The functionals of Quad4: sqrt(stiffness) A.q and B.q, where q is the hourglass part of the
+// displacements that the mean gradient leaves over.
 Functionals of_quadrilateral(std::span<const Vec2> x, const Elastic& e, double thickness) {
   const auto [a, b, q] = quad::Reference(x);
   const double det = cross(a, b);
@@ -54,14 +55,15 @@ Functionals of_quadrilateral(std::span<const Vec2> x, const Elastic& e, double t
   return f;
 }
 
-// Work of the four stresses, orthonormal in complementary energy, on the boundary's displacements.
+// The work of the four stress fields, made orthonormal in complementary energy, on the
+// displacements of the boundary.
 Functionals of_linear_stresses(std::span<const Vec2> x, const Vec2& centroid, const Elastic& e,
                                double thickness) {
   const int n = static_cast<int>(x.size());
-  // Complementary energies; each triangle at the centroid by its edge midpoints, exact for
-  // products of linear fields.
+  // Complementary energies. Each triangle between an edge and the centroid is integrated by its
+  // edge midpoints, which is exact for products of linear fields.
   Eigen::Matrix4d energy = Eigen::Matrix4d::Zero();
-  // INT N_i (s n) ds on the two edges at each corner.
+  // INT N_i (s n) ds over the two edges at each corner.
   Functionals work = Functionals::Zero(4, 2 * n);
   for (int i = 0; i < n; ++i) {
     const int j = i + 1 < n ? i + 1 : 0;
@@ -74,7 +76,7 @@ Functionals of_linear_stresses(std::span<const Vec2> x, const Vec2& centroid, co
         }
       }
     }
-    const Vec2 normal(q.y() - p.y(), p.x() - q.x());  // times the length
+    const Vec2 normal(q.y() - p.y(), p.x() - q.x());  // outward normal times the length of the edge
     const std::array<Stress, 4> at_p = linear_stresses(p), at_q = linear_stresses(q);
     for (int k = 0; k < 4; ++k) {
       const Vec2 tp = thickness / 6 * at_p[k].on(normal), tq = thickness / 6 * at_q[k].on(normal);
@@ -85,7 +87,8 @@ Functionals of_linear_stresses(std::span<const Vec2> x, const Vec2& centroid, co
   return energy.llt().matrixL().solve(work);
 }
 
-// The same energy in functionals that are orthogonal on the corners, less what kappa makes of it.
+// The same energy in functionals that are orthogonal on the corners, with the share of the kappa
+// energy subtracted from each (see the head of polygon_element.hpp).
 Functionals without_penalty(const Functionals& f, double kappa) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> modes(f * f.transpose());
   Functionals g = modes.eigenvectors().transpose() * f;
@@ -104,7 +107,7 @@ void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double t
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : x) mean += p / n;
   double area = 0;
-  Vec2 centroid = Vec2::Zero();  // from the mean corner
+  Vec2 centroid = Vec2::Zero();  // relative to the mean of the corners, until the division below
   for (int i = 0; i < n; ++i) {
     const Vec2 p = x[i] - mean, q = x[i + 1 < n ? i + 1 : 0] - mean;
     area += cross(p, q) / 2;

@@ -1,33 +1,37 @@
-// Elements with any number of corners, convex or not: the virtual element method of first order
+// The element with any number of corners, convex or not: the virtual element method of first order
 // (L. Beirao da Veiga et al., Math. Models Methods Appl. Sci. 23, 2013; P. Wriggers et al., Comput.
-// Mech. 60, 2017) with a stabilisation that knows bending.
+// Mech. 60, 2017) with a stabilisation that represents bending.
 //
-// The mean displacement gradient needs the boundary only. What the corners have beside a linear
-// field, r_i, gets
-// - with four corners the bending energy of Quad4, so that the two elements are one;
+// The mean displacement gradient follows from the boundary alone. Let r_i be the part of the
+// displacement of corner i that the mean displacement and the mean gradient leave over. It gets
+// - with four corners the bending energy of Quad4, so that the two elements are the same;
 // - from five corners on the energy of the four equilibrated stress fields that are linear in the
-//   place (the hybrid stress method). With s_k orthonormal in complementary energy,
-//   W = 1/2 SUM_k beta_k^2, beta_k = INT_boundary (s_k n).(F^T u) ds, F the mean gradient, so that
-//   a rotation does not count;
-// - and 1/2 kappa |r'|^2, r' the part of r that no linear stress feels (orthogonal to the beta_k).
-//   Since |r'|^2 is |r|^2 less the squares of orthogonal functionals, prepare() folds it into the
-//   beta_k and the kernel sees 1/2 kappa SUM |r_i|^2 alone.
+//   coordinates (as in hybrid stress elements). With s_k orthonormal in complementary energy,
+//   W = 1/2 SUM_k beta_k^2, beta_k = INT_boundary (s_k n).(F^T u) ds, F the mean deformation
+//   gradient, so that a rotation stores no energy;
+// - and 1/2 kappa |r'|^2, where r' is the part of r to which no linear stress field responds (it is
+//   orthogonal to the functionals beta_k). Since |r'|^2 is |r|^2 less the squares of orthogonal
+//   functionals, prepare() subtracts these squares from the beta_k, and the kernel only needs
+//   1/2 kappa SUM |r_i|^2.
 #pragma once
 
 #include <span>
 
-#include "fem/response.hpp"
-#include "geometry/point.hpp"
+#include "apothem/fem/response.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
+/// The polygonal element. Functions as in Tri3.
 struct PolygonElement {
-  static constexpr int kCorners = 0;  // any
-  static constexpr int kPerCorner = 12;
+  static constexpr int kCorners = 0;     // any number
+  static constexpr int kPerCorner = 12;  // stored numbers per corner
   static int stored(int corners) { return 2 + kPerCorner * corners; }
 
-  /// Area t, kappa; per corner: gradient g_i (u -> SUM u_i g_i), place from the mean corner, four
-  /// bending functionals.
+  /// Stores area times thickness (m^3), kappa (N/m), and for each corner i: the gradient vector g_i
+  /// with H = SUM u_i (x) g_i (1/m), the place relative to the mean of the corners (m), and four
+  /// bending functionals. `x` are the corners, counter-clockwise, in m. Number k goes to
+  /// out[k * kLanes].
   static void prepare(std::span<const Vec2> x, const Elastic& e, double thickness, double* out);
 
   template <class R, class N>
@@ -98,7 +102,8 @@ struct PolygonElement {
     return {d[6 + kPerCorner * i + 2 * k], d[7 + kPerCorner * i + 2 * k]};
   }
 
-  // Displacements as mean, mean gradient and T_k = SUM u_i functional_ki; beta_k = T_k : F.
+  // Mean of the displacements, mean gradient h, and T_k = SUM_i u_i (x) functional_ki, with which
+  // beta_k = T_k : F.
   template <class N>
   struct Fit {
     Point<N> mean{N(0.), N(0.)};

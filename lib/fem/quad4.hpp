@@ -1,17 +1,20 @@
-// Quadrilaterals. Corners X_i at (xi, eta) = (-1,-1), (1,-1), (1,1), (-1,1);
-// X = X_0 + A xi + B eta + Q xi eta, and u alike with u_xi, u_eta, u_h.
+// The quadrilateral elements: with one integration point and bending stabilisation (Quad4), and
+// with full 2 x 2 integration (Quad4Full). The corners X_i lie at (xi, eta) = (-1,-1), (1,-1),
+// (1,1),
+// (-1,1), so that X = X_0 + A xi + B eta + Q xi eta; displacements u are interpolated in the same
+// way, with coefficients u_xi, u_eta and u_h in the place of A, B and Q.
 #pragma once
 
 #include <span>
 
-#include "fem/response.hpp"
-#include "geometry/point.hpp"
+#include "apothem/fem/response.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
 namespace quad {
 
-/// A, B, Q.
+/// The coefficients A, B, Q of the reference configuration, m.
 struct Reference {
   Vec2 a, b, q;
   explicit Reference(std::span<const Vec2> x)
@@ -20,11 +23,14 @@ struct Reference {
         q(((x[2] - x[3]) - (x[1] - x[0])) / 4) {}
 };
 
+/// The coefficients u_xi, u_eta, u_h (hourglass mode) of nodal displacements or velocities, or the
+/// generalised forces that are conjugate to them.
 template <class N>
 struct Modes {
   Point<N> xi, eta, hourglass;
 };
 
+/// The coefficients of the four nodal values `u`.
 template <class N>
 APOTHEM_INLINE Modes<N> modes(const Point<N>* u) {
   const Point<N> lower = u[1] - u[0], upper = u[2] - u[3];
@@ -33,7 +39,7 @@ APOTHEM_INLINE Modes<N> modes(const Point<N>* u) {
   return {quarter * (lower + upper), quarter * (left + right), quarter * (upper - lower)};
 }
 
-/// Nodal forces of the generalised forces on u_xi, u_eta, u_h; their sum is zero.
+/// Nodal forces of the generalised forces on u_xi, u_eta, u_h. Their sum is zero.
 template <class N>
 APOTHEM_INLINE void scatter(const Modes<N>& g, Point<N>* f) {
   const N quarter(0.25);
@@ -47,17 +53,21 @@ APOTHEM_INLINE void scatter(const Modes<N>& g, Point<N>* f) {
 
 }  // namespace quad
 
-/// One integration point and the bending energy of Pian and Sumihara's stresses
-/// (Int. J. Numer. Meth. Eng. 20, 1984), written for large rotations: it does not lock.
+/// The quadrilateral that does not lock in bending: one integration point, and the bending energy
+/// of the stress modes of Pian and Sumihara (Int. J. Numer. Meth. Eng. 20, 1984), written for large
+/// rotations.
 ///
-/// With q = u_h - H Q, what the corners have beside a linear field, the strain along A changes
-/// across the element by a.q eta (a = A + u_xi: convected, so a rotation does not count). The
-/// stress that goes with it acts along A alone, with the modulus E of a stress in one direction:
-///   W_h = 1/2 E t det_0 4/3 [ (a.q)^2/|A|^4 + (b.q)^2/|B|^4 ].
+/// Let q = u_h - H Q be the hourglass part that the mean gradient H leaves over. The strain along A
+/// then varies across the element by a.q eta, where a = A + u_xi is A in the present configuration,
+/// so that a rotation causes no strain. The stress of this strain acts along A only, with the
+/// modulus E of uniaxial stress:
+///   W_h = 1/2 E t det_0 4/3 [ (a.q)^2/|A|^4 + (b.q)^2/|B|^4 ],
+/// with the thickness t, det_0 = A x B, and b = B + u_eta. Functions as in Tri3.
 struct Quad4 {
   static constexpr int kCorners = 4;
   static int stored(int) { return 9; }
 
+  /// Stores A, B, Q (m), 1/det_0 (1/m^2), and the bending stiffnesses along A and B (N/m^3).
   static void prepare(std::span<const Vec2> x, const Elastic& e, double thickness, double* out) {
     const auto [a, b, q] = quad::Reference(x);
     const double det = cross(a, b);
@@ -96,7 +106,8 @@ struct Quad4 {
                beta * (d[7] * rate_a * rate_a + d[8] * rate_b * rate_b);
     }
     const N sa = d[7] * along_a, sb = d[8] * along_b;
-    // 4 det t P times the rows of J^-1, which have det in the denominator.
+    // 4 det_0 t P times the rows of J^-1, J the Jacobian matrix; these rows have det_0 in the
+    // denominator, which cancels.
     const Tensor<N> p = N(4 * material.thickness) * material.stress(h, rate);
     const Point<N> w = sa * a + sb * b;
     quad::scatter({p * s.across_b + sa * q - s.q_xi * w, p * s.across_a + sb * q - s.q_eta * w, w},
@@ -119,10 +130,11 @@ struct Quad4 {
   }
 
  private:
+  // Geometry of the reference configuration at the centre.
   template <class N>
   struct Frame {
-    Point<N> a, b, across_a, across_b;  // across: det times the rows of J^-1
-    N inverse_det, q_xi, q_eta;         // Q = A q_xi + B q_eta
+    Point<N> a, b, across_a, across_b;  // det_0 times the rows of J^-1
+    N inverse_det, q_xi, q_eta;         // coefficients of Q = A q_xi + B q_eta
     explicit APOTHEM_INLINE Frame(const Stored<N>& d)
         : a{d[0], d[1]},
           b{d[2], d[3]},
@@ -140,11 +152,13 @@ struct Quad4 {
   };
 };
 
-/// 2 x 2 Gauss points, the paper's element: locks in bending.
+/// The quadrilateral with 2 x 2 Gauss points, which the paper uses. It locks in bending. Functions
+/// as in Tri3.
 struct Quad4Full {
   static constexpr int kCorners = 4;
   static int stored(int) { return 10; }
 
+  /// Stores A, B, Q (m) and 1/det at the four Gauss points (1/m^2).
   static void prepare(std::span<const Vec2> x, const Elastic&, double, double* out) {
     const auto [a, b, q] = quad::Reference(x);
     const double values[] = {a.x(), a.y(), b.x(), b.y(), q.x(), q.y()};
@@ -190,7 +204,7 @@ struct Quad4Full {
     return N(material.thickness) * sum;
   }
 
-  /// That of the centre, which is the mean.
+  /// The gradient at the centre, which equals the mean.
   template <class N>
   static Tensor<N> mean_gradient(const Stored<N>& d, int, const Point<N>* u) {
     const quad::Modes<N> m = quad::modes(u);
@@ -199,10 +213,11 @@ struct Quad4Full {
   }
 
  private:
-  static constexpr double kPlace = 0.57735026918962576451;  // 1/sqrt 3
+  static constexpr double kPlace = 0.57735026918962576451;  // 1/sqrt(3)
   static constexpr double kGauss[4][2] = {
       {-kPlace, -kPlace}, {kPlace, -kPlace}, {kPlace, kPlace}, {-kPlace, kPlace}};
 
+  // Geometry of the reference configuration at one Gauss point.
   template <class N>
   struct Gauss {
     N xi, eta, inverse_det;

@@ -1,4 +1,4 @@
-#include "fem/spectrum.hpp"
+#include "apothem/fem/spectrum.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -8,9 +8,10 @@
 namespace apothem {
 namespace {
 
-constexpr double kStrain = 1e-6;    // of the probing displacements: linear, and far above round-off
-constexpr double kAccuracy = 5e-3;  // of the eigenvalue
-constexpr int kMostSteps = 200;
+constexpr double kStrain =
+    1e-6;  // of the probing displacements: in the linear range, far above round-off
+constexpr double kAccuracy = 5e-3;  // relative, of the eigenvalue
+constexpr int kMostSteps = 200;     // of Lanczos' method
 
 }  // namespace
 
@@ -24,7 +25,7 @@ double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
   const auto span = [&](const Vector& v) { return std::span(v.data(), u.size()); };
   const double length = elements.shortest_edge();
 
-  // M^-1/2 K M^-1/2 q by a central difference of the force.
+  // The product M^-1/2 K M^-1/2 q, by a central difference of the force.
   Vector plus(n), minus(n), moved(n);
   const auto apply = [&](const Vector& q) -> Vector {
     const Vector shape = root.cwiseProduct(q);
@@ -61,7 +62,7 @@ double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
       const double largest = small.eigenvalues()[step - 1];
       const double residual = rest * std::abs(small.eigenvectors()(step - 1, step - 1));
       const double found = largest + residual;
-      // Two agreeing answers: a single small residual may belong to a lower eigenvalue.
+      // Two successive results must agree: one small residual may belong to a lower eigenvalue.
       if (residual < kAccuracy * largest && std::abs(found - answer) < kAccuracy * largest) {
         return found;
       }

@@ -1,10 +1,11 @@
-// Points and 2 x 2 tensors of any number type.
+// Vectors and 2 x 2 tensors over any number type (double, SIMD pack, complex), for the elements.
 #pragma once
 
-#include "fem/pack.hpp"
+#include "apothem/execution/pack.hpp"
 
 namespace apothem {
 
+/// A vector or point of the plane.
 template <class N>
 struct Point {
   N x, y;
@@ -22,9 +23,10 @@ APOTHEM_INLINE N dot(const Point<N>& a, const Point<N>& b) {
   return a.x * b.x + a.y * b.y;
 }
 
+/// A 2 x 2 tensor.
 template <class N>
 struct Tensor {
-  N xx, xy, yx, yy;  // rows first
+  N xx, xy, yx, yy;  // row by row: xy is row x, column y
   friend APOTHEM_INLINE Tensor operator+(const Tensor& a, const Tensor& b) {
     return {a.xx + b.xx, a.xy + b.xy, a.yx + b.yx, a.yy + b.yy};
   }
@@ -40,11 +42,13 @@ struct Tensor {
   }
 };
 
+/// The dyadic product a b^T.
 template <class N>
 APOTHEM_INLINE Tensor<N> outer(const Point<N>& a, const Point<N>& b) {
   return {a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y};
 }
 
+/// The double contraction a : b, the sum of the products of equal components.
 template <class N>
 APOTHEM_INLINE N contract(const Tensor<N>& a, const Tensor<N>& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
@@ -55,19 +59,19 @@ APOTHEM_INLINE N determinant(const Tensor<N>& a) {
   return a.xx * a.yy - a.xy * a.yx;
 }
 
-/// Symmetric: strain or second Piola-Kirchhoff stress.
+/// A symmetric 2 x 2 tensor: strain or second Piola-Kirchhoff stress.
 template <class N>
 struct Symmetric {
   N xx, yy, xy;
 };
 
-/// S : E.
+/// The double contraction S : E.
 template <class N>
 APOTHEM_INLINE N product(const Symmetric<N>& s, const Symmetric<N>& e) {
   return s.xx * e.xx + s.yy * e.yy + N(2) * (s.xy * e.xy);
 }
 
-/// Green's strain of the displacement gradient H: sym H + H^T H / 2, free of cancellation.
+/// Green's strain E = sym H + H^T H / 2 of the displacement gradient H, free of cancellation.
 template <class N>
 APOTHEM_INLINE Symmetric<N> green_strain(const Tensor<N>& h) {
   const N half(0.5);
@@ -75,7 +79,8 @@ APOTHEM_INLINE Symmetric<N> green_strain(const Tensor<N>& h) {
           half * (h.xy + h.yx + h.xx * h.xy + h.yx * h.yy)};
 }
 
-/// Its rate: sym(F^T H').
+/// The rate of Green's strain, sym(F^T H'), with F = I + H and the rate H' of the displacement
+/// gradient.
 template <class N>
 APOTHEM_INLINE Symmetric<N> green_strain_rate(const Tensor<N>& h, const Tensor<N>& rate) {
   const N half(0.5);
@@ -84,7 +89,7 @@ APOTHEM_INLINE Symmetric<N> green_strain_rate(const Tensor<N>& h, const Tensor<N
                   rate.yx * h.yy)};
 }
 
-/// F S with F = I + H.
+/// First Piola-Kirchhoff stress F S with F = I + H, from the second one.
 template <class N>
 APOTHEM_INLINE Tensor<N> first_piola(const Tensor<N>& h, const Symmetric<N>& s) {
   return {s.xx + h.xx * s.xx + h.xy * s.xy, s.xy + h.xx * s.xy + h.xy * s.yy,

@@ -1,10 +1,10 @@
-#include "mesh/boundary.hpp"
+#include "apothem/mesh/boundary.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-#include "mesh/invalid_mesh.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/mesh/invalid_mesh.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges) {

@@ -1,30 +1,33 @@
-// The outline of a mesh.
+// The boundary loops of a mesh and the number of its connected parts.
 #pragma once
 
 #include <vector>
 
-#include "mesh/edges.hpp"
+#include "apothem/mesh/edges.hpp"
 
 namespace apothem {
 
-/// A closed line of boundary edges with the mesh on its left: counter-clockwise around the outside,
-/// clockwise around a hole.
+/// A closed loop of boundary edges with the mesh on its left: counter-clockwise along an outer
+/// boundary, clockwise around a hole.
 struct BoundaryLoop {
-  std::vector<int> nodes;     ///< edge i leads from node i to node i + 1; the lowest node is first
-  std::vector<int> elements;  ///< of edge i
+  std::vector<int> nodes;     ///< edge i leads from node i to i + 1; the lowest number is first
+  std::vector<int> elements;  ///< element at edge i
   bool is_hole;
 };
 
+/// All boundary loops of a mesh.
 struct Boundary {
-  std::vector<BoundaryLoop> loops;  ///< the outer ones, then the holes; each by the first node
-  int components;                   ///< parts of the mesh that no edge connects
+  std::vector<BoundaryLoop> loops;  ///< outer loops, then holes, each sorted by first node
+  int components;                   ///< number of parts of the mesh that no edge connects
 };
 
-/// Throws InvalidMesh if the boundary meets itself in a node, and what mesh_edges does.
+/// The boundary of a mesh. Throws InvalidMesh if a boundary node has more than two boundary edges,
+/// and where mesh_edges does.
 Boundary boundary(const Mesh& mesh);
-Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges);  ///< of that mesh
+/// The same if the result of mesh_edges(mesh) is at hand.
+Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges);
 
-/// The number of parts of the mesh that no edge connects.
+/// The number of parts of the mesh that no common edge connects. `edges` is mesh_edges(mesh).
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges);
 
 }  // namespace apothem

@@ -1,23 +1,24 @@
-#include "mesh/check.hpp"
+#include "apothem/mesh/check.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "geometry/boxes.hpp"
-#include "geometry/polygon.hpp"
-#include "geometry/predicates.hpp"
-#include "mesh/boundary.hpp"
-#include "mesh/invalid_mesh.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/invalid_mesh.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kLargest = 1e60;     // as of Polygon
-constexpr double kFlat = 1e-12;       // area by squared diagonal
-constexpr double kSamePlace = 1e-12;  // of the mesh's size
-constexpr double kOnEdge = 1e-9;      // of the edge's length
+constexpr double kLargest = 1e60;     // coordinate, m; the same limit as in Polygon
+constexpr double kFlat = 1e-12;       // area over squared diagonal
+constexpr double kSamePlace = 1e-12;  // times the mesh's size
+constexpr double kOnEdge = 1e-9;      // times the edge's length
 
+// The checks of check_mesh, in an order in which each may rely on the earlier ones.
 class Check {
  public:
   Check(const Mesh& mesh, const MeshRules& rules) : mesh_(mesh), rules_(rules) {}
@@ -73,8 +74,8 @@ class Check {
           e, "has " + std::to_string(n) + " corners; an element needs at least 3");
     }
     repeated_corner(e);
-    // Four left turns make a simple quadrilateral: their sum is a multiple of 360 degrees below
-    // 4 times 180.
+    // Four left turns make a simple quadrilateral: their sum is a multiple of 360 degrees and less
+    // than 4 x 180 degrees.
     bool convex = n <= 4;
     for (size_t i = 0; i < n && convex; ++i) {
       convex = orientation(mesh_.nodes[corners[i]], mesh_.nodes[after(corners, i)],
@@ -111,7 +112,7 @@ class Check {
     if (twice != sorted.end()) refuse(*twice);
   }
 
-  // Polygons, and everything that is not right.
+  // The full check, for elements with five or more corners and for those that fail the test above.
   void general_element(int e) const {
     const auto corners = mesh_.element(e);
     std::vector<Vec2> ring;

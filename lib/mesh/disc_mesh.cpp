@@ -1,23 +1,24 @@
-#include "mesh/disc_mesh.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "mesh/groups.hpp"
-#include "mesh/split.hpp"
+#include "apothem/mesh/groups.hpp"
+#include "apothem/mesh/split.hpp"
 
 namespace apothem {
 namespace {
 
-// Found by a scan for the best worst corner, then the least ratio of areas, for 1 to 64 cells: the
-// corner of the block, the share of the circle in its outline, and the layers of the ring by cells.
+// Found by a search over meshes of 1 to 64 cells for the best worst corner, then the smallest ratio
+// of areas: distance of the block's corners from the centre over the radius, share of the circle in
+// the shape of its sides, and layers of the ring per cell of a quarter.
 constexpr double kBlock = .65;
 constexpr double kBulge = .38;
 constexpr double kLayers = .45;
 
-// The point (u, v) of the block's square [-1, 1]^2 in the unit disc: between the square of that
-// size and, at its outline, an arc.
+// Maps the square [-1, 1]^2 to the block in the unit disc: a blend of a straight square and,
+// towards the sides, an arc.
 Vec2 block_point(double u, double v) {
   const double m = std::max(std::abs(u), std::abs(v));
   if (m == 0) return Vec2::Zero();
@@ -33,7 +34,7 @@ Vec2 block_point(double u, double v) {
   return kBlock * ((1 - bulge) / std::numbers::sqrt2 * Vec2(u, v) + bulge * arc);
 }
 
-// Where layer k of the ring ends, from 0 to 1: sizes form a geometric series.
+// The ends of the ring's layers, from 0 to 1. The layers' sizes form a geometric series.
 std::vector<double> layer_ends(int layers, double grading) {
   std::vector<double> end{0};
   double size = 1;
@@ -72,7 +73,8 @@ Mesh disc_mesh(const Vec2& centre, double radius, const DiscCells& cells, Elemen
                         shape, (i + j) % 2 != 0);
     }
   }
-  // Around the block counter-clockwise from its corner at -45 degrees: side s, step i.
+  // Nodes on the outline of the block, counter-clockwise from its corner at -45 degrees: side s,
+  // step i.
   const auto rim = [&](int s, int i) {
     const int k[4][2]{{n, i}, {n - i, n}, {0, n - i}, {i, 0}};
     return block(k[s][0], k[s][1]);
@@ -90,7 +92,7 @@ Mesh disc_mesh(const Vec2& centre, double radius, const DiscCells& cells, Elemen
       }
     }
   }
-  const auto ring = [&](int l, int k) {  // k along the ring, cyclically
+  const auto ring = [&](int l, int k) {  // k runs around the ring, cyclically
     k %= 4 * n;
     return l == 0 ? rim(k / n, k % n) : ring_start + (l - 1) * 4 * n + k;
   };

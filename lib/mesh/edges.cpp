@@ -1,17 +1,17 @@
-#include "mesh/edges.hpp"
+#include "apothem/mesh/edges.hpp"
 
 #include <algorithm>
 
-#include "mesh/invalid_mesh.hpp"
+#include "apothem/mesh/invalid_mesh.hpp"
 
 namespace apothem {
 namespace {
 
-// An element's edge, filed under its lower node.
+// An edge as one element sees it, stored with the lower one of its nodes.
 struct HalfEdge {
   int upper;
   int element;
-  bool rising;  // from the lower to the upper node
+  bool rising;  // the element runs from the lower to the upper node
   auto operator<=>(const HalfEdge&) const = default;
 };
 

@@ -1,17 +1,17 @@
-#include "mesh/fill_mesh.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
 
-#include "geometry/delaunay_mesh.hpp"
-#include "mesh/check.hpp"
-#include "mesh/groups.hpp"
-#include "mesh/smooth.hpp"
-#include "mesh/split.hpp"
+#include "apothem/geometry/meshing/delaunay_mesh.hpp"
+#include "apothem/mesh/check.hpp"
+#include "apothem/mesh/groups.hpp"
+#include "apothem/mesh/smooth.hpp"
+#include "apothem/mesh/split.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kTriangle = 2.2;  // edge of the triangles that are cut, in sizes
-constexpr double kLeastSine = .6;  // of a corner of two joined triangles
-constexpr int kSweeps = 20;
+constexpr double kTriangle = 2.2;  // edge length of the triangles to cut, over the wanted size
+constexpr double kLeastSine = .6;  // least sine of the corners of two joined triangles
+constexpr int kSweeps = 20;        // of smoothing
 
 std::vector<int> edge_numbers(const Polygon& outline) {
   std::vector<int> numbers;

@@ -1,27 +1,30 @@
-// Unstructured mesh of any polygon with holes.
+// Generates an unstructured mesh of a polygon with holes, and converts meshes to and from tilings.
 #pragma once
 
 #include <vector>
 
-#include "geometry/polygon.hpp"
-#include "geometry/polygon_mesh.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// Elements of about `size` (m): triangles of that mean edge length (see delaunay_mesh), or convex
-/// quadrilaterals of about its square in area, made from twice as large triangles of which pairs
-/// are joined before all are cut into three or four, then smoothed. The first nodes are the
+/// A mesh with elements of about `size` (m). Triangles have that mean edge length (see
+/// delaunay_mesh). Quadrilaterals are convex with about size^2 of area: larger triangles, with
+/// edges of 2.2 x size, are joined in pairs where that makes good quadrilaterals, all elements are
+/// cut into three or four quadrilaterals, and the nodes are smoothed. The first nodes are the
 /// vertices of the outline and of the holes, bit for bit. Groups as in add_outline_groups; edges
-/// have the numbers of the outline as it was given. Throws InvalidPolygon and std::invalid_argument
-/// as delaunay_mesh does, InvalidMesh if the elements cannot be told apart so far from the origin.
+/// are numbered as in the outline that the user gave. Throws InvalidPolygon and
+/// std::invalid_argument as delaunay_mesh does, and InvalidMesh if elements degenerate because the
+/// coordinates are too large for their size.
 Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
                ElementShape shape);
 
-/// The cells of a tiling of `region` (as in_world gives them) as elements, with the same groups.
+/// The cells of a tiling of `region`, in the coordinates of in_world(), as elements, with the
+/// groups of fill_mesh.
 Mesh mesh_of_cells(const Polygon& region, const PolygonMesh& cells);
 
-/// Elements as cells.
+/// The elements of a mesh as cells of a tiling; groups are lost.
 PolygonMesh cells_of_mesh(const Mesh& mesh);
 
 }  // namespace apothem

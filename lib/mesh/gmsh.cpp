@@ -1,4 +1,4 @@
-#include "mesh/gmsh.hpp"
+#include "apothem/mesh/gmsh.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,21 +7,22 @@
 #include <set>
 #include <unordered_map>
 
-#include "mesh/edges.hpp"
-#include "mesh/groups.hpp"
-#include "mesh/invalid_mesh.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/mesh/edges.hpp"
+#include "apothem/mesh/groups.hpp"
+#include "apothem/mesh/invalid_mesh.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
+// gmsh's number of a node, element or entity.
 using Tag = long long;
 
 std::string name(const char* kind, Tag tag) {
   return std::string(kind) + " with the tag " + std::to_string(tag);
 }
 
-// The words of a text, line by line.
+// Reads a text word by word and line by line, and reports errors with the line number.
 class Rows {
  public:
   explicit Rows(std::string_view text) : text_(text) {}
@@ -29,7 +30,7 @@ class Rows {
   [[noreturn]] void fail(const std::string& what) const { throw BadMeshText(what, line_); }
   [[nodiscard]] int line() const { return line_; }
 
-  // Goes to the next line that is not blank; false at the end of the text.
+  // Goes to the next line that is not blank. Returns false at the end of the text.
   bool next() {
     while (at_ < text_.size()) {
       const size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -82,6 +83,7 @@ class Rows {
   int line_ = 0;
 };
 
+// Element types by gmsh's number, for the messages that refuse them.
 struct ElementType {
   int number;
   const char* name;
@@ -99,6 +101,7 @@ constexpr ElementType kSolids[]{
     {12, "27-node hexahedron"},
     {17, "20-node hexahedron"},
 };
+// gmsh's numbers of the element types that are read.
 constexpr int kPoint = 15;
 constexpr int kLine = 1;
 constexpr int kTriangle = 2;
@@ -109,19 +112,21 @@ struct Node {
   Vec2 place;
   double z;
   int line;
-  bool at_point;  // of the geometry
-  bool at_line = false;
-  int number = -1;  // in the mesh
+  bool at_point;         // belongs to a point of the geometry
+  bool at_line = false;  // belongs to a line element
+  int number = -1;       // in the mesh; -1 if left out
 };
 
-struct Part {  // an element of the file
+// An element of the file, of any dimension.
+struct Part {
   Tag tag;
   int line;
   int dimension;
-  std::array<int, 4> nodes;  // indices into the file's
+  std::array<int, 4> nodes;  // indices into the list of the file's nodes
   int size;
 };
 
+// The reader of one text.
 class Reader {
  public:
   Reader(std::string_view text, const MeshRules& rules) : rows_(text), rules_(rules) {}
@@ -205,7 +210,7 @@ class Reader {
     }
   }
 
-  // Physical groups of points, curves and surfaces.
+  // The physical groups of points, curves, surfaces and volumes (version 4.1).
   void entities() {
     rows_.require_next("the numbers of entities");
     std::array<Tag, 4> counts;
@@ -301,8 +306,8 @@ class Reader {
     }
   }
 
-  // The row stands behind the element's tags. Version 2.2 repeats an element that is in several
-  // physical groups.
+  // Reads the nodes of an element after its tags. Version 2.2 repeats an element that is in several
+  // physical groups, once for each; `may_repeat` recognises that.
   void add_element(Tag tag, int type, const std::vector<Tag>& physical, bool may_repeat) {
     Part part{tag, rows_.line(), 2, {-1, -1, -1, -1}, 0};
     switch (type) {
@@ -388,7 +393,7 @@ class Reader {
       mesh_.add_element(corners);
       file_part_.push_back(static_cast<int>(i));
       const int e = mesh_.element_count() - 1;
-      // A surface whose normal points down.
+      // The surface's normal points to -z: gmsh lists the corners clockwise.
       if (element_area(mesh_, e) < 0)
         std::reverse(mesh_.corners.end() - part.size + 1, mesh_.corners.end());
     }
@@ -484,14 +489,14 @@ class Reader {
   Rows rows_;
   const MeshRules& rules_;
   int version_ = 0;
-  std::map<Key, std::string> names_;             // of physical groups
-  std::map<Key, std::vector<Tag>> physical_of_;  // of entities
-  std::map<Key, std::vector<int>> members_;      // of physical groups, indices of parts
+  std::map<Key, std::string> names_;             // names of physical groups
+  std::map<Key, std::vector<Tag>> physical_of_;  // physical groups of each entity
+  std::map<Key, std::vector<int>> members_;      // indices of the parts in each physical group
   std::vector<Node> nodes_;
   std::unordered_map<Tag, int> node_of_;
   std::vector<Part> parts_;
   Mesh mesh_;
-  std::vector<int> file_node_, file_part_;  // of the mesh's nodes and elements
+  std::vector<int> file_node_, file_part_;  // file index of each mesh node, element
 };
 
 }  // namespace

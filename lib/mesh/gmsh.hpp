@@ -1,5 +1,5 @@
-// Meshes in gmsh's text format (C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Eng. 79 (2009);
-// versions 4.1 and 2.2 as in the gmsh reference manual, "MSH file format").
+// Reads meshes in gmsh's text format (C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Eng. 79
+// (2009); versions 4.1 and 2.2, see "MSH file format" in the gmsh reference manual).
 #pragma once
 
 #include <stdexcept>
@@ -7,12 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/check.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/check.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// What is wrong with the text, and in which line (from 1; 0 if in none).
+/// Thrown for a .msh text that cannot be used: what is wrong, and in which line (counted from 1; 0
+/// if in no particular line).
 class BadMeshText : public std::invalid_argument {
  public:
   BadMeshText(const std::string& reason, int line) : std::invalid_argument(reason), line_(line) {}
@@ -22,11 +23,12 @@ class BadMeshText : public std::invalid_argument {
   int line_;
 };
 
-/// The mesh of a .msh text: triangles and quadrilaterals of first order in the plane z = 0, in the
-/// order of the file; clockwise ones are turned over. Physical groups of surfaces, curves and
-/// points become groups (named surface-TAG, curve-TAG, point-TAG if they have no name); other lines
-/// and points are left out, and so are nodes that only belong to geometry points, like the centre
-/// of an arc. Throws BadMeshText, which names the tag, also for a mesh that check_mesh refuses.
+/// The mesh of a .msh text: triangles and quadrilaterals of first order in the plane z = 0, with
+/// coordinates in m, in the order of the file. Clockwise elements are reversed. Physical groups of
+/// surfaces, curves and points become groups (without a name: surface-TAG, curve-TAG, point-TAG).
+/// Other lines and points are left out, and so are nodes that belong to geometry points only, like
+/// the centre of an arc. Throws BadMeshText, which names gmsh's tag, for a malformed text and for a
+/// mesh that check_mesh refuses.
 Mesh parse_gmsh(std::string_view text, const MeshRules& rules = {});
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-#include "mesh/groups.hpp"
+#include "apothem/mesh/groups.hpp"
 
 #include <algorithm>
 
@@ -15,13 +15,13 @@ MeshGroup line_group(std::string name, std::vector<std::array<int, 2>> edges) {
 void add_outline_groups(Mesh& mesh, const std::vector<int>& edge_numbers,
                         const std::vector<int>& hole_sizes) {
   const int corners = static_cast<int>(edge_numbers.size());
-  std::vector<int> hole_of;  // of the vertices behind the outline's
+  std::vector<int> hole_of;  // hole of each vertex that follows those of the outline
   for (size_t hole = 0; hole < hole_sizes.size(); ++hole) {
     hole_of.insert(hole_of.end(), hole_sizes[hole], static_cast<int>(hole));
   }
   std::vector<std::array<int, 2>> all;
   std::vector<std::vector<std::array<int, 2>>> edges(corners), holes(hole_sizes.size());
-  // Loops start at their lowest node: a vertex of the outline or of a hole.
+  // Loops start at their lowest node, which is a vertex of the outline or of a hole.
   for (const BoundaryLoop& loop : boundary(mesh).loops) {
     const int first = loop.nodes.front();
     int last_corner = first;

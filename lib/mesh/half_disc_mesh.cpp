@@ -1,19 +1,19 @@
-#include "mesh/half_disc_mesh.hpp"
+#include "apothem/mesh/half_disc_mesh.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "mesh/groups.hpp"
-#include "mesh/split.hpp"
+#include "apothem/mesh/groups.hpp"
+#include "apothem/mesh/split.hpp"
 
 namespace apothem {
 namespace {
 
-// On the disc of radius 1 about (0, 1), from the pole.
+// The point of the unit circle about (0, 1) at `angle` from the pole (0, 0), in rad.
 Vec2 on_arc(double angle) { return {std::sin(angle), 2 * std::pow(std::sin(angle / 2), 2)}; }
 
-// From -1 to 1, to the last bit the same on both sides of 0.
+// 2 i/n - 1, from -1 to 1: the same on both sides of 0 to the last bit.
 double share(int i, int n) { return static_cast<double>(2 * i - n) / n; }
 
 }  // namespace
@@ -50,7 +50,7 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
       add(block(i, j), block(i + 1, j), block(i + 1, j + 1), block(i, j + 1), (i + j) % 2 != 0);
     }
   }
-  // Around the block from its left foot over its top to its right foot.
+  // The outline of the block from its lower left corner over its top to its lower right corner.
   std::vector<int> last;
   for (int k = 0; k < n; ++k) last.push_back(block(0, k));
   for (int k = 0; k < 2 * n; ++k) last.push_back(block(k, n));
@@ -58,7 +58,7 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   std::vector<Vec2> rim;
   for (const int node : last) rim.push_back(mesh.nodes[node]);
 
-  // The first layer has the size of the block's cells.
+  // The first layer is at most as thick as a cell of the block; the number of layers is rounded up.
   const double length = std::numbers::pi / 2 - side;
   const double first = fine / n / length;
   const int layers =
@@ -71,7 +71,8 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
     const Vec2 end = l < layers ? on_arc(side + s * length) : Vec2(1, 1);
     std::vector<int> next;
     for (int k = 0; k <= around; ++k) {
-      // Straight between the rim and the straight side; the ends of the layer are on the arc.
+      // Linear between the outline of the block and the straight side, plus a correction that puts
+      // the ends of the layer on the arc.
       const Vec2 even = rim[k] + s * (Vec2(share(k, around), 1) - rim[k]);
       const Vec2 bulge = end - (rim[around] + s * (Vec2(1, 1) - rim[around]));
       next.push_back(static_cast<int>(mesh.nodes.size()));

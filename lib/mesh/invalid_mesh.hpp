@@ -1,4 +1,4 @@
-// Why a mesh is refused.
+// The exception of a mesh that is refused.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace apothem {
 
-/// What is wrong with a mesh, and at which element or node (-1 if at none).
+/// What is wrong with a mesh, and at which element or node (-1 if at no particular one).
 class InvalidMesh : public std::invalid_argument {
  public:
   InvalidMesh(const std::string& reason, int element, int node)

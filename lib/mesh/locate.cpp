@@ -1,39 +1,42 @@
-#include "mesh/locate.hpp"
+#include "apothem/mesh/locate.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "geometry/predicates.hpp"
-#include "mesh/edges.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/mesh/edges.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kOutside = 1e-9;  // of the mesh's size
+constexpr double kOutside = 1e-9;  // times the mesh's size
 
-std::array<double, 3> barycentric(const Vec2& a, const Vec2& b, const Vec2& c) {  // of 0
+// Barycentric coordinates of the origin.
+std::array<double, 3> barycentric(const Vec2& a, const Vec2& b, const Vec2& c) {
   const std::array<double, 3> areas{cross(b, c), cross(c, a), cross(a, b)};
   const double sum = areas[0] + areas[1] + areas[2];
   return {areas[0] / sum, areas[1] / sum, areas[2] / sum};
 }
 
-// The place (u, v) in the unit square of the bilinear map that takes its corners to a, b, c, d.
+// The coordinates (u, v) of the origin in the bilinear map of the unit square to the quadrilateral
+// a, b, c, d.
 std::array<double, 2> inverse_bilinear(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const Vec2 e = b - a;
   const Vec2 f = d - a;
   const Vec2 g = (a - b) + (c - d);
-  // a + u e + v f + u v g = 0; crossed with e + v g it is a quadratic equation for v.
+  // a + u e + v f + u v g = 0; its cross product with e + v g is a quadratic equation for v.
   const double k2 = cross(f, g);
   const double k1 = cross(f, e) + cross(a, g);
   const double k0 = cross(a, e);
   const double root = std::sqrt(std::max(0., k1 * k1 - 4 * k2 * k0));
-  // k1 < 0 in a counter-clockwise element: no cancellation, and the root of the linear case.
+  // k1 < 0 in a counter-clockwise element, so that this form has no cancellation and includes the
+  // linear case k2 = 0.
   double v = 2 * k0 / (-k1 + root);
   const Vec2 h = e + v * g;
   double u = -h.dot(a + v * f) / h.squaredNorm();
-  for (int i = 0; i < 2; ++i) {  // Newton: round-off of the closed form
+  for (int i = 0; i < 2; ++i) {  // Newton's method removes the round-off of the closed form
     const Vec2 miss = a + u * e + v * f + u * v * g;
     const Vec2 by_u = e + v * g;
     const Vec2 by_v = f + u * g;
@@ -44,7 +47,8 @@ std::array<double, 2> inverse_bilinear(const Vec2& a, const Vec2& b, const Vec2&
   return {u, v};
 }
 
-void mean_value(std::span<const Vec2> ring, std::span<double> weights) {  // of 0
+// Mean-value coordinates of the origin.
+void mean_value(std::span<const Vec2> ring, std::span<double> weights) {
   const size_t n = ring.size();
   std::fill(weights.begin(), weights.end(), 0.);
   double sum = 0;
@@ -57,13 +61,13 @@ void mean_value(std::span<const Vec2> ring, std::span<double> weights) {  // of 
     const double sine = cross(p, q);
     const double cosine = p.dot(q);
     const bool on_corner = p.isZero(0);
-    if (on_corner || (sine == 0 && cosine < 0)) {  // or on the edge
+    if (on_corner || (sine == 0 && cosine < 0)) {  // at the corner, or on the edge
       std::fill(weights.begin(), weights.end(), 0.);
       weights[i] = on_corner ? 1 : q_length / (p_length + q_length);
       if (!on_corner) weights[next] = p_length / (p_length + q_length);
       return;
     }
-    // Of the angle from corner i to the next.
+    // Tangent of half the angle between corner i and the next one.
     const double lengths = p_length * q_length;
     const double half_tangent = cosine > 0 ? sine / (lengths + cosine) : (lengths - cosine) / sine;
     weights[i] += half_tangent / p_length;
@@ -87,7 +91,8 @@ bool is_convex(std::span<const Vec2> ring) {
   return true;
 }
 
-double distance_to_boundary(const std::vector<Vec2>& ring) {  // of 0
+// Distance of the origin from the boundary.
+double distance_to_boundary(const std::vector<Vec2>& ring) {
   double least = HUGE_VAL;
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2 edge = after(ring, i) - ring[i];

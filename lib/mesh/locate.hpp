@@ -1,31 +1,34 @@
-// Points in a mesh.
+// Finds points in a mesh and their interpolation weights.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// A material point: an element and the shares of its corners, which sum to one. The point is the
-/// same combination of the corners' places, and what the elements interpolate at it is that of
-/// their values.
+/// A material point of a mesh: an element and a weight for each of its corners; the weights sum to
+/// one. The same weighted sum of the corners' positions or of any nodal values gives the position
+/// of the point or the interpolated value.
 struct MeshPoint {
   int element;
   std::vector<double> weights;  ///< one per corner
 };
 
-/// The element that holds p, the first of those that share it; a point outside by up to 1e-9 of the
-/// mesh's size belongs to the nearest element; none farther away. Looks at every element. Weights
-/// are barycentric in triangles, those of the bilinear map in convex quadrilaterals, and mean-value
-/// coordinates in all others (M. Floater, Comput. Aided Geom. Des. 20 (2003)).
+/// The point `p` (m) as a material point of the element that contains it, the lowest one of
+/// several. A point outside the mesh by up to 1e-9 of its size belongs to the nearest element; one
+/// farther away to none. The search visits every element. Weights are barycentric coordinates in
+/// triangles, those of the bilinear map in convex quadrilaterals, and mean-value coordinates in all
+/// other elements (M. Floater, Comput. Aided Geom. Des. 20 (2003)).
 std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p);
 
-/// Of a point in or hardly outside the element. The first form takes its corners relative to the
-/// point, where they are now, and fills one weight for each.
+/// The interpolation weights, as in find_point, of a point in the element or outside by round-off.
+/// `ring` holds the positions of its corners relative to the point, m, in any configuration;
+/// `weights` receives one weight for each.
 void interpolation_weights(std::span<const Vec2> ring, std::span<double> weights);
+/// The same for the point `p` (m) of an element in the reference configuration.
 std::vector<double> interpolation_weights(const Mesh& mesh, int element, const Vec2& p);
 
 }  // namespace apothem

@@ -1,9 +1,9 @@
-#include "mesh/measure.hpp"
+#include "apothem/mesh/measure.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "mesh/edges.hpp"
+#include "apothem/mesh/edges.hpp"
 
 namespace apothem {
 

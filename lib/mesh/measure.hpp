@@ -1,39 +1,43 @@
-// Sizes and shapes of a mesh and its elements.
+// Sizes and quality of a mesh and of its elements.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// Of a ring of nodes; positive if they go counter-clockwise, in m^2.
+/// Area of a cyclic list of nodes, m^2; positive if they run counter-clockwise.
 double ring_area(const Mesh& mesh, std::span<const int> ring);
+/// Area of an element, m^2.
 inline double element_area(const Mesh& mesh, int element) {
   return ring_area(mesh, mesh.element(element));
 }
 
-/// Of the angles at the nodes of a counter-clockwise ring; negative beyond 180 degrees.
+/// Smallest sine of the angles at the nodes of a counter-clockwise cyclic list; negative if an
+/// angle exceeds 180 degrees.
 double smallest_sine(const Mesh& mesh, std::span<const int> ring);
 
-/// Of the area, m.
+/// Centroid of the mesh's area, m.
 Vec2 mesh_centroid(const Mesh& mesh);
 
-/// Longer side of the box around the nodes, m.
+/// Longer side of the bounding box of all nodes, m.
 double mesh_size(const Mesh& mesh);
 
+/// Numbers, sizes and shapes of the elements of a mesh.
 struct MeshQuality {
   int triangles = 0;
   int quadrilaterals = 0;
-  int polygons = 0;  ///< elements with five or more corners
-  double area;       ///< of all elements, m^2
-  double smallest_area, largest_area;
-  double shortest_edge, longest_edge;    ///< m
+  int polygons = 0;                      ///< number of elements with five or more corners
+  double area;                           ///< total area of all elements, m^2
+  double smallest_area, largest_area;    ///< of an element, m^2
+  double shortest_edge, longest_edge;    ///< length, m
   double smallest_angle, largest_angle;  ///< at a corner of an element, rad
-  /// Of triangles and quadrilaterals: 1 for equilateral triangles and rectangles, 0 or less for
-  /// elements that are none (P. Knupp, Algebraic mesh quality metrics, SIAM J. Sci. Comput. 23
-  /// (2001)): the smallest sine of a corner; for triangles by that of 60 degrees. 1 if there are
-  /// polygons only.
+  /// Smallest scaled Jacobian of triangles and quadrilaterals: the smallest sine of a corner, for
+  /// triangles divided by the sine of 60 degrees. It is 1 for equilateral triangles and rectangles,
+  /// 0 or less for degenerate or inverted elements (P. Knupp, Algebraic mesh quality metrics, SIAM
+  /// J. Sci. Comput. 23 (2001)), and 1 if all elements have five or more corners.
   double smallest_scaled_jacobian;
 };
+/// Measures all elements.
 MeshQuality mesh_quality(const Mesh& mesh);
 
 }  // namespace apothem

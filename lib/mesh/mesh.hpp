@@ -1,4 +1,4 @@
-// A finite-element mesh of one body: nodes, elements with any number of corners, named groups.
+// The finite-element mesh of one body: nodes, elements with any number of corners, named groups.
 #pragma once
 
 #include <array>
@@ -6,31 +6,35 @@
 #include <string>
 #include <vector>
 
-#include "geometry/point.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
-/// A named part of a mesh, for supports and loads.
+/// A named part of a mesh to which supports, loads and outputs refer.
 struct MeshGroup {
-  std::string name;
-  std::vector<int> nodes;                 ///< all nodes of the part, ascending
-  std::vector<std::array<int, 2>> edges;  ///< of a part that is a line; directed as in its element
+  std::string name;        ///< unique in its mesh
+  std::vector<int> nodes;  ///< all nodes of the part, in ascending order
+  /// if the part is a line: its edges, directed as in their elements
+  std::vector<std::array<int, 2>> edges;
 };
 
-/// What the generators of meshes fill a region with.
+/// The shape of the elements that the mesh generators produce.
 enum class ElementShape { quadrilateral, triangle };
 
-/// Straight-edged elements; neighbours share the nodes of their common edge.
+/// A mesh of elements with straight edges. Neighbours share the nodes of their common edge.
 struct Mesh {
-  std::vector<Vec2> nodes;    ///< m
-  std::vector<int> corners;   ///< node numbers of all elements, counter-clockwise
-  std::vector<int> first{0};  ///< element e has the corners first[e] ... first[e + 1] - 1
-  std::vector<MeshGroup> groups;
+  std::vector<Vec2> nodes;        ///< positions, m
+  std::vector<int> corners;       ///< node numbers of all elements, each counter-clockwise
+  std::vector<int> first{0};      ///< element e has the corners first[e] ... first[e + 1] - 1
+  std::vector<MeshGroup> groups;  ///< named parts
 
+  /// Number of elements.
   [[nodiscard]] int element_count() const { return static_cast<int>(first.size()) - 1; }
+  /// Node numbers of element `e`.
   [[nodiscard]] std::span<const int> element(int e) const {
     return {corners.data() + first[e], corners.data() + first[e + 1]};
   }
+  /// Appends an element with these nodes, which must run counter-clockwise.
   void add_element(std::span<const int> nodes_of_element) {
     corners.insert(corners.end(), nodes_of_element.begin(), nodes_of_element.end());
     first.push_back(static_cast<int>(corners.size()));

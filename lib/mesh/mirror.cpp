@@ -1,4 +1,4 @@
-#include "mesh/mirror.hpp"
+#include "apothem/mesh/mirror.hpp"
 
 #include <algorithm>
 

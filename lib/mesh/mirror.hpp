@@ -1,12 +1,13 @@
-// The mirror image of a mesh.
+// Mirrors a mesh.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// Mirrors at the line where coordinate `axis` (0: x, 1: y) is `at`, m. Numbers stay; elements run
-/// counter-clockwise again and keep their first corner.
+/// Mirrors the mesh at the line on which coordinate `axis` (0: x, 1: y) has the value `at`, m. The
+/// numbers of nodes and elements stay; the elements run counter-clockwise again and keep their
+/// first corner.
 void mirror(Mesh& mesh, int axis, double at);
 
 }  // namespace apothem

@@ -1,14 +1,15 @@
-#include "mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 
 #include <stdexcept>
 
-#include "mesh/groups.hpp"
-#include "mesh/split.hpp"
+#include "apothem/mesh/groups.hpp"
+#include "apothem/mesh/split.hpp"
 
 namespace apothem {
 namespace {
 
-// The places of n + 1 nodes; the last is exactly start + length.
+// The coordinates of n + 1 equidistant nodes. Throws std::invalid_argument if the origin is so far
+// away that round-off distorts the cells.
 std::vector<double> places(double start, double length, int n) {
   std::vector<double> x;
   for (int i = 0; i <= n; ++i) x.push_back(start + length * (static_cast<double>(i) / n));

@@ -1,8 +1,8 @@
-#include "mesh/reorder.hpp"
+#include "apothem/mesh/reorder.hpp"
 
 #include <algorithm>
 
-#include "geometry/hilbert.hpp"
+#include "apothem/geometry/spatial/hilbert.hpp"
 
 namespace apothem {
 

@@ -1,19 +1,19 @@
-// Numbering a mesh so that neighbours are close in memory.
+// Renumbers a mesh so that neighbours are close in memory.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
+/// The permutation that a renumbering has applied.
 struct Reordering {
-  std::vector<int> nodes;     ///< the old number of each node
-  std::vector<int> elements;  ///< the old number of each element
+  std::vector<int> nodes;     ///< the old number of each new node
+  std::vector<int> elements;  ///< the old number of each new element
 };
 
-/// Elements come in the order of a Hilbert curve through the means of their corners (see
-/// hilbert_order), nodes in the order in which elements first use them, unused ones last. Groups
-/// follow: their nodes ascend again, their edges keep their order. An element keeps its first
-/// corner.
+/// Orders the elements along a Hilbert curve through the means of their corners (see hilbert_order)
+/// and the nodes in the order in which elements first use them; unused nodes come last. The nodes
+/// of groups are sorted again, and their edges keep their order. An element keeps its first corner.
 Reordering reorder_along_curve(Mesh& mesh);
 
 }  // namespace apothem

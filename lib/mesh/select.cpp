@@ -1,15 +1,15 @@
-#include "mesh/select.hpp"
+#include "apothem/mesh/select.hpp"
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 
-#include "mesh/measure.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kTolerance = 1e-9;  // of the mesh's size
+constexpr double kTolerance = 1e-9;  // times the mesh's size
 
 const MeshGroup& group_of(const Mesh& mesh, const std::string& name) {
   std::string known;

@@ -1,29 +1,31 @@
-// Nodes and boundary edges of a mesh by their place or name.
+// Selects nodes and boundary edges of a mesh by position or group.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "mesh/edges.hpp"
+#include "apothem/mesh/edges.hpp"
 
 namespace apothem {
 
-/// All conditions that are given must hold; without any, everything is selected. Lengths in m,
-/// compared to 1e-9 of the mesh's size.
+/// A selection of nodes. All conditions that are given must hold; without any, every node is
+/// selected. Positions in m are compared with a tolerance of 1e-9 of the mesh's size.
 struct Place {
-  std::optional<double> x = {};
-  std::optional<double> y = {};
-  std::optional<Box> box = {};
-  std::optional<std::string> group = {};
-  std::optional<Vec2> nearest = {};  ///< of the nodes that meet the others, the one nearest to this
+  std::optional<double> x = {};           ///< position in x, m
+  std::optional<double> y = {};           ///< position in y, m
+  std::optional<Box> box = {};            ///< box that contains the node, boundary included
+  std::optional<std::string> group = {};  ///< name of a group that contains the node
+  /// select only the node nearest to this point, m, among those that meet the other conditions
+  std::optional<Vec2> nearest = {};
 };
 
-/// Ascending. Throws std::invalid_argument for a group that the mesh does not have.
+/// The selected nodes, in ascending order. Throws std::invalid_argument if the mesh does not have
+/// the group.
 std::vector<int> nodes_where(const Mesh& mesh, const Place& place);
 
-/// The boundary edges both of whose nodes are selected and, if the group is a line, that belong to
-/// it. In the order of boundary_edges.
+/// The boundary edges whose two nodes are selected and, if the group is a line, that belong to it,
+/// in the order of boundary_edges. Throws as nodes_where does.
 std::vector<MeshEdge> edges_where(const Mesh& mesh, const Place& place);
 
 }  // namespace apothem

@@ -1,14 +1,14 @@
-#include "mesh/smooth.hpp"
+#include "apothem/mesh/smooth.hpp"
 
 #include <algorithm>
 
-#include "mesh/edges.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/mesh/edges.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
-// Lists of numbers by node, one behind the other.
+// One list of numbers for each node, stored one behind the other.
 struct Lists {
   std::vector<int> first, items;
   [[nodiscard]] std::span<const int> of(int node) const {
@@ -16,6 +16,7 @@ struct Lists {
   }
 };
 
+// Builds the lists; `for_each` calls its argument with each (node, item), the same ones each time.
 template <class ForEach>
 Lists lists(size_t nodes, const ForEach& for_each) {
   Lists result{std::vector<int>(nodes + 1, 0), {}};

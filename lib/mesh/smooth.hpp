@@ -1,15 +1,15 @@
-// Better-shaped elements by moving inner nodes.
+// Improves the shape of elements by moving inner nodes.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 
-/// Moves nodes that are not on the boundary, one after the other, to the mean of the nodes at the
-/// other ends of their edges or half-way there, if that makes the smallest sine of a corner of the
-/// elements around larger (L. Freitag, Trends in Unstructured Mesh Generation, ASME 1997: smart
-/// Laplacian smoothing). At most `sweeps` times; ends early once no node moves. For convex
-/// elements.
+/// Smart Laplacian smoothing (L. Freitag, Trends in Unstructured Mesh Generation, ASME 1997): moves
+/// each node that is not on the boundary to the mean of its neighbours along edges, or half-way
+/// there, if that increases the smallest sine of a corner of the elements around it. Nodes move one
+/// after the other, in at most `sweeps` passes; the function ends early once no node moves. All
+/// elements must be convex.
 void smooth_nodes(Mesh& mesh, int sweeps);
 
 }  // namespace apothem

@@ -1,13 +1,14 @@
-#include "mesh/split.hpp"
+#include "apothem/mesh/split.hpp"
 
 #include <algorithm>
 
-#include "mesh/edges.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/mesh/edges.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
+// Largest cosine of the angles of a triangle, that of its smallest angle.
 double largest_cosine(const Vec2& a, const Vec2& b, const Vec2& c) {
   const auto cosine = [](const Vec2& u, const Vec2& v) {
     return u.dot(v) / std::sqrt(u.squaredNorm() * v.squaredNorm());

@@ -1,6 +1,6 @@
-#include "model/columns.hpp"
+#include "apothem/model/columns.hpp"
 
-#include "model/state.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

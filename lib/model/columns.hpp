@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
-#include "model/settings.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
 
 namespace apothem {
 

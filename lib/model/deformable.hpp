@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/element.hpp"
-#include "mesh/mesh.hpp"
-#include "model/history.hpp"
+#include "apothem/fem/element.hpp"
+#include "apothem/mesh/mesh.hpp"
+#include "apothem/model/history.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "model/history.hpp"
+#include "apothem/model/history.hpp"
 
 namespace apothem {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "geometry/point.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 

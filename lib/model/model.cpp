@@ -1,4 +1,4 @@
-#include "model/model.hpp"
+#include "apothem/model/model.hpp"
 
 namespace apothem {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/law.hpp"
-#include "geometry/potential.hpp"
-#include "model/deformable.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/geometry/potential/potential.hpp"
+#include "apothem/model/deformable.hpp"
 
 namespace apothem {
 

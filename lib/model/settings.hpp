@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/deformable.hpp"
+#include "apothem/model/deformable.hpp"
 
 namespace apothem {
 

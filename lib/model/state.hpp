@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fem/stress.hpp"
-#include "geometry/point.hpp"
+#include "apothem/fem/stress.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "output/axes.hpp"
+#include "apothem/output/axes.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kTick = 4;      // points
-constexpr double kNumbers = 10;  // font size
-constexpr double kNames = 11;
+constexpr double kTick = 4;      // length of a tick, points
+constexpr double kNumbers = 10;  // font size of numbers, points
+constexpr double kNames = 11;    // font size of names, points
 
 std::string superscript(int number) {
   static const char* const digits[]{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -19,13 +19,13 @@ std::string superscript(int number) {
 }
 
 struct Ticks {
-  std::vector<double> places;  // in the data
+  std::vector<double> places;  // positions in the data
   std::vector<std::string> numbers;
-  std::string name;  // of the axis, with unit
+  std::string name;  // name of the axis with its unit
 };
 
 Ticks make_ticks(const Axis& axis, double low, double high, int most) {
-  constexpr double kDigits = 2e4;  // more than so many steps from zero need too many digits
+  constexpr double kDigits = 2e4;  // more steps than that from zero would need too many digits
   const double step = round_step(high - low, most);
   const double middle = axis.zero + (low + high) / 2;
   double base = 0;
@@ -149,7 +149,7 @@ void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>
   const auto place = [&](double value) {
     return frame.y1 - (value - low) / (high - low) * (frame.y1 - frame.y0);
   };
-  // From the lowest to the top, one over the other: no seams.
+  // Each band reaches up to the top, and the next one covers the rest: no seams are visible.
   for (size_t i = 0; i + 1 < bounds.size(); ++i) {
     const double bottom = place(bounds[i]);
     canvas.fill(

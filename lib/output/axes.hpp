@@ -1,34 +1,39 @@
-// Axes and colour bar: what every figure of a field over the plane needs around it.
+// Axes and colour scales around the pictures of fields over the plane.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "geometry/point.hpp"
-#include "output/canvas.hpp"
+#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/output/canvas.hpp"
 
 namespace apothem {
 
-/// A step of 1, 2 or 5 times a power of ten that divides `range` into at most `most` parts.
+/// The smallest step of 1, 2 or 5 times a power of ten that divides `range` into at most `most`
+/// parts.
 double round_step(double range, int most);
 
+/// The name and unit of an axis.
 struct Axis {
   std::string name;
   std::string unit;
-  double zero = 0;  ///< coordinate that the data's 0 stands for, however far away
+  double zero = 0;  ///< coordinate at which the data have 0, however far away
 };
 
+/// A frame with two axes, which maps the plane of the data to the canvas.
 class Axes {
  public:
-  /// The window of the data fills the frame on the canvas; its scales may differ.
+  /// Maps the rectangle `window` of the data to the rectangle `frame` of the canvas (points). The
+  /// scales of x and y may differ.
   Axes(const Box& frame, const Box& window, Axis x, Axis y);
 
-  /// Place on the canvas.
+  /// The position on the canvas, in points, of a position in the data.
   [[nodiscard]] Vec2 operator()(const Vec2& data) const;
   [[nodiscard]] std::vector<Vec2> operator()(std::vector<Vec2> data) const;
 
-  /// Frame and ticks; numbers and names of x below, of y on the left. Far from zero the numbers
-  /// count from a round one that the name tells; powers of a thousand go to the unit.
+  /// Draws the frame and ticks; if `below`, the numbers and name of x, and if `left`, those of y.
+  /// Far from zero the numbers count from a round value, which the name of the axis states; powers
+  /// of a thousand are moved to the unit.
   void draw(Canvas& canvas, bool below = true, bool left = true) const;
 
  private:
@@ -36,13 +41,13 @@ class Axes {
   Axis x_, y_;
 };
 
-/// Vertical: the colours of [low, high] without steps, numbers at round values, its name above.
-/// Points at the ends show that there are values beyond.
+/// Draws a vertical continuous colour scale for [low, high] with numbers at round values and the
+/// axis' name above. A triangle at an end shows that there are values beyond it.
 void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, double low, double high,
                        bool values_below, bool values_above);
 
-/// Vertical: bands between ascending bounds, each in its colour; numbers at every `stride`-th
-/// bound.
+/// Draws a vertical colour bar with one band per colour between ascending `bounds`, and a number at
+/// every `stride`-th bound.
 void draw_colour_bar(Canvas& canvas, const Box& frame, const std::vector<double>& bounds,
                      const std::vector<Colour>& colours, size_t stride, const std::string& name);
 

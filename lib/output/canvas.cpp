@@ -1,4 +1,4 @@
-#include "output/canvas.hpp"
+#include "apothem/output/canvas.hpp"
 
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -149,7 +149,8 @@ void Canvas::circle(const Vec2& centre, double radius, const Colour& inside, con
 }
 
 void Canvas::text(const Vec2& at, const std::string& text, const Font& font) {
-  constexpr double kCapitals = .73;  // height of DejaVu's capitals
+  // height of the capital letters of the font DejaVu over the font size
+  constexpr double kCapitals = .73;
   const double width = text_width(text, font.size);
   const double start = font.align == Align::left ? 0 : font.align == Align::centre ? .5 : 1;
   cairo_t* cairo = surface_->cairo;

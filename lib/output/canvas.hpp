@@ -1,5 +1,5 @@
-// A drawing surface for figures: one set of calls for pixels (PNG) and for vectors (SVG). Lengths
-// are points (1/72 inch), x to the right and y downwards; no display is needed.
+// A drawing surface for pictures, with one interface for PNG (pixels) and SVG (vectors). Lengths
+// are points (1/72 inch); x goes to the right and y downwards. No display is needed.
 #pragma once
 
 #include <memory>
@@ -7,62 +7,74 @@
 #include <string>
 #include <vector>
 
-#include "geometry/point.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
+/// File formats of pictures.
 enum class PictureFormat { png, svg };
 
-/// By the extension of a file's name.
+/// The format that the extension of a file's name stands for, if it is known.
 std::optional<PictureFormat> picture_format(const std::string& file);
 
+/// Red, green, blue and opacity, from 0 to 1.
 struct Colour {
   double red, green, blue;
   double alpha = 1;
 };
 
-/// Viridis (Smith, van der Walt & Firing; CC0): equal steps look equal, also in grey and to the
-/// colour-blind. `share` from 0 to 1.
+/// The colour map Viridis (Smith, van der Walt & Firing; CC0) at `share` from 0 to 1. Equal steps
+/// look equal, also in shades of grey and to colour-blind readers.
 Colour viridis(double share);
 
+/// How a line is drawn.
 struct Pen {
   Colour colour = {0, 0, 0};
-  double width = 1;
-  std::vector<double> dashes = {};  ///< on, off, ...
+  double width = 1;  ///< points
+  /// alternating lengths of dashes and gaps, points; empty: a solid line
+  std::vector<double> dashes = {};
 };
 
+/// Which part of a text stands at its position.
 enum class Align { left, centre, right };
+/// How a text is drawn.
 struct Font {
-  double size = 11;
+  double size = 11;  ///< points
   Align align = Align::left;
-  bool upwards = false;  ///< turned by 90 degrees
+  bool upwards = false;  ///< turned by 90 degrees, to be read from below to above
 };
 
+/// A picture that is being drawn.
 class Canvas {
  public:
-  /// White.
+  /// A white canvas; `width` and `height` in points.
   Canvas(PictureFormat format, double width, double height);
   ~Canvas();
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
+  /// Fills a polygon.
   void fill(const std::vector<Vec2>& ring, const Colour& colour);
+  /// Draws a line through the points and, if `closed`, back to the first one.
   void stroke(const std::vector<Vec2>& line, bool closed, const Pen& pen);
-  /// Colours by rows from the top; those with alpha 0 leave what is below. At pixels_per_point() of
-  /// the frame's size, with its corners at whole points, each is one pixel of a PNG.
+  /// Draws an image of width x height pixels into the frame; `colours` go row by row from the top,
+  /// and those with alpha 0 leave what is below visible. If the image has pixels_per_point() pixels
+  /// per point and the frame's corners lie at whole points, each colour is one pixel of a PNG.
   void image(const Box& frame, int width, int height, const std::vector<Colour>& colours);
-  /// Nothing is drawn outside the frame until unclip().
+  /// Restricts all drawing to the frame until unclip() is called.
   void clip(const Box& frame);
   void unclip();
   void circle(const Vec2& centre, double radius, const Colour& inside, const Pen& rim);
-  /// At the middle of the capitals' height.
+  /// Draws a text. `at` is at half the height of its capital letters.
   void text(const Vec2& at, const std::string& text, const Font& font = {});
-  /// What an image should have: more in an SVG, which may be enlarged.
+  /// The number of pixels per point that an image should have: more in an SVG, which readers
+  /// enlarge.
   [[nodiscard]] int pixels_per_point() const;
+  /// Width of a text in points at a font size in points.
   [[nodiscard]] double text_width(const std::string& text, double size) const;
 
-  /// The picture as the bytes of a file; ends the drawing. Throws std::runtime_error if the picture
-  /// could not be made.
+  /// Ends the drawing and returns the picture as the bytes of a file. Throws std::runtime_error if
+  /// the picture cannot be made.
   std::string finish();
 
  private:

@@ -1,4 +1,4 @@
-#include "output/curves.hpp"
+#include "apothem/output/curves.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -6,20 +6,21 @@
 #include <array>
 #include <iterator>
 
-#include "output/files.hpp"
+#include "apothem/output/files.hpp"
 
 namespace apothem {
 namespace {
 
-// Told apart by the colour-blind (Paul Tol's "bright" scheme).
+// Colours that colour-blind readers can tell apart (Paul Tol's "bright" scheme).
 constexpr std::array kColours{"#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377"};
 
 constexpr const char* kKey = "set key above left horizontal Left reverse samplen 2.5 width 2\n";
 constexpr int kWidth = 1000;        // pixels
-constexpr int kPanelHeight = 330;   // of several
-constexpr int kSingleHeight = 560;  // of the only one
+constexpr int kPanelHeight = 330;   // of one of several panels, pixels
+constexpr int kSingleHeight = 560;  // of a single panel, pixels
 
-// As a string of gnuplot, which takes all but the quote and the end of a line as it is.
+// The text as a gnuplot string. In single quotes, gnuplot takes everything literally except the
+// quote and the end of a line.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -84,7 +85,7 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
                                    kWidth, height, panels, quoted(figure.title));
   for (size_t p = 0; p < panels; ++p) {
     const CurvePanel& panel = figure.panels[p];
-    // A key that would only repeat the one above is left out.
+    // The key of a panel is left out if it would repeat the one above.
     const bool repeats = p > 0 && labels(panel) == labels(figure.panels[p - 1]);
     script += repeats ? "unset key\n" : kKey;
     script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
@@ -107,7 +108,7 @@ Plotted write_curves(const std::string& folder, const CurveFigure& figure,
                      std::vector<std::string>& files) {
   create_folder(folder);
   files.clear();
-  std::vector<std::vector<std::string>> names;  // panel by panel
+  std::vector<std::vector<std::string>> names;  // of the curves of each panel
   for (size_t p = 0; p < figure.panels.size(); ++p) {
     std::vector<std::string>& of_panel = names.emplace_back();
     for (const Curve& curve : figure.panels[p].curves) {

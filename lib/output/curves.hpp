@@ -1,39 +1,45 @@
-// Curves as files: a CSV each, and a picture of all of them through gnuplot.
+// Writes curves: each as a CSV file, and all of them as a picture made with gnuplot.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "geometry/point.hpp"
-#include "output/gnuplot.hpp"
+#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/output/gnuplot.hpp"
 
 namespace apothem {
 
+/// How a curve is drawn.
 enum class CurveStyle { line, dashed, marks };
 
+/// A curve of a panel.
 struct Curve {
-  std::string label;  ///< empty: not in the key
+  std::string label;  ///< entry in the key; empty: none
   CurveStyle style = CurveStyle::line;
-  int colour = 0;  ///< any number; equal numbers, equal colours
-  std::vector<double> x, y;
+  int colour = 0;            ///< any number; curves with equal numbers have the same colour
+  std::vector<double> x, y;  ///< points, in the units of the panel's axes
 };
 
+/// A diagram with its curves.
 struct CurvePanel {
   std::string title;
-  std::string x_label, y_label;  ///< with units: "time [s]"
+  std::string x_label, y_label;  ///< with units, as in "time [s]"
+  /// lowest and highest value of the axis; empty: chosen by gnuplot
   std::optional<Vec2> x_range, y_range;
   std::vector<Curve> curves;
 };
 
+/// Several diagrams in one picture.
 struct CurveFigure {
   std::string title;
-  std::vector<CurvePanel> panels;  ///< one below the other
+  std::vector<CurvePanel> panels;  ///< from top to bottom
 };
 
-/// Writes curve-PANEL-CURVE.csv (from 1; columns named by the panel's labels), picture.gnuplot and,
-/// if gnuplot is there, picture.png and picture.svg into the folder, which it creates. Returns the
-/// names of the CSV files in `files`. Throws SystemFailure.
+/// Writes curve-PANEL-CURVE.csv (numbered from 1; columns named by the panel's axis labels),
+/// picture.gnuplot and, if gnuplot is installed, picture.png and picture.svg into the folder, which
+/// is created if necessary. Returns whether gnuplot made the pictures, and the names of the CSV
+/// files in `files`. Throws SystemFailure.
 Plotted write_curves(const std::string& folder, const CurveFigure& figure,
                      std::vector<std::string>& files);
 

@@ -1,4 +1,4 @@
-#include "output/field.hpp"
+#include "apothem/output/field.hpp"
 
 #include <fmt/format.h>
 
@@ -7,14 +7,15 @@
 #include <set>
 #include <stdexcept>
 
-#include "mesh/measure.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kFarthest = 1e9;  // cells, along an axis
+constexpr double kFarthest = 1e9;  // largest distance along an axis, cells
 
-// Number of the cell of a lattice through `start`.
+// Column and row of the cell that contains `p`, in the lattice of cells of which one is centred at
+// `start`.
 std::pair<long, long> lattice_cell(const Vec2& p, const Vec2& start, const Vec2& size) {
   return {std::lround((p.x() - start.x()) / size.x()), std::lround((p.y() - start.y()) / size.y())};
 }
@@ -23,7 +24,7 @@ FieldSample node_sample(const Frame& frame, int node) {
   return {{}, frame.displacement[node], frame.velocity[node]};
 }
 
-// Adds `weight` times the sample of an element.
+// Adds `weight` times the stress and the mean displacement and velocity of an element.
 void add(FieldSample& sum, const Frame& frame, int element, double weight) {
   constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,
                               &CauchyStress::zz};
@@ -77,7 +78,7 @@ CellTable cell_table(const HistoryTable& table, const std::string& column, const
 
 Field field_of(const CellTable& cells) {
   Field field;
-  std::map<std::pair<long, long>, int> nodes;  // of the lattice of corners
+  std::map<std::pair<long, long>, int> nodes;  // by column and row of the corner
   const Vec2 half = cells.size / 2;
   for (const Vec2& centre : cells.centres) {
     std::array<int, 4> corners{};

@@ -1,29 +1,31 @@
-// Values over the plane: of a frame's bodies or of a table, one per cell or per node.
+// Fields over the plane, one value per cell or per node, from a frame of a run or from a table.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "output/frames.hpp"
-#include "output/history.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/output/history.hpp"
 
 namespace apothem {
 
-/// What there is to show: of a cell its stress, of a node how it moved.
+/// The values from which a quantity is computed: those of a cell or of a node.
 struct FieldSample {
-  CauchyStress stress = {};
-  Vec2 displacement = Vec2::Zero(), velocity = Vec2::Zero();
+  CauchyStress stress = {};                                   ///< of a cell, Pa
+  Vec2 displacement = Vec2::Zero(), velocity = Vec2::Zero();  ///< of a node, m and m/s
 };
 
+/// A quantity that can be shown as a field.
 struct FieldQuantity {
-  const char* name;     ///< as the columns of points in histories
-  const char* meaning;  ///< in words
-  const char* symbol;
+  const char* name;     ///< also the name of the column of tracked points in histories
+  const char* meaning;  ///< description in words
+  const char* symbol;   ///< symbol in pictures
   const char* unit;
-  bool nodal;
+  bool nodal;  ///< whether values belong to nodes, not to cells
   double (*value)(const FieldSample&);
 };
+/// All quantities.
 inline constexpr std::array kFieldQuantities{
     FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", false,
                   [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
@@ -52,37 +54,42 @@ inline constexpr std::array kFieldQuantities{
     FieldQuantity{"v", "speed", "|v|", "m/s", true,
                   [](const FieldSample& s) { return s.velocity.norm(); }}};
 
+/// A field: a mesh with one value per node or per cell.
 struct Field {
-  Mesh mesh;  ///< where it is now, m
-  bool nodal = false;
-  std::vector<double> values;  ///< of the nodes if `nodal`, else of the cells
-  std::vector<bool> blank;     ///< cells without a value: rigid bodies
+  Mesh mesh;                   ///< deformed mesh, m
+  bool nodal = false;          ///< whether values belong to nodes, not to cells
+  std::vector<double> values;  ///< one per node if `nodal`, otherwise one per cell
+  std::vector<bool> blank;     ///< one per cell: whether it has no value, like a rigid body
 };
 
-/// The first `rigid` bodies of the frame are blank.
+/// The field of a quantity in a frame. The first `rigid` bodies of the frame are rigid and have no
+/// values.
 Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid);
 
-/// Rectangles of one size, one per row of a table.
+/// A table of values in rectangular cells of the same size, one per row.
 struct CellTable {
-  Vec2 size;                  ///< m
-  std::vector<Vec2> centres;  ///< m
-  std::vector<double> values;
+  Vec2 size;                   ///< width and height of a cell, m
+  std::vector<Vec2> centres;   ///< m
+  std::vector<double> values;  ///< one per cell
 };
 
-/// Columns x and y are the centres. Throws std::runtime_error if two rows are of the same cell, or
-/// a cell is not within 1e9 cells of the first.
+/// The cells of a table that has the columns x and y (centres of the cells, m) and `column`
+/// (values). Throws std::runtime_error if two rows belong to the same cell, or if a cell is 1e9
+/// cells or more away from the first one.
 CellTable cell_table(const HistoryTable& table, const std::string& column, const Vec2& size);
 
+/// The table as a field with one value per cell.
 Field field_of(const CellTable& cells);
 
-/// How far a frame is from a table, as parts of the table's largest absolute value.
+/// The deviation of a frame from a table, over the table's largest absolute value.
 struct FieldError {
-  double rms;
-  double largest;
+  double rms;      ///< root of the mean square
+  double largest;  ///< largest absolute deviation
 };
-/// Compared are the values of mean stresses (displacements, velocities): over the elements whose
-/// centroid lay in the table's cell before the run, by their area then. Throws std::runtime_error
-/// if a cell holds none.
+/// Compares the quantity of each cell's mean stress, displacement and velocity with the table. The
+/// means are taken over the elements whose centroid lay in the cell before the run, weighted with
+/// their areas before the run. The first `rigid` bodies are left out. Throws std::runtime_error if
+/// a cell contains no element.
 FieldError field_error(const Frame& frame, const FieldQuantity& quantity, int rigid,
                        const CellTable& reference);
 

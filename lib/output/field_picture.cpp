@@ -1,48 +1,49 @@
-#include "output/field_picture.hpp"
+#include "apothem/output/field_picture.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "mesh/edges.hpp"
-#include "mesh/locate.hpp"
-#include "output/axes.hpp"
-#include "output/files.hpp"
+#include "apothem/mesh/edges.hpp"
+#include "apothem/mesh/locate.hpp"
+#include "apothem/output/axes.hpp"
+#include "apothem/output/files.hpp"
 
 namespace apothem {
 namespace {
 
 // Lengths in points.
-constexpr double kWide = 620, kHigh = 460;  // of a panel's frames together, at most
-constexpr double kHighAlone = 340;          // of frames in one row
+constexpr double kWide = 620, kHigh = 460;  // limits of all frames of a panel together
+constexpr double kHighAlone = 340;          // limit of the height of frames in one row
 constexpr double kLeft = 62, kRight = 96, kTop = 36, kBottom = 8;
-constexpr double kPanelTitle = 34, kLabel = 22, kTwoLabels = 36;  // above a panel, above a frame
-constexpr double kBelow = 40, kColumnGap = 22, kRowGap = 8;       // kBelow: numbers and name of x
+// height of headings: panel, frame, frame in two lines
+constexpr double kPanelTitle = 34, kLabel = 22, kTwoLabels = 36;
+constexpr double kBelow = 40, kColumnGap = 22, kRowGap = 8;  // kBelow: numbers and name of x
 constexpr double kBarGap = 26, kBarWidth = 14, kBarHigh = 230;
-constexpr double kShortest = 60;  // side of a frame
+constexpr double kShortest = 60;  // least side of a frame
 constexpr double kFigureFont = 14, kTitleFont = 12, kLabelFont = 10.5;
-constexpr double kMargin = .03;  // around the bodies
+constexpr double kMargin = .03;  // around the bodies, over their shorter extent
 
 const Colour kGrey{.78, .78, .78};
 const Colour kEmpty{0, 0, 0, 0};
 const Pen kOutline{{.15, .15, .15}, .7};
 
-// ------------------------------------------------------------------------------------------------
-// From elements to pixels
+// Turns elements into pixels.
 
 class Raster {
  public:
   Raster(const Box& window, int width, int height)
       : window_(window), width_(width), height_(height) {}
 
-  /// The data's place of a pixel's centre.
+  /// The position in the data of a pixel's centre.
   [[nodiscard]] Vec2 place(int column, int row) const {
     return {window_.x0 + (column + .5) / width_ * (window_.x1 - window_.x0),
             window_.y1 - (row + .5) / height_ * (window_.y1 - window_.y0)};
   }
 
-  /// Calls f(column, row) for the pixels with their centre inside the ring. Of rings that share an
-  /// edge just one has the centre: crossings with it have the same bits in both.
+  /// Calls f(column, row) for each pixel whose centre is inside the ring. If rings share an edge, a
+  /// centre belongs to exactly one of them, because the crossings of a row with the edge have the
+  /// same bits in both. `crossings` is working memory.
   template <class F>
   void each_pixel(const std::vector<Vec2>& ring, std::vector<double>& crossings, const F& f) const {
     Box box;
@@ -117,7 +118,7 @@ std::vector<Colour> paint(const Field& field, const Box& window, double low, dou
   return pixels;
 }
 
-// Lines of boundary edges, joined.
+// The boundary edges, joined into closed lines.
 std::vector<std::vector<Vec2>> outlines(const Mesh& mesh) {
   const std::vector<MeshEdge> edges = boundary_edges(mesh);
   std::vector<std::vector<int>> leaving(mesh.nodes.size());
@@ -137,8 +138,7 @@ std::vector<std::vector<Vec2>> outlines(const Mesh& mesh) {
   return lines;
 }
 
-// ------------------------------------------------------------------------------------------------
-// Where everything stands
+// The range of some values.
 
 struct Spread {
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -148,7 +148,7 @@ struct Spread {
   }
 };
 
-// Of what is shown of a field inside a window.
+// The range of the values of a field that are visible inside a window.
 Spread spread(const Field& field, const Box& window) {
   Spread result;
   for (int e = 0; e < field.mesh.element_count(); ++e) {
@@ -166,14 +166,15 @@ Spread spread(const Field& field, const Box& window) {
   return result;
 }
 
+// Positions and scales of a panel. Lengths in points unless stated.
 struct Layout {
-  Box window;
-  double low, high_value;  // of the colours
+  Box window;              // visible region, m
+  double low, high_value;  // ends of the colour scale
   bool values_below, values_above;
   int columns, rows;
-  double wide, high;                // of a frame
-  double label;                     // height of what stands above it
-  std::vector<std::string> ranges;  // of the fields' values
+  double wide, high;                // size of a frame
+  double label;                     // height of the caption above a frame
+  std::vector<std::string> ranges;  // of the values of each field, for its caption
   [[nodiscard]] double frames_width() const { return columns * wide + (columns - 1) * kColumnGap; }
   [[nodiscard]] double width() const { return kLeft + frames_width() + kRight; }
   [[nodiscard]] double frames_height() const {
@@ -195,7 +196,7 @@ std::string number(double value) {
   return (value < 0 && digits != "0" ? "−" : "") + digits;
 }
 
-// As many columns as make the frames largest.
+// Chooses the number of columns that makes the frames largest.
 Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   Layout layout{};
   layout.window = panel.window ? *panel.window : box_around(panel.fields);
@@ -215,7 +216,7 @@ Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   }
   layout.wide = std::max(kShortest, std::round(best * w));
   layout.high = std::max(kShortest, std::round(best * h));
-  // A frame that is wider or higher than its share shows more around.
+  // A frame that had to be wider or higher shows more of the surroundings.
   const double more_x = std::max(0., layout.wide / best - w) / 2;
   const double more_y = std::max(0., layout.high / best - h) / 2;
   layout.window = {layout.window.x0 - more_x, layout.window.y0 - more_y, layout.window.x1 + more_x,
@@ -237,7 +238,7 @@ Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   layout.high_value = panel.range ? panel.range->y() : all.high;
   layout.values_below = all.low < layout.low;
   layout.values_above = all.high > layout.high_value;
-  if (!(layout.low < layout.high_value)) {  // one value everywhere, or none
+  if (!(layout.low < layout.high_value)) {  // all values are equal, or there are none
     const double middle = std::isfinite(all.low) ? all.low : 0;
     const double half = middle == 0 ? 1 : std::abs(middle) / 2;
     layout.low = middle - half;
@@ -301,7 +302,7 @@ std::string draw_fields(const FieldFigure& figure, PictureFormat format) {
   canvas.text({width / 2, kTop / 2}, figure.title, {kFigureFont, Align::centre});
   double top = kTop;
   for (size_t p = 0; p < layouts.size(); ++p) {
-    // At whole points, for the images.
+    // Images need corners at whole points (see Canvas::image).
     draw_panel(canvas, figure.panels[p], layouts[p],
                {std::floor((width - layouts[p].width()) / 2), top});
     top += layouts[p].height();

@@ -1,42 +1,46 @@
-// Fields as pictures: bodies where they are, every element in the colour of its value (of nodal
-// values, interpolated), with axes and one scale of colours per panel.
+// Draws fields: the deformed bodies, each element in the colour of its value (nodal values are
+// interpolated), with axes and one colour scale per panel.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "output/canvas.hpp"
-#include "output/field.hpp"
+#include "apothem/output/canvas.hpp"
+#include "apothem/output/field.hpp"
 
 namespace apothem {
 
+/// A field with its caption.
 struct ShownField {
   std::string label;
   Field field;
 };
 
-/// Fields of one quantity, all with the same window and colours.
+/// Fields of one quantity, drawn with the same window and colour scale.
 struct FieldPanel {
-  std::string title;  ///< may be empty
+  std::string title;  ///< heading; may be empty
   const FieldQuantity* quantity = nullptr;
-  double scale = 1;           ///< shown is the value times this
-  std::string unit;           ///< of what is shown
-  std::optional<Box> window;  ///< m; empty: all bodies
-  std::optional<Vec2> range;  ///< of what is shown; empty: all values
+  double scale = 1;           ///< factor from the field's values to the numbers in the picture
+  std::string unit;           ///< unit of the numbers in the picture
+  std::optional<Box> window;  ///< visible region, m; empty: all bodies
+  /// ends of the colour scale, in `unit`; empty: all values that are visible
+  std::optional<Vec2> range;
   std::vector<ShownField> fields;
 };
 
+/// Several panels in one picture.
 struct FieldFigure {
   std::string title;
-  std::vector<FieldPanel> panels;  ///< one below the other
+  std::vector<FieldPanel> panels;  ///< from top to bottom
 };
 
-/// The bytes of a picture file. The colours are pixels in an SVG as well, whose size therefore does
-/// not grow with the mesh; all else in it is drawn.
+/// The picture as the bytes of a file. Also in an SVG the colours are pixels, so that its size does
+/// not grow with the mesh; everything else in it is vectors. Throws as Canvas::finish does.
 std::string draw_fields(const FieldFigure& figure, PictureFormat format);
 
-/// Writes fields.png and fields.svg into the folder, which it creates. Throws SystemFailure.
+/// Writes fields.png and fields.svg into the folder, which is created if necessary. Throws
+/// SystemFailure.
 void write_fields(const std::string& folder, const FieldFigure& figure);
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-#include "output/files.hpp"
+#include "apothem/output/files.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 namespace apothem {
 namespace {
 
-// Writes all bytes; returns 0 or the error number.
+// Writes all bytes. Returns 0 or the number of the error.
 int write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());

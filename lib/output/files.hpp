@@ -1,5 +1,5 @@
-// Files that are either complete or not there: what stands on disk stays valid when the disk fills
-// up or the run is killed.
+// Writes files that are either complete or absent, so that the files on disk stay valid when the
+// disk is full or the run is killed.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,33 @@
 
 namespace apothem {
 
-/// The system failed (disk full, no permission): names the file and the system's reason.
+/// Thrown when the system fails (disk full, no permission). The message names the file and the
+/// system's reason.
 class SystemFailure : public std::runtime_error {
  public:
+  /// `error_number` is a value of errno.
   SystemFailure(const std::string& file, int error_number);
 };
 
-/// Creates a folder and its parents. Throws SystemFailure.
+/// Creates a folder and its parents, unless they exist. Throws SystemFailure.
 void create_folder(const std::string& folder);
 
-/// Writes beside the target, then renames over it. Throws SystemFailure; the old file is then
-/// intact.
+/// Writes a temporary file beside `file` and then renames it, so that an older file is replaced at
+/// once. Throws SystemFailure; the older file is then intact.
 void write_file(const std::string& file, std::string_view content);
 
-/// A file that grows by whole blocks: a block that does not fit is taken back. Throws
-/// SystemFailure.
+/// A file that grows by whole blocks. A block that cannot be written in full is removed again. All
+/// functions throw SystemFailure.
 class AppendedFile {
  public:
-  /// Starts empty, or keeps the first `size` bytes of an existing file.
+  /// Opens an empty file, or keeps the first `size` bytes of an existing one.
   explicit AppendedFile(std::string file, std::int64_t size = 0);
   ~AppendedFile();
   AppendedFile(const AppendedFile&) = delete;
   AppendedFile& operator=(const AppendedFile&) = delete;
+  /// Adds a block at the end.
   void append(std::string_view block);
+  /// Size in bytes.
   [[nodiscard]] std::int64_t size() const { return size_; }
 
  private:

@@ -1,4 +1,4 @@
-#include "output/frames.hpp"
+#include "apothem/output/frames.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -20,15 +20,15 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "mesh/measure.hpp"
-#include "output/files.hpp"
-#include "output/vtk_grid.hpp"
+#include "apothem/mesh/measure.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {
 
 void add_time(vtkUnstructuredGrid* grid, double time) {
-  vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name VTK's readers know
+  vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name that VTK's readers know
   value->InsertNextValue(time);
   grid->GetFieldData()->AddArray(value);
 }
@@ -40,7 +40,7 @@ void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<st
   grid->GetFieldData()->AddArray(array);
 }
 
-// Stresses of elements, and of nodes as means of their elements weighted by area.
+// The stresses of elements or nodes as VTK arrays.
 class StressArrays {
  public:
   StressArrays()
@@ -69,6 +69,7 @@ class StressArrays {
 };
 
 std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchyStress* stress) {
+  // The stress at each node: the mean over the elements around it, weighted with their areas.
   std::vector<CauchyStress> mean(body.mesh.nodes.size());
   std::vector<double> weight(mean.size(), 0);
   constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,
@@ -258,12 +259,13 @@ std::string collection(const char* series, const std::vector<double>& times) {
 
 namespace {
 
-// VTK would print a message of its own.
+// Throws std::runtime_error for a missing file, for which VTK would print its own message.
 void require_file(const std::string& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": there is no such file");
 }
 
-// File of the first frame of a series at or after `time`, but not later than `latest`.
+// Time and file of the first frame of a series not before `time` and not after `latest`, s. Throws
+// std::runtime_error if there is none.
 std::pair<double, std::string> frame_file(const std::string& folder, const char* series,
                                           double time, double latest) {
   const std::string file = fmt::format("{}/{}.pvd", folder, series);
@@ -284,7 +286,7 @@ std::pair<double, std::string> frame_file(const std::string& folder, const char*
   throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
 }
 
-// Throws std::runtime_error if there is none.
+// The array with that name. Throws std::runtime_error if there is none.
 vtkDataArray* array_of(vtkDataSetAttributes* data, const char* name, const std::string& file) {
   vtkDataArray* found = data->GetArray(name);
   if (!found) throw std::runtime_error(fmt::format("{}: has no array \"{}\"", file, name));

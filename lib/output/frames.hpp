@@ -1,29 +1,32 @@
-// The VTK time series: frames.pvd with one .vtu per frame for the bodies, contacts.pvd for the
-// contact patches, surfaces.pvd for the boundaries of bodies in contact with meshes. A mesh as a
-// .vtu of its own. All open in ParaView.
+// Writes and reads the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
+// frame for the bodies, contacts.pvd for the contact patches, and surfaces.pvd for the boundaries
+// of bodies that are in contact with meshes. Also writes a mesh as a .vtu file.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "geometry/polygon_mesh.hpp"
-#include "mesh/mesh.hpp"
-#include "model/model.hpp"
-#include "model/state.hpp"
+#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "apothem/mesh/mesh.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 
+/// Writes the time series of a run into a folder of results.
 class FrameWriter {
  public:
-  /// Creates the folder; frames at `times` are there already. Throws SystemFailure.
+  /// Creates the folder. `times` (s) are those of the frames that it already contains, if a run is
+  /// continued. `model` must outlive the writer. Throws SystemFailure.
   FrameWriter(std::string folder, const Model& model, std::vector<double> times = {});
 
-  /// `stresses` of the elements of all deformable bodies, in their order.
-  /// Writes the next frame, then both collections: whatever they list is complete on disk.
-  /// Throws SystemFailure; the earlier frames are then intact.
+  /// Writes the next frame and then the .pvd files, so that every file that these list is complete.
+  /// `stresses` holds one stress for each element of all deformable bodies, in the order of the
+  /// model. Throws SystemFailure; the earlier frames are then intact.
   void write(const State& state, const std::vector<ContactRecord>& contacts,
              const std::vector<CauchyStress>& stresses, const std::vector<SurfaceRecord>& surfaces);
 
+  /// Times of all frames so far, s.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
  private:
@@ -32,25 +35,28 @@ class FrameWriter {
   std::vector<double> times_;
 };
 
-/// Bodies as a frame shows them: a rigid one is a cell of its own, and so is an element.
+/// The bodies in one frame: a mesh in which each rigid body is one cell, and each finite element of
+/// a deformable body another one.
 struct Frame {
-  double time = 0;                   ///< s
-  Mesh mesh;                         ///< where it was before the run, m
-  std::vector<Vec2> displacement;    ///< of the nodes, m
-  std::vector<Vec2> velocity;        ///< m/s
-  std::vector<CauchyStress> stress;  ///< of the cells, without energy; of rigid bodies zero
-  std::vector<int> body;             ///< of the cells; rigid ones first
+  double time = 0;                 ///< s
+  Mesh mesh;                       ///< configuration before the run, m
+  std::vector<Vec2> displacement;  ///< of each node, m
+  std::vector<Vec2> velocity;      ///< of each node, m/s
+  /// of each cell, without energy density; zero for rigid bodies
+  std::vector<CauchyStress> stress;
+  std::vector<int> body;  ///< body of each cell; rigid bodies come first
 };
 
-/// The first frame at or after `time`, but not later than `latest`, in a folder of results. Throws
-/// std::runtime_error if there is none, or if it cannot be read.
+/// The first frame not before `time` and not after `latest` (s) in a folder of results. Throws
+/// std::runtime_error if there is none or if it cannot be read.
 Frame read_frame(const std::string& folder, double time, double latest);
 
-/// The same for the boundaries of bodies in contact with meshes.
+/// The pressure and traction on the boundaries of bodies in contact with meshes, in the frame that
+/// read_frame would read. Throws as read_frame does.
 std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest);
 
-/// The cells as polygons with shared points; cell data: cell (index), area in m^2. Throws
-/// SystemFailure.
+/// Writes a tiling as a .vtu file of polygons with shared points, with the cell data `cell` (index)
+/// and `area` (m^2). Throws SystemFailure.
 void write_mesh(const std::string& file, const PolygonMesh& mesh);
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-#include "output/gnuplot.hpp"
+#include "apothem/output/gnuplot.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -1,14 +1,16 @@
-// Curves through gnuplot, which is optional at run time.
+// Runs gnuplot, which need not be installed.
 #pragma once
 
 #include <string>
 
 namespace apothem {
 
+/// Whether gnuplot made a picture: yes, it is not installed, or it failed.
 enum class Plotted { yes, no_gnuplot, failed };
 
-/// Runs `gnuplot script` inside `folder` with the variable `output` set to a name beside `picture`,
-/// and renames the result to it: the picture is complete or not there.
+/// Runs gnuplot with the file `script` in `folder`. The script writes to the file that the variable
+/// `output` names; it is renamed to `picture` afterwards, so that the picture is complete or
+/// absent.
 Plotted plot_with_gnuplot(const std::string& folder, const std::string& script,
                           const std::string& picture);
 

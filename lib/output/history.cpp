@@ -1,4 +1,4 @@
-#include "output/history.hpp"
+#include "apothem/output/history.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -8,22 +8,23 @@
 #include <iterator>
 #include <sstream>
 
-#include "model/columns.hpp"
+#include "apothem/model/columns.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr size_t kLongEnough = 1 << 16;  // bytes of rows worth a system call
+constexpr size_t kLongEnough = 1 << 16;  // bytes of rows that are worth a system call
 
 template <class... Numbers>
 void add_row(std::string& rows, double time, const Numbers&... numbers) {
-  // {} is the shortest text that reads back to the same double.
+  // The format {} gives the shortest text that reads back to the same double.
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), time);
   (fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), numbers), ...);
   rows += '\n';
 }
 
-// A deformable body as if it were rigid: mass centre, mean rotation, momentum, spin.
+// The motion of a deformable body as if it were rigid: position and velocity of the mass centre,
+// mean rotation and spin.
 struct MeanMotion {
   Vec2 place = Vec2::Zero(), velocity = Vec2::Zero();
   double angle = 0, spin = 0;
@@ -48,7 +49,8 @@ MeanMotion mean_motion(const DeformableBody& body, const State& state,
   reference /= whole;
   mean.place = mean.place / whole + reference;
   mean.velocity /= whole;
-  // The rotation that fits best, and angular momentum over the present moment of inertia.
+  // The angle of the best-fitting rotation, and the angular momentum over the present moment of
+  // inertia.
   double turned = 0, straight = 0, angular = 0, inertia = 0;
   for (size_t i = 0; i < n; ++i) {
     const double m = mass[first + i];
@@ -64,8 +66,8 @@ MeanMotion mean_motion(const DeformableBody& body, const State& state,
   return mean;
 }
 
-// Largest pressure on a surface, and twice the root of the pressure's mean square distance from its
-// centre: the half-width of the ellipse of Hertz.
+// The largest pressure on a surface, and twice the root of the pressure-weighted mean square
+// distance from the pressure's centre, which for the elliptic pressure of Hertz is the half-width.
 struct Pressed {
   double pressure = 0, half_width = 0;
 };
@@ -216,7 +218,8 @@ HistoryTable read_history_of(const std::string& folder, const std::string& colum
 
 namespace {
 
-// Extreme value of the parabola through three rows around row i; the row itself at the borders.
+// The extreme value of the parabola through row i and its neighbours; the value of the row itself
+// at the ends of the table.
 double refined(const std::vector<double>& t, const std::vector<double>& y, size_t i) {
   if (i == 0 || i + 1 == y.size()) return y[i];
   const double left = (y[i] - y[i - 1]) / (t[i] - t[i - 1]);

@@ -1,42 +1,48 @@
-// history.csv, energy.csv and momentum.csv: one row per interval, numbers that read back to the
-// same double.
+// Writes and reads history.csv, energy.csv and momentum.csv, which have one row per output
+// interval. Numbers have as many digits as are needed to read the same double again.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
-#include "model/settings.hpp"
-#include "model/state.hpp"
-#include "output/files.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
+#include "apothem/model/state.hpp"
+#include "apothem/output/files.hpp"
 
 namespace apothem {
 
-/// What histories record besides the state and the ledgers.
+/// What histories record in addition to the state and the energy and momentum ledgers.
 struct Observed {
-  std::vector<double> friction = {};         ///< of each rigid body, summed sizes, N
-  std::vector<BodyForce> contact = {};       ///< on each deformable body
-  std::vector<double> node_mass = {};        ///< kg
-  std::vector<CauchyStress> stress = {};     ///< of the element of each tracked point
-  std::vector<SurfaceRecord> surfaces = {};  ///< needed only where surfaces are tracked
+  /// sum of the friction forces' magnitudes on each rigid body, N
+  std::vector<double> friction = {};
+  std::vector<BodyForce> contact = {};    ///< contact force on each deformable body
+  std::vector<double> node_mass = {};     ///< lumped mass of each node, kg
+  std::vector<CauchyStress> stress = {};  ///< of the element that holds each tracked point, Pa
+  /// boundary pressures; needed only if surfaces are tracked
+  std::vector<SurfaceRecord> surfaces = {};
 };
 
+/// Writes the three files of a run.
 class HistoryWriter {
  public:
-  /// Sizes of the three files, to continue them later.
+  /// Sizes of the three files in bytes, from which a later run can continue them.
   using Sizes = std::array<std::int64_t, 3>;
 
-  /// Writes the headers, or continues files of the given sizes. Throws SystemFailure.
+  /// Starts the three files with their headers or, if `sizes` are given, continues them from those
+  /// sizes. `model` and `settings` must outlive the writer. Throws SystemFailure.
   HistoryWriter(const std::string& folder, const Model& model, const OutputSettings& settings,
                 const Sizes& sizes = {});
 
-  /// Rows are kept in memory until there are enough of them, or flush().
+  /// Adds one row to each file. Rows stay in memory until there are enough of them, or until
+  /// flush(). Throws SystemFailure.
   void add(const State& state, const Energies& energies, const Momenta& momenta,
            const Observed& observed);
+  /// Writes the rows that are still in memory. Throws SystemFailure.
   void flush();
 
-  /// After flush().
+  /// The sizes of the files. Valid after flush().
   [[nodiscard]] Sizes sizes() const {
     return {history_.file.size(), energy_.file.size(), momentum_.file.size()};
   }
@@ -53,30 +59,33 @@ class HistoryWriter {
 };
 
 /// A history file read back: column names without units.
-struct HistoryTable {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-  /// nullptr if there is no such column.
-  [[nodiscard]] const std::vector<double>* column(const std::string& name) const;
+/// A history file that has been read.
+std::vector<std::string> names;            ///< column names, without units
+std::vector<std::vector<double>> columns;  ///< one per name
+/// The column with that name, or null if there is none.
+[[nodiscard]] const std::vector<double>* column(const std::string& name) const;
 };
 
-/// Throws std::runtime_error naming the file and line if it is not such a table.
+/// Reads a history file. Throws std::runtime_error, which names the file and line, if it is not
+/// such a table.
 HistoryTable read_history(const std::string& file);
 
-/// Files with a row per interval, in a folder of results.
+/// The history files in a folder of results.
 inline constexpr std::array kHistoryFiles{"history.csv", "energy.csv", "momentum.csv"};
 
-/// The first of the folder's histories with that column. Throws std::runtime_error if none has.
+/// The first of the folder's history files that has the column. Throws std::runtime_error if none
+/// has it.
 HistoryTable read_history_of(const std::string& folder, const std::string& column);
 
-/// An expectation held against what was recorded.
+/// The value of an expectation's quantity in a run, and whether it meets the expectation.
 struct Outcome {
   double value;
   bool met;
 };
 
-/// Minima and maxima are refined by the parabola through the neighbouring rows: exact in free
-/// flight. Throws std::runtime_error if no row lies in the window.
+/// Evaluates an expectation with the histories in a folder of results. Minima and maxima are those
+/// of the parabola through a row and its neighbours, which is exact in free flight. Throws
+/// std::runtime_error if no row lies in the expectation's time window.
 Outcome evaluate(const Expectation& expectation, const std::string& folder);
 
 }  // namespace apothem

@@ -1,10 +1,10 @@
-#include "output/picture.hpp"
+#include "apothem/output/picture.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "output/axes.hpp"
+#include "apothem/output/axes.hpp"
 
 namespace apothem {
 namespace {
@@ -12,12 +12,13 @@ namespace {
 using Ring = std::vector<Vec2>;
 
 // Lengths in points.
-constexpr double kLongest = 470, kHighest = 430, kShortest = 190;  // of the frame
+constexpr double kLongest = 470, kHighest = 430, kShortest = 190;  // limits of the frame
 constexpr double kLeft = 78, kRight = 92, kTop = 60, kBottom = 70;
-constexpr double kEdge = 20, kNarrowest = 480;  // of the canvas
-constexpr double kTitle = 13, kNote = 10;       // font sizes
-constexpr double kThin = 1. / 16;               // of height over length: scales are unequal below
-constexpr double kMargin = .05;                 // around the polygon
+// of the canvas: margin at the edge, and least width
+constexpr double kEdge = 20, kNarrowest = 480;
+constexpr double kTitle = 13, kNote = 10;  // font sizes of the title and of notes
+constexpr double kThin = 1. / 16;          // height over length below which the scales are unequal
+constexpr double kMargin = .05;            // around the polygon, over its size
 
 const Colour kBlack{0, 0, 0};
 const Colour kWhite{1, 1, 1};
@@ -26,10 +27,9 @@ const Pen kContour{{0, 0, 0, .45}, .6};
 const Pen kOutline{kBlack, 1.4};
 const Pen kSingular{kRed, 2};
 const Pen kCircle{kBlack, 1, {5, 3}};
-const Pen kHalo{{1, 1, 1, .5}, 2};  // shows the circle's dashes on dark bands
+const Pen kHalo{{1, 1, 1, .5}, 2};  // makes the circle's dashes visible on dark bands
 
-// ------------------------------------------------------------------------------------------------
-// From the polygon's local coordinates to those of the drawing
+// Maps the polygon's local coordinates to those of the drawing.
 
 struct View {
   Vec2 start = Vec2::Zero();
@@ -56,8 +56,8 @@ double slenderness(const Box& box) {
   return std::min(box.x1 - box.x0, box.y1 - box.y0) / box.extent();
 }
 
-// Upright and to scale unless the polygon is thin. A thin one is stretched: along an axis if it
-// lies so, else along its longest chord.
+// An ordinary polygon is drawn upright and to scale. A thin one is stretched: along a coordinate
+// axis if it is thin in that direction, otherwise along its longest chord.
 View choose_view(const Ring& ring) {
   View chord;
   double longest = 0;
@@ -100,14 +100,13 @@ Layout lay_out(const Box& box, bool stretched) {
       {kLeft, kTop, kLeft + wide, kTop + high}};
 }
 
-// ------------------------------------------------------------------------------------------------
-
+// Bands of equal colour between values of phi.
 struct Bands {
-  std::vector<double> bounds;  // of phi
+  std::vector<double> bounds;  // values of phi
   std::vector<Colour> colours;
 };
 
-// Two bands between two contour lines.
+// Every second bound is a contour line.
 constexpr size_t kBandsPerLine = 2;
 Bands make_bands(double top) {
   const double step = round_step(top, 10) / kBandsPerLine;
@@ -191,8 +190,7 @@ class Drawing {
   const Axes& axes_;
 };
 
-// ------------------------------------------------------------------------------------------------
-// Around the drawing
+// Text around the drawing.
 
 std::vector<std::string> title(const PotentialPicture& picture, const View& view,
                                const Layout& layout) {
@@ -213,7 +211,7 @@ std::vector<std::string> title(const PotentialPicture& picture, const View& view
   return lines;
 }
 
-// Samples with names, from left to right below the axes.
+// Draws samples of all lines with their names, from left to right below the axes.
 void draw_legend(Canvas& canvas, const Vec2& start, const Pen& faces,
                  const PotentialPicture& picture) {
   constexpr double kSample = 22, kGap = 18;

@@ -1,4 +1,4 @@
-#include "output/polygon_vtk.hpp"
+#include "apothem/output/polygon_vtk.hpp"
 
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "output/files.hpp"
-#include "output/vtk_grid.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {

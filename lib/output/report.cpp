@@ -1,4 +1,4 @@
-#include "output/report.hpp"
+#include "apothem/output/report.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "output/files.hpp"
+#include "apothem/output/files.hpp"
 
 namespace apothem {
 namespace {

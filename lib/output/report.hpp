@@ -1,5 +1,5 @@
-// One HTML file that shows figures and numbers beside their references, pictures and all: it opens
-// from disk, with no network.
+// Writes a report as one HTML file with its pictures inside: figures, and numbers beside their
+// references. It can be read without a network.
 #pragma once
 
 #include <string>
@@ -7,25 +7,27 @@
 
 namespace apothem {
 
+/// A number beside its reference.
 struct ReportNumber {
-  std::string scene;
-  std::string what;
+  std::string scene;  ///< name of the scene
+  std::string what;   ///< description of the number, with its unit
   double reference = 0, value = 0;
-  double tolerance = 0;  ///< absolute
-  bool met = false;
+  double tolerance = 0;  ///< allowed absolute difference
+  bool met = false;      ///< whether the value is within the tolerance
 };
 
+/// A figure with its numbers.
 struct ReportFigure {
-  std::string name;  ///< of its heading's anchor
+  std::string name;  ///< also the anchor of its heading
   std::string title;
-  std::string about;                  ///< may be empty
-  std::vector<std::string> pictures;  ///< PNG files
-  std::vector<std::string> links;     ///< files, relative to the report
-  std::vector<std::string> faults;    ///< what went wrong, a sentence each
+  std::string about;                  ///< description; may be empty
+  std::vector<std::string> pictures;  ///< paths of PNG files
+  std::vector<std::string> links;     ///< paths of further files, relative to the report
+  std::vector<std::string> faults;    ///< one sentence for each failure
   std::vector<ReportNumber> numbers;
 };
 
-/// Throws SystemFailure.
+/// Writes the report to `file`; `made_by` names the program. Throws SystemFailure.
 void write_report(const std::string& file, const std::string& title, const std::string& made_by,
                   const std::vector<ReportFigure>& figures);
 

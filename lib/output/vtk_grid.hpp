@@ -1,4 +1,4 @@
-// Private to the writers of VTK files: arrays with a name, a grid as text.
+// Private header of the VTK writers: named arrays, and a grid as XML text.
 #pragma once
 
 #include <vtkDoubleArray.h>
@@ -11,6 +11,7 @@
 
 namespace apothem {
 
+/// An empty array of doubles with that name and number of components.
 inline vtkNew<vtkDoubleArray> doubles(const char* name, int components) {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
@@ -18,13 +19,15 @@ inline vtkNew<vtkDoubleArray> doubles(const char* name, int components) {
   return array;
 }
 
+/// An empty array of integers with that name.
 inline vtkNew<vtkIntArray> integers(const char* name) {
   vtkNew<vtkIntArray> array;
   array->SetName(name);
   return array;
 }
 
-/// XML as text: base64 and zlib, so that other readers than VTK's take it as well.
+/// The grid as the text of a .vtu file. Data are base64 and zlib, which readers other than VTK's
+/// accept as well.
 inline std::string xml(vtkUnstructuredGrid* grid) {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);

@@ -1,4 +1,4 @@
-#include "scene/contact_reader.hpp"
+#include "apothem/scene/contact_reader.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // What stands in a scene about contact.
 #pragma once
 
-#include "model/model.hpp"
-#include "scene/json.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

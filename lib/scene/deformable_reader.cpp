@@ -1,11 +1,11 @@
-#include "scene/deformable_reader.hpp"
+#include "apothem/scene/deformable_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "fem/mass.hpp"
-#include "mesh/locate.hpp"
+#include "apothem/fem/mass.hpp"
+#include "apothem/mesh/locate.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,9 @@
 // What stands in a scene about a body with a mesh: supports, loads, start.
 #pragma once
 
-#include "mesh/select.hpp"
-#include "model/model.hpp"
-#include "scene/json.hpp"
+#include "apothem/mesh/select.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

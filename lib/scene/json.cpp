@@ -1,4 +1,4 @@
-#include "scene/json.hpp"
+#include "apothem/scene/json.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

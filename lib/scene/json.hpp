@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/point.hpp"
-#include "scene/error.hpp"
+#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/scene/error.hpp"
 
 namespace apothem {
 

@@ -1,7 +1,7 @@
-#include "scene/mesh_file.hpp"
+#include "apothem/scene/mesh_file.hpp"
 
-#include "mesh/gmsh.hpp"
-#include "scene/json.hpp"
+#include "apothem/mesh/gmsh.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

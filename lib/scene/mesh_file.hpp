@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "mesh/check.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/mesh/check.hpp"
+#include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
 

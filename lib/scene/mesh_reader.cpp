@@ -1,18 +1,18 @@
-#include "scene/mesh_reader.hpp"
+#include "apothem/scene/mesh_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "geometry/voronoi.hpp"
-#include "mesh/check.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/half_disc_mesh.hpp"
-#include "mesh/mirror.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "scene/mesh_file.hpp"
-#include "scene/polygon_value.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/mesh/check.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/half_disc_mesh.hpp"
+#include "apothem/mesh/mirror.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/scene/mesh_file.hpp"
+#include "apothem/scene/polygon_value.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,9 @@
 // The mesh of a body as a scene gives it.
 #pragma once
 
-#include "fem/element.hpp"
-#include "mesh/mesh.hpp"
-#include "scene/json.hpp"
+#include "apothem/fem/element.hpp"
+#include "apothem/mesh/mesh.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

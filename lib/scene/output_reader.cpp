@@ -1,13 +1,13 @@
-#include "scene/output_reader.hpp"
+#include "apothem/scene/output_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/locate.hpp"
-#include "model/columns.hpp"
-#include "model/state.hpp"
+#include "apothem/mesh/locate.hpp"
+#include "apothem/model/columns.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
-#include "model/settings.hpp"
-#include "scene/json.hpp"
+#include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

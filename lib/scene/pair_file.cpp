@@ -1,12 +1,12 @@
-#include "scene/pair_file.hpp"
+#include "apothem/scene/pair_file.hpp"
 
 #include <fmt/format.h>
 
 #include <sstream>
 
-#include "geometry/polygon.hpp"
-#include "scene/json.hpp"
-#include "scene/polygon_file.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/scene/json.hpp"
+#include "apothem/scene/polygon_file.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/polygon_file.hpp"
+#include "apothem/scene/polygon_file.hpp"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <istream>
 
-#include "geometry/polygon.hpp"
-#include "scene/json.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/point.hpp"
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,8 +1,8 @@
-#include "scene/polygon_value.hpp"
+#include "apothem/scene/polygon_value.hpp"
 
 #include <filesystem>
 
-#include "scene/polygon_file.hpp"
+#include "apothem/scene/polygon_file.hpp"
 
 namespace apothem {
 

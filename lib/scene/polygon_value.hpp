@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "geometry/polygon.hpp"
-#include "scene/json.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "scene/scene.hpp"
+#include "apothem/scene/scene.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <variant>
 
-#include "mesh/measure.hpp"
-#include "mesh/reorder.hpp"
-#include "scene/contact_reader.hpp"
-#include "scene/deformable_reader.hpp"
-#include "scene/mesh_reader.hpp"
-#include "scene/output_reader.hpp"
-#include "scene/polygon_value.hpp"
+#include "apothem/mesh/measure.hpp"
+#include "apothem/mesh/reorder.hpp"
+#include "apothem/scene/contact_reader.hpp"
+#include "apothem/scene/deformable_reader.hpp"
+#include "apothem/scene/mesh_reader.hpp"
+#include "apothem/scene/output_reader.hpp"
+#include "apothem/scene/polygon_value.hpp"
 
 namespace apothem {
 namespace {

@@ -4,9 +4,9 @@
 #include <map>
 #include <sstream>
 
-#include "peers.hpp"
+#include "apothem/scene/pair_file.hpp"
+#include "peers/peers.hpp"
 #include "program.hpp"
-#include "scene/pair_file.hpp"
 
 using namespace apothem;
 using test::content;

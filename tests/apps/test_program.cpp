@@ -4,10 +4,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/output/history.hpp"
 #include "folder.hpp"
-#include "geometry/voronoi.hpp"
-#include "output/frames.hpp"
-#include "output/history.hpp"
 #include "program.hpp"
 
 using namespace apothem;

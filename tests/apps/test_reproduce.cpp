@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "output/history.hpp"
+#include "apothem/output/history.hpp"
 #include "pixels.hpp"
 #include "program.hpp"
 

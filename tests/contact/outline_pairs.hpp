@@ -4,7 +4,7 @@
 #include <numeric>
 #include <optional>
 
-#include "contact/deformable_contact.hpp"
+#include "apothem/contact/deformable_contact.hpp"
 #include "support.hpp"
 
 namespace apothem::test {

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <complex>
 
+#include "apothem/geometry/exact/overlap.hpp"
 #include "contact/outline_pairs.hpp"
-#include "geometry/overlap.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

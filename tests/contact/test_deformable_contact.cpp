@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
-#include "geometry/skeleton.hpp"
-#include "mesh/rectangle_mesh.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

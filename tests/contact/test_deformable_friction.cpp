@@ -1,7 +1,7 @@
 // Friction per boundary edge: momentum, objectivity, stick, slip, ledger.
 #include <catch2/catch.hpp>
 
-#include "contact/deformable_friction.hpp"
+#include "apothem/contact/deformable_friction.hpp"
 #include "contact/outline_pairs.hpp"
 
 using namespace apothem;

@@ -2,11 +2,11 @@
 // surface.
 #include <catch2/catch.hpp>
 
-#include "contact/element_contact.hpp"
+#include "apothem/contact/element_contact.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
-#include "dynamics/simulation.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/rectangle_mesh.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

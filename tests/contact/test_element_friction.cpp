@@ -1,10 +1,10 @@
 // Friction per pair of elements: momentum, objectivity, stick, ledger, and what borders take away.
 #include <catch2/catch.hpp>
 
-#include "contact/deformable_friction.hpp"
-#include "contact/element_friction.hpp"
+#include "apothem/contact/deformable_friction.hpp"
+#include "apothem/contact/element_friction.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
-#include "mesh/rectangle_mesh.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

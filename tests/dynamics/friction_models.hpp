@@ -1,7 +1,7 @@
 // Blocks on slopes and the like, for the tests of friction.
 #pragma once
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
 #include "support.hpp"
 
 namespace apothem::test {

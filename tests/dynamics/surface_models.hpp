@@ -1,11 +1,11 @@
 // Deformable bodies on their way into contact.
 #pragma once
 
-#include "dynamics/simulation.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/reorder.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
 #include "support.hpp"
 
 namespace apothem::test {

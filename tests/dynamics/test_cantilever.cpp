@@ -4,12 +4,12 @@
 
 #include <catch2/catch.hpp>
 
-#include "dynamics/simulation.hpp"
-#include "mesh/locate.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
-#include "mesh/select.hpp"
-#include "output/history.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/mesh/locate.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
+#include "apothem/mesh/select.hpp"
+#include "apothem/output/history.hpp"
 #include "support.hpp"
 
 using namespace apothem;

@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "dynamics/simulation.hpp"
-#include "fem/spectrum.hpp"
-#include "geometry/samples.hpp"
-#include "mesh/boundary.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
-#include "mesh/select.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/fem/spectrum.hpp"
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
+#include "apothem/mesh/select.hpp"
+#include "cases/samples.hpp"
 #include "support.hpp"
 
 using namespace apothem;

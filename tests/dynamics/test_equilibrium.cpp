@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/mesh/half_disc_mesh.hpp"
+#include "apothem/mesh/mirror.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
+#include "apothem/mesh/select.hpp"
 #include "fem/static_solution.hpp"
-#include "mesh/half_disc_mesh.hpp"
-#include "mesh/mirror.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
-#include "mesh/select.hpp"
 #include "support.hpp"
 
 using namespace apothem;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/scene/scene.hpp"
 #include "folder.hpp"
-#include "scene/scene.hpp"
 #include "support.hpp"
 
 using namespace apothem;

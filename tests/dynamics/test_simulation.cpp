@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "dynamics/simulation.hpp"
+#include "apothem/dynamics/simulation.hpp"
 #include "support.hpp"
 
 using namespace apothem;

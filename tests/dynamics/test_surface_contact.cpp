@@ -1,9 +1,9 @@
 // Deformable bodies that touch each other and rigid bodies, in the step loop.
 #include <catch2/catch.hpp>
 
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/select.hpp"
 #include "dynamics/surface_models.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/select.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
 #include "dynamics/surface_models.hpp"
-#include "mesh/rectangle_mesh.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

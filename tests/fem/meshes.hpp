@@ -6,11 +6,11 @@
 #include <map>
 #include <vector>
 
-#include "geometry/samples.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/split.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/split.hpp"
+#include "cases/samples.hpp"
 
 namespace apothem::test {
 

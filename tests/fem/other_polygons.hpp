@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "fem/polygon_element.hpp"
-#include "geometry/triangulation.hpp"
+#include "apothem/fem/polygon_element.hpp"
+#include "apothem/geometry/polygon/triangulation.hpp"
 
 namespace apothem::test {
 

@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fem/element.hpp"
-#include "fem/mass.hpp"
-#include "geometry/samples.hpp"
-#include "mesh/mesh.hpp"
+#include "apothem/fem/element.hpp"
+#include "apothem/fem/mass.hpp"
+#include "apothem/mesh/mesh.hpp"
+#include "cases/samples.hpp"
 
 namespace apothem::test {
 

@@ -4,9 +4,9 @@
 #include <complex>
 #include <numbers>
 
-#include "fem/element.hpp"
-#include "fem/mass.hpp"
-#include "geometry/samples.hpp"
+#include "apothem/fem/element.hpp"
+#include "apothem/fem/mass.hpp"
+#include "cases/samples.hpp"
 
 using namespace apothem;
 using Complex = std::complex<double>;

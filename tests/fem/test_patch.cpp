@@ -3,7 +3,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "fem/finite_elements.hpp"
+#include "apothem/fem/finite_elements.hpp"
 #include "fem/meshes.hpp"
 #include "fem/static_solution.hpp"
 

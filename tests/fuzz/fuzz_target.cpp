@@ -3,7 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "geometry/inscribed_circle.hpp"
+#include "apothem/geometry/potential/inscribed_circle.hpp"
 #include "pair_check.hpp"
 
 namespace apothem::test {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "geometry/overlap.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
 
 namespace apothem::test {
 

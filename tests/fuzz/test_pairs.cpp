@@ -2,7 +2,7 @@
 // million; each pair depends on its number alone, so a failing one can be repeated by itself.
 #include <catch2/catch.hpp>
 
-#include "hard_pairs.hpp"
+#include "fuzz/hard_pairs.hpp"
 #include "pair_check.hpp"
 #include "support.hpp"
 

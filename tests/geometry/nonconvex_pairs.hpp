@@ -4,8 +4,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "contact/placed_shapes.hpp"
-#include "geometry/overlap.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/exact/overlap.hpp"
 #include "support.hpp"
 
 namespace apothem::test {

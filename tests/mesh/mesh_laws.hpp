@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "mesh/boundary.hpp"
-#include "mesh/check.hpp"
-#include "mesh/measure.hpp"
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/check.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem::test {
 

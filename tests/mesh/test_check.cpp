@@ -1,6 +1,6 @@
 // What is refused as a mesh, and with which element or node.
-#include "mesh/invalid_mesh.hpp"
-#include "mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/invalid_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "mesh_laws.hpp"
 
 using namespace apothem;

@@ -1,12 +1,12 @@
 // Meshes that fill any polygon: triangles, quadrilaterals and Voronoi cells.
 #include <numbers>
 
-#include "geometry/delaunay_mesh.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/select.hpp"
-#include "mesh/smooth.hpp"
+#include "apothem/geometry/meshing/delaunay_mesh.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/select.hpp"
+#include "apothem/mesh/smooth.hpp"
 #include "mesh_laws.hpp"
 #include "shapes.hpp"
 

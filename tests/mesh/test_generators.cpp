@@ -1,10 +1,10 @@
 // Structured meshes: rectangle, disc, half a disc; mirror images.
 #include <numbers>
 
-#include "mesh/disc_mesh.hpp"
-#include "mesh/half_disc_mesh.hpp"
-#include "mesh/mirror.hpp"
-#include "mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/half_disc_mesh.hpp"
+#include "apothem/mesh/mirror.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "mesh_laws.hpp"
 
 using namespace apothem;

@@ -1,13 +1,13 @@
 // The reader of gmsh's text format.
 #include <fmt/format.h>
 
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/gmsh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/scene/mesh_file.hpp"
+#include "cases/samples.hpp"
 #include "folder.hpp"
-#include "geometry/samples.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/gmsh.hpp"
-#include "mesh/rectangle_mesh.hpp"
 #include "mesh_laws.hpp"
-#include "scene/mesh_file.hpp"
 #include "support.hpp"
 
 using namespace apothem;

@@ -1,11 +1,11 @@
 // Points in a mesh, and nodes and edges by place.
-#include "geometry/predicates.hpp"
-#include "geometry/voronoi.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/fill_mesh.hpp"
-#include "mesh/locate.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/select.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/fill_mesh.hpp"
+#include "apothem/mesh/locate.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/select.hpp"
 #include "mesh_laws.hpp"
 #include "shapes.hpp"
 

@@ -2,10 +2,10 @@
 #include <chrono>
 #include <numeric>
 
-#include "geometry/hilbert.hpp"
-#include "mesh/disc_mesh.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "mesh/reorder.hpp"
+#include "apothem/geometry/spatial/hilbert.hpp"
+#include "apothem/mesh/disc_mesh.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/mesh/reorder.hpp"
 #include "mesh_laws.hpp"
 #include "support.hpp"
 

@@ -1,5 +1,5 @@
 // Fields: read back from frames, compared with tables, drawn.
-#include "output/field.hpp"
+#include "apothem/output/field.hpp"
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -7,11 +7,11 @@
 #include <chrono>
 #include <sstream>
 
-#include "fem/finite_elements.hpp"
+#include "apothem/fem/finite_elements.hpp"
+#include "apothem/mesh/measure.hpp"
+#include "apothem/output/field_picture.hpp"
 #include "fem/meshes.hpp"
 #include "folder.hpp"
-#include "mesh/measure.hpp"
-#include "output/field_picture.hpp"
 #include "pixels.hpp"
 
 using namespace apothem;

@@ -16,12 +16,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fem/finite_elements.hpp"
+#include "apothem/fem/finite_elements.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/output/history.hpp"
 #include "folder.hpp"
-#include "mesh/rectangle_mesh.hpp"
-#include "output/files.hpp"
-#include "output/frames.hpp"
-#include "output/history.hpp"
 #include "support.hpp"
 
 using namespace apothem;

@@ -1,5 +1,5 @@
 // Pictures and VTK files of a polygon's potential.
-#include "output/picture.hpp"
+#include "apothem/output/picture.hpp"
 
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -15,11 +15,11 @@
 #include <numeric>
 #include <sstream>
 
+#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "apothem/output/axes.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/output/polygon_vtk.hpp"
 #include "folder.hpp"
-#include "geometry/inscribed_circle.hpp"
-#include "output/axes.hpp"
-#include "output/files.hpp"
-#include "output/polygon_vtk.hpp"
 #include "pixels.hpp"
 #include "shapes.hpp"
 #include "support.hpp"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dynamics/simulation.hpp"
-#include "geometry/edge_integral.hpp"
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/geometry/integrals/edge_integral.hpp"
 
 int main() {
   using namespace apothem;

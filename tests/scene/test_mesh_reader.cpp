@@ -1,5 +1,5 @@
 // The mesh of a body as a scene gives it, and what is refused there.
-#include "scene/mesh_reader.hpp"
+#include "apothem/scene/mesh_reader.hpp"
 
 #include "folder.hpp"
 #include "mesh/mesh_laws.hpp"

@@ -7,10 +7,10 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "apothem/mesh/locate.hpp"
+#include "apothem/scene/polygon_file.hpp"
+#include "apothem/scene/scene.hpp"
 #include "folder.hpp"
-#include "mesh/locate.hpp"
-#include "scene/polygon_file.hpp"
-#include "scene/scene.hpp"
 #include "support.hpp"
 
 using namespace apothem;

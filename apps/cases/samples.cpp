@@ -1,0 +1,199 @@
+#include "cases/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace apothem::samples {
+namespace {
+
+Vec2 polar(double radius, double angle) {
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+// The first ring of an endless supply that is accepted.
+template <class Make, class Accept>
+Polygon first_valid(const Make& make, const Accept& accept) {
+  while (true) {
+    try {
+      Polygon polygon(make());
+      if (accept(polygon)) return polygon;
+    } catch (const InvalidPolygon&) {
+      // equal angles, or a gap of more than half a turn: the next one
+    }
+  }
+}
+
+std::vector<double> sorted_angles(Random& random, int n) {
+  std::vector<double> angles(n);
+  for (double& a : angles) a = random.uniform(0, 2 * M_PI);
+  std::sort(angles.begin(), angles.end());
+  return angles;
+}
+
+}  // namespace
+
+Polygon block(double x0, double y0, double x1, double y1) {
+  return Polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+}
+
+Polygon wedge_up(double half_angle) {
+  const double x = std::sin(half_angle);
+  const double y = std::cos(half_angle);
+  return Polygon({{0, 0}, {-x, -y}, {x, -y}});
+}
+
+Polygon wedge_down(double half_angle) {
+  const double x = std::sin(half_angle);
+  const double y = std::cos(half_angle);
+  return Polygon({{0, 0}, {x, y}, {-x, y}});
+}
+
+Polygon needle(double length, double width) {
+  return Polygon({{0, -width / 2}, {length, 0}, {0, width / 2}});
+}
+
+Polygon regular(int n) {
+  std::vector<Vec2> ring;
+  for (int i = 0; i < n; ++i) ring.push_back(polar(1, 2 * M_PI * i / n));
+  return Polygon(ring);
+}
+
+Polygon cross_of_squares(double arm) {
+  const double a = .5;
+  const double b = .5 + arm;
+  return Polygon({{a, -b},
+                  {a, -a},
+                  {b, -a},
+                  {b, a},
+                  {a, a},
+                  {a, b},
+                  {-a, b},
+                  {-a, a},
+                  {-b, a},
+                  {-b, -a},
+                  {-a, -a},
+                  {-a, -b}});
+}
+
+Polygon l_shape(double leg) {
+  return Polygon({{0, 0}, {leg, 0}, {leg, 1}, {1, 1}, {1, leg}, {0, leg}});
+}
+
+Polygon star(int tips, double inner) {
+  std::vector<Vec2> ring;
+  for (int i = 0; i < 2 * tips; ++i) ring.push_back(polar(i % 2 == 0 ? 1 : inner, M_PI * i / tips));
+  return Polygon(ring);
+}
+
+Polygon comb(int teeth, double length, double growth) {
+  std::vector<Vec2> ring{{0, 0}, {2.0 * teeth - 1, 0}};
+  for (int i = teeth - 1; i >= 0; --i) {
+    const double top = 1 + length + growth * i;
+    ring.insert(ring.end(), {{2.0 * i + 1, top}, {2.0 * i, top}});
+    if (i > 0) ring.insert(ring.end(), {{2.0 * i, 1}, {2.0 * i - 1, 1}});
+  }
+  return Polygon(ring);
+}
+
+Polygon spiral(double turns, int edges_per_turn, double width, double widening) {
+  std::vector<Vec2> ring, inner;
+  const int n = static_cast<int>(std::lround(turns * edges_per_turn));
+  for (int i = 0; i <= n; ++i) {
+    const double turn = static_cast<double>(i) / edges_per_turn;
+    ring.push_back(polar(1 + turn, 2 * M_PI * turn));
+    inner.push_back(polar(1 + turn - (width + widening * turn), 2 * M_PI * turn));
+  }
+  ring.insert(ring.end(), inner.rbegin(), inner.rend());
+  return Polygon(ring);
+}
+
+Polygon random_quad(Random& random) {
+  const double start = random.uniform(0, 2 * M_PI);
+  std::vector<Vec2> ring;
+  for (int i = 0; i < 4; ++i) {
+    ring.push_back(polar(1, start + i * M_PI / 2 + random.uniform(-.4, .4)));
+  }
+  return Polygon(ring);
+}
+
+Polygon random_convex(Random& random, int n) {
+  return first_valid(
+      [&] {
+        const std::vector<double> angles = sorted_angles(random, n);
+        const double stretch = random.uniform(.3, 1);
+        const double turn = random.uniform(0, 2 * M_PI);
+        std::vector<Vec2> ring;
+        for (const double a : angles) {
+          ring.push_back(turned(Vec2(std::cos(a), stretch * std::sin(a)), turn));
+        }
+        return ring;
+      },
+      [](const Polygon& p) { return p.is_convex() && area_moments(p).area > .05; });
+}
+
+Polygon random_star_shaped(Random& random, int n, double inner) {
+  return first_valid(
+      [&] {
+        std::vector<Vec2> ring;
+        for (const double a : sorted_angles(random, n)) {
+          ring.push_back(polar(random.uniform(inner, 1), a));
+        }
+        return ring;
+      },
+      [](const Polygon& p) { return area_moments(p).area > .05; });
+}
+
+Polygon random_simple(Random& random, int n) {
+  std::vector<Vec2> ring;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.uniform(0, 1);
+    ring.emplace_back(x, random.uniform(0, 1));
+  }
+  // Reversing the part between two edges that cross shortens the loop.
+  for (bool again = true; again;) {
+    again = false;
+    for (int i = 0; i < n; ++i) {
+      for (int j = i + 2; j < n; ++j) {
+        const int k = (j + 1) % n;
+        const double now = (ring[i + 1] - ring[i]).norm() + (ring[k] - ring[j]).norm();
+        const double then = (ring[j] - ring[i]).norm() + (ring[k] - ring[i + 1]).norm();
+        if (k == i || then > now - 1e-12) continue;
+        std::reverse(ring.begin() + i + 1, ring.begin() + j + 1);
+        again = true;
+      }
+    }
+  }
+  return Polygon(ring);
+}
+
+Polygon shifted(const Polygon& polygon, const Vec2& by) {
+  return mapped(polygon, [&](const Vec2& v) -> Vec2 { return v + by; });
+}
+
+Vec2 turned(const Vec2& v, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+Polygon turned(const Polygon& polygon, double angle) {
+  return mapped(polygon, [&](const Vec2& v) { return turned(v, angle); });
+}
+
+Polygon scaled(const Polygon& polygon, double factor) {
+  return mapped(polygon, [&](const Vec2& v) -> Vec2 { return factor * v; });
+}
+
+Polygon posed(const Polygon& polygon, const Vec2& centre, double angle) {
+  const Vec2 centroid = area_moments(polygon).centroid;
+  const Vec2 origin = polygon.origin();
+  return mapped(polygon, [&](const Vec2& v) -> Vec2 {
+    return centre + turned((v - origin) - centroid, angle);
+  });
+}
+
+Vec2 world_centroid(const Polygon& polygon) {
+  return polygon.origin() + area_moments(polygon).centroid;
+}
+
+}  // namespace apothem::samples

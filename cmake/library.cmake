@@ -1,0 +1,21 @@
+# Headers are included as "apothem/ROOM/NAME.hpp", here and where the package is installed.
+set(APOTHEM_HEADERS ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${APOTHEM_HEADERS}/apothem)
+file(GLOB rooms LIST_DIRECTORIES true RELATIVE ${PROJECT_SOURCE_DIR}/lib ${PROJECT_SOURCE_DIR}/lib/*)
+list(FILTER rooms EXCLUDE REGEX "\\.")
+foreach(room ${rooms})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/lib/${room} ${APOTHEM_HEADERS}/apothem/${room} SYMBOLIC)
+endforeach()
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/geometry ${APOTHEM_HEADERS}/apothem/geometry SYMBOLIC)
+
+# A library of the package: apothem::NAME, with what every one of them needs.
+function(apothem_library name)
+  add_library(apothem_${name} STATIC ${ARGN})
+  add_library(apothem::${name} ALIAS apothem_${name})
+  set_target_properties(apothem_${name} PROPERTIES
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(apothem_${name} PUBLIC
+    $<BUILD_INTERFACE:${APOTHEM_HEADERS}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(apothem_${name} PUBLIC cxx_std_20)
+  target_link_libraries(apothem_${name} PRIVATE $<BUILD_INTERFACE:apothem_options>)
+endfunction()

@@ -1,0 +1,224 @@
+// Private to overlap.cpp and exact_integral.cpp: Eq. 8 on an overlap polygon for any number type.
+// All coordinates of one call are relative to one origin, best inside the overlap.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/distance_volume.hpp"
+#include "apothem/geometry/potential/lower_envelope.hpp"
+
+namespace apothem::overlap_detail {
+
+using namespace lower_envelope;
+
+template <class Real>
+struct Region {
+  std::vector<Vec<Real>> vertices;
+  std::vector<OverlapEdge> edges;  // owners, or empty when they are not known
+};
+
+/// overlap_polygons with exact constructions, rounded to Real; for double and cpp_bin_float_100.
+template <class Real>
+std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
+
+/// phi = min(1 if capped, min_i lines_i), and the point that moments refer to. If the polygon is
+/// not convex, phi is instead the roof with these nodes, and lines are the planes of its faces; or
+/// the distance field, with the polygon's vertices as nodes and its lines.
+template <class Real>
+struct Envelope {
+  std::vector<Line<Real>> lines;
+  bool capped;
+  Vec<Real> reference;
+  const Roof* roof = nullptr;
+  std::vector<Real> x{}, y{}, values{};
+  const DistanceField* distance = nullptr;
+  Real slope = 0;  // of the distance field, 1 / r
+  std::vector<Real> gx{}, gy{};
+
+  void set_distance(const DistanceField& field, const std::vector<Vec<Real>>& vertices,
+                    const Real& inverse_reference) {
+    distance = &field;
+    slope = inverse_reference;
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      x.push_back(vertices[i].x());
+      y.push_back(vertices[i].y());
+      gx.push_back(lines[i].gradient.x());
+      gy.push_back(lines[i].gradient.y());
+    }
+  }
+  [[nodiscard]] PlacedDistance<Real> placed_distance() const {
+    return {static_cast<int>(x.size()), x.data(), y.data(), gx.data(), gy.data(), slope,
+            &distance->corners,         capped};
+  }
+
+  [[nodiscard]] Real volume(const std::vector<Vec<Real>>& polygon) const {
+    if (distance) {
+      std::vector<Real> px, py;
+      for (const Vec<Real>& p : polygon) {
+        px.push_back(p.x());
+        py.push_back(p.y());
+      }
+      return DistanceVolume<Real>().over(placed_distance(), px, py);
+    }
+    if (!roof) return volume_under(lines, capped, polygon);
+    std::vector<std::vector<Vec<Real>>> faces;
+    for (const std::vector<int>& nodes : roof->faces) {
+      faces.emplace_back();
+      for (const int i : nodes) faces.back().emplace_back(x[i], y[i]);
+    }
+    return volume_under_faces(faces, lines, capped, fan(polygon));
+  }
+};
+
+/// Envelope along a segment as a polyline, cut by one line after the other; keeps its memory.
+template <class Real>
+class EdgeTrace {
+ public:
+  SegmentMoments<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p,
+                                 const Vec<Real>& q) {
+    if (phi.roof) return integrate_roof(phi, p, q);
+    if (phi.distance) {
+      return distance_.integrate(phi.placed_distance(), p.x(), p.y(), q.x() - p.x(), q.y() - p.y(),
+                                 [](const Real&, const Real&) {});
+    }
+    knots_.assign({{0, phi.lines[0](p)}, {1, phi.lines[0](q)}});
+    for (size_t i = 1; i < phi.lines.size(); ++i) cut(phi.lines[i](p), phi.lines[i](q));
+    if (phi.capped) cut(1, 1);
+    SegmentMoments<Real> result;
+    for (size_t i = 1; i < knots_.size(); ++i) add_positive_part(knots_[i - 1], knots_[i], result);
+    return result;
+  }
+
+ private:
+  struct Knot {
+    Real u, value;
+  };
+
+  SegmentMoments<Real> integrate_roof(const Envelope<Real>& phi, const Vec<Real>& p,
+                                      const Vec<Real>& q) {
+    roof_.cross(
+        {&phi.roof->arcs, static_cast<int>(phi.lines.size()), static_cast<int>(phi.values.size()),
+         phi.x.data(), phi.y.data(), phi.values.data()},
+        p.x(), p.y(), q.x() - p.x(), q.y() - p.y());
+    SegmentMoments<Real> result;
+    roof_.pieces([&](const Real& u1, const Real& v1, const Real& u2, const Real& v2) {
+      knots_.assign({{u1, v1}, {u2, v2}});
+      if (phi.capped) cut(1, 1);
+      for (size_t i = 1; i < knots_.size(); ++i)
+        add_positive_part(knots_[i - 1], knots_[i], result);
+    });
+    return result;
+  }
+
+  static Knot between(const Knot& k, const Knot& l, const Real& share) {
+    return {k.u + share * (l.u - k.u), k.value + share * (l.value - k.value)};
+  }
+
+  void cut(const Real& start, const Real& end) {
+    cut_.clear();
+    Real previous = 0;
+    for (size_t i = 0; i < knots_.size(); ++i) {
+      const Knot& knot = knots_[i];
+      const Real line = start + knot.u * (end - start);
+      const Real gap = line - knot.value;
+      if (i > 0 && (gap < 0) != (previous < 0)) {
+        cut_.push_back(between(knots_[i - 1], knot, previous / (previous - gap)));
+      }
+      if (!(gap < 0)) {
+        cut_.push_back(knot);
+      } else if (i == 0 || i + 1 == knots_.size()) {
+        cut_.push_back({knot.u, line});
+      }
+      previous = gap;
+    }
+    std::swap(knots_, cut_);
+  }
+
+  // Negative values inside the overlap are round-off.
+  static void add_positive_part(Knot k, Knot l, SegmentMoments<Real>& result) {
+    if (k.value < 0 && l.value < 0) return;
+    if (k.value < 0) k = {between(k, l, k.value / (k.value - l.value)).u, 0};
+    if (l.value < 0) l = {between(k, l, k.value / (k.value - l.value)).u, 0};
+    result.add(k.u, k.value, l.u, l.value);
+  }
+
+  std::vector<Knot> knots_, cut_;
+  RoofTrace<Real> roof_;
+  DistanceTrace<Real> distance_;
+};
+
+/// Eq. 8 and, if asked for, the energy.
+template <class Real>
+PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
+                     const Envelope<Real>& b, bool with_energy = true) {
+  using std::sqrt;
+  if (overlap.empty()) return {};
+  const Line<Real> one{Vec<Real>(0, 0), 1};
+  Vec<Real> force(0, 0), centre(0, 0);
+  Real moment = 0, weight = 0, own_a = 0, own_b = 0, largest = 0, area = 0, energy = 0;
+  EdgeTrace<Real> trace;
+  for (const Region<Real>& region : overlap) {
+    const std::vector<Vec<Real>>& v = region.vertices;
+    for (size_t i = 0; i < v.size(); ++i) {
+      const Vec<Real>& p = v[i];
+      const Vec<Real> d = v[i + 1 == v.size() ? 0 : i + 1] - p;
+      const Vec<Real> normal(d.y(), -d.x());
+      const Real length = sqrt(d.squaredNorm());
+      // phi vanishes on its own polygon's edges.
+      const bool known = !region.edges.empty();
+      const bool skip_a = known && region.edges[i].edge_of_a >= 0;
+      const bool skip_b = known && region.edges[i].edge_of_b >= 0;
+      const auto phi_a = skip_a ? SegmentMoments<Real>{} : trace.integrate(a, p, p + d);
+      const auto phi_b = skip_b ? SegmentMoments<Real>{} : trace.integrate(b, p, p + d);
+      if (known ? skip_a : phi_a.sum <= phi_b.sum) own_a += length;
+      if (known ? skip_b : phi_b.sum <= phi_a.sum) own_b += length;
+      const Real difference = phi_a.sum - phi_b.sum;
+      force += normal * difference;
+      moment += cross<Real>(p, normal) * difference - d.squaredNorm() * (phi_a.first - phi_b.first);
+      const Real sum = phi_a.sum + phi_b.sum;
+      weight += length * sum;
+      centre += length * (p * sum + d * (phi_a.first + phi_b.first));
+      largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
+    }
+    area += area_integral(v, one);
+    if (with_energy) energy += a.volume(v) + b.volume(v);
+  }
+
+  const auto rounded = [](const Real& x) { return static_cast<double>(x); };
+  const auto rounded_vec = [&](const Vec<Real>& x) { return Vec2(rounded(x.x()), rounded(x.y())); };
+  PairResult result;
+  PairIntegral& pair = result.integral;
+  pair.force = rounded_vec(force);
+  pair.moment_a = rounded(moment - cross(a.reference, force));
+  pair.moment_b = rounded(cross(b.reference, force) - moment);
+  pair.weight = rounded(weight);
+  if (weight != 0) pair.centre = rounded_vec(centre / weight - a.reference);
+  pair.own_length_a = rounded(own_a);
+  pair.own_length_b = rounded(own_b);
+  pair.largest_phi = rounded(largest);
+  if (const Real size = sqrt(force.squaredNorm()); size > 0) {
+    const Vec<Real> along = force / size;
+    const Vec<Real> across(-along.y(), along.x());
+    const auto extent = [&](const Vec<Real>& direction) {
+      Real low = direction.dot(overlap[0].vertices[0]);
+      Real high = low;
+      for (const Region<Real>& region : overlap) {
+        for (const Vec<Real>& v : region.vertices) {
+          const Real x = direction.dot(v);
+          low = std::min(low, x);
+          high = std::max(high, x);
+        }
+      }
+      return rounded(high - low);
+    };
+    pair.penetration = extent(along);
+    pair.breadth = extent(across);
+  }
+  result.volume = {rounded(energy), rounded(area)};
+  return result;
+}
+
+}  // namespace apothem::overlap_detail

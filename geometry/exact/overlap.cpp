@@ -1,0 +1,266 @@
+#include "apothem/geometry/exact/overlap.hpp"
+
+#include <CGAL/Boolean_set_operations_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/eigen.hpp>
+#include <iterator>
+#include <limits>
+
+#include "apothem/geometry/exact/exact_overlap.hpp"
+
+namespace apothem {
+namespace {
+
+using namespace overlap_detail;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Rational = Exact::Exact_kernel::FT;
+
+template <class Kernel>
+CGAL::Polygon_2<Kernel> cgal(const Polygon& polygon) {
+  CGAL::Polygon_2<Kernel> result;
+  for (const Vec2& v : polygon.vertices()) result.push_back({v.x(), v.y()});
+  return result;
+}
+
+// Outer boundaries of the overlap. Two simple polygons enclose no hole between them; CGAL's result
+// is regularised: common points and common edges without area are not in it.
+template <class Kernel>
+std::vector<CGAL::Polygon_2<Kernel>> intersection(const CGAL::Polygon_2<Kernel>& a,
+                                                  const CGAL::Polygon_2<Kernel>& b) {
+  std::vector<CGAL::Polygon_with_holes_2<Kernel>> parts;
+  CGAL::intersection(a, b, std::back_inserter(parts), CGAL::Tag_false());
+  std::vector<CGAL::Polygon_2<Kernel>> outlines;
+  for (auto& part : parts) outlines.push_back(std::move(part.outer_boundary()));
+  return outlines;
+}
+
+// Index of the edge of one input polygon that an edge of the overlap lies on.
+class Owner {
+ public:
+  Owner(const Polygon& polygon, const CGAL::Polygon_2<Exact>& exact)
+      : polygon_(polygon), exact_(exact) {}
+
+  // Edges that interval arithmetic cannot exclude.
+  void find_candidates(const Exact::Point_2& p, const Exact::Point_2& q) {
+    candidates_.clear();
+    const CGAL::Bbox_2 p_box = p.bbox();
+    const CGAL::Bbox_2 q_box = q.bbox();
+    for (int i = 0; i < polygon_.size(); ++i) {
+      Box box;
+      box.include(polygon_[i].x(), polygon_[i].y());
+      box.include(polygon_.after(i).x(), polygon_.after(i).y());
+      if (meets(box, p_box) && meets(box, q_box) && perhaps_on_line(i, p) &&
+          perhaps_on_line(i, q)) {
+        candidates_.push_back(i);
+      }
+    }
+  }
+  [[nodiscard]] size_t candidates() const { return candidates_.size(); }
+
+  // The one candidate that is known to be right, or the one that exact arithmetic confirms, or -1.
+  [[nodiscard]] int choose(const Exact::Point_2& p, const Exact::Point_2& q, bool certain) const {
+    for (const int i : candidates_) {
+      if (certain || contains(i, p, q)) return i;
+    }
+    return -1;
+  }
+
+ private:
+  static bool meets(const Box& box, const CGAL::Bbox_2& point) {
+    return point.xmax() >= box.x0 && point.xmin() <= box.x1 && point.ymax() >= box.y0 &&
+           point.ymin() <= box.y1;
+  }
+  [[nodiscard]] const Exact::Point_2& start(int i) const { return exact_[i]; }
+  [[nodiscard]] const Exact::Point_2& end(int i) const {
+    return exact_[i + 1 == polygon_.size() ? 0 : i + 1];
+  }
+  [[nodiscard]] bool perhaps_on_line(int i, const Exact::Point_2& p) const {
+    const CGAL::Protect_FPU_rounding<> upward;
+    return CGAL::possibly(Exact::Approximate_kernel().orientation_2_object()(
+                              CGAL::approx(start(i)), CGAL::approx(end(i)), CGAL::approx(p)) ==
+                          CGAL::COLLINEAR);
+  }
+  [[nodiscard]] bool contains(int i, const Exact::Point_2& p, const Exact::Point_2& q) const {
+    return CGAL::collinear(start(i), end(i), p) && CGAL::collinear(start(i), end(i), q) &&
+           CGAL::collinear_are_ordered_along_line(start(i), p, q) &&
+           CGAL::collinear_are_ordered_along_line(p, q, end(i));
+  }
+
+  const Polygon& polygon_;
+  const CGAL::Polygon_2<Exact>& exact_;
+  std::vector<int> candidates_;
+};
+
+struct ExactRegion {
+  CGAL::Polygon_2<Exact> outline;
+  std::vector<OverlapEdge> edges;
+};
+
+std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
+  std::vector<ExactRegion> regions;
+  if (apart(bounding_box(a), bounding_box(b))) return regions;
+  const CGAL::Polygon_2<Exact> exact_a = cgal<Exact>(a);
+  const CGAL::Polygon_2<Exact> exact_b = cgal<Exact>(b);
+  Owner of_a(a, exact_a);
+  Owner of_b(b, exact_b);
+  for (CGAL::Polygon_2<Exact>& outline : intersection(exact_a, exact_b)) {
+    std::vector<OverlapEdge> edges;
+    const size_t n = outline.size();
+    for (size_t i = 0; i < n; ++i) {
+      const Exact::Point_2& p = outline[i];
+      const Exact::Point_2& q = outline[i + 1 == n ? 0 : i + 1];
+      of_a.find_candidates(p, q);
+      of_b.find_candidates(p, q);
+      // Every edge of the overlap has an owner: a single candidate needs no proof.
+      const bool certain = of_a.candidates() + of_b.candidates() == 1;
+      edges.push_back({of_a.choose(p, q, certain), of_b.choose(p, q, certain)});
+    }
+    regions.push_back({std::move(outline), std::move(edges)});
+  }
+  return regions;
+}
+
+// A rational number as a sum of doubles, each one the remainder that those before it leave.
+template <class Real>
+Real rounded(Rational x) {
+  constexpr int kTerms = (std::numeric_limits<Real>::digits + 52) / 53;
+  Real sum = CGAL::to_double(x);
+  double last = static_cast<double>(sum);
+  for (int term = 1; term < kTerms && last != 0; ++term) {
+    x -= Rational(last);
+    last = CGAL::to_double(x);
+    sum += last;
+  }
+  return sum;
+}
+
+template <class Real>
+std::vector<Region<Real>> rounded(std::vector<ExactRegion> exact, const Vec2& origin) {
+  const Rational x0(origin.x());
+  const Rational y0(origin.y());
+  std::vector<Region<Real>> regions;
+  for (ExactRegion& region : exact) {
+    std::vector<Vec<Real>> vertices;
+    for (const Exact::Point_2& point : region.outline) {
+      const auto& p = CGAL::exact(point);
+      vertices.emplace_back(rounded<Real>(p.x() - x0), rounded<Real>(p.y() - y0));
+    }
+    regions.push_back({std::move(vertices), std::move(region.edges)});
+  }
+  return regions;
+}
+
+// As written by anyone in a hurry: world coordinates, and no defence but this one.
+std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
+                                            const Vec2& origin) {
+  std::vector<Region<double>> regions;
+  try {
+    for (const auto& outline : intersection(cgal<Inexact>(a), cgal<Inexact>(b))) {
+      if (outline.size() < 3 || !(outline.area() > 0)) continue;
+      std::vector<Vec2> vertices;
+      for (const auto& p : outline) vertices.emplace_back(p.x() - origin.x(), p.y() - origin.y());
+      regions.push_back({std::move(vertices), {}});
+    }
+  } catch (const std::exception& error) {
+    throw std::runtime_error(std::string("inexact overlap: ") + error.what());
+  }
+  return regions;
+}
+
+Envelope<double> envelope(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
+  Envelope<double> phi{{}, potential.capped(), area_moments(polygon).centroid};
+  phi.reference += polygon.origin() - origin;
+  for (int i = 0; i < potential.size(); ++i) {
+    const Vec2& gradient = potential.gradients[i];
+    phi.lines.push_back({gradient, -gradient.dot(polygon[i] - origin)});
+  }
+  if (potential.distance) {
+    std::vector<Vec2> vertices;
+    for (const Vec2& v : polygon.vertices()) vertices.emplace_back(v - origin);
+    phi.set_distance(*potential.distance, vertices, potential.distance->slope);
+  }
+  if (!potential.roof) return phi;
+  // The boundary exactly as given, the inner nodes by their place in the polygon.
+  phi.roof = &*potential.roof;
+  phi.values = potential.roof->values;
+  const Vec2 shift = polygon.origin() - origin;
+  for (size_t i = 0; i < phi.values.size(); ++i) {
+    const bool given = static_cast<int>(i) < polygon.size();
+    const Vec2 p = given ? Vec2(polygon[static_cast<int>(i)] - origin)
+                         : Vec2(potential.roof->points[i] + shift);
+    phi.x.push_back(p.x());
+    phi.y.push_back(p.y());
+  }
+  return phi;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<Region<Real>> overlap_detail::exact_regions(const Polygon& a, const Polygon& b,
+                                                        const Vec2& origin) {
+  return rounded<Real>(exact_overlap(a, b), origin);
+}
+template std::vector<Region<boost::multiprecision::cpp_bin_float_100>>
+overlap_detail::exact_regions(const Polygon&, const Polygon&, const Vec2&);
+
+std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b, const Vec2& origin,
+                                             Arithmetic arithmetic) {
+  std::vector<OverlapPolygon> polygons;
+  for (Region<double>& region : arithmetic == Arithmetic::exact
+                                    ? exact_regions<double>(a, b, origin)
+                                    : inexact_regions(a, b, origin)) {
+    polygons.push_back({std::move(region.vertices), std::move(region.edges)});
+  }
+  return polygons;
+}
+
+PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                          const Potential& potential_b, Arithmetic arithmetic) {
+  std::vector<Region<double>> regions;
+  Vec2 origin = a.origin();
+  if (arithmetic == Arithmetic::exact) {
+    std::vector<ExactRegion> exact = exact_overlap(a, b);
+    if (exact.empty()) return {};
+    // A corner of the overlap: what is summed below stays as small as the overlap.
+    const Exact::Point_2& corner = exact[0].outline[0];
+    origin = {CGAL::to_double(corner.x()), CGAL::to_double(corner.y())};
+    regions = rounded<double>(std::move(exact), origin);
+  } else {
+    regions = inexact_regions(a, b, origin);
+  }
+  return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin));
+}
+
+PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const Vec2& origin,
+                              const Polygon& a, const Potential& potential_a, const Polygon& b,
+                              const Potential& potential_b) {
+  std::vector<Region<double>> regions;
+  for (const OverlapPolygon& polygon : overlap) {
+    regions.push_back({polygon.vertices, polygon.edges});
+  }
+  return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin),
+                   false)
+      .integral;
+}
+
+std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
+                                        const Polygon& b, const Potential& potential_b) {
+  std::vector<PairResult> patches;
+  for (ExactRegion& region : exact_overlap(a, b)) {
+    const Exact::Point_2& corner = region.outline[0];
+    const Vec2 origin(CGAL::to_double(corner.x()), CGAL::to_double(corner.y()));
+    std::vector<ExactRegion> alone;
+    alone.push_back(std::move(region));
+    patches.push_back(integrate(rounded<double>(std::move(alone), origin),
+                                envelope(a, potential_a, origin),
+                                envelope(b, potential_b, origin)));
+  }
+  return patches;
+}
+
+}  // namespace apothem

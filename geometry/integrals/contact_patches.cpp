@@ -1,0 +1,373 @@
+#include "apothem/geometry/integrals/contact_patches.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "apothem/geometry/integrals/placement.hpp"
+
+namespace apothem {
+
+using namespace edge_detail;
+
+namespace {
+
+class Splitter {
+ public:
+  Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+           PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
+      : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
+
+  /// False if a coordinate is not finite.
+  bool find_runs() {
+    runs_.clear();
+    work_.halves.clear();
+    work_.crossed.clear();
+    const double dx = offset_.x();
+    const double dy = offset_.y();
+    const HeightRows height = height_rows(a_, b_, work_.edge.values);
+    if (b_.convex() && heights(a_, b_, dx, dy, height.of_a)) return true;
+    if (a_.convex() && heights(b_, a_, -dx, -dy, height.of_b)) return true;
+    const bool finite = trace(true, height.of_a, height.spare);
+    of_a_ = size();
+    return trace(false, height.of_b, height.spare) && finite;
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
+
+  void group() {
+    work_.parent.resize(runs_.size());
+    for (int r = 0; r < size(); ++r) work_.parent[r] = r;
+    work_.joined.assign(2 * runs_.size(), 0);
+    join_at_vertices(0, of_a_, a_.size);
+    join_at_vertices(of_a_, size(), b_.size);
+    join_at_crossings();
+    join_loose_ends();
+  }
+
+  /// Numbers the patches in the order of their first run and returns how many there are.
+  int number() {
+    int count = 0;
+    for (int r = 0; r < size(); ++r) {
+      const int first = root(r);
+      runs_[r].patch = first == r ? count++ : runs_[first].patch;
+    }
+    return count;
+  }
+
+  void sum(int count, std::vector<PairIntegral>& patches) {
+    work_.of_a.assign(count, {});
+    work_.of_b.assign(count, {});
+    for (int r = 0; r < size(); ++r) {
+      (runs_[r].of_a ? work_.of_a : work_.of_b)[runs_[r].patch].add(work_.halves[r]);
+    }
+    patches.resize(count);
+    for (int p = 0; p < count; ++p) patches[p] = combine(work_.of_a[p], work_.of_b[p], arm_);
+    add_extents(patches);
+  }
+
+ private:
+  // The runs of a's edges in b, or of b's in a.
+  bool trace(bool of_a, const double* rows, double* spare) {
+    const PlacedPotential& x = of_a ? a_ : b_;
+    const PlacedPotential& y = of_a ? b_ : a_;
+    const double dx = of_a ? offset_.x() : -offset_.x();
+    const double dy = of_a ? offset_.y() : -offset_.y();
+    if (y.roof) {
+      const PlacedRoof<double> roof = placed_roof(y);
+      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
+               work_.edge.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+               SegmentMoments<double> moments;
+               work_.edge.roof.runs([&](double u1, double v1, double u2,
+                                        double v2) { add_piece(y, u1, v1, u2, v2, moments); },
+                                    [&](double s0, int edge0, double s1, int edge1) {
+                                      add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
+                                      moments = {};
+                                    });
+             }) == 0;
+    }
+    if (y.distance) {
+      const PlacedDistance<double> field = placed_distance(y);
+      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
+               SegmentMoments<double> moments;
+               work_.edge.distance.runs(field, edge.px, edge.py, edge.ex, edge.ey, moments,
+                                        [&](double s0, int edge0, double s1, int edge1) {
+                                          add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
+                                          moments = {};
+                                        });
+             }) == 0;
+    }
+    for (int e = 0; e < x.size; ++e) {
+      const PlacedEdge edge(x, y, e, dx, dy);
+      const Row<double> row = row_of(edge, e, y, rows, spare);
+      double s0, s1;
+      if (!clip(row, s0, s1)) continue;
+      SegmentMoments<double> moments;
+      walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
+        moments.add(u1, v1, u2, v2);
+      });
+      add_run(of_a, e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false),
+              moments);
+    }
+    return true;
+  }
+
+  // The line that clips an edge at s, or -1 where the edge itself ends.
+  static int clipped_by(const Row<double>& row, double s, bool entering) {
+    for (int i = 0; i < row.size; ++i) {
+      const double a = row.a[i];
+      const double b = row.b[i];
+      if ((a < 0) == entering && (b < 0) != entering && a / (a - b) == s) return i;
+    }
+    return -1;
+  }
+
+  void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
+               const SegmentMoments<double>& moments) {
+    Half& half = work_.halves.emplace_back();
+    accumulate(edge, moments, s1 - s0, half);
+    const PairIntegral pair = of_a ? combine(half, {}, arm_) : combine({}, half, arm_);
+    const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // from the frame of the other one
+    const Vec2 base = Vec2(edge.qx, edge.qy) + shift;
+    const Vec2 along(edge.ex, edge.ey);
+    runs_.push_back({of_a, e, 0, edge.share(s0), edge.share(s1), base + s0 * along,
+                     base + s1 * along, pair.force, pair.moment_a, pair.moment_b, pair.weight,
+                     pair.centre, half.length, half.largest});
+    work_.crossed.push_back(edge0);
+    work_.crossed.push_back(edge1);
+  }
+
+  int root(int run) {
+    std::vector<int>& parent = work_.parent;
+    while (parent[run] != run) run = parent[run] = parent[parent[run]];
+    return run;
+  }
+
+  // The smaller root wins: it is the patch's first run.
+  void join(int end, int other) {
+    work_.joined[end] = work_.joined[other] = 1;
+    const int first = root(end / 2);
+    const int second = root(other / 2);
+    work_.parent[std::max(first, second)] = std::min(first, second);
+  }
+
+  // Runs first ... last - 1 are one polygon's in the order of its edges, of which there are
+  // `edges`.
+  void join_at_vertices(int first, int last, int edges) {
+    for (int r = first; r < last; ++r) {
+      const int next = r + 1 < last ? r + 1 : first;
+      const int edge = runs_[r].edge + 1 < edges ? runs_[r].edge + 1 : 0;
+      if (runs_[next].edge == edge && work_.crossed[2 * r + 1] < 0 && work_.crossed[2 * next] < 0) {
+        join(2 * r + 1, 2 * next);
+      }
+    }
+  }
+
+  void join_at_crossings() {
+    auto& crossings = work_.crossings;
+    crossings.clear();
+    for (int end = 0; end < 2 * size(); ++end) {
+      const BoundaryRun& run = runs_[end / 2];
+      const int other = work_.crossed[end];
+      if (other < 0) continue;
+      crossings.push_back({run.of_a ? run.edge : other, run.of_a ? other : run.edge, end});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const auto& c, const auto& d) {
+      return std::tie(c.edge_a, c.edge_b, c.end) < std::tie(d.edge_a, d.edge_b, d.end);
+    });
+    for (size_t i = 0; i + 1 < crossings.size(); ++i) {
+      const auto& c = crossings[i];
+      const auto& d = crossings[i + 1];
+      if (c.edge_a != d.edge_a || c.edge_b != d.edge_b) continue;
+      if (runs_[c.end / 2].of_a == runs_[d.end / 2].of_a) continue;
+      join(c.end, d.end);
+      ++i;
+    }
+  }
+
+  // What is lost between the end of a run and the start of the next one lies on both boundaries but
+  // for round-off: the straight line between them does, or one of the two boundaries stays near the
+  // other all the way. Between the ends of different patches neither is so. The length decides only
+  // among those. Two starts, or two ends, are joined only for being at the same place.
+  void join_loose_ends() {
+    auto& bridges = work_.bridges;
+    bridges.clear();
+    for (int end = 1; end < 2 * size(); end += 2) {
+      if (work_.joined[end]) continue;
+      for (int start = 0; start < 2 * size(); start += 2) {
+        if (!work_.joined[start]) bridges.push_back({gap2(point(end), point(start)), end, start});
+      }
+    }
+    for (int end = 0; end < 2 * size(); ++end) {
+      if (work_.joined[end]) continue;
+      for (int other = end + 2; other < 2 * size(); other += 2) {
+        if (work_.joined[other]) continue;
+        bridges.push_back({(point(end) - point(other)).squaredNorm(), end, other});
+      }
+    }
+    std::sort(bridges.begin(), bridges.end(), [](const auto& c, const auto& d) {
+      return std::tie(c.cost2, c.end, c.other) < std::tie(d.cost2, d.end, d.other);
+    });
+    for (const auto& bridge : bridges) {
+      if (!work_.joined[bridge.end] && !work_.joined[bridge.other]) join(bridge.end, bridge.other);
+    }
+  }
+
+  [[nodiscard]] const Vec2& point(int end) const {
+    return end % 2 == 0 ? runs_[end / 2].start : runs_[end / 2].end;
+  }
+
+  // How far what may be lost between an end and a start is from lying on both boundaries, squared.
+  [[nodiscard]] double gap2(const Vec2& end, const Vec2& start) const {
+    const Vec2 middle = (end + start) / 2;
+    const double straight =
+        std::max({kLength2 * (end - start).squaredNorm(), nearest(a_, shift_a(), middle).distance2,
+                  nearest(b_, shift_b(), middle).distance2});
+    const double along_a = walk2(a_, shift_a(), b_, shift_b(), end, start, straight);
+    return walk2(b_, shift_b(), a_, shift_a(), end, start, along_a);
+  }
+
+  // The same for the boundary of x from end to start; `most` if it is no less.
+  static double walk2(const PlacedPotential& x, const Vec2& shift_x, const PlacedPotential& y,
+                      const Vec2& shift_y, const Vec2& end, const Vec2& start, double most) {
+    const Place from = nearest(x, shift_x, end);
+    const Place to = nearest(x, shift_x, start);
+    if (from.edge == to.edge && from.share <= to.share) return most;  // straight
+    Vec2 last = end;
+    double length = 0, worst = 0;
+    const auto go_to = [&](const Vec2& next) {
+      length += (next - last).norm();
+      worst = std::max({worst, kLength2 * length * length,
+                        nearest(y, shift_y, (last + next) / 2).distance2,
+                        nearest(y, shift_y, next).distance2});
+      last = next;
+    };
+    int edge = from.edge;
+    do {
+      if (++edge == x.size) edge = 0;
+      go_to(Vec2(x.x[edge], x.y[edge]) - shift_x);
+      if (!(worst < most)) return most;
+    } while (edge != to.edge);
+    go_to(start);
+    return std::min(worst, most);
+  }
+
+  struct Place {
+    int edge;
+    double share, distance2;
+  };
+  // The point of a boundary nearest to one given relative to a's reference point, as all are here.
+  static Place nearest(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
+    Place place{0, 0, std::numeric_limits<double>::infinity()};
+    for (int i = 0; i < p.size; ++i) {
+      const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
+      const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
+      const double share = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      const double distance2 = (from - share * edge).squaredNorm();
+      if (distance2 < place.distance2) place = {i, share, distance2};
+    }
+    return place;
+  }
+
+  // From there to the frames of a and b.
+  [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
+  [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
+
+  void add_extents(std::vector<PairIntegral>& patches) {
+    auto& extents = work_.extents;
+    extents.assign(patches.size(), {});
+    for (const BoundaryRun& run : runs_) {
+      const Vec2& force = patches[run.patch].force;
+      const double size = force.norm();
+      if (!(size > 0)) continue;
+      for (const Vec2& p : {run.start, run.end}) {
+        extents[run.patch].include(force.dot(p) / size, cross(force, p) / size);
+      }
+    }
+    for (size_t i = 0; i < patches.size(); ++i) {
+      if (!(extents[i].n1 >= extents[i].n0)) continue;  // no resultant
+      patches[i].penetration = extents[i].n1 - extents[i].n0;
+      patches[i].breadth = extents[i].t1 - extents[i].t0;
+    }
+  }
+
+  static constexpr double kLength2 = 1e-12;
+
+  const PlacedPotential& a_;
+  const PlacedPotential& b_;
+  const Vec2 offset_, arm_;
+  PatchWorkspace& work_;
+  std::vector<BoundaryRun>& runs_;
+  int of_a_ = 0;  // so many of the runs are a's
+};
+
+}  // namespace
+
+void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                     PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                     std::vector<PairIntegral>& patches) {
+  patches.clear();
+  Splitter splitter(a, b, offset, workspace, runs);
+  const bool finite = splitter.find_runs();
+  if (!finite) runs.clear();
+  if (!finite || (a.convex() && b.convex())) {  // one patch at most
+    const PairIntegral pair = pair_integral(a, b, offset, workspace.edge);
+    if (pair.touching()) {
+      patches.push_back(pair);
+    } else {
+      runs.clear();
+    }
+    return;
+  }
+  double weight = 0;
+  for (const BoundaryRun& run : runs) weight += run.weight;
+  if (weight <= 0) {
+    runs.clear();
+    return;
+  }
+  splitter.group();
+  splitter.sum(splitter.number(), patches);
+}
+
+PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                         const Potential& potential_b) {
+  const PlacedPair placed(a, potential_a, b, potential_b);
+  PatchWorkspace workspace;
+  PatchResult result;
+  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
+                  result.patches);
+  for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
+  for (BoundaryRun& run : result.runs) {
+    placed.about_centroids(run);
+    run.start -= placed.centroid_a;
+    run.end -= placed.centroid_a;
+  }
+  return result;
+}
+
+void shared_length(std::span<const BoundaryRun> before, int patches_before,
+                   std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table) {
+  table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
+  const auto behind = [](const BoundaryRun& r, const BoundaryRun& s) {  // on an earlier edge
+    return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
+  };
+  size_t first = 0;  // of `now` on the edge of `old`, or after it
+  for (const BoundaryRun& old : before) {
+    while (first < now.size() && behind(now[first], old)) ++first;
+    for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {
+      const BoundaryRun& run = now[i];
+      const double overlap = std::min(old.to, run.to) - std::max(old.from, run.from);
+      if (!(overlap >= 0)) continue;
+      const BoundaryRun& longer = old.to - old.from > run.to - run.from ? old : run;
+      const double share = longer.to - longer.from;
+      double& entry = table[static_cast<size_t>(old.patch) * patches_now + run.patch];
+      if (overlap > 0) {
+        entry += overlap / share * longer.length;
+      } else if (old.from == old.to || run.from == run.to) {
+        entry += std::numeric_limits<double>::min();
+      }
+    }
+  }
+}
+
+}  // namespace apothem

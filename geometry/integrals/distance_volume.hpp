@@ -1,0 +1,439 @@
+// The volume under a distance field over another polygon, for any number type, without a medial
+// axis and without an overlap polygon.
+//
+// The points whose nearest feature is edge i are, with tau along the edge and h from it, the cell
+// 0 <= tau <= L, 0 <= h <= H(tau), where H is the height of the largest circle that touches the
+// edge at tau. Those nearest to a reflex vertex are 0 <= rho <= R(theta) between the normals of its
+// edges. H and 1/R are the envelopes of one quadratic per other feature, in tau and in
+// t = tan(theta/2). The cells tile the polygon, so the volume is, cell by cell, a signed sum over
+// the edges of the other polygon: of the volume under the edge, clamped to the cell.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "apothem/geometry/potential/distance_field.hpp"
+
+namespace apothem {
+
+/// INT phi dA over a counter-clockwise ring (x, y in the same frame as the field).
+template <class Real>
+class DistanceVolume {
+ public:
+  Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
+            const std::vector<Real>& y) {
+    load(field, x, y);
+    Real volume = 0;
+    for (int i = 0; i < n_; ++i) volume += edge_cell(i);
+    for (int i = 0; i < n_; ++i) {
+      if (cross(normal_[before(i)], normal_[i]) < 0) volume += vertex_cell(i);
+    }
+    return volume / (field.slope * field.slope);
+  }
+
+ private:
+  struct Point {
+    Real x, y;
+    Point operator-(const Point& p) const { return {x - p.x, y - p.y}; }
+    Point operator+(const Point& p) const { return {x + p.x, y + p.y}; }
+    Point operator*(const Real& f) const { return {x * f, y * f}; }
+  };
+  static Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
+  static Real cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
+
+  // c[0] + c[1] z + c[2] z^2 with z = s - origin, at which its values are small.
+  struct Quadratic {
+    Real origin;
+    std::array<Real, 3> c;
+    int id;
+    [[nodiscard]] Real operator()(const Real& s) const {
+      const Real z = s - origin;
+      return c[0] + z * (c[1] + z * c[2]);
+    }
+    [[nodiscard]] bool operator==(const Quadratic& g) const { return id == g.id; }
+    [[nodiscard]] bool below(const Quadratic& g, const Real& s) const { return (*this)(s) < g(s); }
+    [[nodiscard]] Quadratic times(const Real& f) const {
+      return {origin, {c[0] * f, c[1] * f, c[2] * f}, id};
+    }
+    // Where it meets g; NaN, infinity or anything outside the interval at `from` where it does not.
+    int crossings(const Quadratic& g, const Real& from, std::array<Real, 2>& roots) const {
+      using std::sqrt;
+      const Real c0 = (*this)(from)-g(from);
+      const Real half = slope(from) / 2 - g.slope(from) / 2;
+      const Real c2 = c[2] - g.c[2];
+      const Real discriminant = half * half - c0 * c2;
+      if (!(discriminant >= 0)) return 0;
+      const Real q = -(half + (half < 0 ? Real(-sqrt(discriminant)) : Real(sqrt(discriminant))));
+      roots = {Real(from + q / c2), Real(from + c0 / q)};
+      return 2;
+    }
+
+   private:
+    [[nodiscard]] Real slope(const Real& s) const { return c[1] + 2 * c[2] * (s - origin); }
+  };
+
+  // All lengths over r.
+  void load(const PlacedDistance<Real>& field, const std::vector<Real>& x,
+            const std::vector<Real>& y) {
+    n_ = field.size;
+    capped_ = field.capped;
+    corners_ = field.corners;
+    vertex_.resize(n_);
+    normal_.resize(n_);
+    for (int i = 0; i < n_; ++i) {
+      vertex_[i] = {field.x[i] * field.slope, field.y[i] * field.slope};
+      normal_[i] = {field.gx[i] / field.slope, field.gy[i] / field.slope};
+    }
+    length_.resize(n_);
+    for (int i = 0; i < n_; ++i) length_[i] = dot(tangent(i), vertex_[after(i)] - vertex_[i]);
+    ring_.clear();
+    for (size_t i = 0; i < x.size(); ++i) ring_.push_back({x[i] * field.slope, y[i] * field.slope});
+  }
+
+  [[nodiscard]] int after(int i) const { return i + 1 == n_ ? 0 : i + 1; }
+  [[nodiscard]] int before(int i) const { return i == 0 ? n_ - 1 : i - 1; }
+  [[nodiscard]] Point tangent(int i) const { return {normal_[i].y, -normal_[i].x}; }
+
+  // Sums of one cell, counted from its foot and from its ceiling: both are the volume, but for a
+  // ring that passes only above (or below) the cell one of them is exactly 0.
+  struct Sums {
+    Real low = 0, low_size = 0, high = 0, high_size = 0;
+    void add(const Real& part, const Real& full) {
+      using std::abs;
+      low += part;
+      low_size += abs(part);
+      high += part - full;
+      high_size += abs(part - full);
+    }
+  };
+
+  // Sorted places between lo and hi where something changes, lo and hi among them.
+  void start_cuts(const Real& lo, const Real& hi) { cuts_.assign({lo, hi}); }
+  void add_cut(const Real& s) {
+    if (s > cuts_[0] && s < cuts_[1]) cuts_.push_back(s);
+  }
+  void add_cuts(const Quadratic& f, const Quadratic& g) {
+    std::array<Real, 2> roots;
+    const int count = f.crossings(g, cuts_[0], roots);
+    for (int i = 0; i < count; ++i) add_cut(roots[i]);
+  }
+  template <class Piece>
+  void between_cuts(const Piece& piece) {
+    std::sort(cuts_.begin(), cuts_.end());
+    for (size_t i = 1; i < cuts_.size(); ++i) {
+      if (cuts_[i - 1] < cuts_[i]) piece(cuts_[i - 1], cuts_[i]);
+    }
+  }
+
+  // INT f ds, exact for polynomials of degree 5.
+  template <class F>
+  static Real gauss(const Real& a, const Real& b, const F& f) {
+    using std::sqrt;
+    const Real middle = (a + b) / 2;
+    const Real step = (b - a) / 2 * sqrt(Real(3) / 5);
+    return (b - a) / 18 * (5 * f(middle - step) + 8 * f(middle) + 5 * f(middle + step));
+  }
+
+  // ---- Cell of an edge.
+
+  Real edge_cell(int i) {
+    const Point t = tangent(i);
+    const Point& n = normal_[i];
+    ceiling_.reset(0, length_[i]);
+    for (int j = 0; j < n_; ++j) {
+      if (j != i) ceiling_by_edge(i, j);
+    }
+    for (const int v : *corners_) {
+      if (v == i || v == after(i)) continue;
+      const Point p = vertex_[v] - vertex_[i];
+      const Real h = dot(n, p);
+      const Real tau = dot(t, p);
+      const Real curvature = 1 / (2 * h);
+      if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
+        ceiling_.insert({tau, {h / 2, 0, curvature}, n_ + v}, 0, length_[i]);
+      }
+    }
+    Sums sums;
+    for (size_t k = 0; k < ring_.size(); ++k) {
+      const Point p = ring_[k] - vertex_[i];
+      const Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - vertex_[i];
+      under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length_[i], sums);
+    }
+    return sums.low_size <= sums.high_size ? sums.low : sums.high;
+  }
+
+  // The bisector of the lines i and j, where the circle touches j within the edge. It is written
+  // so that the cells of i and j share it to the last bit: a common error moves points between two
+  // cells in which they have the same depth, a difference would count an area twice.
+  void ceiling_by_edge(int i, int j) {
+    const Point m = normal_[j] - normal_[i];
+    const Real slope = dot(m, m) / 2;  // -m . n_i
+    if (!(slope > 0)) return;
+    const bool next = j == after(i);
+    const bool previous = j == before(i);
+    const Real rise = dot(m, tangent(i)) / slope;
+    const Real start = next       ? Real(-rise * length_[i])
+                       : previous ? Real(0)
+                                  : Real((dot(m, vertex_[i]) - (dot(normal_[j], vertex_[j]) -
+                                                                dot(normal_[i], vertex_[i]))) /
+                                         slope);
+    // The two touching points are equally far from where the lines meet: one recedes from the start
+    // of its edge as the other one approaches it.
+    const Real foot =
+        next ? length_[i]
+        : previous
+            ? length_[j]
+            : Real(dot(tangent(j), vertex_[i] - vertex_[j]) + start * dot(tangent(j), normal_[i]));
+    Real from = std::max(Real(0), Real(foot - length_[j]));
+    Real to = std::min(length_[i], foot);
+    const Real zero = -start / rise;
+    if (rise > 0) {
+      from = std::max(from, zero);
+    } else if (rise < 0) {
+      to = std::min(to, zero);
+    } else if (!(start >= 0)) {
+      return;
+    }
+    if (from < to) ceiling_.insert({0, {start, rise, 0}, j}, from, to);
+  }
+
+  // INT_0^h min(1, h') dh'.
+  [[nodiscard]] Real column(const Real& h) const {
+    return capped_ && h > 1 ? Real(h - Real(1) / 2) : Real(h * h / 2);
+  }
+
+  void under_segment(Real tau1, Real h1, Real tau2, Real h2, const Real& length, Sums& sums) {
+    const int sign = tau1 < tau2 ? -1 : 1;
+    if (sign > 0) std::swap(tau1, tau2), std::swap(h1, h2);
+    const Real lo = std::max(Real(0), tau1);
+    const Real hi = std::min(length, tau2);
+    if (!(lo < hi)) return;
+    const Real rate = (h2 - h1) / (tau2 - tau1);
+    const Quadratic line{tau1, {h1, rate, 0}, 0};
+    const auto height = [&](const Real& tau) { return Real(h1 + rate * (tau - tau1)); };
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      const Real from = std::max(lo, ceiling_[k].from);
+      const Real to = std::min(hi, ceiling_.end(k));
+      if (!(from < to) || !ceiling_[k].known) continue;
+      const Quadratic& ceiling = ceiling_[k].function;
+      start_cuts(from, to);
+      add_cut(tau1 - h1 / rate);
+      add_cuts(ceiling, line);
+      if (capped_) {
+        add_cut(tau1 + (1 - h1) / rate);
+        add_cuts(ceiling, {0, {1, 0, 0}, 0});
+      }
+      between_cuts([&](const Real& a, const Real& b) {
+        const Real middle = (a + b) / 2;
+        const Real h = height(middle);
+        const Real top = ceiling(middle);
+        const Real full = gauss(a, b, [&](const Real& tau) { return column(ceiling(tau)); });
+        const Real part = h <= 0 ? Real(0)
+                          : h < top
+                              ? gauss(a, b, [&](const Real& tau) { return column(height(tau)); })
+                              : full;
+        sums.add(sign * part, sign * full);
+      });
+    }
+  }
+
+  // ---- Cell of a reflex vertex. Directions are seen from the middle one, at t = tan(theta/2).
+
+  Real vertex_cell(int v) {
+    const Point& left = normal_[before(v)];
+    const Point& right = normal_[v];
+    const Point middle = dot(left, right) >= 0 ? left + right : tangent(before(v)) - tangent(v);
+    using std::sqrt;
+    axis_ = middle * (1 / sqrt(dot(middle, middle)));
+    const Real t0 = half_tangent(in_frame(right));
+    const Real t1 = half_tangent(in_frame(left));
+    ceiling_.reset(t0, t1);
+    reaches_.clear();
+    for (int j = 0; j < n_; ++j) {
+      if (j != v && j != before(v)) reach_to_edge(v, j, t0, t1);
+    }
+    for (const int w : *corners_) {
+      if (w == v) continue;
+      // On the perpendicular bisector u . p = |p|^2 / (2 rho).
+      const Point p = in_frame(vertex_[w] - vertex_[v]);
+      const Real d2 = dot(p, p) / 2;
+      reaches_.push_back({false, p, d2, 0, 0});
+      insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1);
+    }
+    Sums sums;
+    Real coverage = 0;  // how often the ring encloses the vertex's cell, seen from the vertex
+    for (size_t k = 0; k < ring_.size(); ++k) {
+      Point p = ring_[k] - vertex_[v];
+      Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - vertex_[v];
+      if (!clip(p, q, cross(right, p), cross(right, q))) continue;
+      if (!clip(p, q, cross(p, left), cross(q, left))) continue;
+      beyond_segment(in_frame(p), in_frame(q), sums, coverage);
+    }
+    // Near the vertex directions are noise, and only the sum from the foot does not mind.
+    if (sums.high_size > 0) return sums.low;
+    Real whole = 0;
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      if (!ceiling_[k].known) continue;
+      start_cuts(ceiling_[k].from, ceiling_.end(k));
+      const Reach& reach = reaches_[ceiling_[k].function.id];
+      add_cap_cuts(ceiling_[k].function, 1);
+      between_cuts([&](const Real& a, const Real& b) { whole += sector(reach, a, b); });
+    }
+    return coverage * whole;
+  }
+
+  [[nodiscard]] Point in_frame(const Point& p) const { return {dot(axis_, p), cross(axis_, p)}; }
+
+  static Real half_tangent(const Point& p) {
+    using std::sqrt;
+    const Real size = p.x + sqrt(dot(p, p));
+    return size > 0 ? Real(p.y / size) : Real(0);
+  }
+
+  // Part of the segment with side >= 0.
+  static bool clip(Point& p, Point& q, const Real& side_p, const Real& side_q) {
+    if ((side_p >= 0) == (side_q >= 0)) return side_p >= 0;
+    const Point cut = p + (q - p) * (side_p / (side_p - side_q));
+    (side_p >= 0 ? q : p) = cut;
+    return true;
+  }
+
+  // How far the cell reaches: to a line u . normal = d / rho, or to a parabola about the vertex
+  // with the directrix at the distance d; (ec, es) is the half angle of the direction towards it.
+  struct Reach {
+    bool parabola;
+    Point normal;
+    Real d, ec, es;
+  };
+
+  // (1 + t^2)/rho of the last of reaches_, with the sign turned for the lower envelope.
+  void insert_reach(Quadratic inverse, const Real& t0, const Real& t1) {
+    inverse.id = static_cast<int>(reaches_.size()) - 1;
+    ceiling_.insert(inverse, t0, t1);
+  }
+
+  void reach_to_edge(int v, int j, const Real& t0, const Real& t1) {
+    using std::sqrt;
+    const Point p = vertex_[v] - vertex_[j];
+    const Real d = dot(normal_[j], p);
+    if (!(d > 0)) return;
+    const Point m = in_frame(normal_[j]) * Real(-1);
+    Real ec, es;
+    if (m.x >= 0) {
+      ec = sqrt((1 + m.x) / 2);
+      es = m.y / (2 * ec);
+    } else {
+      es = sqrt((1 - m.x) / 2);
+      ec = m.y / (2 * es);
+    }
+    // rho = d / (1 + u . m) = d (1 + y^2) / 2 with y = tan of half the angle from m; the circle
+    // touches j at the distance d y from the foot of the vertex.
+    const Real foot = dot(tangent(j), p);
+    const Real y0 = -foot / d;
+    const Real y1 = (length_[j] - foot) / d;
+    // t = (es + ec y) / (ec - es y): increasing, and once through infinity perhaps.
+    const Real infinite = std::numeric_limits<Real>::infinity();
+    if (!(y0 > -infinite && y0 < infinite && y1 > -infinite && y1 < infinite)) return;
+    const Real below0 = ec - es * y0;
+    const Real below1 = ec - es * y1;
+    const Real from = below0 == 0 ? Real(-infinite) : Real((es + ec * y0) / below0);
+    const Real to = below1 == 0 ? infinite : Real((es + ec * y1) / below1);
+    reaches_.push_back({true, m, d, ec, es});
+    // 2 (ec + es t)^2 / d
+    const Quadratic inverse =
+        2 * es * es >= ec * ec
+            ? Quadratic{-ec / es, {0, 0, -2 * es * es / d}, 0}
+            : Quadratic{0, {-2 * ec * ec / d, -4 * ec * es / d, -2 * es * es / d}, 0};
+    if (below0 != 0 && below1 != 0 && (below0 > 0) != (below1 > 0)) {
+      insert_reach(inverse, std::max(t0, from), t1);
+      insert_reach(inverse, t0, std::min(t1, to));
+    } else {
+      insert_reach(inverse, std::max(t0, from), std::min(t1, to));
+    }
+  }
+
+  // Between the directions t1 and t2 up to the line or the parabola: INT INT min(1, rho) rho drho.
+  [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
+    using std::atan2;
+    using std::sqrt;
+    const Real middle = (t1 + t2) / 2;
+    const Real half_angle = atan2(Real(t2 - t1), Real(1 + t1 * t2));
+    const Real& d = reach.d;
+    if (reach.parabola) {
+      const auto denominator = [&](const Real& t) { return Real(reach.ec + reach.es * t); };
+      const auto y = [&](const Real& t) {
+        return Real((reach.ec * t - reach.es) / denominator(t));
+      };
+      if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // no wider than round-off
+      const Real y1 = y(t1), y2 = y(t2), ym = y(middle);
+      if (capped_ && d * (1 + ym * ym) > 2) {
+        return d * d / 4 * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
+               half_angle / 3;
+      }
+      return d * d * d / 12 *
+             gauss(y1, y2, [](const Real& s) { return Real((1 + s * s) * (1 + s * s)); });
+    }
+    // Along the line, w from the foot of the vertex, at the distance D.
+    const Real size = sqrt(dot(reach.normal, reach.normal));
+    const Real D = d / size;
+    const Point n = reach.normal * (1 / size);
+    const auto across = [&](const Real& t) { return Real(n.x * (1 - t * t) + 2 * n.y * t); };
+    const Real c1 = across(t1), c2 = across(t2);
+    if (!(c1 > 0 && c2 > 0)) return 0;
+    const Real w = D * (n.x * 2 * t1 - n.y * (1 - t1 * t1)) / c1;
+    const Real step = 2 * D * (t2 - t1) * (1 + t1 * t2) / (c1 * c2);
+    if (capped_ && D * (1 + middle * middle) > across(middle)) {
+      return D * step / 2 - half_angle / 3;
+    }
+    return D / 3 * root_moments<Real>(D * D, w, step)[0];
+  }
+
+  // Where rho = 1.
+  void add_cap_cuts(const Quadratic& inverse, const Real& factor) {
+    if (capped_) add_cuts(inverse, {0, {-factor, 0, -factor}, 0});
+  }
+
+  void beyond_segment(const Point& p, const Point& q, Sums& sums, Real& coverage) {
+    Real t1 = half_tangent(p), t2 = half_tangent(q);
+    const int sign = t1 < t2 ? 1 : -1;
+    if (sign < 0) std::swap(t1, t2);
+    if ((t1 < 0) != (t2 < 0)) coverage += sign;
+    const Point edge = sign > 0 ? q - p : p - q;
+    const Point normal{edge.y, -edge.x};
+    const Real d = std::max(Real(0), dot(normal, p));
+    const Reach own{false, normal, d, 0, 0};
+    const Quadratic line{0, {-normal.x, -2 * normal.y, normal.x}, 0};  // -d (1 + t^2)/rho
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      const Real from = std::max(t1, ceiling_[k].from);
+      const Real to = std::min(t2, ceiling_.end(k));
+      if (!(from < to) || !ceiling_[k].known) continue;
+      const Reach& reach = reaches_[ceiling_[k].function.id];
+      const Quadratic scaled = ceiling_[k].function.times(d);
+      start_cuts(from, to);
+      add_cuts(scaled, line);
+      add_cap_cuts(scaled, d);
+      add_cap_cuts(line, d);
+      between_cuts([&](const Real& a, const Real& b) {
+        const Real full = sector(reach, a, b);
+        const Real middle = (a + b) / 2;
+        const bool missed = line(middle) >= 0;  // by round-off of a segment through the vertex
+        const bool nearer = line.below(scaled, middle);
+        sums.add(sign * (missed ? Real(0) : nearer ? sector(own, a, b) : full), sign * full);
+      });
+    }
+  }
+
+  int n_ = 0;
+  bool capped_ = false;
+  const std::vector<int>* corners_ = nullptr;
+  std::vector<Point> vertex_, normal_, ring_;
+  std::vector<Real> length_, cuts_;
+  PiecewiseMinimum<Real, Quadratic> ceiling_;
+  std::vector<Reach> reaches_;
+  Point axis_{};
+};
+
+}  // namespace apothem

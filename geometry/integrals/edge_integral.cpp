@@ -1,0 +1,327 @@
+#include "apothem/geometry/integrals/edge_integral.hpp"
+
+#include <cmath>
+
+#include "apothem/geometry/integrals/distance_volume.hpp"
+#include "apothem/geometry/integrals/edge_trace.hpp"
+#include "apothem/geometry/integrals/placement.hpp"
+#include "apothem/geometry/potential/lower_envelope.hpp"
+
+namespace apothem {
+
+using namespace edge_detail;
+
+namespace {
+
+// End points of the clipped edges, in a buffer that only grows.
+class Pieces {
+ public:
+  explicit Pieces(std::vector<double>& buffer) : buffer_(buffer) {}
+  void reserve(int more) {
+    const size_t size = used_ + 4 * static_cast<size_t>(more);
+    if (buffer_.size() < size) buffer_.resize(size);
+  }
+  void add(const PlacedEdge& e, double s0, double s1) {
+    double* const end = buffer_.data() + used_;
+    end[0] = e.qx + s0 * e.ex, end[1] = e.qy + s0 * e.ey;
+    end[2] = e.qx + s1 * e.ex, end[3] = e.qy + s1 * e.ey;
+    used_ += 4;
+  }
+  [[nodiscard]] size_t used() const { return used_; }
+  [[nodiscard]] const double* data() const { return buffer_.data(); }
+
+ private:
+  std::vector<double>& buffer_;
+  size_t used_ = 0;
+};
+
+// Both halves and the extent of their pieces, of which the first `middle` numbers are a's.
+PairIntegral join(const Half& of_a, const Half& of_b, const Vec2& r, const Pieces& pieces,
+                  size_t middle) {
+  PairIntegral pair = combine(of_a, of_b, r);
+  const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
+  if (size > 0) {
+    const double nx = pair.force.x() / size;
+    const double ny = pair.force.y() / size;
+    Extent extent;
+    const auto project = [&](size_t from, size_t to, double shift_n, double shift_t) {
+      for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
+        extent.include(nx * p[0] + ny * p[1] + shift_n, nx * p[1] - ny * p[0] + shift_t);
+      }
+    };
+    project(0, middle, 0, 0);
+    project(middle, pieces.used(), nx * r.x() + ny * r.y(), nx * r.y() - ny * r.x());
+    pair.penetration = extent.n1 - extent.n0;
+    pair.breadth = extent.t1 - extent.t0;
+  }
+  return pair;
+}
+
+// y convex: its envelope on the part of each edge of x that clipping leaves.
+Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                        const double* rows, double* spare, Pieces& pieces) {
+  Half half;
+  pieces.reserve(x.size);
+  for (int e = 0; e < x.size; ++e) {
+    const PlacedEdge edge(x, y, e, dx, dy);
+    const Row<double> row = row_of(edge, e, y, rows, spare);
+    double s0, s1;
+    if (!clip(row, s0, s1)) continue;
+    SegmentMoments<double> moments;
+    walk_envelope(row, s0, s1,
+                  [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
+    accumulate(edge, moments, s1 - s0, half);
+    pieces.add(edge, s0, s1);
+  }
+  return half;
+}
+
+// y not convex: calls along(edge, pieces), which returns phi's moments and adds the parts inside y
+// to `inside`, for the edges of x that may enter y, perhaps several times.
+template <class Along>
+Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                     const Along& along) {
+  Half half;
+  half.weight += edges_near(x, y, dx, dy, [&](int, const PlacedEdge& edge) {
+    double inside = 0;
+    const SegmentMoments<double> moments = along(edge, inside);
+    accumulate(edge, moments, inside, half);
+  });  // NaN never passes as "no contact"
+  return half;
+}
+
+Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                    RoofTrace<double>& trace, Pieces& pieces) {
+  const PlacedRoof<double> roof = placed_roof(y);
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+    trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+    SegmentMoments<double> moments;
+    trace.pieces([&](double u1, double v1, double u2, double v2) {
+      add_piece(y, u1, v1, u2, v2, moments);
+      inside += u2 - u1;
+      pieces.reserve(1);
+      pieces.add(edge, u1, u2);
+    });
+    return moments;
+  });
+}
+
+Half integrate_distance(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                        DistanceTrace<double>& trace, Pieces& pieces) {
+  const PlacedDistance<double> field = placed_distance(y);
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+    return trace.integrate(field, edge.px, edge.py, edge.ex, edge.ey, [&](double u1, double u2) {
+      inside += u2 - u1;
+      pieces.reserve(1);
+      pieces.add(edge, u1, u2);
+    });
+  });
+}
+
+}  // namespace
+
+PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace) {
+  const HeightRows height = height_rows(a, b, workspace.values);
+  const double dx = offset.x();
+  const double dy = offset.y();
+  if (b.convex() && heights(a, b, dx, dy, height.of_a)) return {};
+  if (a.convex() && heights(b, a, -dx, -dy, height.of_b)) return {};
+
+  Pieces pieces(workspace.pieces);
+  const auto half = [&](const PlacedPotential& x, const PlacedPotential& y, double x0, double y0,
+                        const double* rows) {
+    if (y.roof) return integrate_roof(x, y, x0, y0, workspace.roof, pieces);
+    if (y.distance) return integrate_distance(x, y, x0, y0, workspace.distance, pieces);
+    return integrate_envelope(x, y, x0, y0, rows, height.spare, pieces);
+  };
+  const Half of_a = half(a, b, dx, dy, height.of_a);  // frame of b
+  const size_t middle = pieces.used();
+  const Half of_b = half(b, a, -dx, -dy, height.of_b);  // frame of a
+
+  return join(of_a, of_b, arm(a, b, offset), pieces, middle);
+}
+
+namespace {
+
+std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const Vec2& shift) {
+  std::vector<lower_envelope::Line<double>> result;
+  for (int i = 0; i < p.size; ++i) {
+    const Vec2 g(p.gx[i], p.gy[i]);
+    result.push_back({g, -g.dot(Vec2(p.x[i], p.y[i]) + shift)});
+  }
+  return result;
+}
+
+}  // namespace
+
+namespace {
+
+using Ring = std::vector<Vec2>;
+using Parts = std::vector<lower_envelope::SignedRing<double>>;
+
+Ring ring(const PlacedPotential& p, const Vec2& shift) {
+  Ring result;
+  for (int v = 0; v < p.size; ++v) result.push_back(Vec2(p.x[v], p.y[v]) + shift);
+  return result;
+}
+
+Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
+  if (p.convex()) return {{ring(p, shift), 1}};
+  return lower_envelope::fan(ring(p, shift));
+}
+
+// INT phi_p dA over the overlap with the parts of the other polygon.
+double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& others) {
+  const auto planes = lines(p, shift);
+  if (p.roof) {
+    std::vector<Ring> faces;
+    for (const std::vector<int>& nodes : p.roof->faces) {
+      Ring& face = faces.emplace_back();
+      for (const int i : nodes) face.push_back(Vec2(p.node_x[i], p.node_y[i]) + shift);
+    }
+    return lower_envelope::volume_under_faces(faces, planes, p.capped, others);
+  }
+  const Ring outline = ring(p, shift);
+  double volume = 0;
+  for (const auto& part : others) {
+    volume += part.sign * lower_envelope::volume_under(planes, p.capped,
+                                                       lower_envelope::inside(part.ring, outline));
+  }
+  return volume;
+}
+
+// The same for a distance field and the whole other polygon, which stands at `shift` seen from p.
+double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
+                             const Vec2& shift) {
+  std::vector<double> x, y;
+  for (const Vec2& v : ring(other, shift)) {
+    x.push_back(v.x());
+    y.push_back(v.y());
+  }
+  return DistanceVolume<double>().over(placed_distance(p), x, y);
+}
+
+}  // namespace
+
+PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+  const Parts parts_a = convex_parts(a, offset);
+  const Parts parts_b = convex_parts(b, Vec2::Zero());
+  PairVolume volume;
+  volume.energy =
+      (a.distance ? volume_under_distance(a, b, -offset) : volume_under(a, offset, parts_b)) +
+      (b.distance ? volume_under_distance(b, a, offset) : volume_under(b, Vec2::Zero(), parts_a));
+  const lower_envelope::Line<double> one{Vec2::Zero(), 1};
+  for (const auto& part_a : parts_a) {
+    for (const auto& part_b : parts_b) {
+      volume.overlap_area +=
+          part_a.sign * part_b.sign *
+          lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);
+    }
+  }
+  return volume;
+}
+
+Vec2 loading_point(const PairIntegral& pair) {
+  const double size = pair.force.norm();
+  // Equal and opposite tractions have no line of action worth following.
+  if (!(size > 1e-12 * pair.weight)) return pair.centre;
+  const Vec2 tangent(-pair.force.y() / size, pair.force.x() / size);
+  return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
+}
+
+namespace {
+
+// Single evaluations of needles take more digits. In the step loop they would be lost on vertices
+// that have been turned.
+using Fine = long double;
+
+bool is_needle(const Polygon& a, const Potential& potential_a, const Polygon& b,
+               const Potential& potential_b) {
+  const double size = std::max(bounding_box(a).extent(), bounding_box(b).extent());
+  const double steepest = std::max(potential_a.steepest, potential_b.steepest);
+  return a.is_convex() && b.is_convex() && size * steepest > kNeedle;
+}
+
+// Heights over the edges of y, directions taken from its vertices again.
+class FineLines {
+ public:
+  explicit FineLines(const PlacedPotential& y) : y_(y) {
+    for (int i = 0; i < y.size; ++i) {
+      const Fine tx = static_cast<Fine>(y.x[i + 1]) - y.x[i];
+      const Fine ty = static_cast<Fine>(y.y[i + 1]) - y.y[i];
+      const Fine slope =
+          std::hypot(static_cast<Fine>(y.gx[i]), static_cast<Fine>(y.gy[i])) / std::hypot(tx, ty);
+      gx_.push_back(-ty * slope);
+      gy_.push_back(tx * slope);
+    }
+  }
+  [[nodiscard]] std::vector<Fine> at(Fine px, Fine py) const {
+    std::vector<Fine> row;
+    for (int i = 0; i < y_.size; ++i)
+      row.push_back(gx_[i] * (px - y_.x[i]) + gy_[i] * (py - y_.y[i]));
+    if (y_.capped) row.push_back(1);
+    return row;
+  }
+
+ private:
+  const PlacedPotential& y_;
+  std::vector<Fine> gx_, gy_;
+};
+
+Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces& pieces) {
+  const FineLines lines(y);
+  Half half;
+  pieces.reserve(x.size);
+  for (int e = 0; e < x.size; ++e) {
+    const BasicEdge<Fine> edge(x, y, e, 0, 0);
+    const std::vector<Fine> from = lines.at(edge.px, edge.py);
+    const std::vector<Fine> to = lines.at(edge.px + edge.ex, edge.py + edge.ey);
+    const Row<Fine> row{from.data(), to.data(), y.size, static_cast<int>(from.size())};
+    Fine s0, s1;
+    if (!clip(row, s0, s1)) continue;
+    const Fine share = s1 - s0;
+    SegmentMoments<Fine> moments;  // along the part inside
+    walk_envelope(row, s0, s1, [&](Fine u1, Fine v1, Fine u2, Fine v2) {
+      moments.add((u1 - s0) / share, v1, (u2 - s0) / share, v2);
+    });
+    PlacedEdge part(x, y, e, 0, 0);
+    part.qx = static_cast<double>(edge.qx + s0 * edge.ex);
+    part.qy = static_cast<double>(edge.qy + s0 * edge.ey);
+    part.ex = static_cast<double>(share * edge.ex);
+    part.ey = static_cast<double>(share * edge.ey);
+    accumulate(part,
+               {static_cast<double>(moments.sum), static_cast<double>(moments.first),
+                static_cast<double>(moments.largest)},
+               1, half);
+    pieces.add(part, 0, 1);
+  }
+  return half;
+}
+
+PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
+                             EdgeWorkspace& workspace) {
+  Pieces pieces(workspace.pieces);
+  const Half of_a = integrate_needle(a, b, pieces);
+  const size_t middle = pieces.used();
+  const Half of_b = integrate_needle(b, a, pieces);
+  return join(of_a, of_b, arm(a, b, Vec2::Zero()), pieces, middle);
+}
+
+}  // namespace
+
+PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                       const Potential& potential_b) {
+  const PlacedPair placed(a, potential_a, b, potential_b);
+  EdgeWorkspace workspace;
+  PairResult result;
+  PairIntegral& pair = result.integral;
+  pair = is_needle(a, potential_a, b, potential_b)
+             ? needle_integral(placed.a.view, placed.b.view, workspace)
+             : pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
+  placed.about_centroids(pair);
+  result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
+  return result;
+}
+
+}  // namespace apothem

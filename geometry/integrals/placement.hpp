@@ -1,0 +1,91 @@
+// Private to edge_integral.cpp and contact_patches.cpp: polygons placed where they stand, for
+// single evaluations.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "apothem/geometry/integrals/edge_integral.hpp"
+
+namespace apothem {
+
+/// Arrays behind a PlacedPotential, for a polygon that does not move: relative to `origin`, moments
+/// about vertex 0.
+struct Placement {
+  Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
+    const auto add = [&](const Vec2& p) {
+      x.push_back(p.x());
+      y.push_back(p.y());
+    };
+    for (const Vec2& v : polygon.vertices()) add(v - origin);
+    add(polygon[0] - origin);
+    for (const Vec2& g : potential.gradients) {
+      gx.push_back(g.x());
+      gy.push_back(g.y());
+    }
+    if (potential.roof) {
+      // The boundary exactly as given, the inner nodes by their place in the polygon.
+      node_x.assign(x.begin(), x.end() - 1);
+      node_y.assign(y.begin(), y.end() - 1);
+      const Vec2 shift = polygon.origin() - origin;
+      for (size_t i = polygon.vertices().size(); i < potential.roof->points.size(); ++i) {
+        node_x.push_back(potential.roof->points[i].x() + shift.x());
+        node_y.push_back(potential.roof->points[i].y() + shift.y());
+      }
+    }
+    double radius = 0;
+    for (size_t i = 1; i < x.size(); ++i)
+      radius = std::max(radius, std::hypot(x[i] - x[0], y[i] - y[0]));
+    view = {x.data(),
+            y.data(),
+            gx.data(),
+            gy.data(),
+            polygon.size(),
+            potential.capped(),
+            potential.roof ? &*potential.roof : nullptr,
+            node_x.data(),
+            node_y.data(),
+            potential.distance ? &*potential.distance : nullptr,
+            Vec2(x[0], y[0]),
+            radius};
+  }
+  std::vector<double> x, y, gx, gy, node_x, node_y;
+  PlacedPotential view;
+};
+
+/// Two polygons in one frame.
+struct PlacedPair {
+  PlacedPair(const Polygon& polygon_a, const Potential& potential_a, const Polygon& polygon_b,
+             const Potential& potential_b)
+      : PlacedPair(polygon_a, potential_a, polygon_b, potential_b,
+                   common_origin(polygon_a, polygon_b)) {}
+  Placement a, b;
+  Vec2 centroid_a, centroid_b;  // relative to vertex 0
+
+  /// From vertex 0 to the centroids: a PairIntegral or a BoundaryRun.
+  template <class Integrals>
+  void about_centroids(Integrals& pair) const {
+    pair.moment_a -= cross(centroid_a, pair.force);
+    pair.moment_b += cross(centroid_b, pair.force);
+    pair.centre -= centroid_a;
+  }
+
+ private:
+  PlacedPair(const Polygon& polygon_a, const Potential& potential_a, const Polygon& polygon_b,
+             const Potential& potential_b, const Vec2& origin)
+      : a(polygon_a, potential_a, origin),
+        b(polygon_b, potential_b, origin),
+        centroid_a(area_moments(polygon_a).centroid),
+        centroid_b(area_moments(polygon_b).centroid) {}
+
+  static Vec2 common_origin(const Polygon& a, const Polygon& b) {
+    Box box = bounding_box(a);
+    const Box box_b = bounding_box(b);
+    box.include(box_b.x0, box_b.y0);
+    box.include(box_b.x1, box_b.y1);
+    return local_origin(box);
+  }
+};
+
+}  // namespace apothem

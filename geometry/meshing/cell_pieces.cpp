@@ -1,0 +1,131 @@
+#include "apothem/geometry/meshing/cell_pieces.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+namespace apothem {
+namespace {
+
+using Ring = std::vector<int>;
+
+// The ring about both, if they have an edge in common and their union is a simple ring.
+std::optional<Ring> united(const Ring& a, const Ring& b) {
+  std::set<std::pair<int, int>> edges;
+  for (const Ring* ring : {&a, &b}) {
+    for (size_t i = 0; i < ring->size(); ++i) {
+      const int u = (*ring)[i];
+      const int v = (*ring)[i + 1 == ring->size() ? 0 : i + 1];
+      if (edges.erase({v, u}) == 0) edges.insert({u, v});
+    }
+  }
+  if (edges.empty() || edges.size() == a.size() + b.size()) return std::nullopt;
+  std::unordered_map<int, int> next;
+  for (const auto& [u, v] : edges) {
+    if (!next.emplace(u, v).second) return std::nullopt;
+  }
+  Ring ring;
+  for (int node = edges.begin()->first; ring.empty() || node != ring.front(); node = next.at(node))
+    ring.push_back(node);
+  if (ring.size() != edges.size()) return std::nullopt;
+  return ring;
+}
+
+class Joiner {
+ public:
+  explicit Joiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
+    std::iota(group_.begin(), group_.end(), 0);
+    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
+      const Ring& ring = pieces_.list[i].ring;
+      for (size_t k = 0; k < ring.size(); ++k) {
+        piece_left_of_[{ring[k], ring[k + 1 == ring.size() ? 0 : k + 1]}] = i;
+      }
+    }
+  }
+
+  bool run() {
+    std::vector<int> alone;
+    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
+      if (!pieces_.list[i].owned) alone.push_back(i);
+    }
+    // A piece that cannot join yet may be able to once others have.
+    while (std::erase_if(alone, [&](int i) { return join(i); }) > 0) {
+    }
+    std::erase_if(pieces_.list, [](const Piece& piece) { return piece.ring.empty(); });
+    return alone.empty();
+  }
+
+ private:
+  int group(int i) const {
+    while (group_[i] != i) i = group_[i];
+    return i;
+  }
+
+  bool join(int i) {
+    Ring& ring = pieces_.list[i].ring;
+    std::map<int, double> common;  // neighbour -> length
+    for (size_t k = 0; k < ring.size(); ++k) {
+      const int u = ring[k];
+      const int v = ring[k + 1 == ring.size() ? 0 : k + 1];
+      const auto other = piece_left_of_.find({v, u});
+      if (other == piece_left_of_.end()) continue;
+      const int j = group(other->second);
+      if (!pieces_.list[j].owned) continue;
+      common[j] += (pieces_.nodes[u] - pieces_.nodes[v]).norm();
+    }
+    std::vector<int> neighbours;
+    for (const auto& [j, length] : common) neighbours.push_back(j);
+    std::stable_sort(neighbours.begin(), neighbours.end(),
+                     [&](int a, int b) { return common[a] > common[b]; });
+    for (const int j : neighbours) {
+      std::optional<Ring> both = united(pieces_.list[j].ring, ring);
+      if (!both) continue;
+      pieces_.list[j].ring = std::move(*both);
+      ring.clear();
+      group_[i] = j;
+      return true;
+    }
+    return false;
+  }
+
+  Pieces& pieces_;
+  std::vector<int> group_;  // the piece that a piece has joined, or itself
+  std::map<std::pair<int, int>, int> piece_left_of_;
+};
+
+}  // namespace
+
+void put_in_order(Pieces& pieces, int outline_size) {
+  std::vector<int> order(pieces.nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin() + outline_size, order.end(), [&](int i, int j) {
+    const Vec2& p = pieces.nodes[i];
+    const Vec2& q = pieces.nodes[j];
+    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+  });
+  Pieces sorted;
+  std::vector<int> index(order.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    index[order[i]] = static_cast<int>(i);
+    sorted.nodes.push_back(pieces.nodes[order[i]]);
+    sorted.freedom.push_back(pieces.freedom[order[i]]);
+  }
+  for (Piece& piece : pieces.list) {
+    for (int& node : piece.ring) node = index[node];
+    std::rotate(piece.ring.begin(), std::min_element(piece.ring.begin(), piece.ring.end()),
+                piece.ring.end());
+  }
+  sorted.list = std::move(pieces.list);
+  std::sort(sorted.list.begin(), sorted.list.end(), [](const Piece& a, const Piece& b) {
+    return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
+  });
+  pieces = std::move(sorted);
+}
+
+bool join_pieces(Pieces& pieces) { return Joiner(pieces).run(); }
+
+}  // namespace apothem

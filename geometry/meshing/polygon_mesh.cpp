@@ -1,0 +1,235 @@
+#include "apothem/geometry/meshing/polygon_mesh.hpp"
+
+#include <algorithm>
+#include <map>
+#include <queue>
+#include <tuple>
+
+namespace apothem {
+namespace {
+
+// Throws InvalidPolygon.
+void require_counter_clockwise(const std::vector<Vec2>& ring) {
+  if (Polygon(ring).input_index(1) != 1) throw InvalidPolygon("is clockwise", 0);
+}
+
+bool is_valid(const std::vector<Vec2>& ring) {
+  try {
+    require_counter_clockwise(ring);
+    return true;
+  } catch (const InvalidPolygon&) {
+    return false;
+  }
+}
+
+class Collapse {
+ public:
+  Collapse(PolygonMesh& mesh, std::vector<int> freedom, double shortest)
+      : mesh_(mesh),
+        freedom_(std::move(freedom)),
+        shortest_(shortest),
+        cells_of_(mesh.points.size()) {
+    for (int c = 0; c < static_cast<int>(mesh_.cells.size()); ++c) {
+      for (const int node : mesh_.cells[c]) cells_of_[node].push_back(c);
+    }
+  }
+
+  ShortEdges run() {
+    for (int c = 0; c < static_cast<int>(mesh_.cells.size()); ++c) push_short_edges(c);
+    ShortEdges result;
+    while (!queue_.empty()) {
+      const auto [length, u, v] = queue_.top();
+      queue_.pop();
+      // Not what it was when it came into the queue.
+      if (cells_of_[u].empty() || cells_of_[v].empty() || distance(u, v) != length) continue;
+      if (collapse(u, v)) ++result.collapsed;
+    }
+    result.left = count_short_edges();
+    drop_unused_nodes();
+    return result;
+  }
+
+ private:
+  using Entry = std::tuple<double, int, int>;  // length, nodes
+
+  [[nodiscard]] double distance(int u, int v) const {
+    return (mesh_.points[u] - mesh_.points[v]).norm();
+  }
+
+  template <class Visit>
+  void for_edges(int c, const Visit& visit) const {
+    const std::vector<int>& cell = mesh_.cells[c];
+    for (size_t i = 0; i < cell.size(); ++i) visit(cell[i], cell[i + 1 == cell.size() ? 0 : i + 1]);
+  }
+
+  void push_short_edges(int c) {
+    for_edges(c, [&](int u, int v) {
+      const auto [first, second] = std::minmax(u, v);
+      if (const double length = distance(first, second); length < shortest_) {
+        queue_.push({length, first, second});
+      }
+    });
+  }
+
+  // Cells that have uv as an edge; none if another cell has both nodes, or a triangle would vanish.
+  [[nodiscard]] std::vector<int> cells_along(int u, int v) const {
+    std::vector<int> along;
+    for (const int c : cells_of_[u]) {
+      const std::vector<int>& cell = mesh_.cells[c];
+      if (std::find(cell.begin(), cell.end(), v) == cell.end()) continue;
+      bool is_edge = false;
+      for_edges(c, [&](int a, int b) { is_edge |= std::minmax(a, b) == std::minmax(u, v); });
+      if (!is_edge || cell.size() == 3) return {};
+      along.push_back(c);
+    }
+    return along;
+  }
+
+  bool collapse(int u, int v) {
+    // From here on u is the node with less freedom, and the one that remains.
+    if (freedom_[v] == kNowhere || freedom_[u] == kAnywhere) std::swap(u, v);
+    if (freedom_[v] == kNowhere) return false;
+    const std::vector<int> along = cells_along(u, v);
+    if (along.empty()) return false;
+    // An edge across the inside between two points of the outline would pinch the mesh.
+    if (freedom_[v] != kAnywhere && along.size() == 2) return false;
+    const Vec2 p = mesh_.points[u];
+    const Vec2 q = mesh_.points[v];
+    std::vector<Vec2> places{p};
+    if (freedom_[u] != kNowhere && freedom_[v] != kAnywhere) places.push_back(q);
+    if (freedom_[u] == kAnywhere) places = {(p + q) / 2, p, q};
+
+    std::vector<int> around = cells_of_[u];
+    around.insert(around.end(), cells_of_[v].begin(), cells_of_[v].end());
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (const Vec2& place : places) {
+      const bool valid = std::all_of(around.begin(), around.end(), [&](int c) {
+        return is_valid(ring_after(c, u, v, place)) || !is_valid(cell_ring(mesh_, mesh_.cells[c]));
+      });
+      if (!valid) continue;
+      replace(u, v, place, around);
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::vector<Vec2> ring_after(int c, int u, int v, const Vec2& place) const {
+    const std::vector<int>& cell = mesh_.cells[c];
+    const bool both = std::find(cell.begin(), cell.end(), u) != cell.end();
+    std::vector<Vec2> ring;
+    for (const int node : cell) {
+      if (node == v && both) continue;
+      ring.push_back(node == u || node == v ? place : mesh_.points[node]);
+    }
+    return ring;
+  }
+
+  void replace(int u, int v, const Vec2& place, const std::vector<int>& around) {
+    mesh_.points[u] = place;
+    for (const int c : around) {
+      std::vector<int>& cell = mesh_.cells[c];
+      if (std::find(cell.begin(), cell.end(), u) != cell.end()) {
+        std::erase(cell, v);
+      } else {
+        std::replace(cell.begin(), cell.end(), v, u);
+      }
+    }
+    cells_of_[u] = around;
+    cells_of_[v].clear();
+    for (const int c : around) push_short_edges(c);
+  }
+
+  [[nodiscard]] int count_short_edges() const {
+    std::map<std::pair<int, int>, int> cells_at;
+    for (int c = 0; c < static_cast<int>(mesh_.cells.size()); ++c) {
+      for_edges(c, [&](int u, int v) {
+        if (distance(u, v) < shortest_) ++cells_at[std::minmax(u, v)];
+      });
+    }
+    return static_cast<int>(std::count_if(cells_at.begin(), cells_at.end(), [&](const auto& edge) {
+      const auto& [u, v] = edge.first;
+      return edge.second == 2 || freedom_[u] != kNowhere || freedom_[v] != kNowhere;
+    }));
+  }
+
+  void drop_unused_nodes() {
+    std::vector<int> index(mesh_.points.size(), -1);
+    int count = 0;
+    for (size_t i = 0; i < index.size(); ++i) {
+      if (cells_of_[i].empty()) continue;
+      index[i] = count;
+      mesh_.points[count++] = mesh_.points[i];
+    }
+    mesh_.points.resize(count);
+    for (std::vector<int>& cell : mesh_.cells) {
+      for (int& node : cell) node = index[node];
+      std::rotate(cell.begin(), std::min_element(cell.begin(), cell.end()), cell.end());
+    }
+  }
+
+  PolygonMesh& mesh_;
+  std::vector<int> freedom_;
+  double shortest_;
+  std::vector<std::vector<int>> cells_of_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+std::vector<Vec2> cell_ring(const PolygonMesh& mesh, const std::vector<int>& cell) {
+  std::vector<Vec2> ring;
+  ring.reserve(cell.size());
+  for (const int node : cell) ring.push_back(mesh.points[node]);
+  return ring;
+}
+
+std::vector<int> tiling_boundary(const PolygonMesh& mesh) {
+  std::map<std::pair<int, int>, int> cell_left_of;
+  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
+    const std::vector<int>& cell = mesh.cells[c];
+    const std::string name = "cell " + std::to_string(c);
+    try {
+      require_counter_clockwise(cell_ring(mesh, cell));
+    } catch (const InvalidPolygon& error) {
+      throw InvalidPolygon(name + ": " + error.what(), error.vertex());
+    }
+    for (size_t i = 0; i < cell.size(); ++i) {
+      const std::pair edge(cell[i], cell[i + 1 == cell.size() ? 0 : i + 1]);
+      const auto [other, is_new] = cell_left_of.try_emplace(edge, c);
+      if (!is_new) {
+        throw InvalidPolygon(
+            name + " lies on the same side of an edge as cell " + std::to_string(other->second),
+            static_cast<int>(i));
+      }
+    }
+  }
+  std::map<int, int> next;
+  for (const auto& [edge, cell] : cell_left_of) {
+    if (cell_left_of.count({edge.second, edge.first})) continue;
+    if (!next.emplace(edge.first, edge.second).second) {
+      throw InvalidPolygon("cell " + std::to_string(cell) + ": the boundary meets itself at node " +
+                               std::to_string(edge.first),
+                           0);
+    }
+  }
+  std::vector<int> boundary;
+  if (!next.empty()) {
+    int node = next.begin()->first;
+    do {
+      boundary.push_back(node);
+      node = next.at(node);
+    } while (node != boundary.front() && boundary.size() <= next.size());
+  }
+  if (boundary.size() != next.size()) {
+    throw InvalidPolygon("the cells have gaps: their boundary is not one ring", 0);
+  }
+  require_counter_clockwise(cell_ring(mesh, boundary));
+  return boundary;
+}
+
+ShortEdges collapse_short_edges(PolygonMesh& mesh, std::vector<int> freedom, double shortest) {
+  return Collapse(mesh, std::move(freedom), shortest).run();
+}
+
+}  // namespace apothem

@@ -1,0 +1,173 @@
+#include "apothem/geometry/polygon/polygon.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "apothem/geometry/polygon/predicates.hpp"
+
+namespace apothem {
+namespace {
+
+std::string name(int i) { return "vertex " + std::to_string(i); }
+
+// Limits of the coordinates, m. Within them, squares and fourth powers stay far from overflow and
+// from the subnormal range.
+constexpr double kLargest = 1e60;
+constexpr double kSmallest = 1e-60;
+
+void require_usable_coordinates(const std::vector<Vec2>& ring) {
+  const int n = static_cast<int>(ring.size());
+  if (n < 3) {
+    throw InvalidPolygon("has " + std::to_string(n) + " vertices; a polygon needs at least 3",
+                         std::max(n - 1, 0));
+  }
+  Box box;
+  for (int i = 0; i < n; ++i) {
+    if (!is_finite(ring[i])) throw InvalidPolygon(name(i) + " is not finite", i);
+    if (!(ring[i].cwiseAbs().maxCoeff() < kLargest)) {
+      throw InvalidPolygon(name(i) + " has a coordinate beyond 1e60", i);
+    }
+    box.include(ring[i].x(), ring[i].y());
+  }
+  if (box.extent() < kSmallest)
+    throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
+}
+
+void require_distinct_vertices(const std::vector<Vec2>& ring) {
+  const int n = static_cast<int>(ring.size());
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) { return std::pair(ring[i].x(), ring[i].y()); };
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::pair(key(i), i) < std::pair(key(j), j); });
+  // The error names the repetition that comes first along the ring.
+  int first = -1;
+  int repeated = n;
+  for (int k = 1; k < n; ++k) {
+    if (ring[order[k]] == ring[order[k - 1]] && order[k] < repeated) {
+      first = order[k - 1];
+      repeated = order[k];
+    }
+  }
+  if (repeated == n) return;
+  if (first == 0 && repeated == n - 1) {
+    throw InvalidPolygon(name(repeated) + " repeats vertex 0: leave out the closing vertex",
+                         repeated);
+  }
+  throw InvalidPolygon(name(repeated) + " repeats " + name(first), repeated);
+}
+
+void require_no_spike(const std::vector<Vec2>& ring) {
+  const int n = static_cast<int>(ring.size());
+  for (int i = 0; i < n; ++i) {
+    const Vec2& a = ring[(i + n - 1) % n];
+    const Vec2& b = ring[i];
+    const Vec2& c = ring[(i + 1) % n];
+    if (orientation(a, b, c) != 0) continue;
+    // The three points are collinear. The boundary goes straight on if b lies between a and c;
+    // otherwise it turns back on itself. Coordinates are compared because that is exact, which the
+    // sign of a dot product would not be.
+    const int axis = a.x() != b.x() ? 0 : 1;
+    if ((a[axis] < b[axis]) != (b[axis] < c[axis])) {
+      throw InvalidPolygon(name(i) + " is a spike: the boundary turns back on itself", i);
+    }
+  }
+}
+
+void require_simple(const std::vector<Vec2>& ring) {
+  // The boxes of the edges are swept from left to right, and the exact test is made only where two
+  // boxes overlap.
+  const int n = static_cast<int>(ring.size());
+  std::vector<Box> boxes(n);
+  for (int i = 0; i < n; ++i) {
+    const Vec2& p = ring[i];
+    const Vec2& q = ring[(i + 1) % n];
+    boxes[i].include(p.x(), p.y());
+    boxes[i].include(q.x(), q.y());
+  }
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::pair(boxes[i].x0, i) < std::pair(boxes[j].x0, j); });
+  for (int k = 0; k < n; ++k) {
+    const int i = order[k];
+    for (int l = k + 1; l < n && boxes[order[l]].x0 <= boxes[i].x1; ++l) {
+      const int j = order[l];
+      // Neighbours share their common vertex. That they share nothing else is what
+      // require_no_spike has tested.
+      if (apart(boxes[i], boxes[j]) || (i + 1) % n == j || (j + 1) % n == i) continue;
+      if (segments_meet(ring[i], ring[(i + 1) % n], ring[j], ring[(j + 1) % n])) {
+        throw InvalidPolygon("edge " + std::to_string(std::min(i, j)) + " and edge " +
+                                 std::to_string(std::max(i, j)) +
+                                 " cross or touch (edge i starts at vertex i)",
+                             std::max(i, j));
+      }
+    }
+  }
+}
+
+// True if a simple ring is clockwise. The test is exact: it takes the sense of the turn at the
+// leftmost one of the lowest vertices. There the interior angle is below 180 degrees.
+bool is_clockwise(const std::vector<Vec2>& ring) {
+  const int n = static_cast<int>(ring.size());
+  int lowest = 0;
+  for (int i = 1; i < n; ++i) {
+    if (std::pair(ring[i].y(), ring[i].x()) < std::pair(ring[lowest].y(), ring[lowest].x()))
+      lowest = i;
+  }
+  return orientation(ring[(lowest + n - 1) % n], ring[lowest], ring[(lowest + 1) % n]) < 0;
+}
+
+}  // namespace
+
+Polygon::Polygon(std::vector<Vec2> ring) : vertices_(std::move(ring)) {
+  require_usable_coordinates(vertices_);
+  require_distinct_vertices(vertices_);
+  require_no_spike(vertices_);
+  require_simple(vertices_);
+  reversed_ = is_clockwise(vertices_);
+  if (reversed_) std::reverse(vertices_.begin() + 1, vertices_.end());
+}
+
+std::optional<int> Polygon::first_reflex_vertex() const {
+  for (int i = 0; i < size(); ++i) {
+    if (orientation(vertices_[i == 0 ? size() - 1 : i - 1], vertices_[i], after(i)) < 0) return i;
+  }
+  return std::nullopt;
+}
+
+std::vector<Vec2> Polygon::local_vertices() const {
+  std::vector<Vec2> local(vertices_);
+  for (Vec2& v : local) v -= origin();
+  return local;
+}
+
+AreaMoments area_moments(const Polygon& polygon) {
+  // Area and centroid come from a fan of triangles about vertex 0. The second moment is summed
+  // about the centroid, because about vertex 0 a large parallel-axis term would have to be
+  // subtracted.
+  const std::vector<Vec2> v = polygon.local_vertices();
+  double twice_area = 0;
+  Vec2 first = Vec2::Zero();
+  for (size_t i = 1; i + 1 < v.size(); ++i) {
+    const double twice = cross(v[i], v[i + 1]);
+    twice_area += twice;
+    first += twice * (v[i] + v[i + 1]);
+  }
+  const Vec2 centroid = first / (3 * twice_area);
+  double polar = 0;
+  for (size_t i = 0; i < v.size(); ++i) {
+    const Vec2 p = v[i] - centroid;
+    const Vec2 q = v[i + 1 == v.size() ? 0 : i + 1] - centroid;
+    polar += cross(p, q) * (p.squaredNorm() + p.dot(q) + q.squaredNorm());
+  }
+  return {twice_area / 2, centroid, polar / 12};
+}
+
+Box bounding_box(const Polygon& polygon) {
+  Box box;
+  for (const Vec2& v : polygon.vertices()) box.include(v.x(), v.y());
+  return box;
+}
+
+}  // namespace apothem

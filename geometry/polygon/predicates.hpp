@@ -1,0 +1,26 @@
+// Exact predicates on points with double coordinates. They are computed by CGAL's filtered exact
+// kernel and need no tolerance.
+//
+// For finite coordinates they obey these laws:
+//   orientation(a, b, c) = orientation(b, c, a) = -orientation(b, a, c)
+//   segments_meet(a, b, c, d) = segments_meet(c, d, a, b) = segments_meet(b, a, c, d)
+#pragma once
+
+#include <vector>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// Returns +1 if the path a, b, c turns left, -1 if it turns right, and 0 if the three points are
+/// exactly collinear.
+int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
+
+/// True if the closed segments ab and cd have at least one point in common.
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// True if p lies inside the simple ring and not on it. The ring may be clockwise or
+/// counter-clockwise.
+bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p);
+
+}  // namespace apothem

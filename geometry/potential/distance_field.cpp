@@ -1,0 +1,19 @@
+#include "apothem/geometry/potential/distance_field.hpp"
+
+namespace apothem {
+
+DistanceField make_distance_field(const Polygon& polygon, double reference) {
+  // A vertex that turns by this sine or more is convex for any rounding.
+  constexpr double kClearlyConvex = 0.125;
+  DistanceField field{1 / reference, {}};
+  for (int i = 0; i < polygon.size(); ++i) {
+    const Vec2 before = polygon[i] - polygon[i == 0 ? polygon.size() - 1 : i - 1];
+    const Vec2 after = polygon.after(i) - polygon[i];
+    const double turn = cross(Vec2(before.normalized()), Vec2(after.normalized()));
+    const bool convex = turn > 0 && (turn > kClearlyConvex || before.dot(after) < 0);
+    if (!convex) field.corners.push_back(i);
+  }
+  return field;
+}
+
+}  // namespace apothem

@@ -1,0 +1,262 @@
+// The distance potential of a polygon that is not convex, with the Euclidean distance to the
+// boundary as depth: phi(x) = min(1, dist(x, boundary) / r) inside, 0 outside.
+//
+// Along a line the distance is the minimum of one function per edge, |linear|, where the foot of
+// the perpendicular lies within the edge, and of one per vertex, the square root of a parabola,
+// everywhere. Each is an upper bound of the distance wherever it is used, so round-off in the
+// intervals cannot make phi jump. Convex vertices are never nearest and are left out.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "apothem/geometry/polygon/line_crossings.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/geometry/polygon/segment_moments.hpp"
+#include "apothem/geometry/potential/piecewise_minimum.hpp"
+
+namespace apothem {
+
+struct DistanceField {
+  double slope;              ///< 1 / r, 1/m
+  std::vector<int> corners;  ///< vertices that may be nearest: all but the clearly convex ones
+};
+
+/// `reference`: the length r, m.
+DistanceField make_distance_field(const Polygon& polygon, double reference);
+
+/// A distance field where it is now: its polygon in some frame.
+template <class Real>
+struct PlacedDistance {
+  int size;
+  const Real* x;
+  const Real* y;
+  const Real* gx;  ///< inward unit normals of the edges, over r
+  const Real* gy;
+  Real slope;
+  const std::vector<int>* corners;
+  bool capped;
+};
+
+/// INT sqrt(d2 + w^2) dw from w1 to w1 + h and, about the middle of the interval, the first moment.
+/// No difference of large numbers: all terms of the first are positive.
+template <class Real>
+std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) {
+  using std::asinh;
+  using std::sqrt;
+  const Real w2 = w1 + h;
+  const Real m = w1 + h / 2;
+  const Real r1 = sqrt(d2 + w1 * w1);
+  const Real r2 = sqrt(d2 + w2 * w2);
+  const Real r = (r1 + r2) / 2;
+  if (!(r > 0)) return {Real(0 * h), Real(0 * h)};
+  Real sum = h * (r + m * m / r);
+  if (d2 > 0) {
+    // asinh(w2/d) - asinh(w1/d) = asinh((w2 r1 - w1 r2)/d2)
+    const Real product = w1 * w2;
+    const Real ratio = product > 0 ? Real((1 + (w1 * w1 + w2 * w2 + d2) / (r1 * r2 + product)) / 2)
+                                   : Real((1 + (r1 * r2 - product) / d2) / 2);
+    sum += d2 * asinh(Real(h * ratio / r));
+  }
+  sum /= 2;
+  const Real rise = h * m / r;  // r2 - r1
+  return {sum, Real(m * (h * (r + rise * rise / (12 * r)) - sum))};
+}
+
+/// phi along a segment.
+template <class Real>
+class DistanceTrace {
+ public:
+  /// Moments of phi along p + s e, s in [0, 1]; calls inside(s0, s1) for every part of it that lies
+  /// inside the polygon. No allocation after the first calls with polygons of that size.
+  template <class Inside>
+  SegmentMoments<Real> integrate(const PlacedDistance<Real>& field, const Real& px, const Real& py,
+                                 const Real& ex, const Real& ey, const Inside& inside) {
+    SegmentMoments<Real> moments;
+    runs(field, px, py, ex, ey, moments,
+         [&](const Real& s0, int, const Real& s1, int) { inside(s0, s1); });
+    return moments;
+  }
+
+  /// Adds the moments to `moments` part by part and calls run(s0, edge0, s1, edge1) after each,
+  /// with the polygon's edges that the line crosses there, -1 at the ends of the segment.
+  template <class Run>
+  void runs(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
+            const Real& ey, SegmentMoments<Real>& moments, const Run& run) {
+    using std::sqrt;
+    px_ = px, py_ = py, ex_ = ex, ey_ = ey;
+    k_ = sqrt(ex * ex + ey * ey) * field.slope;
+    lines_.set(field.size, field.x, field.y, px, py, ex, ey);
+    lines_.place(0, field.size);
+    crossings_.clear();
+    for (int a = 0; a < field.size; ++a) {
+      const int b = a + 1 == field.size ? 0 : a + 1;
+      lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
+    }
+    std::sort(crossings_.begin(), crossings_.end(),
+              [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
+    for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
+      const Crossing& a = crossings_[i];
+      const Crossing& b = crossings_[i + 1];
+      if (b.s <= 0 || a.s >= 1 || !(b.s > a.s)) continue;
+      const Real s0 = std::max(a.s, Real(0));
+      const Real s1 = std::min(b.s, Real(1));
+      trace(field, s0, s1, a.edge, b.edge);
+      add_pieces(moments);
+      run(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
+    }
+  }
+
+ private:
+  // phi of a line a + b s, or of a vertex with the foot at s = a, at the squared distance b.
+  struct Function {
+    Real a, b, k;
+    int id;
+    bool vertex;
+
+    [[nodiscard]] Real square(const Real& s) const {
+      const Real v = vertex ? Real(k * (s - a)) : Real(a + b * s);
+      return vertex ? Real(b + v * v) : Real(v * v);
+    }
+    [[nodiscard]] Real operator()(const Real& s) const {
+      using std::abs;
+      using std::sqrt;
+      return vertex ? Real(sqrt(square(s))) : Real(abs(a + b * s));
+    }
+    [[nodiscard]] bool operator==(const Function& g) const { return id == g.id; }
+    [[nodiscard]] bool below(const Function& g, const Real& s) const {
+      return square(s) < g.square(s);
+    }
+    int crossings(const Function& g, const Real& from, std::array<Real, 2>& roots) const {
+      using std::sqrt;
+      if (vertex && g.vertex) {  // the difference of the squares is linear
+        const Real slope = 2 * k * k * (g.a - a);
+        roots[0] = from + (g.square(from) - square(from)) / slope;
+        return 1;
+      }
+      if (!vertex && !g.vertex) {  // |.|: both signs, never both inside
+        roots[0] = (g.a - a) / (b - g.b);
+        roots[1] = -(g.a + a) / (b + g.b);
+        return 2;
+      }
+      // A z^2 + 2 B z + C with z = s - from
+      const Function& line = vertex ? g : *this;
+      const Function& root = vertex ? *this : g;
+      const Real value = line.a + line.b * from;
+      const Real foot = root.a - from;
+      const Real A = (line.b - k) * (line.b + k);
+      const Real B = value * line.b + k * k * foot;
+      const Real C = value * value - root.b - k * k * foot * foot;
+      const Real discriminant = B * B - A * C;
+      if (!(discriminant >= 0)) return 0;
+      const Real q = -(B + (B < 0 ? Real(-sqrt(discriminant)) : Real(sqrt(discriminant))));
+      roots[0] = from + q / A;
+      roots[1] = from + C / q;
+      return 2;
+    }
+  };
+
+  struct Crossing {
+    Real s;
+    int edge;
+  };
+
+  // The minimum over all features between s0 and s1, the two edges crossed first: they are likely
+  // to be near, and what is farther than all found so far need not be looked at.
+  void trace(const PlacedDistance<Real>& field, const Real& s0, const Real& s1, int first,
+             int second) {
+    envelope_.reset(s0, s1);
+    bound_ = std::numeric_limits<Real>::infinity();
+    if (field.capped) insert({1, 0, k_, -1, false}, s0, s1);
+    insert_edge(field, first, s0, s1);
+    insert_edge(field, second, s0, s1);
+    for (int i = 0; i < field.size; ++i) {
+      if (i != first && i != second) insert_edge(field, i, s0, s1);
+    }
+    for (const int i : *field.corners) insert_corner(field, i, s0, s1);
+  }
+
+  void insert_edge(const PlacedDistance<Real>& field, int i, const Real& s0, const Real& s1) {
+    const Real rx = px_ - field.x[i];
+    const Real ry = py_ - field.y[i];
+    const Real a = field.gx[i] * rx + field.gy[i] * ry;
+    const Real b = field.gx[i] * ex_ + field.gy[i] * ey_;
+    const Real h0 = a + b * s0;
+    const Real h1 = a + b * s1;
+    if ((h0 >= bound_ && h1 >= bound_) || (h0 <= -bound_ && h1 <= -bound_)) return;
+    const int j = i + 1 == field.size ? 0 : i + 1;
+    const Real tx = field.x[j] - field.x[i];
+    const Real ty = field.y[j] - field.y[i];
+    const Real rate = tx * ex_ + ty * ey_;
+    const Real start = tx * rx + ty * ry;  // of the foot at s = 0, seen from the edge's two ends
+    const Real end = tx * (px_ - field.x[j]) + ty * (py_ - field.y[j]);
+    Real from = s0, to = s1;
+    if (rate > 0) {
+      from = std::max(from, Real(-start / rate));
+      to = std::min(to, Real(-end / rate));
+    } else if (rate < 0) {
+      from = std::max(from, Real(-end / rate));
+      to = std::min(to, Real(-start / rate));
+    } else if (!(start >= 0 && end <= 0)) {
+      return;
+    }
+    if (from < to) insert({a, b, k_, i, false}, from, to);
+  }
+
+  void insert_corner(const PlacedDistance<Real>& field, int i, const Real& s0, const Real& s1) {
+    const Real rx = field.x[i] - px_;
+    const Real ry = field.y[i] - py_;
+    const Real e2 = ex_ * ex_ + ey_ * ey_;
+    const Real side = (ex_ * ry - ey_ * rx) * field.slope;
+    const Real d2 = side * side / e2;
+    const Real foot = (rx * ex_ + ry * ey_) / e2;
+    const Real away = k_ * std::max(Real(0), std::max(Real(s0 - foot), Real(foot - s1)));
+    if (d2 + away * away < bound_ * bound_) insert({foot, d2, k_, field.size + i, true}, s0, s1);
+  }
+
+  void insert(const Function& f, const Real& from, const Real& to) {
+    if (envelope_.insert(f, from, to)) lower_bound();
+  }
+
+  // All functions are convex but for |.| at 0: the largest value is at an end of a piece.
+  void lower_bound() {
+    Real largest = 0;
+    for (size_t i = 0; i < envelope_.size(); ++i) {
+      if (!envelope_[i].known) return;
+      const Function& f = envelope_[i].function;
+      largest = std::max(largest, std::max(f(envelope_[i].from), f(envelope_.end(i))));
+    }
+    bound_ = largest;
+  }
+
+  void add_pieces(SegmentMoments<Real>& moments) const {
+    for (size_t i = 0; i < envelope_.size(); ++i) {
+      const auto& piece = envelope_[i];
+      if (!piece.known) continue;  // as narrow as round-off
+      const Real& u1 = piece.from;
+      const Real& u2 = envelope_.end(i);
+      const Function& f = piece.function;
+      const Real v1 = f(u1), v2 = f(u2);
+      if (!f.vertex) {
+        moments.add(u1, v1, u2, v2);
+        continue;
+      }
+      const auto [sum, first] = root_moments<Real>(f.b, k_ * (u1 - f.a), k_ * (u2 - u1));
+      moments.sum += sum / k_;
+      moments.first += sum / k_ * ((u1 + u2) / 2) + first / (k_ * k_);
+      moments.largest = std::max(moments.largest, std::max(v1, v2));
+    }
+  }
+
+  Real px_, py_, ex_, ey_;
+  Real k_;      // length of the segment over r
+  Real bound_;  // largest value of the minimum so far
+  LineCrossings<Real> lines_;
+  std::vector<Crossing> crossings_;
+  PiecewiseMinimum<Real, Function> envelope_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,426 @@
+// Branch and bound over a triangulation of the polygon.
+//
+// The distance f to the boundary is the minimum of the distances f_i to its edges, and each f_i is
+// a convex function. That gives both bounds in a triangle T inside the polygon, each by a linear
+// programme (the highest point of a lower envelope of planes over T):
+// - from above: f_i is not above its linear interpolation between the corners of T. The gap is
+//   zero where the nearest points of T lie inside edge i, otherwise quadratic in the size of T;
+// - from below: f_i is not below its tangent plane at any point. Moving to the highest point of the
+//   tangent planes never makes f smaller, and converges quadratically to a centre.
+// The result is a value of f at a point inside, so no rounding or degenerate position can make the
+// radius too large; the bound from above stops the search only when nothing is left to be found.
+// Long corridors, which are costly for cells of a grid, are a few long triangles here.
+#include "apothem/geometry/potential/inscribed_circle.hpp"
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "apothem/geometry/polygon/triangulation.hpp"
+
+namespace apothem {
+namespace {
+
+// All lengths below are in units of the polygon's size (a power of two, so scaling is exact).
+constexpr double kNoise = 0x1p-50;     // above the round-off of a distance
+constexpr double kSameHeight = 1e-13;  // as in potential.cpp
+constexpr double kThinnest = 0x1p-49;  // as in potential.cpp
+constexpr double kSamePlace = 1e-6;    // centres closer than this share of the radius are one
+constexpr double kNearlyParallel = 1e-4;
+// Up to here clipping all edges of a convex polygon with each other is the faster way.
+constexpr int kFewEdges = 100;
+
+using Heights = Eigen::Vector3d;  // of a plane at the corners of a triangle
+
+struct Distance {
+  double value;
+  Vec2 gradient;
+};
+
+struct Edge {
+  Vec2 start, end, direction;
+  double length;
+
+  Edge(const Vec2& a, const Vec2& b)
+      : start(a), end(b), direction(b - a), length(std::hypot(direction.x(), direction.y())) {
+    direction /= length;
+  }
+
+  [[nodiscard]] double distance(const Vec2& p) const {
+    const Vec2 d = p - start;
+    const double along = direction.dot(d);
+    if (along <= 0) return d.norm();
+    return along >= length ? (p - end).norm() : std::abs(cross(direction, d));
+  }
+
+  [[nodiscard]] Distance distance_and_gradient(const Vec2& p) const {
+    const Vec2 d = p - start;
+    const double along = direction.dot(d);
+    if (along > 0 && along < length) {
+      const double across = cross(direction, d);
+      const double sign = across < 0 ? -1 : 1;
+      return {sign * across, sign * Vec2(-direction.y(), direction.x())};
+    }
+    const Vec2 arm = along <= 0 ? d : p - end;
+    const double value = arm.norm();
+    return {value, value > 0 ? Vec2(arm / value) : Vec2::Zero()};
+  }
+
+  /// First s >= 0 at which x + s u is closer than `radius`, u of unit length; infinite if none is.
+  /// The points of a line within that distance form one interval: the union of those in the discs
+  /// about the two ends and in the strip between them.
+  [[nodiscard]] double first_hit(const Vec2& x, const Vec2& u, double radius) const {
+    double enter = HUGE_VAL;
+    double leave = -HUGE_VAL;
+    const auto add = [&](double low, double high) {
+      if (!(low < high)) return;
+      enter = std::min(enter, low);
+      leave = std::max(leave, high);
+    };
+    for (const Vec2& centre : {start, end}) {
+      const double middle = u.dot(centre - x);
+      const double half = radius * radius - std::pow(cross(u, centre - x), 2);
+      if (half > 0) add(middle - std::sqrt(half), middle + std::sqrt(half));
+    }
+    double low = -HUGE_VAL;
+    double high = HUGE_VAL;
+    const auto clip = [&](double value, double slope, double least, double most) {
+      if (slope == 0) {
+        if (!(least < value && value < most)) high = -HUGE_VAL;
+        return;
+      }
+      const auto [first, second] = std::minmax({(least - value) / slope, (most - value) / slope});
+      low = std::max(low, first);
+      high = std::min(high, second);
+    };
+    clip(direction.dot(x - start), direction.dot(u), 0, length);
+    clip(cross(direction, x - start), cross(direction, u), -radius, radius);
+    add(low, high);
+    return leave > 0 ? std::max(enter, 0.0) : HUGE_VAL;
+  }
+};
+
+// Highest point of a lower envelope of planes over a triangle, in barycentric coordinates.
+struct Summit {
+  Heights place = Heights(1, 0, 0);
+  double height = HUGE_VAL;  // not below the true one
+};
+
+// Seidel's incremental linear programming: linear in the number of planes, for a random order of
+// them. A plane counts as below another one only if it is so by more than round-off: nothing is cut
+// off wrongly where planes coincide or nearly so.
+Summit highest_point(const std::vector<Heights>& planes) {
+  double largest = 0;
+  for (const Heights& plane : planes) largest = std::max(largest, plane.cwiseAbs().maxCoeff());
+  const double slack = 0x1p-51 * largest;
+  Summit summit;
+  for (size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].dot(summit.place) >= summit.height - slack) continue;
+    // The summit lies on plane i: its highest point where no earlier plane is below it.
+    Eigen::Index corner;
+    planes[i].maxCoeff(&corner);
+    Heights place = Heights::Unit(corner);
+    for (size_t j = 0; j < i; ++j) {
+      const Heights side = planes[j] - planes[i];
+      if (side.dot(place) >= -slack) continue;
+      // On the line side = 0, between its two crossings with the triangle's border.
+      std::array<Heights, 2> ends;
+      size_t count = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        if ((side[k] < 0) == (side[l] < 0)) continue;
+        const double share = side[k] / (side[k] - side[l]);
+        ends[count++] = (1 - share) * Heights::Unit(k) + share * Heights::Unit(l);
+      }
+      if (count < 2) continue;
+      double low = 0;
+      double high = 1;
+      for (size_t l = 0; l < j; ++l) {
+        const Heights other = planes[l] - planes[i];
+        const double first = other.dot(ends[0]) + slack;
+        const double second = other.dot(ends[1]) + slack;
+        if (first < 0) low = std::max(low, second > 0 ? first / (first - second) : 2);
+        if (second < 0) high = std::min(high, first > 0 ? first / (first - second) : -1);
+      }
+      if (low > high) continue;
+      const double best = planes[i].dot(ends[0]) > planes[i].dot(ends[1]) ? low : high;
+      place = (1 - best) * ends[0] + best * ends[1];
+    }
+    summit = {place, std::min(summit.height, planes[i].dot(place))};
+  }
+  summit.height += 2 * slack;
+  return summit;
+}
+
+// A triangle inside the polygon. `edges` holds all that may be nearest to one of its points, none
+// before it is examined.
+struct Cell {
+  std::array<Vec2, 3> corners;
+  double bound;  // f is nowhere higher
+  Vec2 point = Vec2::Zero();
+  double height = 0;  // f at `point`
+  std::vector<int> edges = {};
+
+  [[nodiscard]] Vec2 at(const Heights& place) const {
+    return place[0] * corners[0] + place[1] * corners[1] + place[2] * corners[2];
+  }
+  [[nodiscard]] double side(int k) const {
+    return (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
+  }
+  // The side opposite to corner k is the longest.
+  [[nodiscard]] int longest() const {
+    const std::array<double, 3> sides{side(0), side(1), side(2)};
+    return static_cast<int>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+  }
+};
+
+// No point of a triangle is farther than this from the nearest corner.
+double corner_bound(const Cell& cell) {
+  const int k = cell.longest();
+  const double a = cell.side(k), b = cell.side((k + 1) % 3), c = cell.side((k + 2) % 3);
+  if (a * a >= b * b + c * c) return a / 2;
+  const double twice_area =
+      std::abs(cross(cell.corners[1] - cell.corners[0], cell.corners[2] - cell.corners[0]));
+  return std::min(a / std::sqrt(3.0), a * b * c / (2 * twice_area)) + kNoise;
+}
+
+// A centre, or a segment of centres.
+struct Centre {
+  Vec2 first, last;
+};
+
+class Search {
+ public:
+  Search(const Polygon& polygon, double unit) {
+    vertices_ = polygon.local_vertices();
+    for (Vec2& v : vertices_) v /= unit;
+    for (size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec2& end = vertices_[i + 1 == vertices_.size() ? 0 : i + 1];
+      // Two vertices that agree in local coordinates bound no edge.
+      if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
+    }
+    for (const Triangle& t : triangulate(polygon)) {
+      Cell cell{{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]}, 0};
+      cell.bound = corner_bound(cell);
+      queue_.push_back(std::move(cell));
+    }
+    std::make_heap(queue_.begin(), queue_.end(), lower);
+  }
+
+  void run() {
+    // Any order of the edges that is not one of the input's regular ones: see highest_point.
+    std::vector<int> all(edges_.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::mt19937 random;  // std::shuffle is not the same everywhere
+    for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
+
+    while (!queue_.empty() && queue_.front().bound >= radius_ - tolerance()) {
+      std::pop_heap(queue_.begin(), queue_.end(), lower);
+      Cell cell = std::move(queue_.back());
+      queue_.pop_back();
+      if (cell.edges.empty()) {
+        examine(std::move(cell), all);
+      } else if (cell.bound - cell.height <= tolerance()) {
+        found_.push_back({cell.point, cell.height});
+      } else {
+        split(cell);
+      }
+    }
+  }
+
+  [[nodiscard]] double radius() const { return radius_; }
+
+  [[nodiscard]] std::vector<Centre> centres() {
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Found& a, const Found& b) { return a.height > b.height; });
+    const double same = kSamePlace * radius_ + 16 * tolerance();
+    std::vector<Centre> centres;
+    for (const Found& found : found_) {
+      if (found.height < radius_ - tolerance()) break;
+      const bool known = std::any_of(centres.begin(), centres.end(), [&](const Centre& c) {
+        if (c.first == c.last) return (found.point - c.first).norm() <= same;
+        return Edge(c.first, c.last).distance(found.point) <= same;
+      });
+      if (known) continue;
+      Centre centre = corridor(found.point, found.height - tolerance());
+      if ((centre.last - centre.first).norm() <= same) centre = {found.point, found.point};
+      centres.push_back(centre);
+    }
+    return centres;
+  }
+
+ private:
+  struct Found {
+    Vec2 point;
+    double height;
+  };
+
+  static bool lower(const Cell& a, const Cell& b) { return a.bound < b.bound; }
+  [[nodiscard]] double tolerance() const { return kSameHeight * radius_ + 4 * kNoise; }
+
+  // f, for a point of the cell.
+  [[nodiscard]] double height(const Cell& cell, const Vec2& point) const {
+    double least = HUGE_VAL;
+    for (const int e : cell.edges) least = std::min(least, edges_[e].distance(point));
+    return least;
+  }
+
+  // Bounds f in the cell from above and below, and queues the cell unless it is too low.
+  void examine(Cell cell, const std::vector<int>& edges) {
+    const Vec2 middle = (cell.corners[0] + cell.corners[1] + cell.corners[2]) / 3;
+    double reach = 0;
+    for (const Vec2& corner : cell.corners) reach = std::max(reach, (corner - middle).norm());
+    reach += kNoise;
+    distances_.clear();
+    for (const int e : edges) distances_.push_back(edges_[e].distance(middle));
+    const double least = *std::min_element(distances_.begin(), distances_.end());
+    cell.bound = std::min(cell.bound, least + reach);
+    if (cell.bound < radius_ - tolerance()) return;
+    for (size_t i = 0; i < edges.size(); ++i) {
+      if (distances_[i] <= cell.bound + reach) cell.edges.push_back(edges[i]);
+    }
+
+    planes_.clear();
+    for (const int e : cell.edges) {
+      planes_.emplace_back(edges_[e].distance(cell.corners[0]) - least,
+                           edges_[e].distance(cell.corners[1]) - least,
+                           edges_[e].distance(cell.corners[2]) - least);
+    }
+    const Summit summit = highest_point(planes_);
+    cell.bound = std::min(cell.bound, least + summit.height + kNoise);
+    if (cell.bound < radius_ - tolerance()) return;
+    cell.point = cell.at(summit.place);
+    cell.height = height(cell, cell.point);
+    climb(cell);
+    radius_ = std::max(radius_, cell.height);
+    queue_.push_back(std::move(cell));
+    std::push_heap(queue_.begin(), queue_.end(), lower);
+  }
+
+  void climb(Cell& cell) {
+    constexpr int kSteps = 10;
+    for (int step = 0; step < kSteps && cell.bound - cell.height > kNoise; ++step) {
+      planes_.clear();
+      for (const int e : cell.edges) {
+        const auto [value, gradient] = edges_[e].distance_and_gradient(cell.point);
+        const double above = value - cell.height;
+        planes_.emplace_back(above + gradient.dot(cell.corners[0] - cell.point),
+                             above + gradient.dot(cell.corners[1] - cell.point),
+                             above + gradient.dot(cell.corners[2] - cell.point));
+      }
+      const Vec2 next = cell.at(highest_point(planes_).place);
+      const double next_height = height(cell, next);
+      if (!(next_height > cell.height)) return;
+      cell.point = next;
+      cell.height = next_height;
+    }
+  }
+
+  void split(const Cell& cell) {
+    const int k = cell.longest();
+    const Vec2& p = cell.corners[(k + 1) % 3];
+    const Vec2& q = cell.corners[(k + 2) % 3];
+    const Vec2 middle = (p + q) / 2;
+    examine({{cell.corners[k], p, middle}, cell.bound}, cell.edges);
+    examine({{cell.corners[k], middle, q}, cell.bound}, cell.edges);
+  }
+
+  // The longest segment through a centre, along two parallel edges that the circle touches, with
+  // distance `radius` or more from all edges.
+  [[nodiscard]] Centre corridor(const Vec2& point, double radius) const {
+    std::vector<const Edge*> touched;
+    for (const Edge& edge : edges_) {
+      if (edge.distance(point) <= radius + 4 * tolerance()) touched.push_back(&edge);
+    }
+    Centre longest{point, point};
+    for (size_t i = 0; i < touched.size(); ++i) {
+      const Edge& a = *touched[i];
+      for (size_t j = i + 1; j < touched.size(); ++j) {
+        const Edge& b = *touched[j];
+        if (a.direction.dot(b.direction) > 0 ||
+            std::abs(cross(a.direction, b.direction)) > kNearlyParallel) {
+          continue;
+        }
+        Vec2 u = ((a.end - a.start) - (b.end - b.start)).normalized();
+        // Short edges give a poor direction: mend it by where the wall is touched at both ends.
+        for (double length = 0, previous = -1; length > 2 * previous; u = along_wall(longest, u)) {
+          previous = length;
+          const Centre way = free_way(point, u, radius);
+          length = (way.last - way.first).norm();
+          if (length > (longest.last - longest.first).norm()) longest = way;
+        }
+      }
+    }
+    return longest;
+  }
+
+  [[nodiscard]] Centre free_way(const Vec2& point, const Vec2& u, double radius) const {
+    double ahead = HUGE_VAL;
+    double behind = HUGE_VAL;
+    for (const Edge& edge : edges_) {
+      ahead = std::min(ahead, edge.first_hit(point, u, radius));
+      behind = std::min(behind, edge.first_hit(point, -u, radius));
+    }
+    return {point - behind * u, point + ahead * u};
+  }
+
+  // Direction between the points of the wall on the right that the circles at both ends touch.
+  [[nodiscard]] Vec2 along_wall(const Centre& way, const Vec2& u) const {
+    const auto foot = [&](const Vec2& centre) {
+      double lowest = HUGE_VAL;
+      Vec2 result = centre;
+      for (const Edge& edge : edges_) {
+        const auto [value, gradient] = edge.distance_and_gradient(centre);
+        if (value > radius_ + 4 * tolerance()) continue;
+        if (const double side = cross(gradient, u); side < lowest) {
+          lowest = side;
+          result = centre - value * gradient;
+        }
+      }
+      return result;
+    };
+    const Vec2 d = foot(way.last) - foot(way.first);
+    return d.dot(u) > 0 ? Vec2(d.normalized()) : u;
+  }
+
+  std::vector<Vec2> vertices_;
+  std::vector<Edge> edges_;
+  std::vector<Cell> queue_;
+  std::vector<Found> found_;
+  double radius_ = 0;
+
+  // Memory of examine and climb.
+  std::vector<double> distances_;
+  std::vector<Heights> planes_;
+};
+
+bool before(const Vec2& p, const Vec2& q) {
+  return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+}
+
+}  // namespace
+
+InscribedCircle largest_inscribed_circle(const Polygon& polygon) {
+  if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
+  const double unit = std::exp2(std::ceil(std::log2(bounding_box(polygon).extent())));
+  Search search(polygon, unit);
+  search.run();
+  if (!(search.radius() > kThinnest)) {
+    throw InvalidPolygon("is thinner than double precision resolves", 0);
+  }
+  std::vector<Centre> centres = search.centres();
+  for (Centre& c : centres) {
+    if (before(c.last, c.first)) std::swap(c.first, c.last);
+  }
+  std::sort(centres.begin(), centres.end(),
+            [](const Centre& a, const Centre& b) { return before(a.first, b.first); });
+  InscribedCircle circle{search.radius() * unit, {}};
+  for (const Centre& c : centres) {
+    circle.centres.push_back(c.first * unit);
+    if (c.last != c.first) circle.centres.push_back(c.last * unit);
+  }
+  return circle;
+}
+
+}  // namespace apothem

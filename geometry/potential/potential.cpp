@@ -1,0 +1,216 @@
+#include "apothem/geometry/potential/potential.hpp"
+
+#include <cmath>
+
+#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "apothem/geometry/potential/lower_envelope.hpp"
+
+namespace apothem {
+namespace {
+
+// Heights of the envelope closer than this (relative) are one height: the centre of a rectangle's
+// incircle is a segment although round-off tells its ends apart.
+constexpr double kSameHeight = 1e-13;
+// An inradius below so many roundings of the polygon's size is noise.
+constexpr double kThinnest = 8 * 0x1p-52;
+
+void require_convex(const Polygon& polygon) {
+  if (const auto reflex = polygon.first_reflex_vertex()) {
+    const int i = polygon.input_index(*reflex);
+    throw InvalidPolygon("vertex " + std::to_string(i) +
+                             " is reflex (interior angle above 180 degrees): give a convex polygon",
+                         i);
+  }
+}
+
+// Inward normals of unit length, from differences of the input coordinates.
+std::vector<Vec2> inward_normals(const Polygon& polygon) {
+  std::vector<Vec2> normals(polygon.size());
+  for (int i = 0; i < polygon.size(); ++i) {
+    const Vec2 d = polygon.after(i) - polygon[i];
+    normals[i] = Vec2(-d.y(), d.x()) / std::hypot(d.x(), d.y());
+  }
+  return normals;
+}
+
+// Height of the envelope's maximum over a needle, where double precision has few digits of it left.
+double top_of_needle(const Polygon& polygon, const Potential& potential) {
+  using Fine = long double;
+  using FineVec = lower_envelope::Vec<Fine>;
+  std::vector<FineVec> ring;
+  for (const Vec2& v : polygon.vertices())
+    ring.push_back(v.cast<Fine>() - polygon.origin().cast<Fine>());
+  std::vector<lower_envelope::Line<Fine>> lines;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const FineVec d = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+    const FineVec g =
+        FineVec(-d.y(), d.x()) * (potential.gradients[i].cast<Fine>().norm() / d.norm());
+    lines.push_back({g, -g.dot(ring[i])});
+  }
+  Fine top = 0;
+  for (const auto& corner : lower_envelope::corners(lines, ring))
+    top = std::max(top, corner.height);
+  return static_cast<double>(top);
+}
+
+// Height and place of the envelope's maximum.
+void find_top(Potential& potential) {
+  std::vector<lower_envelope::Line<double>> lines;
+  for (int i = 0; i < potential.size(); ++i) {
+    const Vec2& g = potential.gradients[i];
+    lines.push_back({g, -g.dot(potential.vertices[i])});
+  }
+  const auto corners = lower_envelope::corners(lines, potential.vertices);
+  potential.top = 0;
+  for (const auto& corner : corners) potential.top = std::max(potential.top, corner.height);
+  Vec2 first = Vec2::Zero(), last = Vec2::Zero();  // ends of the level part, in one direction
+  bool any = false;
+  for (const auto& corner : corners) {
+    if (!(corner.height >= potential.top * (1 - kSameHeight))) continue;
+    if (!any) first = last = corner.point;
+    any = true;
+    const auto before = [](const Vec2& p, const Vec2& q) {
+      return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+    };
+    if (before(corner.point, first)) first = corner.point;
+    if (before(last, corner.point)) last = corner.point;
+  }
+  const double slope = potential.gradients.front().norm();
+  const bool level = (last - first).norm() * slope > 1e-9 * potential.top;
+  potential.top_points = level ? std::vector<Vec2>{first, last} : std::vector<Vec2>{first};
+}
+
+Potential envelope_potential(const Polygon& polygon, std::vector<Vec2> gradients) {
+  Potential potential;
+  potential.vertices = polygon.local_vertices();
+  potential.gradients = std::move(gradients);
+  find_top(potential);
+  const double extent = bounding_box(polygon).extent() * potential.gradients[0].norm();
+  if (extent > kNeedle * potential.top) potential.top = top_of_needle(polygon, potential);
+  if (!(potential.top > kThinnest * extent) || !std::isfinite(1 / potential.top)) {
+    throw InvalidPolygon("is thinner than double precision resolves", 0);
+  }
+  return potential;
+}
+
+void scale(Potential& potential, double factor) {
+  for (Vec2& g : potential.gradients) g *= factor;
+  potential.top *= factor;
+}
+
+Skeleton skeleton_of(const Polygon& polygon) {
+  try {
+    Skeleton skeleton = straight_skeleton(polygon);
+    if (skeleton.roof_height > kThinnest * bounding_box(polygon).extent()) return skeleton;
+  } catch (const SkeletonFailure& failure) {
+    throw InvalidPolygon(failure.what(), 0);
+  }
+  throw InvalidPolygon("is thinner than double precision resolves", 0);
+}
+
+// The lines of a polygon that is not convex.
+Potential sloped_lines(const Polygon& polygon, double reference) {
+  Potential potential;
+  potential.vertices = polygon.local_vertices();
+  potential.gradients = inward_normals(polygon);
+  for (Vec2& g : potential.gradients) g /= reference;
+  potential.steepest = 1 / reference;
+  return potential;
+}
+
+using Reference = PotentialChoice::Reference;
+
+// A polygon that is not convex: phi is the roof of its straight skeleton over r.
+Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  const Skeleton skeleton = skeleton_of(polygon);
+  const double reference = choice.reference == Reference::length ? choice.length
+                           : choice.reference == Reference::inscribed_circle
+                               ? largest_inscribed_circle(polygon).radius
+                               : skeleton.roof_height;
+  Potential potential = sloped_lines(polygon, reference);
+  potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
+  potential.roof = make_roof(skeleton, reference);
+  for (const Skeleton::Node& node : skeleton.nodes) {
+    if (node.height >= skeleton.roof_height * (1 - kSameHeight)) {
+      potential.top_points.push_back(node.point);
+    }
+  }
+  return potential;
+}
+
+// Or the distance to its boundary over r, which needs a skeleton for its height alone.
+Potential field_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  const InscribedCircle circle = largest_inscribed_circle(polygon);
+  const double reference = choice.reference == Reference::length ? choice.length
+                           : choice.reference == Reference::inscribed_circle
+                               ? circle.radius
+                               : skeleton_of(polygon).roof_height;
+  Potential potential = sloped_lines(polygon, reference);
+  potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
+  potential.top_points = circle.centres;
+  potential.distance = make_distance_field(polygon, reference);
+  return potential;
+}
+
+Potential distance_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  if (!polygon.is_convex()) {
+    return choice.field == PotentialChoice::Field::roof ? roof_potential(polygon, choice)
+                                                        : field_potential(polygon, choice);
+  }
+  Potential potential = envelope_potential(polygon, inward_normals(polygon));
+  const double inradius = potential.top;
+  if (choice.reference == PotentialChoice::Reference::length) {
+    scale(potential, 1 / choice.length);
+    potential.steepest = 1 / choice.length;
+  } else {
+    scale(potential, 1 / inradius);
+    potential.top = 1;
+    potential.steepest = 1 / inradius;
+  }
+  return potential;
+}
+
+Potential area_potential(const Polygon& polygon) {
+  if (polygon.size() != 3) {
+    throw InvalidPolygon("has " + std::to_string(polygon.size()) +
+                             " vertices: the area potential is defined for triangles only (use the "
+                             "distance potential)",
+                         3);
+  }
+  const double area = area_moments(polygon).area;
+  std::vector<Vec2> gradients(3);
+  double steepest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 d = polygon.after(i) - polygon[i];
+    gradients[i] = Vec2(-d.y(), d.x()) * (1.5 / area);  // slope 3 / altitude
+    steepest = std::max(steepest, gradients[i].norm());
+  }
+  Potential potential = envelope_potential(polygon, std::move(gradients));
+  potential.top = 1;  // at the centroid, where the three areas agree
+  potential.steepest = steepest;
+  return potential;
+}
+
+}  // namespace
+
+InscribedCircle inscribed_circle(const Polygon& polygon) {
+  require_convex(polygon);
+  Potential potential = envelope_potential(polygon, inward_normals(polygon));
+  return {potential.top, std::move(potential.top_points)};
+}
+
+Potential make_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  return choice.kind == PotentialChoice::Kind::area ? area_potential(polygon)
+                                                    : distance_potential(polygon, choice);
+}
+
+Potential translated(Potential potential, const Vec2& shift) {
+  for (Vec2& v : potential.vertices) v -= shift;
+  for (Vec2& v : potential.top_points) v -= shift;
+  if (potential.roof) {
+    for (Vec2& v : potential.roof->points) v -= shift;
+  }
+  return potential;
+}
+
+}  // namespace apothem

@@ -1,0 +1,74 @@
+// The straight skeleton of a simple polygon. It consists of the paths of the vertices while the
+// mitred boundary moves inwards. The roof over a point is the time at which the boundary passes it.
+// Every face of the skeleton belongs to one edge of the polygon, and in it the roof is the distance
+// to the line of that edge.
+//
+// CGAL's construction sometimes fails on ordinary input: it returns nothing, never returns, crashes
+// or returns a wrong skeleton. Therefore CGAL runs in a child process with a time limit, its result
+// is corrected with the lines of the polygon's edges, and the result has to pass the laws that
+// broken_law lists. Otherwise the construction is repeated with the vertices moved by 1e-13 to 1e-9
+// of the polygon's size.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apothem/geometry/polygon/polygon.hpp"
+
+namespace apothem {
+
+/// Thrown if no skeleton that passes the laws was found. The message says what was tried and what
+/// may help.
+class SkeletonFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The straight skeleton of a polygon with n vertices.
+struct Skeleton {
+  /// A node of the skeleton.
+  struct Node {
+    Vec2 point;     ///< position relative to polygon.origin(), m
+    double height;  ///< distance to the lines of all edges whose faces meet here, m
+  };
+  /// A straight arc between two nodes.
+  struct Arc {
+    int start, end;   ///< indices of its nodes
+    int left, right;  ///< faces on its two sides, seen from start to end; -1 means outside
+  };
+  std::vector<Node> nodes;  ///< the first n nodes are the polygon's vertices, of height 0
+  std::vector<Arc> arcs;    ///< the first n arcs are the polygon's edges
+  /// Node indices of the face of each edge e, counter-clockwise, beginning with e and e + 1.
+  std::vector<std::vector<int>> faces;
+  double roof_height = 0;  ///< largest height of a node, m
+  int attempts = 1;        ///< number of constructions until one passed the laws
+  bool exact = false;      ///< true if made with CGAL's exact constructions
+};
+
+/// Position of node i in the coordinates of the polygon's vertices. For i < polygon.size() it is
+/// vertex i to the last bit.
+inline Vec2 world_point(const Polygon& polygon, const std::vector<Skeleton::Node>& nodes, int i) {
+  return i < polygon.size() ? polygon[i] : Vec2(polygon.origin() + nodes[i].point);
+}
+
+/// Constructs the straight skeleton. Convex polygons usually need no child process. Throws
+/// SkeletonFailure if no attempt passes the laws.
+Skeleton straight_skeleton(const Polygon& polygon);
+
+/// Returns a description of the first law that the skeleton of this polygon breaks, or nothing if
+/// it obeys all of them. The laws, with a tolerance of 1e-9 of the polygon's size, are:
+/// - All indices are in range and all numbers are finite. The first nodes and arcs are the vertices
+///   and edges of the polygon.
+/// - Each face starts with its own edge. Each inner arc lies between two faces that pass it in
+///   opposite senses. The inner arcs form one tree that reaches every node. Hence the faces form a
+///   disc.
+/// - Every node lies inside the polygon. Its height is its distance to the line of every edge whose
+///   face meets there.
+/// - Every face is simple, is monotone along its edge and has a positive area, and the areas sum to
+///   the area of the polygon. Hence the faces tile the polygon.
+/// - Water runs off the roof: every valley starts at a reflex vertex or continues a lower valley.
+std::optional<std::string> broken_law(const Skeleton& skeleton, const Polygon& polygon);
+
+}  // namespace apothem

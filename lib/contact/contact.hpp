@@ -1,0 +1,42 @@
+// A contact: where the boundaries of two bodies touch, as the kernels find it.
+#pragma once
+
+#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/mesh/indices.hpp"
+
+namespace apothem {
+
+/// One record for every kernel. `a` and `b` are two surfaces, or an edge and a face of outlines;
+/// what else the kernel knows about the contact stands in its own list, in the same order.
+struct Contact {
+  int a, b;
+  double depth;      ///< of the deepest point below a surface, or extent of the overlap, m
+  double share;      ///< of the depth at which the potential ends; 1: beyond its end
+  double stiffness;  ///< bound of the change of the force over the depth, N/m (theory: Sec. 2)
+};
+
+/// What acts in one contact patch, a connected part of the overlap of two bodies. Forces act on a.
+struct ContactRecord {
+  BodyIndex a, b;                   ///< a < b
+  Vec2 point = Vec2::Zero();        ///< loading point relative to the origin of the model, m
+  Vec2 normal = Vec2::Zero();       ///< elastic normal force, N
+  Vec2 tangential = Vec2::Zero();   ///< friction and damping, N
+  double penetration = 0;           ///< extent of the overlap along the force, or depth, m
+  double phi = 0;                   ///< largest potential met
+};
+
+/// A resultant on a body: force and moment about the mass centre of a rigid body.
+struct Resultant {
+  Vec2 force = Vec2::Zero();  ///< N
+  double moment = 0;          ///< N m
+};
+
+/// An edge of a boundary that takes part in contact of deformable bodies.
+struct SurfaceRecord {
+  BodyIndex body;
+  Vec2 from, to;        ///< relative to the origin of the model, m
+  double pressure = 0;  ///< mean normal pressure, Pa
+  double traction = 0;  ///< mean friction along the edge, Pa
+};
+
+}  // namespace apothem

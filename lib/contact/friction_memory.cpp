@@ -1,0 +1,26 @@
+#include "apothem/contact/friction_memory.hpp"
+
+#include <tuple>
+
+namespace apothem {
+
+void FrictionMemory::begin_step() {
+  std::swap(now_, before_);
+  now_.clear();
+  next_ = 0;
+  energy_before_ = energy_;
+  energy_ = 0;
+}
+
+std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
+  const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
+  const std::tuple pair(law, a, b);
+  while (next_ < before_.size() && pair_of(before_[next_]) < pair) ++next_;
+  const size_t first = next_;
+  while (next_ < before_.size() && pair_of(before_[next_]) == pair) ++next_;
+  return std::span<const Spring>(before_).subspan(first, next_ - first);
+}
+
+void FrictionMemory::end_step(double work) { loss_ -= work + (energy_ - energy_before_); }
+
+}  // namespace apothem

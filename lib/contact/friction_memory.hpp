@@ -1,0 +1,75 @@
+// The friction springs of all contacts: what friction remembers from one step to the next (theory:
+// Secs. 3 and 5.3), and the ledger of what it dissipates.
+//
+// A friction law decides what has a spring: a contact patch, an edge of an overlap, an edge of a
+// mesh's boundary, or a pair of elements. The mechanism is the same for all of them. The spring
+// follows the slip of a step and is clamped by Coulomb's law; the laws give stiffness, slip and
+// limit, and distribute the force.
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// Who touches what. Keys ascend within a step.
+struct SpringKey {
+  int law;   ///< of the kernel whose contact it is: see kernel.hpp
+  int a, b;  ///< two surfaces, or an edge and its partner
+  int part;  ///< patch of the pair, or edge of its overlap; 0 where a pair has one spring
+  auto operator<=>(const SpringKey&) const = default;
+};
+
+struct Spring {
+  SpringKey key;
+  double force = 0;             ///< along the tangent of its contact, N
+  double stiffness = 0;         ///< N/m
+  Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
+
+  [[nodiscard]] double energy() const { return stiffness > 0 ? force * force / (2 * stiffness) : 0; }
+};
+
+/// Force of a spring after a slip in m: never beyond Coulomb's limit in N.
+inline double slide(double force, double slip, double stiffness, double limit) {
+  return std::clamp(force - stiffness * slip, -limit, limit);
+}
+
+class FrictionMemory {
+ public:
+  /// The springs of this step become those of the step before.
+  void begin_step();
+  /// The springs that a pair had in the step before, in the order of their parts; empty if it is
+  /// new. Pairs must be asked for in ascending order.
+  [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
+  /// Keeps a spring for the next step; in ascending order of the keys.
+  void keep(const Spring& spring) {
+    now_.push_back(spring);
+    energy_ += spring.energy();
+  }
+  /// Closes the step. `work`: what friction has done on the bodies since the step before, J. What
+  /// they have lost and the springs do not store is dissipated.
+  void end_step(double work);
+
+  [[nodiscard]] std::span<const Spring> springs() const { return now_; }
+  /// Elastic energy of the springs, J.
+  [[nodiscard]] double energy() const { return energy_; }
+  /// Energy dissipated by friction since the start, J.
+  [[nodiscard]] double loss() const { return loss_; }
+  /// What has been dissipated so far does not count.
+  void start_ledger() { loss_ = 0; }
+
+  template <class Archive>
+  void fields(Archive& archive);
+
+ private:
+  std::vector<Spring> now_, before_;
+  size_t next_ = 0;  // of the springs before
+  double energy_ = 0, energy_before_ = 0, loss_ = 0;
+};
+
+}  // namespace apothem

@@ -1,0 +1,124 @@
+// The outlines of bodies with the collars of their potentials (theory: Sec. 5.2).
+//
+// An outline is the boundary of a body: the closed lines around a mesh, or the polygon of a rigid
+// body that may touch a mesh. The collar is the part of the outline's roof near the surface. Every
+// edge has one face of it, which ends where the faces around it change their shape. The vertices of
+// all outlines form one list; edge i leads from vertex i to vertex next[i].
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "apothem/contact/collar.hpp"
+#include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+#include "apothem/mesh/boundary.hpp"
+#include "apothem/mesh/indices.hpp"
+#include "apothem/mesh/mesh.hpp"
+
+namespace apothem {
+
+class Outlines {
+ public:
+  struct Body {
+    int first, end;         ///< the vertices of the body
+    RigidIndex rigid;       ///< -1 if the body is deformable
+    double reference;       ///< r of its potential, m; it does not follow the deformation
+    double cx = 0, cy = 0;  ///< mass centre of a rigid body, m
+
+    [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
+    [[nodiscard]] double slope() const { return 1 / reference; }  ///< of its potential, 1/m
+  };
+  std::vector<Body> bodies;               ///< in the order of BodyIndex
+  std::vector<BodyIndex> body;            ///< of each vertex
+  std::vector<int> next, previous;        ///< vertices around each vertex
+  std::vector<NodeIndex> node;            ///< of each vertex; -1 on a rigid body
+  std::vector<double> cap;                ///< largest depth of the collar at each edge, m
+  std::vector<double> x, y;               ///< present place of each vertex, m
+  std::vector<double> mx, my;             ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;             ///< unit tangent of each edge
+  std::vector<double> length;             ///< of each edge, m
+  std::vector<double> clearance;          ///< height at which the fronts of other edges arrive, m
+  std::vector<double> depth;              ///< of the collar at each edge, m
+  std::vector<Box> edge_boxes;            ///< of the edges at the last search, grown by half the skin
+  std::vector<Box> face_boxes;            ///< of the faces, likewise
+  std::vector<Box> body_boxes;            ///< of the edges and faces of each body, likewise
+
+  /// `skin`: how far corners of edges and faces may move between two searches, twice over, m.
+  explicit Outlines(double skin = 0) : skin_(skin) {}
+
+  /// Adds the outline of a mesh whose node 0 has the number `first_node`. The collar of an edge is
+  /// at most as deep as the inradius of its element, and r is the smallest of these inradii; with
+  /// `reference` (m) both have that value.
+  void add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
+                std::optional<double> reference = {});
+
+  /// Adds the polygon of a rigid body, counter-clockwise about the mass centre; `reference`: its r
+  /// in m.
+  void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
+
+  /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those of
+  /// rigid bodies follow their polygons. Throws std::domain_error if a vertex is not at a finite
+  /// place.
+  void place(const Kinematics& now, const PlacedShapes& polygons);
+
+  /// True if an edge or a face has moved through half the skin since the last search.
+  [[nodiscard]] bool stale() const;
+  /// Has the next look find the outlines stale.
+  void forget() { kept_.clear(); }
+  /// Renews the clearances and depths of the collars, which follow from all edges of a body, and
+  /// the boxes for the search.
+  void prepare_search();
+
+  /// Two edges of one body that cross, noticed at the last search.
+  struct SelfContact {
+    BodyIndex body;
+    Vec2 place;  ///< m
+  };
+  [[nodiscard]] const std::optional<SelfContact>& self_contact() const { return self_contact_; }
+
+  [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
+  /// Half the length of the two edges at a vertex, m.
+  [[nodiscard]] double share(int vertex) const {
+    return (length[vertex] + length[previous[vertex]]) / 2;
+  }
+  [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
+  [[nodiscard]] CollarFace<double> face(int i) const {
+    const int j = next[i];
+    return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],             length[i],
+            mx[i], my[i], mx[j], my[j], depth[i], depth[previous[i]], depth[j]};
+  }
+
+ private:
+  void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes,
+                std::span<const double> caps);
+  void close_body(const Body& body);
+  void move(const Kinematics& now, const PlacedShapes& polygons);
+  void find_edges();
+  void find_depths();
+  void find_boxes(double growth);
+  void find_clearance(BodyIndex body);
+  /// x, y of the start of an edge and of both upper ends of its face.
+  using Corners = std::array<double, 6>;
+  [[nodiscard]] Corners corners(int edge) const;
+
+  double skin_;
+  std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
+  std::vector<double> events_;   // height at which each face changes its shape
+  std::vector<Corners> kept_;    // of the last search
+  int measured_ = 0;             // bodies before this one have clearances, if they are rigid
+  BoxGrid grid_;
+  std::vector<Box> near_boxes_;
+  std::vector<BoxPair> near_pairs_;
+  std::optional<SelfContact> self_contact_;
+};
+
+/// Inradii of the elements at the edges of a line of the boundary, m.
+std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop);
+/// The smallest inradius of the elements at the boundary, m.
+double boundary_inradius(const Mesh& mesh, const Boundary& boundary);
+
+}  // namespace apothem

@@ -1,0 +1,54 @@
+// Loops on several threads.
+//
+// Items are divided into contiguous chunks, one for each thread, and every item is worked on by one
+// thread alone. What is summed over items is summed afterwards, in their order. So the result has
+// the same bits for any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <type_traits>
+
+namespace apothem {
+
+/// Work, in nanoseconds on one thread, below which waking the others costs more than it gives.
+inline constexpr double kWorthThreads = 4e5;
+
+class Threads {
+ public:
+  explicit Threads(int count = 1) : count_(std::max(count, 1)) {}
+
+  [[nodiscard]] int count() const { return count_; }
+
+  /// f(first, end, worker) for chunks of [0, items), with worker in [0, count()) different for
+  /// chunks that run at the same time. `each`: what one item costs, roughly, in nanoseconds. f must
+  /// not throw.
+  template <class F>
+  void chunks(int items, double each, F&& f) const {
+    if (count_ == 1 || items * each < kWorthThreads) {
+      f(0, items, 0);
+      return;
+    }
+    using Function = std::remove_reference_t<F>;
+    Task<Function> task{&f, items};
+    run(
+        [](void* data, int worker, int workers) {
+          const auto& [function, n] = *static_cast<Task<Function>*>(data);
+          const auto edge = [&](int w) { return static_cast<int>(std::int64_t{n} * w / workers); };
+          (*function)(edge(worker), edge(worker + 1), worker);
+        },
+        &task);
+  }
+
+ private:
+  template <class F>
+  struct Task {
+    F* function;
+    int items;
+  };
+  void run(void (*work)(void* task, int worker, int workers), void* task) const;
+
+  int count_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,34 @@
+#include <catch2/catch.hpp>
+
+#include "apothem/geometry/spatial/boxes.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+
+TEST_CASE("the box grid finds what brute force finds", "[boxes]") {
+  samples::Random random(3);
+  BoxGrid grid;
+  std::vector<BoxPair> found;
+  for (int round = 0; round < test::scaled(200); ++round) {
+    const double offset = round % 3 == 0 ? 0 : std::pow(10.0, random.uniform(0, 12));
+    std::vector<Box> boxes;
+    const int n = random.integer(0, 120);
+    for (int i = 0; i < n; ++i) {
+      const double size = std::pow(10.0, random.uniform(-3, 1));  // ratio 1 : 10 000
+      const double x = offset + random.uniform(-5, 5);
+      const double y = -offset + random.uniform(-5, 5);
+      boxes.push_back({x, y, x + size * random.uniform(0, 1), y + size * random.uniform(0, 1)});
+      if (random.integer(0, 9) == 0) boxes.push_back(boxes.back());                // twice the same
+      if (random.integer(0, 9) == 0) boxes.push_back({x, y, x, y});                // a point
+      if (random.integer(0, 9) == 0) boxes.push_back({x - size, y, x, y + size});  // touching
+    }
+    std::vector<BoxPair> expected;
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+      for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j) {
+        if (!apart(boxes[i], boxes[j])) expected.push_back({i, j});
+      }
+    }
+    grid.find_pairs(boxes, found);
+    REQUIRE(found == expected);
+  }
+}
