@@ -1,4 +1,4 @@
-// apothem accuracy: speed against error of every method on every case.
+// apothem accuracy: compares speed and error of all methods for the contact force.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,16 +20,18 @@
 namespace apothem {
 namespace {
 
-// Errors above this share of the scale are failures.
+// An error above this share of W, the weight of the contact (see Errors), counts as a failure.
 constexpr double kWrong = 1e-2;
-// The goal for the force error, as a share of the own boundary length.
+// The goal: error of the force over the length of the own boundary inside the other polygon.
 constexpr double kGoal = 1e-12;
 
+// A set of pairs that share a row of the table.
 struct Case {
   std::string name;
   std::vector<PreparedPair> pairs;
-  std::vector<std::optional<ExpectedContact>> expected;  // one per pair
-  int refused = 0;
+  // One expected contact per pair, empty where the file gives none.
+  std::vector<std::optional<ExpectedContact>> expected;
+  int refused = 0;  // number of pairs whose polygons are invalid
 };
 
 class Cases {
@@ -69,7 +71,7 @@ class Cases {
   std::vector<Case> cases_;
 };
 
-// Pairs in general position that overlap.
+// Adds pairs of random polygons in general position that overlap.
 void add_generic(Cases& cases) {
   const auto fill = [&](const std::string& kind, int count, const auto& shape) {
     samples::Random random(7);
@@ -109,23 +111,24 @@ Cases cases_of(const AccuracyOptions& options) {
   return cases;
 }
 
-// The error figures of docs/theory.md for one pair, against the reference.
+// The error figures of docs/theory.md for one pair, against the exact force F. W is the integral of
+// phi over both boundaries inside the other polygon.
 struct Errors {
-  double of_weight = 0;  // |dF| / W; W no smaller than the goal's share of the own length
+  double of_weight = 0;  // |dF| / W, where W is at least kGoal times the own boundary length
   double of_length = 0;  // |dF| / own boundary length
-  double scaled = 0;     // |dF| / |F| x depth / (eps X)
+  double scaled = 0;     // |dF| / |F| x depth / (eps X), with the pairs' size X
   double moment = 0;     // |dM| / (own boundary length x X)
 };
 
 Errors errors(const PreparedPair& pair, const PairIntegral& result, const PairIntegral& exact) {
   const double own = exact.own_length_a + exact.own_length_b;
-  const double length = own > 0 ? own : pair.size;  // pairs that only touch
+  const double length = own > 0 ? own : pair.size;  // the polygons only touch
   const double error = (result.force - exact.force).norm();
   Errors e;
   e.of_weight = error / std::max(exact.weight, kGoal * length);
   e.of_length = error / length;
   if (exact.weight > 0) {
-    // Mean depth of the boundary inside. Where the tractions cancel, W stands for |F|.
+    // The mean depth of the boundary inside. Where the tractions cancel, W takes the place of |F|.
     const double depth =
         exact.weight / own / std::max(pair.potential_a.steepest, pair.potential_b.steepest);
     const double force = exact.force.norm();
@@ -155,7 +158,7 @@ struct Row {
   int refused = 0;
   int failures = 0;
   double nanoseconds = 0;
-  double median = 0, worst = 0;  // of W
+  double median = 0, worst = 0;  // of |dF| / W
   Worst of_length, scaled;
 };
 
@@ -345,7 +348,7 @@ failed(m) = (strcol(2) eq m && column(5) > 0 ? 1 : NaN)
 plot )gp";
   script +=
       fmt::format("{} with lines lc rgb '#000000' dt 2 lw 1.5 title 'goal: 10^{{-12}}'", kGoal);
-  // In the order of kAccuracyMethods.
+  // One colour per method, in the order of kAccuracyMethods.
   constexpr std::array kColours{"#777777", "#4477aa", "#228833", "#ee6677", "#aa3377", "#ccbb44"};
   for (size_t m = 0; m < kAccuracyMethods.size(); ++m) {
     const std::string_view name = kAccuracyMethods[m].name;
@@ -360,7 +363,7 @@ plot )gp";
   return script + "\n";
 }
 
-// Force and moments to 17 digits, one pair per line.
+// Writes the hard pairs with force and moments to 17 digits, one pair per line.
 void write_cases(const std::string& file) {
   std::string text =
       "{\"about\": \"Hard pairs of polygons and their contact: distance potential, reference roof, "
@@ -381,13 +384,14 @@ void write_cases(const std::string& file) {
     return "[" + list + "]";
   };
   const AccuracyRun exact = run_method(kAccuracyMethods[0].name, pairs);
-  // Zeros are zero only to the oracle's last digit.
+  // Forces and moments that vanish do so to the last digit of the oracle only.
   const auto clean = [](double x, double scale) { return std::abs(x) < 1e-60 * scale ? 0 : x; };
   for (size_t i = 0; i < pairs.size(); ++i) {
     const PreparedPair& pair = pairs[i];
     const auto& [r, volume, failure] = exact.outcomes[i];
     if (!failure.empty()) throw std::runtime_error(pair.name + ": the oracle " + failure);
-    // The round-off of phi that one ulp of the coordinates makes, where it is above the goal.
+    // An error of one ulp in the coordinates changes phi by this much; it counts where it exceeds
+    // the goal.
     const double tolerance =
         std::max(kGoal, std::numeric_limits<double>::epsilon() * pair.size *
                             std::max(pair.potential_a.steepest, pair.potential_b.steepest));

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The kernel as the step loop calls it: shapes placed, memory at hand.
+// The edge-integral kernel as the step loop calls it: shapes are placed and memory is allocated.
 class EdgeKernel {
  public:
   explicit EdgeKernel(const std::vector<PreparedPair>& pairs) {
@@ -45,13 +45,13 @@ class EdgeKernel {
   EdgeWorkspace workspace_;
 };
 
-// Hands the method to `use` as a function of the pair's index.
+// Calls use(method), where `method` is a function from the index of a pair to its result.
 template <class Use>
 void with_method(std::string_view method, const std::vector<PreparedPair>& pairs, const Use& use) {
   const auto with = [&](const auto& evaluate) {
     use([&](size_t i) -> PairResult { return evaluate(pairs[i]); });
   };
-  // Without the energy, as edge.
+  // Without the energy, because the method "edge" does not compute it either.
   const auto with_overlap = [&](const auto& overlap) {
     with([&](const PreparedPair& p) -> PairResult {
       return {overlap_integral(overlap(p), p.a.origin(), p.a, p.potential_a, p.b, p.potential_b),
@@ -78,7 +78,7 @@ void with_method(std::string_view method, const std::vector<PreparedPair>& pairs
   }
 }
 
-// What a child sends for one pair.
+// The result for one pair, as a child process sends it.
 struct Record {
   double threw, seconds;
   double force_x, force_y, moment_a, moment_b, weight, own_length_a, own_length_b, penetration;
@@ -115,8 +115,8 @@ void evaluate_from(size_t first, std::string_view method, const std::vector<Prep
   });
 }
 
-// Rounds over all pairs with a result, in blocks of some 20 us: short enough that the rest of the
-// machine leaves one of the rounds of each block alone. The fastest ones count.
+// Times rounds over all pairs with a result, in blocks of about 20 us. Blocks are that short so
+// that at least one round of each runs undisturbed by other processes; the fastest rounds count.
 void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs,
                  const std::vector<size_t>& good, double seconds_per_pair,
                  const SendNumbers& send) {
@@ -193,7 +193,8 @@ AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>&
       pair.penetration = r.penetration;
       outcome.volume = {r.energy, r.overlap_area};
       const size_t i = run.outcomes.size() - 1;
-      if (method == "edge") {  // its moments are about the first vertices
+      // The moments of this method refer to the first vertices; the others refer to the centroids.
+      if (method == "edge") {
         pair.moment_a -= cross(area_moments(pairs[i].a).centroid, pair.force);
         pair.moment_b += cross(area_moments(pairs[i].b).centroid, pair.force);
       }

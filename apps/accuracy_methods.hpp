@@ -1,5 +1,5 @@
-// The ways to the contact force of a pair that `apothem accuracy` compares, and how each is run and
-// timed without its crashes harming anyone.
+// Private header of `apothem accuracy`: the methods for the contact force that it compares, and how
+// each is run and timed in a child process, so that a crash harms nothing else.
 #pragma once
 
 #include <array>
@@ -11,21 +11,23 @@
 
 namespace apothem {
 
-/// Two polygons with their potentials (distance, reference `roof`), made before any clock runs.
+/// Two polygons with their distance potentials (reference `roof`), which are made before any timing
+/// starts.
 struct PreparedPair {
   PreparedPair(std::string pair_name, Polygon polygon_a, Polygon polygon_b);
   std::string name;
   Polygon a, b;
   Potential potential_a, potential_b;
-  double size;  ///< X, extent of the larger polygon, m
-  bool convex;  ///< both
+  double size;  ///< extent X of the larger polygon, m
+  bool convex;  ///< whether both polygons are convex
 };
 
+/// A method and its description.
 struct AccuracyMethod {
   std::string_view name;
   std::string_view what;
 };
-/// The first one is what the others are compared with.
+/// All methods. The others are compared with the first one.
 inline constexpr std::array kAccuracyMethods{
     AccuracyMethod{"exact", "exact overlap, 100 digits, potentials included: the reference"},
     AccuracyMethod{"edge", "edge integrals, as the step loop calls them"},
@@ -35,20 +37,22 @@ inline constexpr std::array kAccuracyMethods{
     AccuracyMethod{"clip", "plain floating-point clipping, Eq. 8"},
 };
 
-/// One method on one pair; `failure` is empty if there is a result.
+/// The result of one method for one pair; `failure` says why there is none, or is empty.
 struct AccuracyOutcome {
   PairIntegral integral;
-  PairVolume volume;  ///< of exact and overlap
+  PairVolume volume;  ///< energy and overlap area, from the methods "exact" and "overlap" only
   std::string failure;
 };
 
+/// The results of one method for all pairs.
 struct AccuracyRun {
   std::vector<AccuracyOutcome> outcomes;  ///< one per pair
-  double nanoseconds = 0;                 ///< per pair that has a result, fastest round; NaN: none
+  /// Time per pair with a result, ns, in the fastest rounds; NaN if there is no result.
+  double nanoseconds = 0;
 };
 
-/// Runs a method on all pairs in a child process, again and again behind the pairs on which it
-/// crashes or stays silent for 20 s (the reference: 10 min).
+/// Runs a method on all pairs in a child process. If the child crashes or is silent for 20 s (the
+/// reference: 10 min), that pair fails and a new child continues with the next one.
 AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>& pairs);
 
 }  // namespace apothem

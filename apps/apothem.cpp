@@ -1,4 +1,5 @@
-// The command line: options of every sub-command, and what each kind of failure turns into.
+// The program's command line: options of all sub-commands, and the exit code and message of each
+// kind of failure.
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ namespace {
 
 using namespace apothem;
 
-// CLI11's own PositiveNumber lets nan and inf pass.
+// CLI11's own PositiveNumber accepts nan and inf.
 const CLI::Validator kPositive(
     [](std::string& text) {
       char* end = nullptr;
@@ -162,7 +163,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return app.exit(error);  // after --help or --version
     fmt::print(stderr, "apothem: {}; see apothem --help\n", error.what());
     return exit_code::bad_input;
   }
@@ -178,7 +179,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error of write()
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a limit on file sizes becomes an error of write()
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -191,7 +192,8 @@ int main(int argc, char** argv) {
     return fail(apothem::exit_code::system_failed, error.what());
   } catch (const std::bad_alloc&) {
     return fail(apothem::exit_code::system_failed, "out of memory");
-  } catch (const std::exception& error) {  // a full pipe, a file name the system refuses, ...
+  } catch (const std::exception& error) {
+    // Other failures of the system, like a full pipe or a file name that it refuses.
     return fail(apothem::exit_code::system_failed, error.what());
   }
 }

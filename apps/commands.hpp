@@ -1,4 +1,6 @@
-// The sub-commands of the program. Each returns an exit code of the public contract.
+// Private header: the sub-commands of the program with their options. Each function returns an exit
+// code below and throws where its command fails; main() in apothem.cpp turns exceptions into exit
+// codes.
 #pragma once
 
 #include <optional>
@@ -9,78 +11,97 @@
 
 namespace apothem {
 
+/// The exit codes of the program, which its users may rely on.
 namespace exit_code {
-inline constexpr int done = 0;
-inline constexpr int missed = 1;  ///< an expectation of the scene or of a file of pairs was not met
-inline constexpr int bad_input = 2;
-inline constexpr int unstable = 3;
+inline constexpr int done = 0;  ///< everything succeeded
+/// An expectation of a scene, or an expected value of a file of pairs, was not met.
+inline constexpr int missed = 1;
+inline constexpr int bad_input = 2;  ///< the command line or an input file is wrong
+inline constexpr int unstable = 3;   ///< unstable, or outside the range of the method
+/// The operating system failed: disk full, no permission, out of memory.
 inline constexpr int system_failed = 4;
-inline constexpr int interrupted = 130;
+inline constexpr int interrupted = 130;  ///< stopped by a signal; 128 + SIGINT
 }  // namespace exit_code
 
+/// Options of `apothem run`.
 struct RunOptions {
-  std::string scene;
-  std::string folder;  ///< empty: out/NAME
+  std::string scene;   ///< scene file
+  std::string folder;  ///< folder of results; empty: out/NAME
   int threads = 1;
-  std::optional<double> until;  ///< s
-  bool resume = false;          ///< from the folder's checkpoint
-  bool overwrite = false;
+  std::optional<double> until;  ///< end of this run instead of the scene's, s
+  bool resume = false;          ///< continue from the checkpoint in the folder
+  bool overwrite = false;       ///< replace the results in the folder
   bool quiet = false;
   bool verify = false;
 };
+/// Runs a scene and writes its results.
 int run_command(const RunOptions& options);
 
+/// Options of `apothem check`.
 struct CheckOptions {
-  std::string scene;
+  std::string scene;  ///< scene file
 };
+/// Validates a scene and prints what a run would do.
 int check_command(const CheckOptions& options);
 
+/// Options of `apothem contact`.
 struct ContactOptions {
-  std::string a, b;
-  std::string batch;  ///< file of pairs instead of a and b
+  std::string a, b;   ///< files of the two polygons
+  std::string batch;  ///< file with one pair per line, instead of `a` and `b`
   std::string potential = "distance";
-  std::optional<std::string> field;      ///< distance potential only; by default its roof
-  std::optional<std::string> reference;  ///< distance potential only; by default the roof's height
-  std::string method = "edge";
-  double stiffness = 1;
-  bool json = false;
+  std::optional<std::string> field;  ///< depth field of the distance potential; by default the roof
+  /// Reference length of the distance potential; by default the roof's height.
+  std::optional<std::string> reference;
+  std::string method = "edge";  ///< way to compute the contact
+  double stiffness = 1;         ///< normal contact stiffness k_n, Pa
+  bool json = false;            ///< print JSON instead of a table
 };
+/// Computes the contact of two polygons, or of all pairs in a file.
 int contact_command(const ContactOptions& options);
 
+/// Options of `apothem mesh`.
 struct MeshOptions {
-  std::string file;   ///< a region, or a mesh (.msh)
-  bool make = false;  ///< Voronoi cells in the region
+  std::string file;   ///< file of a region, or of a mesh (.msh)
+  bool make = false;  ///< cut the region into Voronoi cells
   VoronoiOptions voronoi;
-  std::string output;  ///< empty: a region's cells go to standard output
-  std::string vtk;     ///< empty: none
-  bool json = false;   ///< the description of a mesh
+  std::string output;  ///< file for the cells; empty: standard output
+  std::string vtk;     ///< file for VTK; empty: none
+  bool json = false;   ///< describe a mesh in JSON instead of a table
 };
+/// Cuts a region into cells, or describes a mesh.
 int mesh_command(const MeshOptions& options);
 
+/// Options of `apothem polygon`.
 struct PolygonOptions {
-  std::string file;
-  std::string batch;  ///< file of rings instead of one polygon
-  std::string reference = "roof";
-  std::string vtk;      ///< folder
-  std::string picture;  ///< file
-  bool json = false;
+  std::string file;                ///< polygon file
+  std::string batch;               ///< file with one list of vertices per line, instead of `file`
+  std::string reference = "roof";  ///< reference length: a name or a length in m
+  std::string vtk;                 ///< folder for VTK files; empty: none
+  std::string picture;             ///< file for a picture; empty: none
+  bool json = false;               ///< print JSON instead of a table
 };
+/// Prints and draws a polygon's properties and its potential.
 int polygon_command(const PolygonOptions& options);
 
+/// Options of `apothem accuracy`.
 struct AccuracyOptions {
-  std::vector<std::string> cases;  ///< files of pairs; none: generic and hard pairs
-  std::string folder = "out/accuracy";
-  std::string write_cases;  ///< write the hard pairs with expected values there instead
+  std::vector<std::string> cases;  ///< files of pairs; empty: the built-in generic and hard pairs
+  std::string folder = "out/accuracy";  ///< folder of results
+  /// If not empty: write the hard pairs and their expected contact to this file instead.
+  std::string write_cases;
 };
+/// Compares speed and error of all methods for the contact force.
 int accuracy_command(const AccuracyOptions& options);
 
+/// Options of `apothem reproduce`.
 struct ReproduceOptions {
-  std::vector<std::string> figures;  ///< names, or "all"; none: print the list
-  std::string folder = "out/reproduce";
-  std::string data;  ///< folder with figures, scenes and reference; empty: the program's own
+  std::vector<std::string> figures;      ///< names, or "all"; empty: print the list of figures
+  std::string folder = "out/reproduce";  ///< folder of results
+  std::string data;  ///< folder of figures, scenes and references; empty: the program's own
   int threads = 1;
   bool verify = false;
 };
+/// Runs the scenes of figures and writes their curves, pictures and a report.
 int reproduce_command(const ReproduceOptions& options);
 
 }  // namespace apothem

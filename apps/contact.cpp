@@ -93,7 +93,7 @@ Polygon read_polygon(const std::string& file, const char* which) {
 }
 
 int batch(const ContactOptions& options) {
-  potential_choice(options);  // a bad option is one error, not one per line
+  potential_choice(options);  // a wrong option is reported once, not for each line
   int code = exit_code::done;
   for_each_line(options.batch, [&](const std::string& name, const std::string& text) {
     Json object{{"name", name}};

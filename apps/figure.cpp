@@ -11,8 +11,9 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kMostFields = 100;  // of a panel: frames get too small to see
-constexpr double kFarthest = 1e60;   // m, as of polygons
+// Most fields of a panel; with more, the frames would be too small to see.
+constexpr size_t kMostFields = 100;
+constexpr double kFarthest = 1e60;  // limit of coordinates, m; the same as for polygons
 
 std::string scene_file(const std::string& data, const std::string& scene) {
   return data + "/scenes/" + scene + ".json";
@@ -38,7 +39,7 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-// Columns of history.csv, energy.csv and momentum.csv.
+// The columns that a scene records in history.csv, energy.csv and momentum.csv.
 std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
   std::vector<std::vector<std::string>> files{{},
                                               {kEnergyColumns.begin(), kEnergyColumns.end()},
@@ -87,7 +88,7 @@ class FigureReader {
   }
 
  private:
-  // Labels become the head of a CSV file.
+  // The label of an axis, which also becomes the header of a CSV file.
   std::string axis_label(const JsonValue& value) {
     const std::string& label = in_.string(value);
     if (label.find_first_of(",\"\n\r") != std::string::npos || !label.ends_with(']') ||
@@ -182,7 +183,7 @@ class FigureReader {
     source.x.column = x ? std::vector<std::string>{"x", "y"}[in_.choice(*x, {"x", "y"})] : "x";
     source.y.column =
         std::vector<std::string>{"pressure", "traction"}[in_.choice(y, {"pressure", "traction"})];
-    figure_.numbers[source.scene];  // without quantities: all are stated
+    figure_.numbers[source.scene];  // no quantities: the report states all of them
   }
 
   static size_t index_of(const std::vector<std::string>& list, const std::string& name) {
@@ -283,7 +284,7 @@ class FigureReader {
     source.rigid = static_cast<int>(scene.model.bodies.size());
     source.statics = scene.time.statics;
     source.frame = frame_time(time, scene);
-    figure_.numbers[source.scene];  // without quantities: all are stated
+    figure_.numbers[source.scene];  // no quantities: the report states all of them
   }
 
   FrameTime frame_time(const JsonValue& value, const Scene& scene) {
@@ -343,10 +344,11 @@ class FigureReader {
   JsonReader in_;
 };
 
-// Points (middle of an edge, contact on it) of a body's pressed edges, from left to right. An edge
-// that dips in by one end, beside the contact, is not one of them.
+// The contact on a body's pressed edges, from left to right: midpoint of each edge, and the
+// pressure or traction on it. An edge beside the contact that only dips in with one end is left
+// out.
 std::vector<Vec2> profile(const CurveSource& source, const std::string& runs) {
-  constexpr double kPressed = 1e-4;  // of the largest pressure
+  constexpr double kPressed = 1e-4;  // least pressure over the largest one
   const std::vector<SurfaceRecord> surfaces =
       read_surfaces(runs + "/" + source.scene, source.frame.from, source.frame.latest);
   double largest = 0;

@@ -1,5 +1,5 @@
-// A figure of the paper as data: a file in data/figures says which columns of which scenes make its
-// curves, and what stands beside them.
+// Private header: figures as data. A file in data/figures says which columns of which scenes make
+// the curves and fields of a figure of the paper, and with which references they are compared.
 #pragma once
 
 #include <map>
@@ -13,74 +13,78 @@
 
 namespace apothem {
 
-/// When a frame of a scene is, s.
+/// The time window in which the wanted frame of a scene lies, s.
 struct FrameTime {
   double from = 0, latest = 0;
 };
 
-/// Where a curve comes from: columns of a scene's histories, of a table in data/reference, contact
-/// on a body's surface in a frame, or points. Shown is (value + offset) scale.
+/// The origin of a curve, one of four: columns of a scene's histories, columns of a table in
+/// data/reference, the contact on a body's surface in one frame of a scene, or given points.
 struct CurveSource {
+  /// A column and how its values are shown: as (value + offset) scale.
   struct Axis {
     std::string column;
     double offset = 0, scale = 1;
     [[nodiscard]] double shown(double value) const { return (value + offset) * scale; }
   };
-  std::string scene;      ///< name; or
-  std::string reference;  ///< file; or
-  std::vector<Vec2> points;
+  std::string scene;         ///< name of a scene, if the curve comes from one
+  std::string reference;     ///< file of a table, if the curve comes from one
+  std::vector<Vec2> points;  ///< the points themselves, if they are given
   Axis x{"time"}, y;
-  int surface = -1;  ///< the body (rigid ones first) whose pressed edges are shown, at
-  FrameTime frame;
+  int surface = -1;  ///< number of the body (rigid ones first) whose surface is shown; -1: none
+  FrameTime frame;   ///< frame whose surface is shown
 };
 
-/// Where a field comes from: a frame of a scene, or a table of cells in data/reference.
+/// The origin of a field: a frame of a scene, or a table of cells in data/reference.
 struct FieldSource {
-  std::string scene;  ///< name; or
+  std::string scene;  ///< name of a scene, if the field comes from one
   FrameTime frame;
-  int rigid = 0;  ///< rigid bodies of the scene
-  bool statics = false;
-  std::string reference;  ///< file
-  std::string column;
-  Vec2 cell = Vec2::Zero();  ///< m
-  /// Of the differences to the panel's first reference, as parts of its largest value.
+  int rigid = 0;             ///< number of rigid bodies in the scene
+  bool statics = false;      ///< whether the scene is static
+  std::string reference;     ///< file of a table, if the field comes from one
+  std::string column;        ///< column of the table
+  Vec2 cell = Vec2::Zero();  ///< size of the table's cells, m
+  /// Tolerances of the differences to the panel's first table, over the table's largest value.
   struct Tolerance {
-    double rms, largest;
+    double rms, largest;  ///< of the root of the mean square, and of the largest difference
   };
-  std::optional<Tolerance> compared;
+  std::optional<Tolerance> compared;  ///< empty: not compared
 };
 
-/// Fields as drawn, and how far they are from their references.
+/// Fields ready to be drawn, and how far they are from their references.
 struct DrawnFields {
   FieldFigure figure;
   std::vector<ReportNumber> numbers;
 };
 
+/// A figure as its file describes it.
 struct Figure {
-  std::string name;                                     ///< of its file
-  std::string about;                                    ///< may be empty
-  CurveFigure shown;                                    ///< its curves still without points
-  std::vector<std::vector<CurveSource>> sources;        ///< by panel and curve
-  FieldFigure shown_fields;                             ///< its panels still without fields
-  std::vector<std::vector<FieldSource>> field_sources;  ///< by panel and field
-  /// Scenes whose expectations are stated, with the quantities; without any, all of them.
+  std::string name;                                     ///< name of the file, without extension
+  std::string about;                                    ///< description; may be empty
+  CurveFigure shown;                                    ///< panels and curves, still without points
+  std::vector<std::vector<CurveSource>> sources;        ///< of each curve of each panel
+  FieldFigure shown_fields;                             ///< panels of fields, still without fields
+  std::vector<std::vector<FieldSource>> field_sources;  ///< of each field of each panel
+  /// Scenes whose expectations the report states, with their quantities; all of them if there are
+  /// none.
   std::map<std::string, std::vector<std::string>> numbers;
-  std::vector<std::string> scenes;  ///< to run, each once
+  std::vector<std::string> scenes;  ///< scenes to run, each listed once
 
-  /// The curves with the points of the runs in `runs`/SCENE and of the tables in `data`/reference.
-  /// Throws std::runtime_error naming a table that cannot be read.
+  /// The curves with their points, from the results in `runs`/SCENE and the tables in
+  /// `data`/reference. Throws std::runtime_error, which names a table that cannot be read.
   [[nodiscard]] CurveFigure drawn(const std::string& data, const std::string& runs) const;
 
-  /// The same for fields. Throws std::runtime_error naming what cannot be read, or compared.
+  /// The fields with their values. Throws std::runtime_error, which names what cannot be read or
+  /// compared.
   [[nodiscard]] DrawnFields drawn_fields(const std::string& data, const std::string& runs) const;
 };
 
 /// Names of the figures in a data folder, in reading order (fig-4 before fig-13). Throws SceneError
-/// if there is none.
+/// if there are none.
 std::vector<std::string> figure_names(const std::string& data);
 
-/// Checks all there is to check before a run: that its scenes are valid and record the columns, and
-/// that its tables have theirs. Throws SceneError.
+/// Reads a figure and makes all checks that are possible before a run: its scenes are valid and
+/// record the columns that it needs, and its tables have the columns. Throws SceneError.
 Figure read_figure(const std::string& data, const std::string& name);
 
 }  // namespace apothem

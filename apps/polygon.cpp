@@ -27,7 +27,7 @@ struct Analysis {
   SingularArea singular;
 };
 
-// Throws InvalidPolygon.
+// All properties of a polygon. Throws InvalidPolygon.
 Analysis analyse(std::vector<Vec2> ring, const PotentialChoice& choice) {
   Polygon polygon(std::move(ring));
   InscribedCircle circle = largest_inscribed_circle(polygon);
@@ -56,9 +56,7 @@ const char* reference_name(const PotentialChoice& choice) {
 
 const char* arithmetic(const Skeleton& skeleton) { return skeleton.exact ? "exact" : "inexact"; }
 
-// ------------------------------------------------------------------------------------------------
-
-// From coordinates relative to the polygon's origin to those of the input.
+// The coordinates of the input from those relative to the polygon's origin.
 Json world(const Polygon& polygon, const Vec2& local) {
   return {polygon.origin().x() + local.x(), polygon.origin().y() + local.y()};
 }
@@ -88,7 +86,7 @@ Json singular_json(const Polygon& polygon, const SingularArea& singular) {
 }
 
 Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
-  std::vector<Json> faces(polygon.size());  // in the order of the input's edges
+  std::vector<Json> faces(polygon.size());  // in the order of the edges in the input
   for (int e = 0; e < polygon.size(); ++e) {
     Json ring = Json::array();
     for (const int i : skeleton.faces[e]) {
@@ -123,14 +121,12 @@ std::string text(const Json& object, int indent) {
   return object.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-// ------------------------------------------------------------------------------------------------
-
 std::string place(const Polygon& polygon, const Vec2& local) {
   const Vec2 p = polygon.origin() + local;
   return fmt::format("({}, {})", p.x(), p.y());
 }
 
-// At most so many places are listed in the table; --json has them all.
+// The table lists at most this many positions; --json lists all of them.
 constexpr size_t kListed = 8;
 
 std::string places(const Polygon& polygon, const std::vector<Vec2>& points) {

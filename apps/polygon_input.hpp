@@ -1,4 +1,4 @@
-// What `contact` and `polygon` read alike from the command line and from files.
+// Private header of the sub-commands `contact` and `polygon`: input that both of them read.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,12 @@
 
 namespace apothem {
 
-/// --reference: roof, inscribed_circle or a length in m. Throws SceneError.
+/// Sets the reference length from the argument of --reference: roof, inscribed_circle or a length
+/// in m. Throws SceneError for anything else.
 void set_reference(PotentialChoice& choice, const std::string& text);
 
-/// Calls evaluate(name, line) for every line of a file that is not empty; the name is its first
-/// word. Throws SceneError if the file cannot be read.
+/// Calls evaluate(name, line) for each line of a file that is not blank; the name is the first word
+/// of the line. Throws SceneError if the file cannot be read.
 void for_each_line(const std::string& file,
                    const std::function<void(const std::string&, const std::string&)>& evaluate);
 

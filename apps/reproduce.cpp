@@ -1,4 +1,5 @@
-// apothem reproduce: the paper's figures from data/figures, and one report of them.
+// apothem reproduce: runs the scenes of the figures in data/figures, and writes curves, pictures
+// and one report.
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Beside the installed program, or where it was built from.
+// The data folder that --data names, that is installed with the program, or, if there is none, the
+// one in the source folder from which the program was built.
 std::string data_folder(const ReproduceOptions& options) {
   if (!options.data.empty()) return options.data;
   std::error_code error;
@@ -117,7 +119,7 @@ class Reproduction {
             (this->*part)(figure, folder, report);
           } catch (const SystemFailure&) {
             throw;
-          } catch (const std::runtime_error& error) {  // a run that ended before its time
+          } catch (const std::runtime_error& error) {  // a run ended before the time of a frame
             report.faults.push_back(fmt::format("No picture: {}.", error.what()));
             fmt::print("  {}: no picture: {}\n", figure.name, error.what());
           }
@@ -177,7 +179,7 @@ class Reproduction {
           std::find(quantities.begin(), quantities.end(), quantity) == quantities.end()) {
         continue;
       }
-      const Json& value = e.at("value");  // null where the run has no row for it
+      const Json& value = e.at("value");  // null if the run has no row in its time window
       state({scene, in_words(e), e.at("expected"),
              value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met")},
             report);
@@ -186,11 +188,11 @@ class Reproduction {
 
   const ReproduceOptions& options_;
   std::string data_;
-  std::map<std::string, Json> outcomes_;  // run.json by scene
+  std::map<std::string, Json> outcomes_;  // content of run.json of each scene
   std::vector<ReportFigure> reports_;
   int numbers_ = 0, missed_ = 0;
   bool no_gnuplot_ = false, unstable_ = false;
-  std::string broken_;  // folder of a picture that gnuplot could not make
+  std::string broken_;  // folder in which gnuplot failed
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ std::string text(const char* format, double x) {
   return buffer.data();
 }
 
-// One unit in the last place of every coordinate, in a random direction, or none.
+// Moves every coordinate by one unit in the last place up or down, or not at all, at random.
 Polygon one_ulp_off(Random& random, const Polygon& polygon) {
   const auto move = [&](double x) {
     const int step = random.integer(-1, 1);
@@ -52,7 +52,7 @@ class Generator {
     pairs_.push_back({kind_, kind_ + "/" + variant, a, b});
   }
 
-  // Closed form: apex on apex (theory: Sec. 2).
+  // Apex on apex, for which a closed form exists (docs/theory.md, Sec. 2).
   void vertex_on_vertex() {
     kind_ = "vertex-on-vertex";
     for (const double degrees : {10.0, 30.0, 60.0}) {
@@ -69,7 +69,7 @@ class Generator {
     add("stars-notch-to-tip", turned(shifted(star(5, .4), {1.39, 0}), M_PI / 5), star(5, .4));
   }
 
-  // Closed form: apex on flat.
+  // Apex on a flat edge, for which a closed form exists.
   void vertex_on_edge() {
     kind_ = "vertex-on-edge";
     for (const double depth : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0}) {
@@ -87,7 +87,7 @@ class Generator {
     add("from-inside", Polygon({{.25, 0}, {.75, .25}, {.5, .75}}), block(0, 0, 1, 1));
   }
 
-  // Closed form: flat on flat.
+  // Flat on flat, for which a closed form exists.
   void collinear_edges() {
     kind_ = "collinear-edges";
     const Polygon square = block(-.5, 0, .5, 1);
@@ -131,11 +131,11 @@ class Generator {
     }
   }
 
-  // Overlap thinner and thinner, in no special direction.
+  // Overlaps of decreasing depth in random directions.
   void shallow() {
     kind_ = "shallow";
     Random random(2);
-    // The foremost vertex of a pushed into the middle of edge e of b, at right angles to it.
+    // Pushes the foremost vertex of `a` into the middle of edge e of `b`, perpendicular to it.
     const auto pair = [&](const std::string& shape, const Polygon& a, const Polygon& b, int e) {
       const Vec2 edge = (b.after(e) - b[e]).normalized();
       const Vec2 normal(edge.y(), -edge.x());
@@ -152,7 +152,7 @@ class Generator {
       const Polygon a = random_convex(random, random.integer(3, 8));
       pair("convex-" + std::to_string(i), a, random_convex(random, random.integer(3, 8)), 1);
     }
-    // Edge 3 is the end of an arm.
+    // Edge 3 of the cross is the end of an arm.
     pair("star-on-cross", turned(star(7, .3), .1), turned(cross_of_squares(), .6), 3);
     for (const double depth : {1e-6, 1e-9, 1e-12, 1e-15}) {
       add(text("flat-%g", depth), turned(block(-.5, -depth, .5, 1 - depth), .3),
@@ -189,7 +189,7 @@ class Generator {
   void comb_in_comb() {
     kind_ = "comb-in-comb";
     const Polygon c = comb(4);
-    // The other one hangs from above, its teeth between those of the first.
+    // The other comb hangs from above, with its teeth between those of the first.
     const Polygon hanging = shifted(turned(c, M_PI), {7, 6});
     for (const double bite : {.5, 1e-3, 1e-9}) {
       add(text("side-of-teeth-%g", bite), shifted(hanging, {1 + bite, -1.5}), c);
@@ -235,7 +235,7 @@ class Generator {
       const Polygon cross = turned(cross_of_squares(), random.uniform(0, 6));
       add(text("crosses-%g", far), shifted(cross, {far, far}),
           shifted(shifted(cross_of_squares(), {1.3, .7}), {far, far}));
-      // 2^-13 m is the last depth that the coordinates resolve at all of these places.
+      // 2^-13 m is the smallest depth that double precision resolves at all of these distances.
       add(text("flat-%g", far), shifted(block(-.5, -0x1p-13, .5, 1 - 0x1p-13), {far, far}),
           shifted(block(-2, -1, 2, 0), {far, far}));
     }

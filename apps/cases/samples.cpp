@@ -10,7 +10,7 @@ Vec2 polar(double radius, double angle) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-// The first ring of an endless supply that is accepted.
+// Calls make() until it gives a valid polygon that accept() takes.
 template <class Make, class Accept>
 Polygon first_valid(const Make& make, const Accept& accept) {
   while (true) {
@@ -18,7 +18,7 @@ Polygon first_valid(const Make& make, const Accept& accept) {
       Polygon polygon(make());
       if (accept(polygon)) return polygon;
     } catch (const InvalidPolygon&) {
-      // equal angles, or a gap of more than half a turn: the next one
+      // Two angles are equal, or a gap exceeds half a turn: try the next one.
     }
   }
 }
@@ -149,7 +149,8 @@ Polygon random_simple(Random& random, int n) {
     const double x = random.uniform(0, 1);
     ring.emplace_back(x, random.uniform(0, 1));
   }
-  // Reversing the part between two edges that cross shortens the loop.
+  // Reverse the part between two edges wherever that shortens the closed line. Since this is so for
+  // any two edges that cross, the line does not cross itself in the end.
   for (bool again = true; again;) {
     again = false;
     for (int i = 0; i < n; ++i) {

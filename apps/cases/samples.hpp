@@ -1,5 +1,6 @@
-// Families of polygons that tests, benchmarks and the accuracy command share, and ways to move
-// them. All lengths in m; the same arguments and seed give the same polygon everywhere.
+// Private header: families of polygons for tests, benchmarks and the accuracy command, and
+// functions that move them. All lengths are in m. The same arguments and seed give the same polygon
+// on every platform.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +10,16 @@
 
 namespace apothem::samples {
 
-/// Random numbers with the same sequence on every platform (the standard's distributions have
-/// none).
+/// Random numbers with the same sequence on every platform, which the distributions of the standard
+/// library do not guarantee.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
+  /// Uniform in [a, b).
   double uniform(double a, double b) {
     return a + (b - a) * std::ldexp(static_cast<double>(engine_() >> 11), -53);
   }
+  /// Uniform in {a, ..., b}.
   int integer(int a, int b) {
     return a + static_cast<int>(engine_() % static_cast<std::uint64_t>(b - a + 1));
   }
@@ -25,52 +28,60 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+/// Rectangle with edges parallel to the axes.
 Polygon block(double x0, double y0, double x1, double y1);
-/// Isosceles triangle with legs of length 1 and its apex, at 0, up or down.
+/// Isosceles triangle with legs of length 1 and its apex at the origin, which points up or down.
+/// `half_angle` is half the angle at the apex, rad.
 Polygon wedge_up(double half_angle);
 Polygon wedge_down(double half_angle);
-/// Triangle from 0 along x.
+/// Slender triangle that starts at the origin and extends along x.
 Polygon needle(double length, double width);
-/// Inscribed in the unit circle.
+/// Regular polygon with n vertices on the unit circle.
 Polygon regular(int n);
-/// Cross about 0: a unit square with four arms of width 1. Roof height 1/2 if the arms are not
-/// short.
+/// Cross about the origin: a unit square with four arms of width 1 and length `arm`. The roof
+/// height is 1/2 if the arms are not short.
 Polygon cross_of_squares(double arm = 1);
-/// Two bars of width 1 from the corner at 0.
+/// Two bars of width 1 and length `leg` that meet at the corner at the origin.
 Polygon l_shape(double leg = 2);
-/// Tips on the unit circle, notches at radius `inner`.
+/// Star with `tips` vertices on the unit circle and as many at the radius `inner` between them.
 Polygon star(int tips, double inner);
-/// Teeth and gaps of width 1 on a bar of thickness 1 from 0 along x; each tooth is longer than its
-/// left neighbour by `growth`.
+/// Teeth of width 1 with gaps of width 1 on a bar of thickness 1 that extends from the origin along
+/// x. The first tooth is `length` long, and each further one is longer than its left neighbour by
+/// `growth`.
 Polygon comb(int teeth, double length = 2, double growth = 0);
-/// Archimedean band about 0 with pitch 1, wider by `widening` after every turn.
+/// Band along an Archimedean spiral about the origin, with pitch 1. Its width grows by `widening`
+/// with each turn.
 Polygon spiral(double turns, int edges_per_turn, double width = .4, double widening = 0);
 
-/// Quadrilateral in the unit circle, its corners up to .4 rad off a square's.
+/// Quadrilateral with vertices on the unit circle, up to 0.4 rad away from those of a square.
 Polygon random_quad(Random& random);
-/// n points on a stretched and turned unit circle; area above .05.
+/// Polygon of n points on the unit circle, stretched and turned. The area is above 0.05 m^2.
 Polygon random_convex(Random& random, int n);
-/// Star-shaped about 0: radii from `inner` to 1 at random angles.
+/// Star-shaped about the origin: n radii from `inner` to 1 at random angles.
 Polygon random_star_shaped(Random& random, int n, double inner);
-/// A loop through n random points of the unit square, uncrossed.
+/// A closed line through n random points of the unit square, changed until it does not cross
+/// itself.
 Polygon random_simple(Random& random, int n);
 
-/// The polygon with every vertex v at map(v). Throws InvalidPolygon if it is not simple any more.
+/// The polygon with each vertex v moved to map(v). Throws InvalidPolygon if the result is not
+/// simple.
 template <class Map>
 Polygon mapped(const Polygon& polygon, const Map& map) {
   std::vector<Vec2> ring = polygon.vertices();
   for (Vec2& v : ring) v = map(v);
   return Polygon(ring);
 }
+/// Moved by a vector.
 Polygon shifted(const Polygon& polygon, const Vec2& by);
-/// About 0, by an angle in rad.
+/// Turned about the origin by an angle in rad.
 Vec2 turned(const Vec2& v, double angle);
+/// Turned about the origin by an angle in rad.
 Polygon turned(const Polygon& polygon, double angle);
-/// About 0.
+/// Scaled about the origin.
 Polygon scaled(const Polygon& polygon, double factor);
-/// Turned about its centroid, with the centroid at `centre`.
+/// Turned about its centroid by an angle in rad, with the centroid moved to `centre`.
 Polygon posed(const Polygon& polygon, const Vec2& centre, double angle);
-/// Centroid in world coordinates.
+/// Centroid in the coordinates of the input (not relative to the polygon's origin).
 Vec2 world_centroid(const Polygon& polygon);
 
 }  // namespace apothem::samples

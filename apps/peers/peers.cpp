@@ -17,7 +17,8 @@ OverlapPolygon relative(Ring ring, const Vec2& origin) {
   return {std::move(ring), {}};
 }
 
-// Which side of the line from p to q; positive on the left.
+// Twice the signed area of the triangle p, q, x: positive if x is on the left of the line from p to
+// q.
 double side(const Vec2& p, const Vec2& q, const Vec2& x) { return cross(q - p, x - p); }
 
 Ring sutherland_hodgman(Ring subject, const Ring& window) {
@@ -66,7 +67,7 @@ class GreinerHormann {
     mark_entries(first_of_b_, a_);
     std::vector<Ring> rings;
     for (size_t i = 0; i < nodes_.size(); ++i) {
-      // Starting where a polygon enters the other one keeps the ring counter-clockwise.
+      // A ring that starts where a polygon enters the other one is counter-clockwise.
       if (nodes_[i].entry && !nodes_[i].visited) rings.push_back(walk(static_cast<int>(i)));
     }
     return rings;
@@ -75,13 +76,13 @@ class GreinerHormann {
  private:
   struct Node {
     Vec2 point;
-    double along = 0;  // of a crossing: share of its edge
-    int partner = -1;  // the same crossing in the other polygon's list
+    double along = 0;  // of a crossing: position on its edge, from 0 to 1
+    int partner = -1;  // of a crossing: index of the same one in the other polygon's list
     int next = -1, previous = -1;
     bool entry = false, visited = false;
   };
 
-  // Both polygons as circular lists, every crossing in both of them.
+  // Writes both polygons as circular lists of vertices, and inserts every crossing into both.
   void find_crossings() {
     std::vector<std::vector<int>> on_a(a_.size()), on_b(b_.size());
     for (size_t i = 0; i < a_.size(); ++i) {
@@ -164,7 +165,8 @@ class GreinerHormann {
 
 std::vector<OverlapPolygon> boost_overlap(const Polygon& a, const Polygon& b) {
   using Point = boost::geometry::model::d2::point_xy<double>;
-  using Area = boost::geometry::model::polygon<Point, false, false>;  // counter-clockwise, open
+  // Counter-clockwise; the first point is not repeated.
+  using Area = boost::geometry::model::polygon<Point, false, false>;
   const auto area = [](const Polygon& polygon) {
     Area result;
     for (const Vec2& v : polygon.vertices()) result.outer().emplace_back(v.x(), v.y());

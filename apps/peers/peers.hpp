@@ -1,5 +1,6 @@
-// Overlap polygons as other people would compute them: what the accuracy command measures against.
-// Vertices are found in double world coordinates, then written relative to a's origin().
+// Private header: overlap polygons by methods from outside this project, with which `apothem
+// accuracy` compares its own. They compute the vertices in double precision in world coordinates;
+// the results are relative to a.origin().
 #pragma once
 
 #include <vector>
@@ -9,12 +10,13 @@
 
 namespace apothem {
 
-/// Boost.Geometry's intersection. Throws what Boost throws.
+/// The intersection of two polygons by Boost.Geometry. Throws what Boost throws.
 std::vector<OverlapPolygon> boost_overlap(const Polygon& a, const Polygon& b);
 
-/// Plain floating-point clipping without any tolerance: Sutherland & Hodgman (1974) for two convex
-/// polygons (`convex`: both are), else Greiner & Hormann (1998), which knows no degenerate
-/// positions. Throws std::runtime_error where its crossings do not fit together.
+/// The intersection by plain floating-point clipping without any tolerance: Sutherland & Hodgman
+/// (1974) if both polygons are convex, as `convex` says, otherwise Greiner & Hormann (1998), which
+/// does not handle degenerate positions. Throws std::runtime_error where the crossings that it
+/// finds are inconsistent.
 std::vector<OverlapPolygon> clip_overlap(const Polygon& a, const Polygon& b, bool convex);
 
 }  // namespace apothem

@@ -30,8 +30,9 @@ Moments moments(const std::vector<WideVec>& v) {
   return {twice_area / 2, v[0] + first / (3 * twice_area)};
 }
 
-// Nodes of the skeleton where the planes of three of their faces meet, chosen so that they do so as
-// squarely as possible; the skeleton itself is only trusted for which faces meet.
+// Adds the nodes of the skeleton to phi. Each inner node is computed again as the point where the
+// planes of three of its faces meet; the three with the largest determinant are taken. Of the
+// skeleton, only the information which faces meet is used.
 void add_nodes(Envelope<Wide>& phi, const std::vector<WideVec>& v, const Roof& roof) {
   std::vector<std::vector<size_t>> faces_at(roof.points.size());
   for (size_t e = 0; e < roof.faces.size(); ++e) {
@@ -46,8 +47,8 @@ void add_nodes(Envelope<Wide>& phi, const std::vector<WideVec>& v, const Roof& r
       continue;
     }
     const std::vector<size_t>& at = faces_at[i];
-    // Where all planes are parallel to one line (collinear edges on one side of a level ridge) the
-    // place along it has no effect on the roof, and the rounded one serves.
+    // All planes may be parallel to one line, for collinear edges on one side of a level ridge.
+    // Then the position along that line has no effect on the roof, and the rounded node is used.
     Wide best = 1e-9;
     WideVec point = v[0] + widened(roof.points[i]);
     Wide value = phi.lines[at[0]](point);
@@ -81,7 +82,8 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
   for (const Vec2& p : polygon.vertices()) v.push_back(widened(p) - widened(origin));
   const auto [area, centroid] = moments(v);
 
-  // Inward normals of unit length, or with slope 3 / altitude = 3 length / (2 area).
+  // The gradients are inward unit normals for the distance potential. For the area potential they
+  // have the length 3 / altitude = 3 length / (2 area).
   Envelope<Wide> phi{{}, false, centroid};
   for (size_t i = 0; i < v.size(); ++i) {
     const WideVec d = v[i + 1 == v.size() ? 0 : i + 1] - v[i];
@@ -106,7 +108,8 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
       }
     }
     const bool given = choice.reference == Reference::length;
-    // The inscribed circle of a polygon that is not convex is known in double precision only.
+    // The largest inscribed circle of a polygon that is not convex is known in double precision
+    // only.
     const bool convex = !potential.roof && !potential.distance;
     const Wide reference = given ? Wide(choice.length)
                            : !convex && choice.reference == Reference::inscribed_circle

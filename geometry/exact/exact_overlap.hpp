@@ -1,5 +1,6 @@
-// Private to overlap.cpp and exact_integral.cpp: Eq. 8 on an overlap polygon for any number type.
-// All coordinates of one call are relative to one origin, best inside the overlap.
+// Eq. 8 of the paper on an overlap polygon, for any number type. This header is private to
+// overlap.cpp and exact_integral.cpp. All coordinates of one call are relative to one origin, which
+// is best chosen inside the overlap.
 #pragma once
 
 #include <algorithm>
@@ -14,30 +15,35 @@ namespace apothem::overlap_detail {
 
 using namespace lower_envelope;
 
+/// A component of the overlap.
 template <class Real>
 struct Region {
-  std::vector<Vec<Real>> vertices;
-  std::vector<OverlapEdge> edges;  // owners, or empty when they are not known
+  std::vector<Vec<Real>> vertices;  ///< vertices, counter-clockwise
+  std::vector<OverlapEdge> edges;   ///< input edges that its edges lie on; empty if not known
 };
 
-/// overlap_polygons with exact constructions, rounded to Real; for double and cpp_bin_float_100.
+/// The components of the overlap by exact constructions, with coordinates relative to `origin` and
+/// rounded to Real, which is double or cpp_bin_float_100.
 template <class Real>
 std::vector<Region<Real>> exact_regions(const Polygon& a, const Polygon& b, const Vec2& origin);
 
-/// phi = min(1 if capped, min_i lines_i), and the point that moments refer to. If the polygon is
-/// not convex, phi is instead the roof with these nodes, and lines are the planes of its faces; or
-/// the distance field, with the polygon's vertices as nodes and its lines.
+/// The potential phi of a polygon. For a convex polygon it is the minimum of the linear functions
+/// `lines`. Otherwise it is a roof, whose faces lie on the planes `lines`, or a distance field. If
+/// `capped`, phi is limited to 1.
 template <class Real>
 struct Envelope {
-  std::vector<Line<Real>> lines;
-  bool capped;
-  Vec<Real> reference;
-  const Roof* roof = nullptr;
+  std::vector<Line<Real>> lines;  ///< one linear function per edge
+  bool capped;                    ///< whether phi is limited to 1
+  Vec<Real> reference;            ///< reference point of the moments
+  const Roof* roof = nullptr;     ///< graph of the roof, or null
+  /// Coordinates of the roof's nodes, or of the vertices for a distance field; and phi at the nodes
+  /// of the roof, not limited to 1.
   std::vector<Real> x{}, y{}, values{};
-  const DistanceField* distance = nullptr;
-  Real slope = 0;  // of the distance field, 1 / r
-  std::vector<Real> gx{}, gy{};
+  const DistanceField* distance = nullptr;  ///< distance field, or null
+  Real slope = 0;                           ///< inverse of the distance field's reference length
+  std::vector<Real> gx{}, gy{};             ///< gradients of `lines`, for a distance field
 
+  /// Makes phi a distance field with the inverse reference length `inverse_reference`.
   void set_distance(const DistanceField& field, const std::vector<Vec<Real>>& vertices,
                     const Real& inverse_reference) {
     distance = &field;
@@ -49,11 +55,13 @@ struct Envelope {
       gy.push_back(lines[i].gradient.y());
     }
   }
+  /// The distance field with its coordinates.
   [[nodiscard]] PlacedDistance<Real> placed_distance() const {
     return {static_cast<int>(x.size()), x.data(), y.data(), gx.data(), gy.data(), slope,
             &distance->corners,         capped};
   }
 
+  /// The integral of phi dA over a counter-clockwise polygon.
   [[nodiscard]] Real volume(const std::vector<Vec<Real>>& polygon) const {
     if (distance) {
       std::vector<Real> px, py;
@@ -73,10 +81,12 @@ struct Envelope {
   }
 };
 
-/// Envelope along a segment as a polyline, cut by one line after the other; keeps its memory.
+/// Integrates phi along segments. The envelope of a convex polygon along a segment is a polyline,
+/// which is cut by one linear function after the other. The memory is kept between calls.
 template <class Real>
 class EdgeTrace {
  public:
+  /// The integrals of phi along the segment from p to q.
   SegmentMoments<Real> integrate(const Envelope<Real>& phi, const Vec<Real>& p,
                                  const Vec<Real>& q) {
     if (phi.roof) return integrate_roof(phi, p, q);
@@ -93,6 +103,7 @@ class EdgeTrace {
   }
 
  private:
+  // A corner of the polyline: its parameter on the segment and the value there.
   struct Knot {
     Real u, value;
   };
@@ -117,6 +128,7 @@ class EdgeTrace {
     return {k.u + share * (l.u - k.u), k.value + share * (l.value - k.value)};
   }
 
+  // Replaces the polyline by its minimum with the linear function from `start` to `end`.
   void cut(const Real& start, const Real& end) {
     cut_.clear();
     Real previous = 0;
@@ -137,7 +149,8 @@ class EdgeTrace {
     std::swap(knots_, cut_);
   }
 
-  // Negative values inside the overlap are round-off.
+  // Adds the part of a piece where phi is positive, because negative values inside the overlap are
+  // round-off.
   static void add_positive_part(Knot k, Knot l, SegmentMoments<Real>& result) {
     if (k.value < 0 && l.value < 0) return;
     if (k.value < 0) k = {between(k, l, k.value / (k.value - l.value)).u, 0};
@@ -150,7 +163,7 @@ class EdgeTrace {
   DistanceTrace<Real> distance_;
 };
 
-/// Eq. 8 and, if asked for, the energy.
+/// Evaluates Eq. 8 on the components of the overlap and, if `with_energy`, the energy.
 template <class Real>
 PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Real>& a,
                      const Envelope<Real>& b, bool with_energy = true) {
@@ -167,7 +180,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       const Vec<Real> d = v[i + 1 == v.size() ? 0 : i + 1] - p;
       const Vec<Real> normal(d.y(), -d.x());
       const Real length = sqrt(d.squaredNorm());
-      // phi vanishes on its own polygon's edges.
+      // The potential of a polygon vanishes on its own edges.
       const bool known = !region.edges.empty();
       const bool skip_a = known && region.edges[i].edge_of_a >= 0;
       const bool skip_b = known && region.edges[i].edge_of_b >= 0;

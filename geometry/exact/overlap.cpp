@@ -26,8 +26,8 @@ CGAL::Polygon_2<Kernel> cgal(const Polygon& polygon) {
   return result;
 }
 
-// Outer boundaries of the overlap. Two simple polygons enclose no hole between them; CGAL's result
-// is regularised: common points and common edges without area are not in it.
+// The outer boundaries of the overlap. The overlap of two simple polygons has no holes. CGAL's
+// result is regularised: it contains no isolated common points and no common edges without area.
 template <class Kernel>
 std::vector<CGAL::Polygon_2<Kernel>> intersection(const CGAL::Polygon_2<Kernel>& a,
                                                   const CGAL::Polygon_2<Kernel>& b) {
@@ -38,13 +38,13 @@ std::vector<CGAL::Polygon_2<Kernel>> intersection(const CGAL::Polygon_2<Kernel>&
   return outlines;
 }
 
-// Index of the edge of one input polygon that an edge of the overlap lies on.
+// Finds the edge of one input polygon that an edge of the overlap lies on.
 class Owner {
  public:
   Owner(const Polygon& polygon, const CGAL::Polygon_2<Exact>& exact)
       : polygon_(polygon), exact_(exact) {}
 
-  // Edges that interval arithmetic cannot exclude.
+  // Finds the edges that interval arithmetic cannot exclude.
   void find_candidates(const Exact::Point_2& p, const Exact::Point_2& q) {
     candidates_.clear();
     const CGAL::Bbox_2 p_box = p.bbox();
@@ -61,7 +61,8 @@ class Owner {
   }
   [[nodiscard]] size_t candidates() const { return candidates_.size(); }
 
-  // The one candidate that is known to be right, or the one that exact arithmetic confirms, or -1.
+  // Returns the only candidate if it is certain to be right, otherwise the one that exact
+  // arithmetic confirms, or -1.
   [[nodiscard]] int choose(const Exact::Point_2& p, const Exact::Point_2& q, bool certain) const {
     for (const int i : candidates_) {
       if (certain || contains(i, p, q)) return i;
@@ -115,7 +116,7 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
       const Exact::Point_2& q = outline[i + 1 == n ? 0 : i + 1];
       of_a.find_candidates(p, q);
       of_b.find_candidates(p, q);
-      // Every edge of the overlap has an owner: a single candidate needs no proof.
+      // Every edge of the overlap lies on an input edge, so a single candidate needs no proof.
       const bool certain = of_a.candidates() + of_b.candidates() == 1;
       edges.push_back({of_a.choose(p, q, certain), of_b.choose(p, q, certain)});
     }
@@ -124,7 +125,8 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
   return regions;
 }
 
-// A rational number as a sum of doubles, each one the remainder that those before it leave.
+// Rounds a rational number to Real. The result is a sum of doubles, each of which is the rounded
+// remainder that the preceding ones leave.
 template <class Real>
 Real rounded(Rational x) {
   constexpr int kTerms = (std::numeric_limits<Real>::digits + 52) / 53;
@@ -154,7 +156,8 @@ std::vector<Region<Real>> rounded(std::vector<ExactRegion> exact, const Vec2& or
   return regions;
 }
 
-// As written by anyone in a hurry: world coordinates, and no defence but this one.
+// The overlap with inexact constructions, as it is usually written: in world coordinates, and with
+// no protection against errors except this exception handler.
 std::vector<Region<double>> inexact_regions(const Polygon& a, const Polygon& b,
                                             const Vec2& origin) {
   std::vector<Region<double>> regions;
@@ -184,7 +187,8 @@ Envelope<double> envelope(const Polygon& polygon, const Potential& potential, co
     phi.set_distance(*potential.distance, vertices, potential.distance->slope);
   }
   if (!potential.roof) return phi;
-  // The boundary exactly as given, the inner nodes by their place in the polygon.
+  // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the coordinates
+  // of the polygon.
   phi.roof = &*potential.roof;
   phi.values = potential.roof->values;
   const Vec2 shift = polygon.origin() - origin;
@@ -226,7 +230,7 @@ PairResult overlap_method(const Polygon& a, const Potential& potential_a, const 
   if (arithmetic == Arithmetic::exact) {
     std::vector<ExactRegion> exact = exact_overlap(a, b);
     if (exact.empty()) return {};
-    // A corner of the overlap: what is summed below stays as small as the overlap.
+    // The origin is a corner of the overlap, so that the terms of the sums are as small as it.
     const Exact::Point_2& corner = exact[0].outline[0];
     origin = {CGAL::to_double(corner.x()), CGAL::to_double(corner.y())};
     regions = rounded<double>(std::move(exact), origin);

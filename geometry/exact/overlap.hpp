@@ -1,5 +1,5 @@
-// Overlap polygons of two polygons (CGAL Boolean operations) and Eq. 8 of the paper on them: the
-// second way to the numbers of edge_integral.hpp.
+// The overlap polygons of two polygons, by CGAL's Boolean operations, and Eq. 8 of the paper on
+// them. This is a second way to compute the integrals of edge_integral.hpp.
 #pragma once
 
 #include <vector>
@@ -9,39 +9,43 @@
 
 namespace apothem {
 
-/// How CGAL constructs intersection points. `inexact` is what people reach for first; it throws,
-/// loses overlaps or crashes on ordinary pairs and is here to be measured, never to be relied on.
+/// How CGAL constructs intersection points. `inexact` is the usual first choice; on ordinary pairs
+/// it throws, loses overlaps or crashes. It exists to be compared with and must not be relied on.
 enum class Arithmetic { inexact, exact };
 
+/// The edges of the two polygons that an edge of the overlap lies on.
 struct OverlapEdge {
   int edge_of_a;  ///< edge of a that it lies on, or -1
   int edge_of_b;  ///< edge of b that it lies on, or -1
 };
 
-/// One component of the overlap: counter-clockwise, without holes. Edge i runs from vertex i.
+/// One component of the overlap, counter-clockwise and without holes. Edge i starts at vertex i.
 struct OverlapPolygon {
-  std::vector<Vec2> vertices;      ///< relative to the origin asked for, rounded at the very end
-  std::vector<OverlapEdge> edges;  ///< exact owners (empty with inexact constructions)
+  std::vector<Vec2> vertices;      ///< vertices relative to a given origin, rounded only once, m
+  std::vector<OverlapEdge> edges;  ///< exact; empty with inexact constructions
 };
 
-/// Components with non-zero area, for any two simple polygons, in coordinates relative to `origin`.
+/// Returns the components of the overlap of two simple polygons that have a positive area, in
+/// coordinates relative to `origin`. Throws std::runtime_error if inexact constructions fail.
 std::vector<OverlapPolygon> overlap_polygons(const Polygon& a, const Polygon& b, const Vec2& origin,
                                              Arithmetic arithmetic = Arithmetic::exact);
 
-/// Eq. 8 with every ridge crossing among the points p_j, in double precision on the overlap
-/// polygon. The potentials are those of make_potential (relative to the polygons' origins); moments
-/// about the polygons' centroids, positions relative to a's centroid.
+/// Evaluates Eq. 8 in double precision on the overlap polygon. Every crossing with a ridge of the
+/// potential is among the points p_j, since the trapezoid rule would be inexact otherwise. The
+/// potentials are those of make_potential, relative to the polygons' origins. Moments are about the
+/// polygons' centroids and positions are relative to the centroid of a. Throws std::runtime_error
+/// if inexact constructions fail.
 PairResult overlap_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                           const Potential& potential_b, Arithmetic arithmetic = Arithmetic::exact);
 
-/// The same force and moments from overlap polygons that come from elsewhere, without the energy.
-/// Edges without owners (an empty list) are integrated over both potentials, of which one is
-/// round-off.
+/// Evaluates Eq. 8 on given overlap polygons, without the energy. Their coordinates are relative to
+/// `origin`. If their list of edges is empty, both potentials are integrated along every edge; the
+/// one that vanishes there then contributes round-off.
 PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const Vec2& origin,
                               const Polygon& a, const Potential& potential_a, const Polygon& b,
                               const Potential& potential_b);
 
-/// The same for each component of the overlap by itself, with exact constructions.
+/// overlap_method with exact constructions for each component of the overlap separately.
 std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
                                         const Polygon& b, const Potential& potential_b);
 

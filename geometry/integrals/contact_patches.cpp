@@ -12,13 +12,15 @@ using namespace edge_detail;
 
 namespace {
 
+// Splits a pair into runs and patches. An end of a run has the number 2 run if it is the start and
+// 2 run + 1 if it is the end.
 class Splitter {
  public:
   Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
            PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
       : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
 
-  /// False if a coordinate is not finite.
+  /// Finds all runs. Returns false if a coordinate is not finite.
   bool find_runs() {
     runs_.clear();
     work_.halves.clear();
@@ -35,6 +37,7 @@ class Splitter {
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
 
+  /// Joins the runs to patches.
   void group() {
     work_.parent.resize(runs_.size());
     for (int r = 0; r < size(); ++r) work_.parent[r] = r;
@@ -55,6 +58,7 @@ class Splitter {
     return count;
   }
 
+  /// Sums the integrals of the runs over each of the `count` patches.
   void sum(int count, std::vector<PairIntegral>& patches) {
     work_.of_a.assign(count, {});
     work_.of_b.assign(count, {});
@@ -67,7 +71,8 @@ class Splitter {
   }
 
  private:
-  // The runs of a's edges in b, or of b's in a.
+  // Finds the runs on the edges of a inside b if `of_a`, otherwise those on the edges of b inside
+  // a. Returns false if a coordinate is not finite.
   bool trace(bool of_a, const double* rows, double* spare) {
     const PlacedPotential& x = of_a ? a_ : b_;
     const PlacedPotential& y = of_a ? b_ : a_;
@@ -112,7 +117,7 @@ class Splitter {
     return true;
   }
 
-  // The line that clips an edge at s, or -1 where the edge itself ends.
+  // The edge of the other polygon that clips an edge at s, or -1 if the edge itself ends there.
   static int clipped_by(const Row<double>& row, double s, bool entering) {
     for (int i = 0; i < row.size; ++i) {
       const double a = row.a[i];
@@ -127,7 +132,7 @@ class Splitter {
     Half& half = work_.halves.emplace_back();
     accumulate(edge, moments, s1 - s0, half);
     const PairIntegral pair = of_a ? combine(half, {}, arm_) : combine({}, half, arm_);
-    const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // from the frame of the other one
+    const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // to a's reference point
     const Vec2 base = Vec2(edge.qx, edge.qy) + shift;
     const Vec2 along(edge.ex, edge.ey);
     runs_.push_back({of_a, e, 0, edge.share(s0), edge.share(s1), base + s0 * along,
@@ -143,7 +148,8 @@ class Splitter {
     return run;
   }
 
-  // The smaller root wins: it is the patch's first run.
+  // Joins two ends. The smaller root becomes the root of the union, because it is the first run of
+  // the patch.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
     const int first = root(end / 2);
@@ -151,8 +157,8 @@ class Splitter {
     work_.parent[std::max(first, second)] = std::min(first, second);
   }
 
-  // Runs first ... last - 1 are one polygon's in the order of its edges, of which there are
-  // `edges`.
+  // Joins runs that follow each other at a vertex. The runs first to last - 1 belong to one polygon
+  // and are in the order of its edges, whose number is `edges`.
   void join_at_vertices(int first, int last, int edges) {
     for (int r = first; r < last; ++r) {
       const int next = r + 1 < last ? r + 1 : first;
@@ -163,6 +169,7 @@ class Splitter {
     }
   }
 
+  // Joins runs where edge i of a crosses edge j of b. They are found by (i, j) and not by position.
   void join_at_crossings() {
     auto& crossings = work_.crossings;
     crossings.clear();
@@ -185,10 +192,12 @@ class Splitter {
     }
   }
 
-  // What is lost between the end of a run and the start of the next one lies on both boundaries but
-  // for round-off: the straight line between them does, or one of the two boundaries stays near the
-  // other all the way. Between the ends of different patches neither is so. The length decides only
-  // among those. Two starts, or two ends, are joined only for being at the same place.
+  // Joins the ends that are still loose. The part of the boundary that round-off has lost between
+  // the end of a run and the start of the next one lies on both boundaries up to round-off: either
+  // the straight line between them does, or one of the two boundaries stays near the other all the
+  // way. Neither is true between ends of different patches. The length of the lost part decides
+  // only between candidates that are equally near. Two starts, or two ends, are joined only if they
+  // are at the same place; their cost is their distance.
   void join_loose_ends() {
     auto& bridges = work_.bridges;
     bridges.clear();
@@ -217,7 +226,8 @@ class Splitter {
     return end % 2 == 0 ? runs_[end / 2].start : runs_[end / 2].end;
   }
 
-  // How far what may be lost between an end and a start is from lying on both boundaries, squared.
+  // The square of the largest distance from both boundaries of the part that may be lost between an
+  // end and a start.
   [[nodiscard]] double gap2(const Vec2& end, const Vec2& start) const {
     const Vec2 middle = (end + start) / 2;
     const double straight =
@@ -227,12 +237,13 @@ class Splitter {
     return walk2(b_, shift_b(), a_, shift_a(), end, start, along_a);
   }
 
-  // The same for the boundary of x from end to start; `most` if it is no less.
+  // The same if the lost part is the boundary of x from `end` to `start`, or `most` if that is
+  // smaller.
   static double walk2(const PlacedPotential& x, const Vec2& shift_x, const PlacedPotential& y,
                       const Vec2& shift_y, const Vec2& end, const Vec2& start, double most) {
     const Place from = nearest(x, shift_x, end);
     const Place to = nearest(x, shift_x, start);
-    if (from.edge == to.edge && from.share <= to.share) return most;  // straight
+    if (from.edge == to.edge && from.share <= to.share) return most;  // no vertex between
     Vec2 last = end;
     double length = 0, worst = 0;
     const auto go_to = [&](const Vec2& next) {
@@ -252,11 +263,14 @@ class Splitter {
     return std::min(worst, most);
   }
 
+  // A point on a boundary: `share` is its position along the edge, from 0 to 1, and `distance2` its
+  // squared distance from the point that was asked for, m^2.
   struct Place {
     int edge;
     double share, distance2;
   };
-  // The point of a boundary nearest to one given relative to a's reference point, as all are here.
+  // The point of the boundary of p that is nearest to `point`. Like all points here, `point` is
+  // relative to a's reference point; `shift` moves it to the frame of p.
   static Place nearest(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
     Place place{0, 0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i < p.size; ++i) {
@@ -269,10 +283,11 @@ class Splitter {
     return place;
   }
 
-  // From there to the frames of a and b.
+  // From a's reference point to the origins of the frames of a and b.
   [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
   [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
 
+  // Sets the penetration and the breadth of every patch.
   void add_extents(std::vector<PairIntegral>& patches) {
     auto& extents = work_.extents;
     extents.assign(patches.size(), {});
@@ -285,20 +300,20 @@ class Splitter {
       }
     }
     for (size_t i = 0; i < patches.size(); ++i) {
-      if (!(extents[i].n1 >= extents[i].n0)) continue;  // no resultant
+      if (!(extents[i].n1 >= extents[i].n0)) continue;  // no resultant force
       patches[i].penetration = extents[i].n1 - extents[i].n0;
       patches[i].breadth = extents[i].t1 - extents[i].t0;
     }
   }
 
-  static constexpr double kLength2 = 1e-12;
+  static constexpr double kLength2 = 1e-12;  // weight of the squared length of a lost part
 
   const PlacedPotential& a_;
   const PlacedPotential& b_;
   const Vec2 offset_, arm_;
   PatchWorkspace& work_;
   std::vector<BoundaryRun>& runs_;
-  int of_a_ = 0;  // so many of the runs are a's
+  int of_a_ = 0;  // number of runs on edges of a, which come first
 };
 
 }  // namespace
@@ -310,7 +325,7 @@ void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const V
   Splitter splitter(a, b, offset, workspace, runs);
   const bool finite = splitter.find_runs();
   if (!finite) runs.clear();
-  if (!finite || (a.convex() && b.convex())) {  // one patch at most
+  if (!finite || (a.convex() && b.convex())) {  // at most one patch
     const PairIntegral pair = pair_integral(a, b, offset, workspace.edge);
     if (pair.touching()) {
       patches.push_back(pair);
@@ -348,10 +363,11 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
 void shared_length(std::span<const BoundaryRun> before, int patches_before,
                    std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table) {
   table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
-  const auto behind = [](const BoundaryRun& r, const BoundaryRun& s) {  // on an earlier edge
+  // True if r is on an earlier edge than s.
+  const auto behind = [](const BoundaryRun& r, const BoundaryRun& s) {
     return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
   };
-  size_t first = 0;  // of `now` on the edge of `old`, or after it
+  size_t first = 0;  // first run of `now` on the edge of `old` or after it
   for (const BoundaryRun& old : before) {
     while (first < now.size() && behind(now[first], old)) ++first;
     for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {

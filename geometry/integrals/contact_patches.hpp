@@ -1,9 +1,11 @@
-// Contact patches: two polygons that are not convex may touch in several places at once. Every
-// connected component of the overlap is one patch, with its own force, moments and loading point.
+// The contact patches of two polygons. Polygons that are not convex may touch in several places at
+// once. Every connected component of the overlap is one contact patch, with its own force, moments
+// and loading point.
 //
-// The boundary of the overlap consists of runs, the parts of each polygon's edges inside the other
-// polygon. A run goes on in the next one at a vertex of its owner, or in a run of the other polygon
-// where the two boundaries cross; the cycles of runs are the patches.
+// The boundary of the overlap consists of runs: the parts of each polygon's edges that lie inside
+// the other polygon. At a vertex of its polygon a run is followed by the run on the next edge;
+// where the two boundaries cross it is followed by a run of the other polygon. The cycles of runs
+// are the boundaries of the patches.
 #pragma once
 
 #include <span>
@@ -13,70 +15,79 @@
 
 namespace apothem {
 
-/// A maximal part of one edge inside the other polygon, with the integrals of the other's phi along
-/// it, for unit stiffness. Conventions of PairIntegral: points are relative to a's reference point,
-/// moments about the two reference points.
+/// A run: a maximal part of one edge inside the other polygon, with the integrals of the other
+/// polygon's potential phi along it, for unit stiffness. As in PairIntegral, points are relative to
+/// the reference point of a, and moments are about the reference points of a and b.
 struct BoundaryRun {
-  bool of_a;                   ///< whose edge it is; phi is the other's
-  int edge;                    ///< of the owner
-  int patch;                   ///< index of the patch it belongs to
-  double from, to;             ///< along the edge, as a share of its length
+  bool of_a;                   ///< true for an edge of a and phi of b, false for the opposite
+  int edge;                    ///< index of the edge in its polygon
+  int patch;                   ///< index of the contact patch that the run belongs to
+  double from, to;             ///< start and end along the edge, as shares of the edge's length
   Vec2 start = Vec2::Zero();   ///< the point at `from`, m
   Vec2 end = Vec2::Zero();     ///< the point at `to`, m
-  Vec2 force = Vec2::Zero();   ///< on a, m; normal to the edge
-  double moment_a = 0;         ///< m^2
-  double moment_b = 0;         ///< m^2
-  double weight = 0;           ///< INT phi ds, m
-  Vec2 centre = Vec2::Zero();  ///< INT phi x ds / weight, m
-  double length = 0;           ///< m
-  double largest_phi = 0;
+  Vec2 force = Vec2::Zero();   ///< force on a, normal to the edge, m
+  double moment_a = 0;         ///< moment on a about its reference point, m^2
+  double moment_b = 0;         ///< moment on b about its reference point, m^2
+  double weight = 0;           ///< integral of phi ds, m
+  Vec2 centre = Vec2::Zero();  ///< integral of phi x ds, divided by `weight`, m
+  double length = 0;           ///< length of the run, m
+  double largest_phi = 0;      ///< largest phi on the run
 };
 
-/// Memory; keep one per thread.
+/// Memory that contact_patches works in. Keep one per thread. An end of a run is numbered 2 run for
+/// its start and 2 run + 1 for its end.
 struct PatchWorkspace {
+  /// An end of a run at a crossing of two edges.
   struct Crossing {
-    int edge_a, edge_b;
-    int end;  ///< 2 run for a run's start, 2 run + 1 for its end
+    int edge_a, edge_b;  ///< edge of a and edge of b that cross
+    int end;             ///< number of the end
   };
+  /// Two loose ends that might be joined.
   struct Bridge {
-    double cost2;
-    int end, other;  ///< as above
+    double cost2;    ///< square of the cost of joining them, m^2
+    int end, other;  ///< numbers of the two ends
   };
-  EdgeWorkspace edge;
-  std::vector<edge_detail::Half> halves;      ///< of the runs
-  std::vector<edge_detail::Half> of_a, of_b;  ///< of the patches
-  std::vector<int> crossed;                   ///< edge of the other polygon per end, -1 at a vertex
-  std::vector<int> parent;                    ///< of a run in its patch
-  std::vector<char> joined;                   ///< per end
-  std::vector<Crossing> crossings;
-  std::vector<Bridge> bridges;
-  std::vector<edge_detail::Extent> extents;  ///< of the patches
+  EdgeWorkspace edge;                         ///< memory of the integrals along edges
+  std::vector<edge_detail::Half> halves;      ///< integrals per run
+  std::vector<edge_detail::Half> of_a, of_b;  ///< integrals per patch, on edges of a and of b
+  std::vector<int> crossed;                   ///< per end: crossed edge of the other polygon or -1
+  std::vector<int> parent;                    ///< per run: union-find forest of the patches
+  std::vector<char> joined;                   ///< per end: whether it has been joined to another
+  std::vector<Crossing> crossings;            ///< ends at crossings
+  std::vector<Bridge> bridges;                ///< candidates for joining loose ends
+  std::vector<edge_detail::Extent> extents;   ///< extents per patch
 };
 
-/// Splits a pair into its patches; same pair and frames as pair_integral. Runs come in the order of
-/// the edges, a's first, and patches in the order of their first run; a pair that does not touch
-/// has neither. The sum over the patches is pair_integral's to round-off, and a patch of two convex
-/// polygons is pair_integral's to the last bit. With coordinates that are not finite there is one
-/// patch that is not finite, and no run. No allocation after the first calls.
+/// Splits a pair of polygons into its contact patches. The arguments a, b and offset are those of
+/// pair_integral. The runs are ordered by their edges, those of a first, and the patches by their
+/// first run. A pair that does not touch has neither. The sum over the patches equals the result of
+/// pair_integral to round-off; the patch of two convex polygons equals it to the last bit. If a
+/// coordinate is not finite, there is one patch that is not finite, and no run. Nothing is
+/// allocated after the first calls.
 ///
-/// Where round-off makes the two boundaries disagree about a crossing (vertices on edges, edges on
-/// each other) a run's loose end is joined to the loose end that is nearest along both boundaries.
+/// Round-off may make the two boundaries disagree about a crossing, if a vertex lies on an edge or
+/// edges lie on each other. A loose end of a run is then joined to the loose end that is nearest
+/// along both boundaries.
 void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                      PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
                      std::vector<PairIntegral>& patches);
 
-/// Runs and patches of two polygons where they stand; moments and positions as edge_method's.
+/// The runs and contact patches of two polygons.
 struct PatchResult {
-  std::vector<BoundaryRun> runs;
-  std::vector<PairIntegral> patches;
+  std::vector<BoundaryRun> runs;      ///< runs, ordered by their edges, those of a first
+  std::vector<PairIntegral> patches;  ///< patches, ordered by their first run
 };
+
+/// Splits two polygons at their given positions into contact patches. As with edge_method, moments
+/// are about the polygons' centroids and positions are relative to the centroid of a. For single
+/// evaluations and not for the step loop, as it allocates.
 PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
                          const Potential& potential_b);
 
-/// How much boundary the patches of a pair share with those of an earlier step: entry
-/// i * patches_now + j of the table is the length (m, both polygons' edges) that lies in the
-/// earlier patch i and in the present patch j. A run without length that lies in another one counts
-/// as the smallest positive number.
+/// Computes how much boundary the patches of a pair share with those of an earlier step. Entry
+/// i * patches_now + j of the table is the length of boundary of both polygons, in m, that lies in
+/// the earlier patch i and in the present patch j. A run of length zero that lies in another run
+/// counts as the smallest positive number.
 void shared_length(std::span<const BoundaryRun> before, int patches_before,
                    std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table);
 

@@ -1,12 +1,16 @@
-// The volume under a distance field over another polygon, for any number type, without a medial
-// axis and without an overlap polygon.
+// The integral of a distance field over another polygon, for any number type. It needs neither the
+// medial axis nor the overlap polygon.
 //
-// The points whose nearest feature is edge i are, with tau along the edge and h from it, the cell
-// 0 <= tau <= L, 0 <= h <= H(tau), where H is the height of the largest circle that touches the
-// edge at tau. Those nearest to a reflex vertex are 0 <= rho <= R(theta) between the normals of its
-// edges. H and 1/R are the envelopes of one quadratic per other feature, in tau and in
-// t = tan(theta/2). The cells tile the polygon, so the volume is, cell by cell, a signed sum over
-// the edges of the other polygon: of the volume under the edge, clamped to the cell.
+// The polygon is divided into cells of the points that are nearest to the same feature, which is an
+// edge or a reflex vertex. The cell of an edge of length L is 0 <= tau <= L, 0 <= h <= H(tau),
+// where tau is the coordinate along the edge, h the distance from it, and H(tau) the radius of the
+// largest circle inside the polygon that touches the edge at tau. The cell of a reflex vertex is 0
+// <= rho <= R(theta) between the normals of its two edges, in polar coordinates rho, theta about
+// the vertex. H is the lower envelope of one quadratic in tau per other feature. 1/R is the upper
+// envelope of such functions; multiplied by 1 + t^2 they are quadratics in t = tan(theta/2). The
+// cells tile the polygon. So the integral is, cell by cell, a signed sum over the edges of the
+// other polygon: each edge contributes the volume between itself and the foot of the cell, clamped
+// to the cell.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +23,12 @@
 
 namespace apothem {
 
-/// INT phi dA over a counter-clockwise ring (x, y in the same frame as the field).
+/// Integrates a distance field over a polygon.
 template <class Real>
 class DistanceVolume {
  public:
+  /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
+  /// in the frame of the field.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
     load(field, x, y);
@@ -44,7 +50,8 @@ class DistanceVolume {
   static Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
   static Real cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
 
-  // c[0] + c[1] z + c[2] z^2 with z = s - origin, at which its values are small.
+  // The function c[0] + c[1] z + c[2] z^2 with z = s - origin. The origin is chosen so that the
+  // values near it are small. `id` names the feature that the function belongs to.
   struct Quadratic {
     Real origin;
     std::array<Real, 3> c;
@@ -58,7 +65,8 @@ class DistanceVolume {
     [[nodiscard]] Quadratic times(const Real& f) const {
       return {origin, {c[0] * f, c[1] * f, c[2] * f}, id};
     }
-    // Where it meets g; NaN, infinity or anything outside the interval at `from` where it does not.
+    // Writes candidates for the points where the function meets g. Where it does not, they may be
+    // NaN, infinite or outside the interval that starts at `from`.
     int crossings(const Quadratic& g, const Real& from, std::array<Real, 2>& roots) const {
       using std::sqrt;
       const Real c0 = (*this)(from)-g(from);
@@ -75,7 +83,7 @@ class DistanceVolume {
     [[nodiscard]] Real slope(const Real& s) const { return c[1] + 2 * c[2] * (s - origin); }
   };
 
-  // All lengths over r.
+  // Stores the polygons with all lengths divided by the reference length r.
   void load(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
     n_ = field.size;
@@ -97,10 +105,12 @@ class DistanceVolume {
   [[nodiscard]] int before(int i) const { return i == 0 ? n_ - 1 : i - 1; }
   [[nodiscard]] Point tangent(int i) const { return {normal_[i].y, -normal_[i].x}; }
 
-  // Sums of one cell, counted from its foot and from its ceiling: both are the volume, but for a
-  // ring that passes only above (or below) the cell one of them is exactly 0.
+  // The volume of one cell, summed from its foot (low) and from its ceiling (high), and the sums of
+  // the absolute values of the terms. Both sums are equal up to round-off, but if the ring passes
+  // only above or only below the cell, one of them is exactly 0.
   struct Sums {
     Real low = 0, low_size = 0, high = 0, high_size = 0;
+    // Adds one edge of the ring: `part` is the volume below it, `full` that of the whole cell.
     void add(const Real& part, const Real& full) {
       using std::abs;
       low += part;
@@ -110,7 +120,8 @@ class DistanceVolume {
     }
   };
 
-  // Sorted places between lo and hi where something changes, lo and hi among them.
+  // The interval from lo to hi is cut where the integrand changes its form. Call start_cuts first,
+  // then add cuts; between_cuts calls piece for every part.
   void start_cuts(const Real& lo, const Real& hi) { cuts_.assign({lo, hi}); }
   void add_cut(const Real& s) {
     if (s > cuts_[0] && s < cuts_[1]) cuts_.push_back(s);
@@ -128,7 +139,7 @@ class DistanceVolume {
     }
   }
 
-  // INT f ds, exact for polynomials of degree 5.
+  // INT f ds from a to b by Gauss quadrature, exact for polynomials of degree 5.
   template <class F>
   static Real gauss(const Real& a, const Real& b, const F& f) {
     using std::sqrt;
@@ -137,8 +148,7 @@ class DistanceVolume {
     return (b - a) / 18 * (5 * f(middle - step) + 8 * f(middle) + 5 * f(middle + step));
   }
 
-  // ---- Cell of an edge.
-
+  // Volume over the cell of edge i.
   Real edge_cell(int i) {
     const Point t = tangent(i);
     const Point& n = normal_[i];
@@ -165,12 +175,13 @@ class DistanceVolume {
     return sums.low_size <= sums.high_size ? sums.low : sums.high;
   }
 
-  // The bisector of the lines i and j, where the circle touches j within the edge. It is written
-  // so that the cells of i and j share it to the last bit: a common error moves points between two
-  // cells in which they have the same depth, a difference would count an area twice.
+  // Adds to the ceiling of the cell of edge i the bisector of the lines i and j, where the circle
+  // touches line j within edge j. The bisector is written so that the cells of i and j share it to
+  // the last bit. A common error only moves points between two cells in which they have the same
+  // depth; a difference would count an area twice.
   void ceiling_by_edge(int i, int j) {
     const Point m = normal_[j] - normal_[i];
-    const Real slope = dot(m, m) / 2;  // -m . n_i
+    const Real slope = dot(m, m) / 2;  // equal to -m . n_i
     if (!(slope > 0)) return;
     const bool next = j == after(i);
     const bool previous = j == before(i);
@@ -180,8 +191,8 @@ class DistanceVolume {
                                   : Real((dot(m, vertex_[i]) - (dot(normal_[j], vertex_[j]) -
                                                                 dot(normal_[i], vertex_[i]))) /
                                          slope);
-    // The two touching points are equally far from where the lines meet: one recedes from the start
-    // of its edge as the other one approaches it.
+    // The two touching points are equally far from the point where the lines meet. As one moves
+    // away from the start of its edge, the other one moves towards the start of its own.
     const Real foot =
         next ? length_[i]
         : previous
@@ -200,11 +211,12 @@ class DistanceVolume {
     if (from < to) ceiling_.insert({0, {start, rise, 0}, j}, from, to);
   }
 
-  // INT_0^h min(1, h') dh'.
+  // INT_0^h min(1, h') dh', or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real column(const Real& h) const {
     return capped_ && h > 1 ? Real(h - Real(1) / 2) : Real(h * h / 2);
   }
 
+  // Adds the volume between the foot of an edge's cell, of the given length, and a segment.
   void under_segment(Real tau1, Real h1, Real tau2, Real h2, const Real& length, Sums& sums) {
     const int sign = tau1 < tau2 ? -1 : 1;
     if (sign > 0) std::swap(tau1, tau2), std::swap(h1, h2);
@@ -240,8 +252,8 @@ class DistanceVolume {
     }
   }
 
-  // ---- Cell of a reflex vertex. Directions are seen from the middle one, at t = tan(theta/2).
-
+  // Volume over the cell of the reflex vertex v. Directions are given by t = tan(theta/2), where
+  // theta is the angle from the middle direction of the cell.
   Real vertex_cell(int v) {
     const Point& left = normal_[before(v)];
     const Point& right = normal_[v];
@@ -257,14 +269,14 @@ class DistanceVolume {
     }
     for (const int w : *corners_) {
       if (w == v) continue;
-      // On the perpendicular bisector u . p = |p|^2 / (2 rho).
+      // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit direction.
       const Point p = in_frame(vertex_[w] - vertex_[v]);
       const Real d2 = dot(p, p) / 2;
       reaches_.push_back({false, p, d2, 0, 0});
       insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1);
     }
     Sums sums;
-    Real coverage = 0;  // how often the ring encloses the vertex's cell, seen from the vertex
+    Real coverage = 0;  // winding number of the ring about the vertex, in the middle direction
     for (size_t k = 0; k < ring_.size(); ++k) {
       Point p = ring_[k] - vertex_[v];
       Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - vertex_[v];
@@ -272,7 +284,7 @@ class DistanceVolume {
       if (!clip(p, q, cross(p, left), cross(q, left))) continue;
       beyond_segment(in_frame(p), in_frame(q), sums, coverage);
     }
-    // Near the vertex directions are noise, and only the sum from the foot does not mind.
+    // Near the vertex, directions consist of round-off, which only the sum from the foot tolerates.
     if (sums.high_size > 0) return sums.low;
     Real whole = 0;
     for (size_t k = 0; k < ceiling_.size(); ++k) {
@@ -285,15 +297,17 @@ class DistanceVolume {
     return coverage * whole;
   }
 
+  // Components of a vector along the middle direction and to its left.
   [[nodiscard]] Point in_frame(const Point& p) const { return {dot(axis_, p), cross(axis_, p)}; }
 
+  // t = tan(theta/2) for the direction of p.
   static Real half_tangent(const Point& p) {
     using std::sqrt;
     const Real size = p.x + sqrt(dot(p, p));
     return size > 0 ? Real(p.y / size) : Real(0);
   }
 
-  // Part of the segment with side >= 0.
+  // Keeps the part of the segment pq with side >= 0; returns false if there is none.
   static bool clip(Point& p, Point& q, const Real& side_p, const Real& side_q) {
     if ((side_p >= 0) == (side_q >= 0)) return side_p >= 0;
     const Point cut = p + (q - p) * (side_p / (side_p - side_q));
@@ -301,20 +315,23 @@ class DistanceVolume {
     return true;
   }
 
-  // How far the cell reaches: to a line u . normal = d / rho, or to a parabola about the vertex
-  // with the directrix at the distance d; (ec, es) is the half angle of the direction towards it.
+  // A border of a vertex's cell. It is the line u . normal = d / rho, u the unit direction, or a
+  // parabola whose focus is the vertex and whose directrix has the distance d. (ec, es) are cosine
+  // and sine of half the angle of the direction towards the directrix.
   struct Reach {
     bool parabola;
     Point normal;
     Real d, ec, es;
   };
 
-  // (1 + t^2)/rho of the last of reaches_, with the sign turned for the lower envelope.
+  // Adds the function -(1 + t^2)/rho of the last element of reaches_ to the ceiling. The sign makes
+  // the nearest border the lower envelope.
   void insert_reach(Quadratic inverse, const Real& t0, const Real& t1) {
     inverse.id = static_cast<int>(reaches_.size()) - 1;
     ceiling_.insert(inverse, t0, t1);
   }
 
+  // Adds the parabola between the vertex v and edge j, where the circle touches j within the edge.
   void reach_to_edge(int v, int j, const Real& t0, const Real& t1) {
     using std::sqrt;
     const Point p = vertex_[v] - vertex_[j];
@@ -329,12 +346,13 @@ class DistanceVolume {
       es = sqrt((1 - m.x) / 2);
       ec = m.y / (2 * es);
     }
-    // rho = d / (1 + u . m) = d (1 + y^2) / 2 with y = tan of half the angle from m; the circle
-    // touches j at the distance d y from the foot of the vertex.
+    // On the parabola rho = d / (1 + u . m) = d (1 + y^2) / 2, where y is the tangent of half the
+    // angle from m. The circle touches edge j at the distance d y from the foot of the
+    // perpendicular from the vertex.
     const Real foot = dot(tangent(j), p);
     const Real y0 = -foot / d;
     const Real y1 = (length_[j] - foot) / d;
-    // t = (es + ec y) / (ec - es y): increasing, and once through infinity perhaps.
+    // t = (es + ec y) / (ec - es y) increases with y, and may pass through infinity once.
     const Real infinite = std::numeric_limits<Real>::infinity();
     if (!(y0 > -infinite && y0 < infinite && y1 > -infinite && y1 < infinite)) return;
     const Real below0 = ec - es * y0;
@@ -342,7 +360,7 @@ class DistanceVolume {
     const Real from = below0 == 0 ? Real(-infinite) : Real((es + ec * y0) / below0);
     const Real to = below1 == 0 ? infinite : Real((es + ec * y1) / below1);
     reaches_.push_back({true, m, d, ec, es});
-    // 2 (ec + es t)^2 / d
+    // (1 + t^2)/rho = 2 (ec + es t)^2 / d, with the opposite sign.
     const Quadratic inverse =
         2 * es * es >= ec * ec
             ? Quadratic{-ec / es, {0, 0, -2 * es * es / d}, 0}
@@ -355,7 +373,8 @@ class DistanceVolume {
     }
   }
 
-  // Between the directions t1 and t2 up to the line or the parabola: INT INT min(1, rho) rho drho.
+  // The volume between the directions t1 and t2 up to the border: the integral of min(1, rho) rho
+  // over rho and theta, or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
     using std::atan2;
     using std::sqrt;
@@ -367,7 +386,7 @@ class DistanceVolume {
       const auto y = [&](const Real& t) {
         return Real((reach.ec * t - reach.es) / denominator(t));
       };
-      if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // no wider than round-off
+      if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // narrower than round-off
       const Real y1 = y(t1), y2 = y(t2), ym = y(middle);
       if (capped_ && d * (1 + ym * ym) > 2) {
         return d * d / 4 * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
@@ -376,7 +395,8 @@ class DistanceVolume {
       return d * d * d / 12 *
              gauss(y1, y2, [](const Real& s) { return Real((1 + s * s) * (1 + s * s)); });
     }
-    // Along the line, w from the foot of the vertex, at the distance D.
+    // For a line, w is the coordinate along it from the foot of the perpendicular from the vertex,
+    // and D is the distance of the line.
     const Real size = sqrt(dot(reach.normal, reach.normal));
     const Real D = d / size;
     const Point n = reach.normal * (1 / size);
@@ -391,11 +411,12 @@ class DistanceVolume {
     return D / 3 * root_moments<Real>(D * D, w, step)[0];
   }
 
-  // Where rho = 1.
+  // Adds the cuts at rho = 1, where phi reaches its limit.
   void add_cap_cuts(const Quadratic& inverse, const Real& factor) {
     if (capped_) add_cuts(inverse, {0, {-factor, 0, -factor}, 0});
   }
 
+  // Adds the volume between the vertex and a segment of the ring inside the cell's directions.
   void beyond_segment(const Point& p, const Point& q, Sums& sums, Real& coverage) {
     Real t1 = half_tangent(p), t2 = half_tangent(q);
     const int sign = t1 < t2 ? 1 : -1;
@@ -405,7 +426,7 @@ class DistanceVolume {
     const Point normal{edge.y, -edge.x};
     const Real d = std::max(Real(0), dot(normal, p));
     const Reach own{false, normal, d, 0, 0};
-    const Quadratic line{0, {-normal.x, -2 * normal.y, normal.x}, 0};  // -d (1 + t^2)/rho
+    const Quadratic line{0, {-normal.x, -2 * normal.y, normal.x}, 0};  // equal to -d (1 + t^2)/rho
     for (size_t k = 0; k < ceiling_.size(); ++k) {
       const Real from = std::max(t1, ceiling_[k].from);
       const Real to = std::min(t2, ceiling_.end(k));
@@ -419,7 +440,7 @@ class DistanceVolume {
       between_cuts([&](const Real& a, const Real& b) {
         const Real full = sector(reach, a, b);
         const Real middle = (a + b) / 2;
-        const bool missed = line(middle) >= 0;  // by round-off of a segment through the vertex
+        const bool missed = line(middle) >= 0;  // by round-off, if the segment passes the vertex
         const bool nearer = line.below(scaled, middle);
         sums.add(sign * (missed ? Real(0) : nearer ? sector(own, a, b) : full), sign * full);
       });
@@ -431,9 +452,9 @@ class DistanceVolume {
   const std::vector<int>* corners_ = nullptr;
   std::vector<Point> vertex_, normal_, ring_;
   std::vector<Real> length_, cuts_;
-  PiecewiseMinimum<Real, Quadratic> ceiling_;
-  std::vector<Reach> reaches_;
-  Point axis_{};
+  PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
+  std::vector<Reach> reaches_;                 // borders of the present vertex's cell
+  Point axis_{};                               // middle direction of the present vertex's cell
 };
 
 }  // namespace apothem

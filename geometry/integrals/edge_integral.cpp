@@ -13,7 +13,7 @@ using namespace edge_detail;
 
 namespace {
 
-// End points of the clipped edges, in a buffer that only grows.
+// The end points of the clipped edges, in a buffer that never shrinks.
 class Pieces {
  public:
   explicit Pieces(std::vector<double>& buffer) : buffer_(buffer) {}
@@ -35,7 +35,9 @@ class Pieces {
   size_t used_ = 0;
 };
 
-// Both halves and the extent of their pieces, of which the first `middle` numbers are a's.
+// Combines the integrals along the edges of a and of b, and adds the extent of the clipped edges.
+// The first `middle` numbers of `pieces` belong to edges of a. `r` is a's reference point relative
+// to b's.
 PairIntegral join(const Half& of_a, const Half& of_b, const Vec2& r, const Pieces& pieces,
                   size_t middle) {
   PairIntegral pair = combine(of_a, of_b, r);
@@ -57,7 +59,8 @@ PairIntegral join(const Half& of_a, const Half& of_b, const Vec2& r, const Piece
   return pair;
 }
 
-// y convex: its envelope on the part of each edge of x that clipping leaves.
+// Integrates phi of y, which is convex, along the edges of x: the lower envelope of y's linear
+// functions on the part of each edge that lies inside y.
 Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                         const double* rows, double* spare, Pieces& pieces) {
   Half half;
@@ -76,8 +79,9 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
   return half;
 }
 
-// y not convex: calls along(edge, pieces), which returns phi's moments and adds the parts inside y
-// to `inside`, for the edges of x that may enter y, perhaps several times.
+// Integrates phi of y, which is not convex, along the edges of x. For every edge that may enter y
+// it calls along(edge, inside), which returns the integrals of phi along the edge and adds the
+// share of the edge inside y to `inside`. An edge may enter y several times.
 template <class Along>
 Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                      const Along& along) {
@@ -86,7 +90,7 @@ Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double 
     double inside = 0;
     const SegmentMoments<double> moments = along(edge, inside);
     accumulate(edge, moments, inside, half);
-  });  // NaN never passes as "no contact"
+  });  // a NaN is added, so that it is never taken for "no contact"
   return half;
 }
 
@@ -135,15 +139,16 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
     if (y.distance) return integrate_distance(x, y, x0, y0, workspace.distance, pieces);
     return integrate_envelope(x, y, x0, y0, rows, height.spare, pieces);
   };
-  const Half of_a = half(a, b, dx, dy, height.of_a);  // frame of b
+  const Half of_a = half(a, b, dx, dy, height.of_a);  // in the frame of b
   const size_t middle = pieces.used();
-  const Half of_b = half(b, a, -dx, -dy, height.of_b);  // frame of a
+  const Half of_b = half(b, a, -dx, -dy, height.of_b);  // in the frame of a
 
   return join(of_a, of_b, arm(a, b, offset), pieces, middle);
 }
 
 namespace {
 
+// The linear functions of the edges of p, in coordinates shifted by `shift`.
 std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const Vec2& shift) {
   std::vector<lower_envelope::Line<double>> result;
   for (int i = 0; i < p.size; ++i) {
@@ -166,12 +171,13 @@ Ring ring(const PlacedPotential& p, const Vec2& shift) {
   return result;
 }
 
+// A polygon as a signed sum of convex ones.
 Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
   if (p.convex()) return {{ring(p, shift), 1}};
   return lower_envelope::fan(ring(p, shift));
 }
 
-// INT phi_p dA over the overlap with the parts of the other polygon.
+// INT phi_p dA over the overlap of p with the other polygon, which is given by its convex parts.
 double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& others) {
   const auto planes = lines(p, shift);
   if (p.roof) {
@@ -191,7 +197,8 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& ot
   return volume;
 }
 
-// The same for a distance field and the whole other polygon, which stands at `shift` seen from p.
+// The same if p has a distance field. `shift` moves the coordinates of the other polygon to the
+// frame of p.
 double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
                              const Vec2& shift) {
   std::vector<double> x, y;
@@ -224,7 +231,7 @@ PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const
 
 Vec2 loading_point(const PairIntegral& pair) {
   const double size = pair.force.norm();
-  // Equal and opposite tractions have no line of action worth following.
+  // If the tractions cancel, the line of action is determined by round-off only.
   if (!(size > 1e-12 * pair.weight)) return pair.centre;
   const Vec2 tangent(-pair.force.y() / size, pair.force.x() / size);
   return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
@@ -232,8 +239,8 @@ Vec2 loading_point(const PairIntegral& pair) {
 
 namespace {
 
-// Single evaluations of needles take more digits. In the step loop they would be lost on vertices
-// that have been turned.
+// Single evaluations of needles (very thin polygons) use more digits. In the step loop this would
+// not help, because the rotation of the vertices has rounded them already.
 using Fine = long double;
 
 bool is_needle(const Polygon& a, const Potential& potential_a, const Polygon& b,
@@ -243,7 +250,8 @@ bool is_needle(const Polygon& a, const Potential& potential_a, const Polygon& b,
   return a.is_convex() && b.is_convex() && size * steepest > kNeedle;
 }
 
-// Heights over the edges of y, directions taken from its vertices again.
+// The heights of points over the edges of y divided by the reference length. The directions of the
+// edges are computed again from the vertices.
 class FineLines {
  public:
   explicit FineLines(const PlacedPotential& y) : y_(y) {
@@ -269,6 +277,7 @@ class FineLines {
   std::vector<Fine> gx_, gy_;
 };
 
+// integrate_envelope in long double, for polygons at their given positions.
 Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces& pieces) {
   const FineLines lines(y);
   Half half;
@@ -281,7 +290,7 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces
     Fine s0, s1;
     if (!clip(row, s0, s1)) continue;
     const Fine share = s1 - s0;
-    SegmentMoments<Fine> moments;  // along the part inside
+    SegmentMoments<Fine> moments;  // along the part of the edge inside y
     walk_envelope(row, s0, s1, [&](Fine u1, Fine v1, Fine u2, Fine v2) {
       moments.add((u1 - s0) / share, v1, (u2 - s0) / share, v2);
     });

@@ -1,13 +1,17 @@
-// Normal contact of two polygons by integrals along their edges: the hot kernel.
+// The normal contact of two polygons by integrals along their edges. This is the contact kernel of
+// the step loop.
 //
-// With E = INT_{a AND b} (phi_a + phi_b) dA and stiffness 1, the divergence theorem turns the force
-// F_a = -dE/dx_a into (theory: Eqs. 7-8 without the overlap polygon, phi_b = 0 on b's own edges)
+// For unit stiffness the energy of a pair is E = INT_{a AND b} (phi_a + phi_b) dA. With the outward
+// unit normals n, the divergence theorem turns the force F_a = -dE/dx_a into
 //
-//   F_a = - SUM_{edges of a} n INT phi_b ds + SUM_{edges of b} n INT phi_a ds.
+//   F_a = - SUM_{edges of a} n INT phi_b ds + SUM_{edges of b} n INT phi_a ds,
 //
-// Each half-sum is evaluated in the frame of the polygon that owns phi. Swapping a and b swaps the
-// halves, hence F_b = -F_a to the last bit; and only differences of positions enter, hence no digit
-// is lost far from the origin.
+// because phi_b = 0 on the edges of b. These are Eqs. 7 and 8 of the paper without the overlap
+// polygon; see docs/theory.md, "Normal contact".
+//
+// Each of the two sums is evaluated in the frame of the polygon whose potential it integrates. If a
+// and b are swapped, the two sums are swapped as well, hence F_b = -F_a to the last bit. Only
+// differences of positions are used, so no digits are lost far from the origin.
 #pragma once
 
 #include <vector>
@@ -18,78 +22,86 @@
 
 namespace apothem {
 
-/// A potential placed in the plane: SoA views relative to some frame. x and y have size + 1 entries
-/// (the first vertex is repeated), gx and gy have `size`.
+/// A potential at a position in the plane: pointers to arrays of coordinates relative to some
+/// frame. x and y have size + 1 entries, because the first vertex is repeated; gx and gy have
+/// `size`. A polygon that is not convex has either a roof or a distance field. If `radius` is 0, it
+/// is not known, and long edges of the other polygon are not shortened.
 struct PlacedPotential {
-  const double* x;
-  const double* y;
-  const double* gx;
-  const double* gy;
-  int size;
-  bool capped;
-  const Roof* roof = nullptr;      ///< of a polygon that is not convex, or
-  const double* node_x = nullptr;  ///< (its nodes, placed)
-  const double* node_y = nullptr;
-  const DistanceField* distance = nullptr;  ///< this
-  Vec2 reference = Vec2::Zero();            ///< in the frame; what the pair's moments are about
-  double radius = 0;                        ///< largest distance of a vertex from it; 0: not known
+  const double* x;                          ///< x coordinates of the vertices, m
+  const double* y;                          ///< y coordinates of the vertices, m
+  const double* gx;                         ///< x components of the gradients g_i, 1/m
+  const double* gy;                         ///< y components of the gradients g_i, 1/m
+  int size;                                 ///< number of vertices
+  bool capped;                              ///< whether phi is limited to 1
+  const Roof* roof = nullptr;               ///< roof, or null
+  const double* node_x = nullptr;           ///< x coordinates of the roof's nodes, m
+  const double* node_y = nullptr;           ///< y coordinates of the roof's nodes, m
+  const DistanceField* distance = nullptr;  ///< distance field, or null
+  Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
+  double radius = 0;  ///< largest distance of a vertex from `reference`, m, or 0
 
-  /// True where phi is the lower envelope of the lines.
+  /// True if phi is the lower envelope of the linear functions of the edges.
   [[nodiscard]] bool convex() const { return !roof && !distance; }
 };
 
-/// Integrals of a pair for unit stiffness. Multiply force, moments, weight and energy by k_n.
-/// Moments are about the two reference points; positions are relative to a's reference point.
+/// The integrals of a pair for unit stiffness. Multiplied by the stiffness k_n (Pa), force and
+/// weight are in N/m, moments in N, and the energy of PairVolume in J/m. Moments are about the
+/// reference points of the two polygons; positions are relative to the reference point of a.
 struct PairIntegral {
-  Vec2 force = Vec2::Zero();   ///< on a, m
-  double moment_a = 0;         ///< m^2
-  double moment_b = 0;         ///< m^2
-  double weight = 0;           ///< W = SUM INT phi ds, m: the scale of round-off
+  Vec2 force = Vec2::Zero();   ///< force on a, m
+  double moment_a = 0;         ///< moment on a about its reference point, m^2
+  double moment_b = 0;         ///< moment on b about its reference point, m^2
+  double weight = 0;           ///< W = SUM INT phi ds, the scale of round-off errors, m
   Vec2 centre = Vec2::Zero();  ///< weighted centre p0 = SUM INT phi x ds / W, m
-  double own_length_a = 0;     ///< boundary of a inside b, m
-  double own_length_b = 0;     ///< m
-  double largest_phi = 0;      ///< largest phi met along the edges
+  double own_length_a = 0;     ///< length of the boundary of a inside b, m
+  double own_length_b = 0;     ///< length of the boundary of b inside a, m
+  double largest_phi = 0;      ///< largest phi found along the edges
   double penetration = 0;      ///< extent of the overlap along the force, m
   double breadth = 0;          ///< extent of the overlap across the force, m
 
-  [[nodiscard]] bool touching() const { return !(weight <= 0); }  // NaN counts as touching
+  /// True if the polygons touch, and also if the weight is NaN.
+  [[nodiscard]] bool touching() const { return !(weight <= 0); }
 };
 
-/// Memory the kernel works in; keep one per thread.
+/// Memory that the kernel works in. Keep one per thread.
 struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
   std::vector<double> pieces;  ///< end points of the clipped edges
-  RoofTrace<double> roof;      ///< for polygons that are not convex
-  DistanceTrace<double> distance;
+  RoofTrace<double> roof;      ///< memory for polygons with a roof
+  DistanceTrace<double> distance;  ///< memory for polygons with a distance field
 };
 
-/// The pair kernel. `offset` is the origin of a's frame minus that of b's. No allocation after the
-/// first calls with polygons of that size.
+/// Computes the integrals of a pair. `offset` is the origin of a's frame minus the origin of b's
+/// frame, m. If a coordinate is not finite, the result is not finite either. Nothing is allocated
+/// after the first calls with polygons of a given size.
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace);
 
-/// Energy INT_{a AND b} (phi_a + phi_b) dA (m^2 for unit stiffness) and overlap area (m^2).
+/// The integrals of a pair over the overlap.
 struct PairVolume {
-  double energy = 0;
-  double overlap_area = 0;
+  double energy = 0;        ///< INT_{a AND b} (phi_a + phi_b) dA for unit stiffness, m^2
+  double overlap_area = 0;  ///< area of the overlap, m^2
 };
 
-/// The volume under the potentials, by clipping: not for the step loop, but for ledgers and
-/// pictures.
+/// Computes the energy and the overlap area by clipping. It is meant for ledgers and pictures and
+/// is too slow for the step loop. The arguments are those of pair_integral.
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
 
-/// Loading point of the resultant: the weighted centre moved along the tangent onto the line of
-/// action of (force, moment_a), relative to a's reference point (theory: Sec. 3). Without a
-/// resultant it is the centre itself.
+/// Returns the loading point of the resultant force, relative to a's reference point, m. It is the
+/// weighted centre, moved along the tangent onto the line of action of (force, moment_a); see
+/// docs/theory.md, "Normal contact". Without a resultant force it is the weighted centre itself.
 Vec2 loading_point(const PairIntegral& pair);
 
-/// The pair kernel for two polygons where they stand, with the potentials of make_potential;
-/// moments about the polygons' centroids, positions relative to a's. For single evaluations:
-/// vertices enter exactly as given, so the round-off is as small as the kernel allows.
+/// All integrals of a pair.
 struct PairResult {
-  PairIntegral integral;
-  PairVolume volume;
+  PairIntegral integral;  ///< integrals along the edges
+  PairVolume volume;      ///< integrals over the overlap
 };
+
+/// Computes all integrals of two polygons at their given positions, with potentials made by
+/// make_potential. Moments are about the polygons' centroids and positions are relative to the
+/// centroid of a. It is meant for single evaluations: vertices are used exactly as given, so the
+/// round-off is as small as the kernel allows.
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b);
 

@@ -1,5 +1,6 @@
-// Private to edge_integral.cpp and contact_patches.cpp: phi of one polygon along the edges of
-// another, and the sums that make a pair of it.
+// The potential phi of one polygon along the edges of another one, and the sums that give the
+// integrals of a pair. This header is private to edge_integral.cpp and contact_patches.cpp;
+// contact_patches.hpp includes it for the types of its workspace.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +11,20 @@
 
 namespace apothem::edge_detail {
 
-// phi is the minimum of the lines a_i + s (b_i - a_i) along an edge, s in [0, 1]; a_i and b_i are
-// the heights of its two ends over edge i of the other polygon (1 for the cap phi <= 1).
+// phi along an edge as the minimum of the linear functions a_i + s (b_i - a_i), s in [0, 1]. a_i
+// and b_i are the heights of the two ends of the edge over edge i of the other polygon, divided by
+// the reference length. The limit phi <= 1 is one more function, with a_i = b_i = 1.
 template <class Real>
 struct Row {
   const Real* a;
   const Real* b;
-  int size;   // lines that bound the polygon
-  int lines;  // size, or size + 1 with the cap
+  int size;   // number of functions that bound the polygon
+  int lines;  // number of all functions: size, or size + 1 if phi is limited to 1
 };
 
-// Interval of the edge inside the polygon: one sign per node, half-open, no tolerance. A NaN ends
-// up in the interval, never in "outside".
+// Finds the interval of s in which the edge is inside the polygon; returns false if there is none.
+// One sign per node decides, by a half-open rule and without a tolerance. An edge with a NaN is
+// kept and never counts as outside.
 template <class Real>
 bool clip(const Row<Real>& row, Real& s0, Real& s1) {
   s0 = 0;
@@ -42,7 +45,8 @@ bool clip(const Row<Real>& row, Real& s0, Real& s1) {
   return !(s0 >= s1);
 }
 
-// Calls piece(s, value, s_next, value_next) along the concave lower envelope from s0 to s1.
+// Calls piece(s, value, s_next, value_next) for every linear piece of phi, which is a concave lower
+// envelope, from s0 to s1.
 template <class Real, class Piece>
 void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
   const auto value = [&](int i, Real s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
@@ -57,8 +61,9 @@ void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
     }
   }
   for (Real s = s0;;) {
-    // The next line to take over falls faster and meets the present one first. Fractions gap/fall
-    // are compared by cross-multiplication: one division per piece instead of one per line.
+    // The next function of the envelope is the one that falls faster than the present one and meets
+    // it first. The fractions gap/fall are compared by cross-multiplication, which needs one
+    // division per piece instead of one per function.
     int next = -1;
     Real gap = s1 - s;
     Real fall = 1;
@@ -79,7 +84,8 @@ void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
       return;
     }
     const Real end = std::min(s + gap / fall, s1);
-    // By the flatter of the two lines: along a needle the other one may be a million times steeper.
+    // The value is that of the flatter of the two functions, because along a needle the other one
+    // may be a million times steeper.
     const bool flatter = std::abs(slope(next)) < std::abs(slope(line));
     const Real end_height = value(flatter ? next : line, end);
     if (end > s) piece(s, height, end, end_height);
@@ -90,7 +96,7 @@ void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
   }
 }
 
-// Heights of a point over the edges of y, and 1 for the cap.
+// Heights of a point over the edges of y divided by the reference length, and 1 if phi is limited.
 inline void height_row(const PlacedPotential& y, double px, double py, double* row) {
   for (int i = 0; i < y.size; ++i) {
     row[i] = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
@@ -98,8 +104,9 @@ inline void height_row(const PlacedPotential& y, double px, double py, double* r
   if (y.capped) row[y.size] = 1;
 }
 
-// Heights of the points of x over the edges of y: rows of y.size (+ 1 for the cap) entries, one per
-// vertex, first row repeated at the end. True when one edge of y has all of x outside.
+// Writes the heights of the vertices of x over the edges of y: one row per vertex, with y.size
+// entries (and one more if phi is limited to 1), and the first row again at the end. Returns true
+// if all of x lies outside one edge of y, so that the polygons are apart.
 inline bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                     double* rows) {
   const int n = y.size;
@@ -116,13 +123,14 @@ inline bool heights(const PlacedPotential& x, const PlacedPotential& y, double d
   return false;
 }
 
-// Integrals of phi_y along the edges of x, in the frame of y, without the sign of Eq. 7.
+// The integrals of phi of y along the edges of x, in the frame of y, without the sign of Eq. 7.
+// Positions and moments are relative to y's reference point.
 struct Half {
-  double fx = 0, fy = 0;  // SUM n INT phi ds
-  double moment = 0;      // about y's reference point
-  double weight = 0, wx = 0, wy = 0;
-  double length = 0;
-  double largest = 0;
+  double fx = 0, fy = 0;              // SUM n INT phi ds, m
+  double moment = 0;                  // SUM INT phi (x cross n) ds, m^2
+  double weight = 0, wx = 0, wy = 0;  // SUM INT phi ds, m, and SUM INT phi x ds, m^2
+  double length = 0;                  // length of the edges of x inside y, m
+  double largest = 0;                 // largest phi along the edges
 
   void add(const Half& other) {
     fx += other.fx, fy += other.fy;
@@ -133,7 +141,7 @@ struct Half {
   }
 };
 
-// A linear piece of phi below the cap.
+// Adds a linear piece of phi, limited to 1.
 inline void add_capped(double u1, double v1, double u2, double v2,
                        SegmentMoments<double>& moments) {
   if ((v1 > 1) == (v2 > 1)) {
@@ -145,7 +153,8 @@ inline void add_capped(double u1, double v1, double u2, double v2,
   moments.add(u, 1, u2, std::min(v2, 1.0));
 }
 
-// An edge of x in the frame of y, its start also relative to y's reference point.
+// An edge of x in the frame of y: its start (px, py), the same relative to y's reference point
+// (qx, qy), and the vector (ex, ey) to its end.
 template <class Real>
 struct BasicEdge {
   BasicEdge(const PlacedPotential& x, const PlacedPotential& y, int e, double dx, double dy)
@@ -158,16 +167,16 @@ struct BasicEdge {
     shorten(y);
   }
   Real px, py, qx, qy, ex, ey;
-  Real first = 0, last = 1;  // the part of the edge that this is
-  bool shortened = false;
+  Real first = 0, last = 1;  // the part of the whole edge that is represented
+  bool shortened = false;    // whether it is less than the whole edge
 
-  /// Where s of this part is on the whole edge, 0 ... 1.
+  /// Position on the whole edge, from 0 to 1, of the parameter s of the represented part.
   [[nodiscard]] Real share(Real s) const { return first + s * (last - first); }
 
  private:
-  // Of an edge that is long against y only the part around the foot of y's reference point counts:
-  // a fraction of the whole length could not place the few millimetres inside y on a floor of a
-  // kilometre.
+  // Reduces an edge that is much longer than y to the part around the foot of the perpendicular
+  // from y's reference point. On a floor of a kilometre, a parameter that runs over the whole edge
+  // could not resolve the few millimetres that lie inside y.
   void shorten(const PlacedPotential& y) {
     constexpr double kLong = 8;
     const Real length2 = ex * ex + ey * ey;
@@ -175,8 +184,8 @@ struct BasicEdge {
     const Real length = std::sqrt(length2);
     const Real tx = ex / length;
     const Real ty = ey / length;
-    const Real foot = -(tx * qx + ty * qy);  // along the edge, from its start
-    const Real height = tx * qy - ty * qx;   // of the edge's line over the reference point
+    const Real foot = -(tx * qx + ty * qy);  // foot, from the start of the edge
+    const Real height = tx * qy - ty * qx;   // from the line to the reference point
     const Real from = foot - 2 * y.radius;
     const Real until = foot + 2 * y.radius;
     if (until <= 0 || from >= length) return;
@@ -197,6 +206,8 @@ struct BasicEdge {
 };
 using PlacedEdge = BasicEdge<double>;
 
+// Adds the integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
+// `inside` is the share of the edge that lies inside the other polygon.
 inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, double inside,
                        Half& half) {
   const double qx = edge.qx, qy = edge.qy, ex = edge.ex, ey = edge.ey;
@@ -211,13 +222,13 @@ inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, 
   half.largest = std::max(half.largest, m.largest);
 }
 
-/// Calls along(e, edge) for the edges of x that may enter y, which is not convex. Returns 0, or NaN
-/// (and calls nothing) if a coordinate is not finite.
+/// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. Returns 0, or
+/// NaN without any call if a coordinate is not finite.
 template <class Along>
 double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                   const Along& along) {
   Box box;
-  double finite = 0;  // 0 * coordinate: a NaN or an infinity shows
+  double finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
   for (int i = 0; i < y.size; ++i) {
     box.include(y.x[i], y.y[i]);
     finite += 0 * y.x[i] + 0 * y.y[i];
@@ -234,7 +245,9 @@ double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx,
   return 0;
 }
 
-/// Heights of edge e of x (from `heights`) over the edges of y; `spare` has room for two rows.
+/// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
+/// `heights` has written, or computed in `spare`, which has room for two rows, if the edge has been
+/// shortened.
 inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
                           const double* rows, double* spare) {
   const int width = y.size + (y.capped ? 1 : 0);
@@ -244,12 +257,14 @@ inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& 
   return {spare, spare + width, y.size, width};
 }
 
-/// Memory for the heights of both polygons.
+/// Memory for heights of the vertices of both polygons over the edges of the other one.
 struct HeightRows {
-  double* of_a;
-  double* of_b;
-  double* spare;
+  double* of_a;   ///< rows for the vertices of a
+  double* of_b;   ///< rows for the vertices of b
+  double* spare;  ///< two rows for a shortened edge
 };
+
+/// Takes the memory from `buffer`, which grows if necessary.
 inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b,
                               std::vector<double>& buffer) {
   const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
@@ -259,16 +274,18 @@ inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b
   return {buffer.data(), buffer.data() + rows_a, buffer.data() + rows_a + rows_b};
 }
 
+/// The roof of a placed potential that has one.
 inline PlacedRoof<double> placed_roof(const PlacedPotential& y) {
   return {&y.roof->arcs, y.size,   static_cast<int>(y.roof->values.size()),
           y.node_x,      y.node_y, y.roof->values.data()};
 }
 
+/// The distance field of a placed potential that has one.
 inline PlacedDistance<double> placed_distance(const PlacedPotential& y) {
   return {y.size, y.x, y.y, y.gx, y.gy, y.distance->slope, &y.distance->corners, y.capped};
 }
 
-/// A linear piece of phi, below the cap if there is one.
+/// Adds a linear piece of phi of y, limited to 1 if y's potential is capped.
 inline void add_piece(const PlacedPotential& y, double u1, double v1, double u2, double v2,
                       SegmentMoments<double>& moments) {
   if (y.capped) {
@@ -278,17 +295,19 @@ inline void add_piece(const PlacedPotential& y, double u1, double v1, double u2,
   }
 }
 
-/// a's reference point seen from b's.
+/// The reference point of a relative to that of b, m.
 inline Vec2 arm(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
   return {(a.reference.x() - b.reference.x()) + offset.x(),
           (a.reference.y() - b.reference.y()) + offset.y()};
 }
 
-/// Both halves together, all but the extent.
+/// Combines the integrals along the edges of a and of b to those of the pair, except for
+/// penetration and breadth. `arm` is a's reference point relative to b's.
 inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
   PairIntegral pair;
   pair.force = {of_b.fx - of_a.fx, of_b.fy - of_a.fy};
-  // A moment about the owner's reference, moved to the other's by the arm between them.
+  // Each moment is about the reference point of the polygon that owns phi. The arm moves it to the
+  // reference point of the other polygon.
   const double rx = arm.x();
   const double ry = arm.y();
   pair.moment_a = of_b.moment - (of_a.moment - (rx * of_a.fy - ry * of_a.fx));
@@ -304,7 +323,7 @@ inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm)
   return pair;
 }
 
-/// Extent of points along and across a force.
+/// The extent of a set of points along a force (n) and across it (t), m.
 struct Extent {
   double n0 = HUGE_VAL, n1 = -HUGE_VAL, t0 = HUGE_VAL, t1 = -HUGE_VAL;
   void include(double n, double t) {

@@ -1,5 +1,5 @@
-// Private to edge_integral.cpp and contact_patches.cpp: polygons placed where they stand, for
-// single evaluations.
+// Potentials of polygons at their given positions, for single evaluations of a contact. This header
+// is private to edge_integral.cpp and contact_patches.cpp.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace apothem {
 
-/// Arrays behind a PlacedPotential, for a polygon that does not move: relative to `origin`, moments
-/// about vertex 0.
+/// A PlacedPotential with the arrays that it points to, for a polygon that does not move.
+/// Coordinates are relative to `origin`, and the reference point of the moments is vertex 0.
 struct Placement {
   Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
     const auto add = [&](const Vec2& p) {
@@ -25,7 +25,8 @@ struct Placement {
       gy.push_back(g.y());
     }
     if (potential.roof) {
-      // The boundary exactly as given, the inner nodes by their place in the polygon.
+      // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
+      // coordinates of the polygon.
       node_x.assign(x.begin(), x.end() - 1);
       node_y.assign(y.begin(), y.end() - 1);
       const Vec2 shift = polygon.origin() - origin;
@@ -54,16 +55,17 @@ struct Placement {
   PlacedPotential view;
 };
 
-/// Two polygons in one frame.
+/// Two polygons in a common frame, whose origin lies near both.
 struct PlacedPair {
   PlacedPair(const Polygon& polygon_a, const Potential& potential_a, const Polygon& polygon_b,
              const Potential& potential_b)
       : PlacedPair(polygon_a, potential_a, polygon_b, potential_b,
                    common_origin(polygon_a, polygon_b)) {}
   Placement a, b;
-  Vec2 centroid_a, centroid_b;  // relative to vertex 0
+  Vec2 centroid_a, centroid_b;  ///< centroids relative to vertex 0 of each polygon, m
 
-  /// From vertex 0 to the centroids: a PairIntegral or a BoundaryRun.
+  /// Changes the reference points of a PairIntegral or a BoundaryRun from vertex 0 to the
+  /// centroids.
   template <class Integrals>
   void about_centroids(Integrals& pair) const {
     pair.moment_a -= cross(centroid_a, pair.force);

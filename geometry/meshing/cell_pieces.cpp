@@ -13,7 +13,8 @@ namespace {
 
 using Ring = std::vector<int>;
 
-// The ring about both, if they have an edge in common and their union is a simple ring.
+// The ring around the union of two rings, or nothing unless they have an edge in common and their
+// union is bounded by a simple ring.
 std::optional<Ring> united(const Ring& a, const Ring& b) {
   std::set<std::pair<int, int>> edges;
   for (const Ring* ring : {&a, &b}) {
@@ -35,6 +36,7 @@ std::optional<Ring> united(const Ring& a, const Ring& b) {
   return ring;
 }
 
+// Does the work of join_pieces.
 class Joiner {
  public:
   explicit Joiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
@@ -52,7 +54,7 @@ class Joiner {
     for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
       if (!pieces_.list[i].owned) alone.push_back(i);
     }
-    // A piece that cannot join yet may be able to once others have.
+    // A piece that cannot be joined yet may become able to once others have been joined.
     while (std::erase_if(alone, [&](int i) { return join(i); }) > 0) {
     }
     std::erase_if(pieces_.list, [](const Piece& piece) { return piece.ring.empty(); });
@@ -67,7 +69,7 @@ class Joiner {
 
   bool join(int i) {
     Ring& ring = pieces_.list[i].ring;
-    std::map<int, double> common;  // neighbour -> length
+    std::map<int, double> common;  // from the neighbour to the common length
     for (size_t k = 0; k < ring.size(); ++k) {
       const int u = ring[k];
       const int v = ring[k + 1 == ring.size() ? 0 : k + 1];
@@ -93,7 +95,7 @@ class Joiner {
   }
 
   Pieces& pieces_;
-  std::vector<int> group_;  // the piece that a piece has joined, or itself
+  std::vector<int> group_;  // per piece: the piece that it has been joined to, or itself
   std::map<std::pair<int, int>, int> piece_left_of_;
 };
 

@@ -1,4 +1,5 @@
-// The pieces into which the outline of a region cuts its Voronoi cells; private to voronoi.cpp.
+// The pieces into which the outline of a region cuts its Voronoi cells. This header is private to
+// voronoi.cpp.
 #pragma once
 
 #include <vector>
@@ -7,18 +8,20 @@
 
 namespace apothem {
 
-/// A piece of a cell, later a whole cell.
+/// A piece of a Voronoi cell. After join_pieces it is a whole cell.
 struct Piece {
-  int site;
-  std::vector<int> ring;  ///< nodes, counter-clockwise
-  bool owned;             ///< has a site in it
+  int site;               ///< index of the site whose cell the piece belongs to
+  std::vector<int> ring;  ///< node indices, counter-clockwise
+  bool owned;             ///< whether the site lies in this piece
 };
 
+/// All pieces of a region with their shared nodes.
 struct Pieces {
-  std::vector<Vec2> nodes;   ///< first the vertices of the region, in order
-  std::vector<int> freedom;  ///< as in collapse_short_edges
-  std::vector<Piece> list;
+  std::vector<Vec2> nodes;   ///< nodes, m; the first ones are the region's vertices, in their order
+  std::vector<int> freedom;  ///< per node: freedom as in collapse_short_edges
+  std::vector<Piece> list;   ///< the pieces
 
+  /// The coordinates of the nodes of a ring, m.
   [[nodiscard]] std::vector<Vec2> points(const std::vector<int>& ring) const {
     std::vector<Vec2> result;
     for (const int i : ring) result.push_back(nodes[i]);
@@ -26,14 +29,15 @@ struct Pieces {
   }
 };
 
-/// Into an order that does not depend on how the pieces were found: the nodes of the region first,
-/// then the others from left to right; rings from their smallest node on; pieces by their site,
-/// then by their ring.
+/// Sorts nodes and pieces into an order that does not depend on how they were found. The first
+/// `outline_size` nodes, which are the region's vertices, stay first; the others follow from left
+/// to right. Each ring starts at its smallest node index. Pieces are sorted by their site, then by
+/// their ring.
 void put_in_order(Pieces& pieces, int outline_size);
 
-/// Joins every piece without a site to the neighbour with a site with which it shares the longest
-/// boundary, as long as their union is bounded by a simple ring. Returns false if pieces are left
-/// that no neighbour can take.
+/// Joins every piece without its site to a neighbour that has its site: the one that shares the
+/// longest boundary with it, among those whose union with it is bounded by a simple ring. Returns
+/// false if pieces are left that no neighbour can take.
 bool join_pieces(Pieces& pieces);
 
 }  // namespace apothem

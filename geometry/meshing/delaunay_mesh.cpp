@@ -16,8 +16,9 @@
 namespace apothem {
 namespace {
 
+// Index of a point in the mesh; -1 for points that CGAL's mesher has added.
 struct Number {
-  int value = -1;  // of points that the mesher adds
+  int value = -1;
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -29,35 +30,37 @@ using Triangulation =
 using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
 using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
 
-constexpr double kAngle = .125;      // square of the sine of 20.7 degrees
-constexpr double kLongest = 1.45;    // edge, of the size: the mean comes out near the size
-constexpr int kSteps = 30;           // of Lloyd's iteration
-constexpr double kSettled = 1e-3;    // movement, of the size
-constexpr double kLeastHeight = .1;  // of a triangle after a move, of what it was
-constexpr double kMost = 1e7;        // triangles
-constexpr double kThinnest = 1e-9;   // distance of edges, of the size of the outline
+constexpr double kAngle = .125;      // square of the sine of the smallest angle, 20.7 degrees
+constexpr double kLongest = 1.45;    // longest edge over the size, for a mean near the size
+constexpr int kSteps = 30;           // largest number of steps of Lloyd's iteration
+constexpr double kSettled = 1e-3;    // largest movement over the size at which the iteration ends
+constexpr double kLeastHeight = .1;  // smallest height of a triangle after a move over that before
+constexpr double kMost = 1e7;        // largest number of triangles
+constexpr double kThinnest = 1e-9;   // smallest distance of edges over the size of the outline
 
 [[noreturn]] void refuse_number() {
   throw std::invalid_argument(
       "takes more than 1e7 elements; give a larger size or a polygon with less fine detail");
 }
 
+// Distance of a point from a segment.
 double distance(const Vec2& p, const std::array<Vec2, 2>& segment) {
   const Vec2 way = segment[1] - segment[0];
   const double share = std::clamp((p - segment[0]).dot(way) / way.squaredNorm(), 0., 1.);
   return (segment[0] + share * way - p).norm();
 }
 
-// Of segments that do not cross.
+// Distance of two segments that do not cross.
 double distance(const std::array<Vec2, 2>& a, const std::array<Vec2, 2>& b) {
   return std::min({distance(a[0], b), distance(a[1], b), distance(b[0], a), distance(b[1], a)});
 }
 
-// The outline and the holes are apart, and no place is too thin to be meshed.
+// Throws InvalidPolygon unless the holes lie inside the outline and apart from each other, and no
+// place is too thin to be meshed.
 void require_room(const Polygon& outline, const std::vector<Polygon>& holes) {
   struct Edge {
     std::array<Vec2, 2> ends;
-    int ring, number;  // ring -1: the outline
+    int ring, number;  // index of the hole, or -1 for the outline; index of the edge
   };
   const double thinnest = kThinnest * bounding_box(outline).extent();
   std::vector<Edge> edges;
@@ -109,6 +112,7 @@ void require_room(const Polygon& outline, const std::vector<Polygon>& holes) {
   }
 }
 
+// Does the work of delaunay_mesh in coordinates relative to the outline's origin().
 class Mesh2 {
  public:
   Mesh2(const Polygon& outline, const std::vector<Polygon>& holes, double size)
@@ -142,7 +146,7 @@ class Mesh2 {
     }
   }
 
-  // In the largest of the hole's triangles.
+  // A point inside a hole: the centroid of the largest of its triangles.
   [[nodiscard]] Kernel::Point_2 inner_point(const Polygon& hole) const {
     double largest = -1;
     Vec2 best = Vec2::Zero();
@@ -155,6 +159,7 @@ class Mesh2 {
     return {best.x(), best.y()};
   }
 
+  // Cuts the edges into pieces no longer than the size.
   void cut_edges() {
     std::vector<std::array<int, 2>> pieces;
     for (const auto& [a, b] : edges_) {
@@ -173,7 +178,7 @@ class Mesh2 {
     edges_ = std::move(pieces);
   }
 
-  // Of the points and edges as they are.
+  // The constrained Delaunay triangulation of the present points and edges.
   Triangulation triangulation() const {
     Triangulation result;
     std::vector<Triangulation::Vertex_handle> vertices(points_.size());
@@ -187,6 +192,7 @@ class Mesh2 {
     return result;
   }
 
+  // Stores the triangles of a triangulation that are inside the domain.
   void take_triangles(const Triangulation& from) {
     triangles_.clear();
     for (const auto face : from.finite_face_handles()) {
@@ -202,6 +208,7 @@ class Mesh2 {
     take_triangles(t);
   }
 
+  // Adds points by Delaunay refinement until the criteria are met.
   void refine(const Criteria& criteria) {
     Triangulation t = triangulation();
     Mesher mesher(t, criteria);
@@ -232,7 +239,7 @@ class Mesh2 {
     return inner;
   }
 
-  // One step; returns the largest movement.
+  // Makes one step of Lloyd's iteration and returns the largest movement, m.
   double smooth(const std::vector<bool>& movable) {
     std::vector<Vec2> moment(points_.size(), Vec2::Zero());
     std::vector<double> weight(points_.size(), 0);
@@ -250,7 +257,7 @@ class Mesh2 {
     for (size_t i = 0; i < target.size(); ++i) {
       if (movable[i] && weight[i] > 0) target[i] = moment[i] / weight[i];
     }
-    // A point must stay among its neighbours.
+    // A point is not moved if one of its triangles would lose most of its height or turn over.
     std::vector<bool> barred(points_.size(), false);
     for (const auto& t : triangles_) {
       for (int k = 0; k < 3; ++k) {
@@ -270,7 +277,8 @@ class Mesh2 {
     return largest;
   }
 
-  // Circumcentre relative to vertex 0, or, at the boundary, where it may lie outside, centroid.
+  // The circumcentre of a triangle relative to its point 0. At the boundary, where the circumcentre
+  // may lie outside, it is the centroid instead.
   static Vec2 middle(const Vec2& u, const Vec2& v, double twice, const std::vector<bool>& movable,
                      const Triangle& t) {
     if (!movable[t[0]] || !movable[t[1]] || !movable[t[2]]) return (u + v) / 3;
@@ -280,9 +288,9 @@ class Mesh2 {
 
   Vec2 origin_;
   double size_;
-  std::vector<Vec2> points_;  // relative to the origin
-  std::vector<std::array<int, 2>> edges_;
-  std::list<Kernel::Point_2> seeds_;
+  std::vector<Vec2> points_;               // relative to origin_, m
+  std::vector<std::array<int, 2>> edges_;  // edges of the outline and the holes
+  std::list<Kernel::Point_2> seeds_;       // one point inside every hole
   std::vector<Triangle> triangles_;
 };
 

@@ -8,7 +8,7 @@
 namespace apothem {
 namespace {
 
-// Throws InvalidPolygon.
+// Throws InvalidPolygon unless the ring is a simple counter-clockwise polygon.
 void require_counter_clockwise(const std::vector<Vec2>& ring) {
   if (Polygon(ring).input_index(1) != 1) throw InvalidPolygon("is clockwise", 0);
 }
@@ -22,6 +22,7 @@ bool is_valid(const std::vector<Vec2>& ring) {
   }
 }
 
+// Does the work of collapse_short_edges.
 class Collapse {
  public:
   Collapse(PolygonMesh& mesh, std::vector<int> freedom, double shortest)
@@ -40,7 +41,7 @@ class Collapse {
     while (!queue_.empty()) {
       const auto [length, u, v] = queue_.top();
       queue_.pop();
-      // Not what it was when it came into the queue.
+      // The entry is out of date: a node has been removed, or the edge has changed its length.
       if (cells_of_[u].empty() || cells_of_[v].empty() || distance(u, v) != length) continue;
       if (collapse(u, v)) ++result.collapsed;
     }
@@ -50,7 +51,7 @@ class Collapse {
   }
 
  private:
-  using Entry = std::tuple<double, int, int>;  // length, nodes
+  using Entry = std::tuple<double, int, int>;  // length of an edge and its two nodes
 
   [[nodiscard]] double distance(int u, int v) const {
     return (mesh_.points[u] - mesh_.points[v]).norm();
@@ -71,7 +72,8 @@ class Collapse {
     });
   }
 
-  // Cells that have uv as an edge; none if another cell has both nodes, or a triangle would vanish.
+  // The cells that have uv as an edge. The list is empty if uv must not collapse, because another
+  // cell has both nodes or a triangle would vanish.
   [[nodiscard]] std::vector<int> cells_along(int u, int v) const {
     std::vector<int> along;
     for (const int c : cells_of_[u]) {
@@ -85,13 +87,15 @@ class Collapse {
     return along;
   }
 
+  // Collapses the edge uv if that is possible; returns whether it was.
   bool collapse(int u, int v) {
-    // From here on u is the node with less freedom, and the one that remains.
+    // From here on u is the node with less freedom. It is the one that remains.
     if (freedom_[v] == kNowhere || freedom_[u] == kAnywhere) std::swap(u, v);
     if (freedom_[v] == kNowhere) return false;
     const std::vector<int> along = cells_along(u, v);
     if (along.empty()) return false;
-    // An edge across the inside between two points of the outline would pinch the mesh.
+    // The collapse of an edge that crosses the inside between two nodes on the outline would cut
+    // the mesh in two there.
     if (freedom_[v] != kAnywhere && along.size() == 2) return false;
     const Vec2 p = mesh_.points[u];
     const Vec2 q = mesh_.points[v];
@@ -114,6 +118,7 @@ class Collapse {
     return false;
   }
 
+  // The ring of cell c after the nodes u and v have been joined at `place`.
   [[nodiscard]] std::vector<Vec2> ring_after(int c, int u, int v, const Vec2& place) const {
     const std::vector<int>& cell = mesh_.cells[c];
     const bool both = std::find(cell.begin(), cell.end(), u) != cell.end();
@@ -125,6 +130,7 @@ class Collapse {
     return ring;
   }
 
+  // Moves node u to `place` and replaces node v by it in the cells `around` both.
   void replace(int u, int v, const Vec2& place, const std::vector<int>& around) {
     mesh_.points[u] = place;
     for (const int c : around) {

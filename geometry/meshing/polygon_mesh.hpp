@@ -1,4 +1,5 @@
-// Meshes of polygonal cells with shared nodes: what makes one a tiling, and its short edges.
+// Meshes of polygonal cells with shared nodes, the test that such a mesh is a tiling, and the
+// removal of its short edges.
 #pragma once
 
 #include <vector>
@@ -7,45 +8,51 @@
 
 namespace apothem {
 
-/// Cells are counter-clockwise lists of indices into points. Neighbours share all nodes of their
-/// common boundary: there are no hanging nodes.
+/// A mesh of polygonal cells. Neighbours share all nodes of their common boundary, so there are no
+/// hanging nodes.
 struct PolygonMesh {
-  std::vector<Vec2> points;  ///< m
-  std::vector<std::vector<int>> cells;
+  std::vector<Vec2> points;             ///< coordinates of the nodes, m
+  std::vector<std::vector<int>> cells;  ///< node indices of each cell, counter-clockwise
 };
 
-/// The cell's vertices, in its order.
+/// The coordinates of a cell's nodes in the order of the cell, m.
 std::vector<Vec2> cell_ring(const PolygonMesh& mesh, const std::vector<int>& cell);
 
-/// The nodes around the mesh, counter-clockwise from the one with the smallest index. Throws
-/// InvalidPolygon, which names the cell, unless the cells tile the polygon of these nodes exactly,
-/// without any tolerance:
-/// - every cell is a simple counter-clockwise polygon (exact predicates);
-/// - every edge belongs to one cell, or to two in opposite senses;
-/// - those of one cell only form one ring, and that is a simple counter-clockwise polygon.
-/// That is enough: the winding number of the ring about a point is the sum of those of the cells,
-/// so every point inside that is on no edge lies in exactly one cell, and no cell reaches outside.
+/// Returns the nodes on the boundary of the mesh, counter-clockwise from the one with the smallest
+/// index. Throws InvalidPolygon, whose message names the cell where there is one, unless the cells
+/// tile the polygon of these nodes exactly. The test has no tolerance. Its conditions are:
+/// - Every cell is a simple counter-clockwise polygon, by exact predicates.
+/// - Every edge belongs to one cell, or to two cells in opposite senses.
+/// - The edges that belong to one cell only form one ring, which is a simple counter-clockwise
+///   polygon.
+/// These conditions are sufficient: the winding number of the ring about a point is the sum of the
+/// winding numbers of the cells. So every point inside the ring that is on no edge lies in exactly
+/// one cell, and no cell reaches outside.
 std::vector<int> tiling_boundary(const PolygonMesh& mesh);
 
-/// Where a node may go when an edge collapses: kAnywhere, kNowhere (a vertex of the outline), or
-/// the index of the straight piece of the outline that it lies on.
+/// The freedom of a node that can move anywhere when an edge collapses. A node with an index of a
+/// straight edge of the outline as its freedom lies on that edge.
 constexpr int kAnywhere = -1;
+/// The freedom of a node that cannot move, because it is a vertex of the outline.
 constexpr int kNowhere = -2;
 
+/// The result of collapse_short_edges.
 struct ShortEdges {
-  int collapsed = 0;
-  /// Still short; edges between two fixed nodes of the outline are the outline's own and do not
-  /// count. They stay where both ends lie on the outline and the edge crosses the inside, where a
-  /// cell is a triangle (it would vanish), and where every new place makes a cell invalid, say
-  /// because a vertex of the outline bars the way.
+  int collapsed = 0;  ///< number of edges that have been collapsed
+  /// Number of edges that are still short. Edges between two vertices of the outline belong to the
+  /// outline and do not count. An edge cannot be collapsed if it crosses the inside between two
+  /// nodes on the outline, if it belongs to a triangle (which would vanish), or if every new
+  /// position of its nodes makes a cell invalid, for instance because a vertex of the outline is in
+  /// the way.
   int left = 0;
 };
 
-/// Collapses edges shorter than `shortest` (m), the shortest first: two free nodes meet half-way, a
-/// free node moves to one on the outline, nodes on the outline stay where they are. The mesh
-/// remains a tiling; a cell that was not valid before may become so. `freedom` has one entry per
-/// point. Nodes that no cell uses are dropped, the others keep their order; each cell starts at its
-/// smallest node.
+/// Collapses edges shorter than `shortest` (m), the shortest first. Two free nodes meet half-way,
+/// or at one of the two if a cell would become invalid; a free node moves to a node on the outline;
+/// two nodes on a straight edge of the outline meet at one of them; vertices of the outline do not
+/// move. A valid cell remains valid, so the mesh remains a tiling; an invalid cell may become
+/// valid. `freedom` has one entry per point. Nodes that no cell uses are removed, and the others
+/// keep their order. Each cell starts at its smallest node index.
 ShortEdges collapse_short_edges(PolygonMesh& mesh, std::vector<int> freedom, double shortest);
 
 }  // namespace apothem

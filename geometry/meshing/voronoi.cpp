@@ -33,14 +33,16 @@ using Segments = CGAL::Arr_segment_traits_2<Exact>;
 using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
 
-constexpr double kSettled = 1e-3;        // movement in cell sizes
-constexpr double kUnresolved = 0x1p-40;  // of the region's size
+constexpr double kSettled = 1e-3;        // movement over the cell size that ends Lloyd's iteration
+constexpr double kUnresolved = 0x1p-40;  // shorter edges over the region's size always collapse
 
-// The same bits however the point was constructed, unlike CGAL's approximation of it.
+// Rounds a point. The result has the same bits however the point was constructed; CGAL's own
+// approximation of the point would not.
 Vec2 rounded(const Exact::Point_2& p) {
   return {CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y()))};
 }
 
+// The region in coordinates relative to its origin().
 Polygon local_polygon(const Polygon& region) {
   try {
     return Polygon(region.local_vertices());
@@ -53,7 +55,7 @@ Polygon local_polygon(const Polygon& region) {
 
 double area(const Polygon& region) { return area_moments(region).area; }
 
-// Area and first moment about `origin`.
+// Area of a ring and its first moment of area about a given origin.
 struct Moments {
   double area = 0;
   Vec2 first = Vec2::Zero();
@@ -73,12 +75,12 @@ Moments moments(const std::vector<Vec2>& ring, const Vec2& origin) {
 class Diagram {
  public:
   struct Edge {
-    int a, b;           // sites
-    int centre, other;  // its ends
+    int a, b;           // indices of the two sites
+    int centre, other;  // its two ends, as indices of `centres`
   };
 
   Diagram(const std::vector<Vec2>& sites, const Box& box) : cells_(sites.size()) {
-    // Every point of the region is nearer to any site than to these.
+    // The dummy sites are so far away that every point of the region is nearer to any site.
     const double far = 4 * box.extent();
     const Inexact::Point_2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
     std::vector<std::pair<Inexact::Point_2, int>> points;
@@ -117,6 +119,7 @@ class Diagram {
     }
   }
 
+  // A box that contains the cell of a site.
   [[nodiscard]] Box box_of(int site) const {
     Box box;
     for (const int c : cells_[site]) {
@@ -127,7 +130,7 @@ class Diagram {
     return box;
   }
 
-  // In plain double precision, good enough to move sites.
+  // The cell of a site without the outline, in double precision, which suffices to move sites.
   [[nodiscard]] std::vector<Vec2> whole_cell(int site, const std::vector<Vec2>& sites) const {
     std::vector<Vec2> ring;
     for (const int c : cells_[site]) {
@@ -140,15 +143,15 @@ class Diagram {
     return ring;
   }
 
-  std::vector<Exact::Point_2> centres;
-  std::vector<Edge> edges;
+  std::vector<Exact::Point_2> centres;  // vertices of the diagram
+  std::vector<Edge> edges;              // edges of the diagram
 
  private:
-  std::vector<std::vector<int>> cells_;      // centres around each site, counter-clockwise
-  std::vector<std::array<int, 3>> triples_;  // sites around each centre, ascending
+  std::vector<std::vector<int>> cells_;      // per site: its centres, counter-clockwise
+  std::vector<std::array<int, 3>> triples_;  // per centre: its three sites, ascending
 };
 
-// The region, in coordinates relative to its origin.
+// Cuts Voronoi cells by the outline of a region, in coordinates relative to the region's origin().
 class Cutter {
  public:
   explicit Cutter(const Polygon& region)
@@ -159,6 +162,7 @@ class Cutter {
   [[nodiscard]] const Polygon& region() const { return region_; }
   [[nodiscard]] const Box& box() const { return box_; }
 
+  // Per site: whether an edge of the outline may come near its cell. The test uses the cell's box.
   [[nodiscard]] std::vector<bool> cells_at_outline(const Diagram& diagram, int sites) const {
     std::vector<Box> boxes;
     for (int i = 0; i < sites; ++i) boxes.push_back(diagram.box_of(i));
@@ -186,7 +190,8 @@ class Cutter {
     return at_outline;
   }
 
-  // The cells of the sites that are `wanted`, cut by the outline. Pieces of these cells come whole.
+  // The pieces into which the outline cuts the cells of the sites that are `wanted`. All edges of
+  // these cells are in the arrangement, so the pieces are complete.
   [[nodiscard]] Pieces cut(const Diagram& diagram, const std::vector<Vec2>& sites,
                            const std::vector<bool>& wanted) const {
     const int n = region_.size();
@@ -230,7 +235,7 @@ class Cutter {
   static constexpr int kOutside = 0;
   static constexpr int kInside = 1;
 
-  // Edge of the outline that a halfedge lies on, or -1.
+  // Index of the edge of the outline that a halfedge lies on, or -1.
   template <class Halfedge>
   [[nodiscard]] int outline_edge(const Halfedge& halfedge) const {
     for (const int data : halfedge->curve().data()) {
@@ -239,7 +244,8 @@ class Cutter {
     return -1;
   }
 
-  // From the unbounded face on; crossing the outline changes the side.
+  // Marks all faces as inside or outside, beginning with the unbounded face. The mark changes where
+  // the outline is crossed.
   void mark_faces_inside(Arrangement& arrangement) const {
     for (const auto face : arrangement.face_handles()) face->set_data(kUnknown);
     std::vector<Arrangement::Face_handle> todo{arrangement.unbounded_face()};
@@ -261,7 +267,8 @@ class Cutter {
     }
   }
 
-  // Any Voronoi edge on its boundary tells; none: there is one site only.
+  // The site to whose cell a face belongs. Any Voronoi edge on its boundary determines it; if there
+  // is no such edge, there is only one site.
   int site_of(Arrangement::Face_handle face, const Diagram& diagram,
               const std::vector<Vec2>& sites) const {
     const auto start = face->outer_ccb();
@@ -279,6 +286,7 @@ class Cutter {
     return 0;
   }
 
+  // Index of the node at a vertex of the arrangement; adds the node if it is new.
   int node_at(Arrangement::Vertex_handle vertex, Pieces& pieces) const {
     if (vertex->data() >= 0) return vertex->data();
     int freedom = kAnywhere;
@@ -301,7 +309,8 @@ class Cutter {
     return vertex->data();
   }
 
-  // Of each site's pieces, the one with the site in it; the largest, if rounding hides it.
+  // Marks one piece of each site as owned: the one that contains the site, or the largest one if no
+  // piece contains it because of rounding.
   void find_owned(Pieces& pieces, const std::vector<Vec2>& sites) const {
     std::vector<std::vector<int>> of_site(sites.size());
     for (size_t i = 0; i < pieces.list.size(); ++i) {
@@ -333,10 +342,11 @@ class Cutter {
   std::vector<Exact::Point_2> outline_;
 };
 
-// Where a site goes that wants to go to `target` and must not leave the ring.
+// The new position of a site that moves towards `target` and must not leave the ring. It is the
+// target itself, or half-way to the ring if the ring is in the way.
 Vec2 walk(const Vec2& site, const Vec2& target, const std::vector<Vec2>& ring) {
   const Vec2 way = target - site;
-  double exit = 2;  // in lengths of the way; half of it is walked at most
+  double exit = 2;  // part of the way up to the ring, 2 if it is not in the way; half is moved
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2 p = ring[i] - site;
     const Vec2 edge = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
@@ -348,6 +358,7 @@ Vec2 walk(const Vec2& site, const Vec2& target, const std::vector<Vec2>& ring) {
   return site + exit / 2 * way;
 }
 
+// The sites after one step of Lloyd's iteration.
 std::vector<Vec2> sites_after_step(const Cutter& cutter, const std::vector<Vec2>& sites) {
   const int n = static_cast<int>(sites.size());
   const Diagram diagram(sites, cutter.box());

@@ -1,19 +1,21 @@
-// Voronoi meshes of a region: sites, Lloyd's iteration, and cells that tile the region exactly.
+// Voronoi meshes of a region: random sites, Lloyd's iteration, and cells that tile the region
+// exactly.
 //
-// The Voronoi edges of a Delaunay triangulation of the sites (dummy sites far around the region
-// keep all cells bounded and change nothing inside it) and the outline of the region go as exact
-// rational segments into one planar arrangement. Its faces inside the region are the cells, cut
-// exactly; each of its vertices is rounded to double once, and all cells share it. What rounding
-// can still spoil - edges of the order of the round-off - the collapse of short edges removes, and
-// tiling_boundary proves the result. Lloyd's iteration runs on the same arrangement, of the cells
-// at the outline only: cells that no edge of the outline comes near are whole.
+// The Voronoi edges come from a Delaunay triangulation of the sites. Four dummy sites far away from
+// the region keep all cells bounded and change nothing inside it. The Voronoi edges and the outline
+// of the region are inserted as exact rational segments into one planar arrangement. Its faces
+// inside the region are the cells, cut exactly. Each vertex of the arrangement is rounded to double
+// once, and all cells share it. Rounding can still spoil edges whose length is of the order of the
+// round-off; the collapse of short edges removes them, and tiling_boundary proves that the result
+// is a tiling. Lloyd's iteration uses the same arrangement, but only for the cells at the outline,
+// because a cell that no edge of the outline comes near is not cut.
 //
-// Where the region is not convex, its outline may cut a cell into several pieces. The one with the
-// site is the cell; each of the others joins the neighbour with which it shares the longest
-// boundary, so there are as many cells as sites. In Lloyd's iteration a site walks straight towards
-// the centroid of its cell; if the outline bars the way, half-way to the outline.
+// If the region is not convex, its outline may cut a cell into several pieces. The piece with the
+// site is the cell. Each of the others is joined to the neighbour with which it shares the longest
+// boundary, so there are as many cells as sites. In Lloyd's iteration a site moves straight towards
+// the centroid of its cell; if the outline is in the way, it moves half-way to the outline.
 //
-// Q. Du, V. Faber, M. Gunzburger, Centroidal Voronoi tessellations, SIAM Review 41 (1999).
+// Source: Q. Du, V. Faber, M. Gunzburger, Centroidal Voronoi tessellations, SIAM Review 41 (1999).
 #pragma once
 
 #include <cstdint>
@@ -23,48 +25,58 @@
 
 namespace apothem {
 
-/// All coordinates are relative to region.origin(), in m.
+/// A Voronoi mesh of a region. All coordinates are relative to region.origin(), in m.
 struct VoronoiMesh {
-  /// Point i < region.size() is vertex i of the region; the other points on its outline lie on
-  /// their edge up to the rounding of their coordinates. Cell i belongs to site i.
+  /// Cell i belongs to site i. Point i < region.size() is vertex i of the region. The other points
+  /// on the outline lie on their edge up to the rounding of their coordinates.
   PolygonMesh mesh;
-  std::vector<Vec2> sites;
-  int lloyd_steps = 0;
-  double last_movement = 0;  ///< largest move of a site in the last step of Lloyd's iteration
-  int joined_pieces = 0;     ///< pieces of cells without their site
-  ShortEdges short_edges;
+  std::vector<Vec2> sites;   ///< sites, m
+  int lloyd_steps = 0;       ///< number of steps of Lloyd's iteration that were made
+  double last_movement = 0;  ///< largest movement of a site in the last of these steps, m
+  int joined_pieces = 0;     ///< number of pieces without their site, joined to neighbours
+  ShortEdges short_edges;    ///< result of the collapse of short edges
 };
 
+/// The options of a Voronoi mesh. The size of a cell is sqrt(area / cells).
 struct VoronoiOptions {
-  int cells = 1;
-  std::uint64_t seed = 1;
-  int lloyd = 50;             ///< steps at most; ends early once no site moves by 1e-3 cell sizes
-  double shortest_edge = .1;  ///< in [0, 0.5], of the mean cell size sqrt(area / cells)
+  int cells = 1;           ///< number of cells
+  std::uint64_t seed = 1;  ///< seed of the random sites
+  /// Largest number of steps of Lloyd's iteration. It ends earlier when no site moves by 1e-3 cell
+  /// sizes.
+  int lloyd = 50;
+  double shortest_edge = .1;  ///< length below which edges collapse, in cell sizes, 0 to 0.5
 };
 
-/// Distinct points, uniformly distributed over the region's inside, the same on every platform.
-/// Throws InvalidPolygon if the region is too thin to find any.
+/// Returns `count` distinct random points, uniformly distributed over the inside of the region,
+/// relative to region.origin(), m. They are the same on every platform. Throws InvalidPolygon if
+/// the region is too thin for them.
 std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t seed);
 
-/// Lloyd's iteration: moves every site towards the centroid of its cell, at most `steps` times.
+/// The result of Lloyd's iteration.
 struct Relaxation {
-  int steps;
-  double movement;
+  int steps;        ///< number of steps that were made
+  double movement;  ///< largest movement of a site in the last step, m
 };
+
+/// Lloyd's iteration: moves every site towards the centroid of its cell, at most `steps` times. It
+/// ends earlier when no site moves by 1e-3 cell sizes.
 Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps);
 
-/// The cells of given sites: one or more, distinct, strictly inside the region (otherwise
-/// std::invalid_argument). Edges shorter than shortest_edge * sqrt(area / cells), and at least
-/// those of 1e-12 of the region's size, are collapsed where that is possible (see ShortEdges).
-/// Throws InvalidPolygon if the region has places thinner than double precision resolves.
+/// Makes the mesh of given sites. Edges shorter than shortest_edge * sqrt(area / cells), and in any
+/// case those shorter than 1e-12 of the region's size, are collapsed where that is possible; see
+/// ShortEdges. Throws std::invalid_argument unless there is at least one site and all sites are
+/// distinct and strictly inside the region. Throws InvalidPolygon if the region has places thinner
+/// than double precision resolves, or if its outline cuts off pieces that no other cell can take.
 VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge);
 
-/// random_sites, relax, voronoi_mesh. Throws std::invalid_argument for options out of range.
+/// Makes a mesh with random_sites, relax and the function above. Throws as these functions do, and
+/// std::invalid_argument if an option is out of range.
 VoronoiMesh voronoi_mesh(const Polygon& region, const VoronoiOptions& options);
 
-/// The mesh in the world: the region's vertices are those of the region, bit for bit. Throws
-/// InvalidPolygon if cells cannot be told apart in these coordinates, far from the origin.
+/// Moves a mesh from coordinates relative to region.origin() to those of the region. The vertices
+/// of the region are then the same bit for bit. Throws InvalidPolygon if the cells do not form a
+/// tiling in these coordinates, because the region is too far from the origin of the world.
 PolygonMesh in_world(const Polygon& region, const PolygonMesh& mesh);
 
 }  // namespace apothem

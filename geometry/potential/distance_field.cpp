@@ -3,7 +3,8 @@
 namespace apothem {
 
 DistanceField make_distance_field(const Polygon& polygon, double reference) {
-  // A vertex that turns by this sine or more is convex for any rounding.
+  // If the sine of the angle by which the boundary turns at a vertex exceeds this value, the vertex
+  // is convex whatever the round-off.
   constexpr double kClearlyConvex = 0.125;
   DistanceField field{1 / reference, {}};
   for (int i = 0; i < polygon.size(); ++i) {

@@ -1,10 +1,12 @@
-// The distance potential of a polygon that is not convex, with the Euclidean distance to the
-// boundary as depth: phi(x) = min(1, dist(x, boundary) / r) inside, 0 outside.
+// The distance field: the distance potential of a polygon that is not convex, with the Euclidean
+// distance to the boundary as depth. phi(x) = min(1, dist(x, boundary) / r) inside the polygon and
+// 0 outside, where r is the reference length.
 //
-// Along a line the distance is the minimum of one function per edge, |linear|, where the foot of
-// the perpendicular lies within the edge, and of one per vertex, the square root of a parabola,
-// everywhere. Each is an upper bound of the distance wherever it is used, so round-off in the
-// intervals cannot make phi jump. Convex vertices are never nearest and are left out.
+// Along a line the distance is the minimum of one function per edge and one per vertex. That of an
+// edge is the absolute value of a linear function and is valid where the foot of the perpendicular
+// lies within the edge. That of a vertex is the square root of a quadratic and is valid everywhere.
+// Each function is an upper bound of the distance wherever it is used, so round-off in the
+// intervals cannot make phi jump. Convex vertices are never the nearest point and are left out.
 #pragma once
 
 #include <algorithm>
@@ -20,29 +22,32 @@
 
 namespace apothem {
 
+/// What a distance field needs beside the polygon itself.
 struct DistanceField {
-  double slope;              ///< 1 / r, 1/m
+  double slope;              ///< inverse of the reference length r, 1/m
   std::vector<int> corners;  ///< vertices that may be nearest: all but the clearly convex ones
 };
 
-/// `reference`: the length r, m.
+/// The distance field of a polygon with the reference length r = `reference`, m.
 DistanceField make_distance_field(const Polygon& polygon, double reference);
 
-/// A distance field where it is now: its polygon in some frame.
+/// A distance field at the present position of its polygon, in some frame. The arrays have at least
+/// `size` entries.
 template <class Real>
 struct PlacedDistance {
-  int size;
-  const Real* x;
-  const Real* y;
-  const Real* gx;  ///< inward unit normals of the edges, over r
-  const Real* gy;
-  Real slope;
-  const std::vector<int>* corners;
-  bool capped;
+  int size;                         ///< number of vertices
+  const Real* x;                    ///< x coordinates of the vertices, m
+  const Real* y;                    ///< y coordinates of the vertices, m
+  const Real* gx;                   ///< x components of the edges' inward unit normals over r, 1/m
+  const Real* gy;                   ///< y components of the edges' inward unit normals over r, 1/m
+  Real slope;                       ///< inverse of the reference length r, 1/m
+  const std::vector<int>* corners;  ///< vertices that may be nearest, see DistanceField
+  bool capped;                      ///< whether phi is limited to 1
 };
 
-/// INT sqrt(d2 + w^2) dw from w1 to w1 + h and, about the middle of the interval, the first moment.
-/// No difference of large numbers: all terms of the first are positive.
+/// Returns the integral of f(w) = sqrt(d2 + w^2) from w1 to w1 + h, and the integral of
+/// (w - m) f(w), where m is the middle of the interval. No large numbers are subtracted: all terms
+/// of the first integral are positive.
 template <class Real>
 std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) {
   using std::asinh;
@@ -66,12 +71,13 @@ std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) 
   return {sum, Real(m * (h * (r + rise * rise / (12 * r)) - sum))};
 }
 
-/// phi along a segment.
+/// Evaluates phi along a segment. Nothing is allocated after the first calls with polygons of a
+/// given size.
 template <class Real>
 class DistanceTrace {
  public:
-  /// Moments of phi along p + s e, s in [0, 1]; calls inside(s0, s1) for every part of it that lies
-  /// inside the polygon. No allocation after the first calls with polygons of that size.
+  /// Returns the integrals of phi along the segment p + s e, s in [0, 1]. Calls inside(s0, s1) for
+  /// every part of the segment that lies inside the polygon.
   template <class Inside>
   SegmentMoments<Real> integrate(const PlacedDistance<Real>& field, const Real& px, const Real& py,
                                  const Real& ex, const Real& ey, const Inside& inside) {
@@ -81,8 +87,10 @@ class DistanceTrace {
     return moments;
   }
 
-  /// Adds the moments to `moments` part by part and calls run(s0, edge0, s1, edge1) after each,
-  /// with the polygon's edges that the line crosses there, -1 at the ends of the segment.
+  /// For every part of the segment p + s e, s in [0, 1], that lies inside the polygon, adds the
+  /// integrals of phi to `moments` and then calls run(s0, edge0, s1, edge1). `edge0` and `edge1`
+  /// are the polygon's edges that the segment crosses at the ends of the part, or -1 at an end of
+  /// the segment itself.
   template <class Run>
   void runs(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
             const Real& ey, SegmentMoments<Real>& moments, const Run& run) {
@@ -111,10 +119,12 @@ class DistanceTrace {
   }
 
  private:
-  // phi of a line a + b s, or of a vertex with the foot at s = a, at the squared distance b.
+  // The distance over r from one edge or one vertex, as a function of s. For an edge it is
+  // |a + b s|. For a vertex, a is the parameter s of the foot of the perpendicular, b the squared
+  // distance at the foot over r^2, and k the length of the segment over r.
   struct Function {
     Real a, b, k;
-    int id;
+    int id;  // index of the edge, or the number of edges plus that of the vertex; -1 for the cap
     bool vertex;
 
     [[nodiscard]] Real square(const Real& s) const {
@@ -132,17 +142,17 @@ class DistanceTrace {
     }
     int crossings(const Function& g, const Real& from, std::array<Real, 2>& roots) const {
       using std::sqrt;
-      if (vertex && g.vertex) {  // the difference of the squares is linear
+      if (vertex && g.vertex) {  // the difference of the squares is linear in s
         const Real slope = 2 * k * k * (g.a - a);
         roots[0] = from + (g.square(from) - square(from)) / slope;
         return 1;
       }
-      if (!vertex && !g.vertex) {  // |.|: both signs, never both inside
+      if (!vertex && !g.vertex) {  // one root for equal signs, one for opposite signs
         roots[0] = (g.a - a) / (b - g.b);
         roots[1] = -(g.a + a) / (b + g.b);
         return 2;
       }
-      // A z^2 + 2 B z + C with z = s - from
+      // The difference of the squares is A z^2 + 2 B z + C with z = s - from.
       const Function& line = vertex ? g : *this;
       const Function& root = vertex ? *this : g;
       const Real value = line.a + line.b * from;
@@ -164,8 +174,9 @@ class DistanceTrace {
     int edge;
   };
 
-  // The minimum over all features between s0 and s1, the two edges crossed first: they are likely
-  // to be near, and what is farther than all found so far need not be looked at.
+  // Finds the minimum over all edges and vertices between s0 and s1. The two edges that the segment
+  // crosses come first, because they are probably near; what is farther away than the minimum so
+  // far is skipped.
   void trace(const PlacedDistance<Real>& field, const Real& s0, const Real& s1, int first,
              int second) {
     envelope_.reset(s0, s1);
@@ -191,7 +202,7 @@ class DistanceTrace {
     const Real tx = field.x[j] - field.x[i];
     const Real ty = field.y[j] - field.y[i];
     const Real rate = tx * ex_ + ty * ey_;
-    const Real start = tx * rx + ty * ry;  // of the foot at s = 0, seen from the edge's two ends
+    const Real start = tx * rx + ty * ry;  // foot at s = 0, from start and end
     const Real end = tx * (px_ - field.x[j]) + ty * (py_ - field.y[j]);
     Real from = s0, to = s1;
     if (rate > 0) {
@@ -221,7 +232,8 @@ class DistanceTrace {
     if (envelope_.insert(f, from, to)) lower_bound();
   }
 
-  // All functions are convex but for |.| at 0: the largest value is at an end of a piece.
+  // Lowers bound_ to the largest value of the minimum. All functions are convex, so that value is
+  // at an end of a piece.
   void lower_bound() {
     Real largest = 0;
     for (size_t i = 0; i < envelope_.size(); ++i) {
@@ -235,7 +247,7 @@ class DistanceTrace {
   void add_pieces(SegmentMoments<Real>& moments) const {
     for (size_t i = 0; i < envelope_.size(); ++i) {
       const auto& piece = envelope_[i];
-      if (!piece.known) continue;  // as narrow as round-off
+      if (!piece.known) continue;  // a gap between functions, no wider than round-off
       const Real& u1 = piece.from;
       const Real& u2 = envelope_.end(i);
       const Function& f = piece.function;
@@ -253,7 +265,7 @@ class DistanceTrace {
 
   Real px_, py_, ex_, ey_;
   Real k_;      // length of the segment over r
-  Real bound_;  // largest value of the minimum so far
+  Real bound_;  // largest value of the minimum so far; infinite until it is known everywhere
   LineCrossings<Real> lines_;
   std::vector<Crossing> crossings_;
   PiecewiseMinimum<Real, Function> envelope_;

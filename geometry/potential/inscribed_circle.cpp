@@ -1,15 +1,20 @@
-// Branch and bound over a triangulation of the polygon.
+// Finds the largest inscribed circle by branch and bound over a triangulation of the polygon.
 //
-// The distance f to the boundary is the minimum of the distances f_i to its edges, and each f_i is
-// a convex function. That gives both bounds in a triangle T inside the polygon, each by a linear
-// programme (the highest point of a lower envelope of planes over T):
-// - from above: f_i is not above its linear interpolation between the corners of T. The gap is
-//   zero where the nearest points of T lie inside edge i, otherwise quadratic in the size of T;
-// - from below: f_i is not below its tangent plane at any point. Moving to the highest point of the
-//   tangent planes never makes f smaller, and converges quadratically to a centre.
-// The result is a value of f at a point inside, so no rounding or degenerate position can make the
-// radius too large; the bound from above stops the search only when nothing is left to be found.
-// Long corridors, which are costly for cells of a grid, are a few long triangles here.
+// The distance f to the boundary is the minimum of the distances f_i to the edges, and each f_i is
+// a convex function. In a triangle T inside the polygon this gives an upper and a lower bound of
+// the maximum of f. Each is found by a linear programme, which computes the highest point of a
+// lower envelope of planes over T:
+// - Upper bound: f_i is nowhere above its linear interpolation between the corners of T. The gap is
+//   zero where the points of edge i that are nearest to T lie inside the edge, otherwise it is
+//   quadratic in the size of T.
+// - Lower bound: f_i is nowhere below its tangent plane at any point. A step to the highest point
+// of
+//   the tangent planes that would make f smaller is not taken; the steps converge quadratically to
+//   a centre.
+// The result is a value of f at a point inside the polygon, so neither round-off nor a degenerate
+// position can make the radius too large. The upper bound ends the search only when no larger
+// circle can be left. A long corridor, which would be costly with the cells of a grid, consists of
+// a few long triangles.
 #include "apothem/geometry/potential/inscribed_circle.hpp"
 
 #include <array>
@@ -22,17 +27,19 @@
 namespace apothem {
 namespace {
 
-// All lengths below are in units of the polygon's size (a power of two, so scaling is exact).
-constexpr double kNoise = 0x1p-50;     // above the round-off of a distance
-constexpr double kSameHeight = 1e-13;  // as in potential.cpp
-constexpr double kThinnest = 0x1p-49;  // as in potential.cpp
-constexpr double kSamePlace = 1e-6;    // centres closer than this share of the radius are one
-constexpr double kNearlyParallel = 1e-4;
-// Up to here clipping all edges of a convex polygon with each other is the faster way.
+// All lengths below are divided by the polygon's size, rounded up to a power of two, so that the
+// division is exact.
+constexpr double kNoise = 0x1p-50;        // larger than the round-off of a distance
+constexpr double kSameHeight = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
+constexpr double kThinnest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
+constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
+constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
+// Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
 constexpr int kFewEdges = 100;
 
-using Heights = Eigen::Vector3d;  // of a plane at the corners of a triangle
+using Heights = Eigen::Vector3d;  // heights of a plane at the three corners of a triangle
 
+// A distance and its gradient.
 struct Distance {
   double value;
   Vec2 gradient;
@@ -67,9 +74,10 @@ struct Edge {
     return {value, value > 0 ? Vec2(arm / value) : Vec2::Zero()};
   }
 
-  /// First s >= 0 at which x + s u is closer than `radius`, u of unit length; infinite if none is.
-  /// The points of a line within that distance form one interval: the union of those in the discs
-  /// about the two ends and in the strip between them.
+  /// The first s >= 0 at which the point x + s u is closer to the edge than `radius`, or infinity
+  /// if there is none. u has unit length. The points of a line within that distance form one
+  /// interval, which is the union of the intervals in the discs about the two ends of the edge and
+  /// in the strip between them.
   [[nodiscard]] double first_hit(const Vec2& x, const Vec2& u, double radius) const {
     double enter = HUGE_VAL;
     double leave = -HUGE_VAL;
@@ -101,15 +109,16 @@ struct Edge {
   }
 };
 
-// Highest point of a lower envelope of planes over a triangle, in barycentric coordinates.
+// The highest point of a lower envelope of planes over a triangle.
 struct Summit {
-  Heights place = Heights(1, 0, 0);
-  double height = HUGE_VAL;  // not below the true one
+  Heights place = Heights(1, 0, 0);  // barycentric coordinates
+  double height = HUGE_VAL;          // upper bound of the height
 };
 
-// Seidel's incremental linear programming: linear in the number of planes, for a random order of
-// them. A plane counts as below another one only if it is so by more than round-off: nothing is cut
-// off wrongly where planes coincide or nearly so.
+// Finds the highest point by Seidel's incremental linear programming, which takes time linear in
+// the number of planes if their order is random. A plane counts as below another one only if it is
+// so by more than round-off, so that nothing is cut off wrongly where planes coincide or nearly
+// coincide.
 Summit highest_point(const std::vector<Heights>& planes) {
   double largest = 0;
   for (const Heights& plane : planes) largest = std::max(largest, plane.cwiseAbs().maxCoeff());
@@ -117,14 +126,15 @@ Summit highest_point(const std::vector<Heights>& planes) {
   Summit summit;
   for (size_t i = 0; i < planes.size(); ++i) {
     if (planes[i].dot(summit.place) >= summit.height - slack) continue;
-    // The summit lies on plane i: its highest point where no earlier plane is below it.
+    // The summit lies on plane i. It is the highest point of this plane at which no earlier plane
+    // is below it.
     Eigen::Index corner;
     planes[i].maxCoeff(&corner);
     Heights place = Heights::Unit(corner);
     for (size_t j = 0; j < i; ++j) {
       const Heights side = planes[j] - planes[i];
       if (side.dot(place) >= -slack) continue;
-      // On the line side = 0, between its two crossings with the triangle's border.
+      // The summit lies on the line side = 0, between its two crossings with the triangle's border.
       std::array<Heights, 2> ends;
       size_t count = 0;
       for (int k = 0; k < 3; ++k) {
@@ -153,29 +163,30 @@ Summit highest_point(const std::vector<Heights>& planes) {
   return summit;
 }
 
-// A triangle inside the polygon. `edges` holds all that may be nearest to one of its points, none
-// before it is examined.
+// A triangle inside the polygon.
 struct Cell {
   std::array<Vec2, 3> corners;
-  double bound;  // f is nowhere higher
-  Vec2 point = Vec2::Zero();
-  double height = 0;  // f at `point`
-  std::vector<int> edges = {};
+  double bound;                 // upper bound of f in the triangle
+  Vec2 point = Vec2::Zero();    // the best point that is known in the triangle
+  double height = 0;            // value of f at `point`
+  std::vector<int> edges = {};  // edges that may be nearest to a point; empty until examined
 
   [[nodiscard]] Vec2 at(const Heights& place) const {
     return place[0] * corners[0] + place[1] * corners[1] + place[2] * corners[2];
   }
+  // Length of the side opposite to corner k.
   [[nodiscard]] double side(int k) const {
     return (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
   }
-  // The side opposite to corner k is the longest.
+  // The corner that is opposite to the longest side.
   [[nodiscard]] int longest() const {
     const std::array<double, 3> sides{side(0), side(1), side(2)};
     return static_cast<int>(std::max_element(sides.begin(), sides.end()) - sides.begin());
   }
 };
 
-// No point of a triangle is farther than this from the nearest corner.
+// An upper bound of the distance of any point of a triangle from the nearest corner. It bounds f,
+// as the corners of the first triangles are vertices of the polygon.
 double corner_bound(const Cell& cell) {
   const int k = cell.longest();
   const double a = cell.side(k), b = cell.side((k + 1) % 3), c = cell.side((k + 2) % 3);
@@ -185,7 +196,7 @@ double corner_bound(const Cell& cell) {
   return std::min(a / std::sqrt(3.0), a * b * c / (2 * twice_area)) + kNoise;
 }
 
-// A centre, or a segment of centres.
+// The two ends of a segment of centres; they are equal for an isolated centre.
 struct Centre {
   Vec2 first, last;
 };
@@ -197,7 +208,7 @@ class Search {
     for (Vec2& v : vertices_) v /= unit;
     for (size_t i = 0; i < vertices_.size(); ++i) {
       const Vec2& end = vertices_[i + 1 == vertices_.size() ? 0 : i + 1];
-      // Two vertices that agree in local coordinates bound no edge.
+      // Two vertices that are equal in local coordinates have no edge between them.
       if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
     }
     for (const Triangle& t : triangulate(polygon)) {
@@ -209,10 +220,10 @@ class Search {
   }
 
   void run() {
-    // Any order of the edges that is not one of the input's regular ones: see highest_point.
+    // The edges are shuffled, because highest_point is fast only if their order is random.
     std::vector<int> all(edges_.size());
     std::iota(all.begin(), all.end(), 0);
-    std::mt19937 random;  // std::shuffle is not the same everywhere
+    std::mt19937 random;  // std::shuffle differs between standard libraries
     for (size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
 
     while (!queue_.empty() && queue_.front().bound >= radius_ - tolerance()) {
@@ -259,7 +270,7 @@ class Search {
   static bool lower(const Cell& a, const Cell& b) { return a.bound < b.bound; }
   [[nodiscard]] double tolerance() const { return kSameHeight * radius_ + 4 * kNoise; }
 
-  // f, for a point of the cell.
+  // Value of f at a point of the cell.
   [[nodiscard]] double height(const Cell& cell, const Vec2& point) const {
     double least = HUGE_VAL;
     for (const int e : cell.edges) least = std::min(least, edges_[e].distance(point));
@@ -298,6 +309,7 @@ class Search {
     std::push_heap(queue_.begin(), queue_.end(), lower);
   }
 
+  // Improves the lower bound of a cell: moves its point upwards with the tangent planes.
   void climb(Cell& cell) {
     constexpr int kSteps = 10;
     for (int step = 0; step < kSteps && cell.bound - cell.height > kNoise; ++step) {
@@ -326,8 +338,8 @@ class Search {
     examine({{cell.corners[k], middle, q}, cell.bound}, cell.edges);
   }
 
-  // The longest segment through a centre, along two parallel edges that the circle touches, with
-  // distance `radius` or more from all edges.
+  // The longest segment through a centre that runs along two parallel edges which the circle
+  // touches, and that keeps the distance `radius` or more from all edges.
   [[nodiscard]] Centre corridor(const Vec2& point, double radius) const {
     std::vector<const Edge*> touched;
     for (const Edge& edge : edges_) {
@@ -343,7 +355,8 @@ class Search {
           continue;
         }
         Vec2 u = ((a.end - a.start) - (b.end - b.start)).normalized();
-        // Short edges give a poor direction: mend it by where the wall is touched at both ends.
+        // Short edges give an inexact direction. It is improved with the points of the wall that
+        // the circles at both ends of the segment touch.
         for (double length = 0, previous = -1; length > 2 * previous; u = along_wall(longest, u)) {
           previous = length;
           const Centre way = free_way(point, u, radius);
@@ -355,6 +368,8 @@ class Search {
     return longest;
   }
 
+  // The longest segment through a point in the direction u that keeps the distance `radius` or more
+  // from all edges.
   [[nodiscard]] Centre free_way(const Vec2& point, const Vec2& u, double radius) const {
     double ahead = HUGE_VAL;
     double behind = HUGE_VAL;
@@ -365,7 +380,8 @@ class Search {
     return {point - behind * u, point + ahead * u};
   }
 
-  // Direction between the points of the wall on the right that the circles at both ends touch.
+  // Direction from the point of the right wall that the circle at the first end of the segment
+  // touches to the one that the circle at the last end touches.
   [[nodiscard]] Vec2 along_wall(const Centre& way, const Vec2& u) const {
     const auto foot = [&](const Vec2& centre) {
       double lowest = HUGE_VAL;
@@ -390,7 +406,7 @@ class Search {
   std::vector<Found> found_;
   double radius_ = 0;
 
-  // Memory of examine and climb.
+  // Memory of examine and climb, kept between calls.
   std::vector<double> distances_;
   std::vector<Heights> planes_;
 };

@@ -1,4 +1,4 @@
-// Largest circle inside any simple polygon.
+// The largest inscribed circle of any simple polygon.
 #pragma once
 
 #include "apothem/geometry/polygon/polygon.hpp"
@@ -6,11 +6,12 @@
 
 namespace apothem {
 
-/// The largest circle inside the polygon, with all its centres: isolated ones, and the two ends of
-/// each segment of centres (a corridor), one after the other. Radii that differ by less than 1e-13
-/// of the radius plus 4e-15 of the polygon's size count as equal. Throws InvalidPolygon if the
-/// polygon is thinner than double precision resolves. Convex polygons of few edges:
-/// inscribed_circle.
+/// Returns the radius of the largest circle inside the polygon, and all possible centres of such a
+/// circle: isolated ones, and the two ends of each segment of centres (in a corridor with parallel
+/// walls), one after the other. Radii that differ by less than 1e-13 of the radius plus 4e-15 of
+/// the polygon's size count as equal. For convex polygons with up to 100 edges the function calls
+/// inscribed_circle. Throws InvalidPolygon if the polygon is thinner than double precision
+/// resolves.
 InscribedCircle largest_inscribed_circle(const Polygon& polygon);
 
 }  // namespace apothem

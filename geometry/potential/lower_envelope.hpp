@@ -1,6 +1,9 @@
-// Lower envelope of lines over a polygon, for any number type: its faces, its highest points, the
-// volume under it. By clipping alone: each face on its own, without a topology that round-off could
-// get wrong, and continuous in the lines.
+// The lower envelope of linear functions over a polygon, for any number type: its faces, its
+// highest points, and the volume under it. Each face is computed by clipping, independently of the
+// others. There is no topology that round-off could make inconsistent, and the results depend
+// continuously on the functions.
+//
+// Polygons here are rings of points in counter-clockwise order. INT stands for an integral.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,22 +11,27 @@
 
 namespace apothem::lower_envelope {
 
+/// A point or a vector of the plane.
 template <class Real>
 using Vec = Eigen::Matrix<Real, 2, 1>;
 
+/// The z component of the cross product a x b.
 template <class Real>
 Real cross(const Vec<Real>& a, const Vec<Real>& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+/// A linear function of the plane: gradient . x + height. Its zeros form a line, such as that of an
+/// edge.
 template <class Real>
 struct Line {
-  Vec<Real> gradient;
-  Real height;  // at the origin
+  Vec<Real> gradient;  ///< gradient of the function
+  Real height;         ///< value at the origin
+  /// Value at the point x.
   Real operator()(const Vec<Real>& x) const { return gradient.dot(x) + height; }
 };
 
-/// Part of the polygon where side >= 0 (> 0 unless `closed`).
+/// The part of the polygon where side(x) >= 0 if `closed`, otherwise where side(x) > 0.
 template <class Real>
 std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
                             bool closed) {
@@ -43,8 +51,9 @@ std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Re
   return inside;
 }
 
-/// Part of the polygon where line e is the lowest of all. Two faces share the bit pattern of the
-/// bisector between them, and of two equal lines the first one has the face: nothing counts twice.
+/// The part of the polygon where line e is the lowest of all lines. Both faces at a bisector
+/// compute it with the same bits, and of two equal lines only the first one has a face, so no area
+/// counts twice.
 template <class Real>
 std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
                             size_t e) {
@@ -56,7 +65,7 @@ std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Li
   return polygon;
 }
 
-/// INT f dA for a linear f, by a fan of triangles.
+/// INT f dA over a polygon for a linear function f, by a fan of triangles.
 template <class Real>
 Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
   Real sum = 0;
@@ -67,7 +76,7 @@ Real area_integral(const std::vector<Vec<Real>>& polygon, const Line<Real>& f) {
   return sum;
 }
 
-/// INT min(1 if capped, min_i lines_i) dA over a polygon.
+/// INT min_i lines[i] dA over a polygon. If `capped`, the integrand is also limited to 1.
 template <class Real>
 Real volume_under(const std::vector<Line<Real>>& lines, bool capped,
                   const std::vector<Vec<Real>>& polygon) {
@@ -86,8 +95,8 @@ Real volume_under(const std::vector<Line<Real>>& lines, bool capped,
   return volume;
 }
 
-/// Part of a ring inside a convex one. A ring that is not convex leaves pieces that hang together
-/// by edges which cancel in every integral.
+/// The part of a ring inside a convex polygon. If the ring is not convex, the part may consist of
+/// several pieces that are connected by edges; these edges cancel in every integral.
 template <class Real>
 std::vector<Vec<Real>> inside(std::vector<Vec<Real>> part, const std::vector<Vec<Real>>& convex) {
   for (size_t i = 0; i < convex.size() && !part.empty(); ++i) {
@@ -99,12 +108,14 @@ std::vector<Vec<Real>> inside(std::vector<Vec<Real>> part, const std::vector<Vec
   return part;
 }
 
-/// Triangles whose signed sum is a polygon, convex or not.
+/// A polygon that counts with the sign +1 or -1 in a sum of polygons.
 template <class Real>
 struct SignedRing {
-  std::vector<Vec<Real>> ring;  // counter-clockwise
-  int sign;
+  std::vector<Vec<Real>> ring;  ///< counter-clockwise
+  int sign;                     ///< +1 or -1
 };
+
+/// Triangles whose signed sum is the given polygon, which need not be convex.
 template <class Real>
 std::vector<SignedRing<Real>> fan(const std::vector<Vec<Real>>& polygon) {
   std::vector<SignedRing<Real>> triangles;
@@ -117,7 +128,8 @@ std::vector<SignedRing<Real>> fan(const std::vector<Vec<Real>>& polygon) {
   return triangles;
 }
 
-/// INT phi dA over a polygon, phi given by its faces (polygons) and their planes.
+/// INT phi dA over the signed sum of convex polygons `parts`. phi is given by its faces, which are
+/// polygons, and by the linear function of each face. If `capped`, phi is limited to 1.
 template <class Real>
 Real volume_under_faces(const std::vector<std::vector<Vec<Real>>>& faces,
                         const std::vector<Line<Real>>& planes, bool capped,
@@ -140,12 +152,15 @@ Real volume_under_faces(const std::vector<std::vector<Vec<Real>>>& faces,
   return volume;
 }
 
-/// The corners of all faces with the height of the envelope there: its maximum is at one of them.
+/// A corner of a face of the envelope.
 template <class Real>
 struct Corner {
-  Vec<Real> point;
-  Real height;
+  Vec<Real> point;  ///< position
+  Real height;      ///< value of the envelope there
 };
+
+/// The corners of all faces of the envelope over a polygon. The maximum of the envelope is at one
+/// of them.
 template <class Real>
 std::vector<Corner<Real>> corners(const std::vector<Line<Real>>& lines,
                                   const std::vector<Vec<Real>>& polygon) {

@@ -1,5 +1,5 @@
-// Minimum of functions of one variable, each given on an interval, as a sorted list of pieces. Two
-// functions may cross twice at most.
+// The minimum of functions of one variable, each of which is given on an interval, as a sorted list
+// of pieces. Two functions may cross at most twice.
 #pragma once
 
 #include <algorithm>
@@ -9,29 +9,33 @@
 
 namespace apothem {
 
-/// `Function` has three members:
-///   int crossings(g, from, roots) const: candidates for f = g in any order, best computed relative
-///     to `from`; those outside the interval asked for (NaN too) are ignored;
-///   bool below(g, s) const: f(s) < g(s);
-///   bool operator==.
-/// Which of two functions is the lower one between two candidates is decided in the middle: a root
-/// that round-off moves, adds or loses changes the minimum by no more than round-off.
+/// The minimum of functions on an interval. A `Function` f has three members:
+/// - int crossings(g, from, roots) const writes up to two candidates for solutions of f = g, in any
+///   order, and returns their number. They are best computed relative to `from`. Candidates outside
+///   the interval in question, and NaN, are ignored.
+/// - bool below(g, s) const is true if f(s) < g(s).
+/// - bool operator== is true for the same function.
+/// Which of two functions is lower between two candidates is decided in the middle between them. So
+/// a root that round-off moves, adds or loses changes the minimum by no more than round-off.
 template <class Real, class Function>
 class PiecewiseMinimum {
  public:
+  /// A part of the interval on which one function is the minimum.
   struct Piece {
-    Real from;
-    bool known;  ///< false where no function was given
-    Function function;
+    Real from;          ///< start of the piece; it ends where the next one starts
+    bool known;         ///< false where no function was given
+    Function function;  ///< the lowest function, if `known`
   };
 
+  /// Starts again with no function on the interval from `from` to `to`.
   void reset(const Real& from, const Real& to) {
     pieces_.clear();
     pieces_.push_back({from, false, {}});
     end_ = to;
   }
 
-  /// True if f is the lowest somewhere. No allocation once the buffers have grown.
+  /// Adds the function f on the interval from `from` to `to`. Returns true if f is the lowest
+  /// somewhere. Nothing is allocated once the buffers are large enough.
   bool insert(const Function& f, const Real& from, const Real& to) {
     next_.clear();
     bool changed = false;
@@ -52,13 +56,18 @@ class PiecewiseMinimum {
     return changed;
   }
 
+  /// Number of pieces.
   [[nodiscard]] size_t size() const { return pieces_.size(); }
+  /// Piece i, counted along the interval.
   [[nodiscard]] const Piece& operator[](size_t i) const { return pieces_[i]; }
+  /// The end of piece i.
   [[nodiscard]] const Real& end(size_t i) const {
     return i + 1 < pieces_.size() ? pieces_[i + 1].from : end_;
   }
 
  private:
+  // Appends the minimum of f and of the function of `piece` between a and b. Returns true if f is
+  // lower somewhere.
   bool merge(const Function& f, const Piece& piece, const Real& a, const Real& b) {
     if (!piece.known) {
       next_.push_back({a, true, f});
@@ -86,7 +95,7 @@ class PiecewiseMinimum {
     return changed;
   }
 
-  // The function of `piece` from `from` on, unless it is there already.
+  // Appends the function of `piece` from `from` on, unless the last piece has it already.
   void keep(const Real& from, const Piece& piece) {
     if (from > piece.from && !next_.empty() && piece.known && next_.back().known &&
         next_.back().function == piece.function) {

@@ -8,10 +8,12 @@
 namespace apothem {
 namespace {
 
-// Heights of the envelope closer than this (relative) are one height: the centre of a rectangle's
-// incircle is a segment although round-off tells its ends apart.
+// Heights of the envelope whose relative difference is smaller than this are equal. So the centres
+// of a rectangle's largest inscribed circles form a segment, although round-off makes the heights
+// at its ends differ.
 constexpr double kSameHeight = 1e-13;
-// An inradius below so many roundings of the polygon's size is noise.
+// A radius of the largest inscribed circle below this share of the polygon's size consists of
+// round-off.
 constexpr double kThinnest = 8 * 0x1p-52;
 
 void require_convex(const Polygon& polygon) {
@@ -23,7 +25,7 @@ void require_convex(const Polygon& polygon) {
   }
 }
 
-// Inward normals of unit length, from differences of the input coordinates.
+// Inward unit normals of the edges, from differences of the input coordinates.
 std::vector<Vec2> inward_normals(const Polygon& polygon) {
   std::vector<Vec2> normals(polygon.size());
   for (int i = 0; i < polygon.size(); ++i) {
@@ -33,7 +35,8 @@ std::vector<Vec2> inward_normals(const Polygon& polygon) {
   return normals;
 }
 
-// Height of the envelope's maximum over a needle, where double precision has few digits of it left.
+// Maximum of the envelope over a needle, in long double, because in double precision only a few of
+// its digits would be correct.
 double top_of_needle(const Polygon& polygon, const Potential& potential) {
   using Fine = long double;
   using FineVec = lower_envelope::Vec<Fine>;
@@ -53,7 +56,7 @@ double top_of_needle(const Polygon& polygon, const Potential& potential) {
   return static_cast<double>(top);
 }
 
-// Height and place of the envelope's maximum.
+// Finds the maximum of the envelope and the points where it is attained.
 void find_top(Potential& potential) {
   std::vector<lower_envelope::Line<double>> lines;
   for (int i = 0; i < potential.size(); ++i) {
@@ -63,7 +66,7 @@ void find_top(Potential& potential) {
   const auto corners = lower_envelope::corners(lines, potential.vertices);
   potential.top = 0;
   for (const auto& corner : corners) potential.top = std::max(potential.top, corner.height);
-  Vec2 first = Vec2::Zero(), last = Vec2::Zero();  // ends of the level part, in one direction
+  Vec2 first = Vec2::Zero(), last = Vec2::Zero();  // ends of the level ridge
   bool any = false;
   for (const auto& corner : corners) {
     if (!(corner.height >= potential.top * (1 - kSameHeight))) continue;
@@ -108,7 +111,7 @@ Skeleton skeleton_of(const Polygon& polygon) {
   throw InvalidPolygon("is thinner than double precision resolves", 0);
 }
 
-// The lines of a polygon that is not convex.
+// Vertices and gradients of a polygon that is not convex.
 Potential sloped_lines(const Polygon& polygon, double reference) {
   Potential potential;
   potential.vertices = polygon.local_vertices();
@@ -120,7 +123,7 @@ Potential sloped_lines(const Polygon& polygon, double reference) {
 
 using Reference = PotentialChoice::Reference;
 
-// A polygon that is not convex: phi is the roof of its straight skeleton over r.
+// The potential of a polygon that is not convex as the roof of its straight skeleton over r.
 Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
   const Skeleton skeleton = skeleton_of(polygon);
   const double reference = choice.reference == Reference::length ? choice.length
@@ -138,7 +141,8 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) 
   return potential;
 }
 
-// Or the distance to its boundary over r, which needs a skeleton for its height alone.
+// The potential of a polygon that is not convex as the distance to its boundary over r. A skeleton
+// is needed only if r is the height of the roof.
 Potential field_potential(const Polygon& polygon, const PotentialChoice& choice) {
   const InscribedCircle circle = largest_inscribed_circle(polygon);
   const double reference = choice.reference == Reference::length ? choice.length

@@ -1,13 +1,13 @@
-// The contact potential of a polygon: one structure for the distance potential of the paper (Eq. 6)
-// and for Munjiza's area potential of triangles (Eq. 2). For a convex polygon
+// The contact potential phi of a polygon. One structure serves for the distance potential of the
+// paper (Eq. 6) and for Munjiza's area potential of triangles (Eq. 2). For a convex polygon
 //
 //   phi(x) = min(1, min_i g_i . (x - p_i))   inside,   0 outside,
 //
-// with p_i a point of edge i and g_i its inward normal divided by a length: the edge list with one
-// inverse length per edge. Lines are kept in this difference form because its round-off follows the
-// size of the polygon, not its distance from the origin of the coordinates. A polygon that is not
-// convex has the same lines over the faces of its straight skeleton (roof.hpp), or the distance to
-// its boundary (distance_field.hpp).
+// where p_i is a point of edge i and g_i is the inward unit normal of edge i divided by a length.
+// The linear functions are kept in this difference form because its round-off is proportional to
+// the size of the polygon and not to its distance from the origin of the coordinates. For a polygon
+// that is not convex, phi either consists of the same linear functions, each over one face of the
+// straight skeleton (roof.hpp), or is the distance to the boundary (distance_field.hpp).
 #pragma once
 
 #include <optional>
@@ -19,54 +19,63 @@
 
 namespace apothem {
 
+/// The contact potential of a polygon. A polygon that is not convex has either a roof or a distance
+/// field, and phi is then not the minimum of the linear functions of its edges.
 struct Potential {
-  std::vector<Vec2> vertices;    ///< p_i, relative to an origin of the owner's choice, m
-  std::vector<Vec2> gradients;   ///< g_i, 1/m
-  double top = 0;                ///< maximum of phi without the cap
-  std::vector<Vec2> top_points;  ///< where it is attained: one point, or the ends of a segment
-  double steepest = 0;           ///< largest |g_i|: the inverse of the smallest length, 1/m
-  // Of a polygon that is not convex one of these; the envelope is not phi there.
-  std::optional<Roof> roof;
-  std::optional<DistanceField> distance;
+  std::vector<Vec2> vertices;             ///< p_i relative to an origin that the owner chooses, m
+  std::vector<Vec2> gradients;            ///< g_i, 1/m
+  double top = 0;                         ///< maximum of phi if it is not limited to 1
+  std::vector<Vec2> top_points;           ///< where phi is highest: points and ends of ridges, m
+  double steepest = 0;                    ///< largest |g_i|, 1/m
+  std::optional<Roof> roof;               ///< roof over the straight skeleton
+  std::optional<DistanceField> distance;  ///< distance field
 
+  /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
-  /// True when min(1, .) matters: the plateau phi = 1 is the paper's singular area.
+  /// True if the limit phi <= 1 has an effect. The plateau phi = 1 is the paper's singular area.
   [[nodiscard]] bool capped() const { return top > 1; }
 };
 
-/// Size over r beyond which one ulp of the coordinates moves phi by more than some 1e-13: what is
-/// computed once or singly then takes long double.
+/// Ratio of a polygon's size to its reference length r beyond which one ulp of the coordinates
+/// changes phi by more than about 1e-13. For such thin polygons (needles), values that are computed
+/// only once, and single evaluations of a contact, use long double.
 inline constexpr double kNeedle = 1e3;
 
-/// Largest inscribed circle of a convex polygon.
+/// A largest inscribed circle of a polygon.
 struct InscribedCircle {
-  double radius;              ///< m
-  std::vector<Vec2> centres;  ///< relative to the polygon's origin(); two when it is not unique
+  double radius;  ///< radius, m
+  /// Possible centres relative to the polygon's origin(), m. If the centres of a convex polygon
+  /// form a segment, these are its two ends.
+  std::vector<Vec2> centres;
 };
 
-/// Throws InvalidPolygon if the polygon is not convex.
+/// Returns the largest inscribed circle of a convex polygon. Throws InvalidPolygon if the polygon
+/// is not convex, or if it is thinner than double precision resolves.
 InscribedCircle inscribed_circle(const Polygon& polygon);
 
-/// Which potential, what measures the depth of the distance potential, and the length r that
-/// normalises it. For a convex polygon both fields are the same and the roof height is the
-/// inradius, so `roof` and `inscribed_circle` agree; otherwise the roof height is the smaller one.
+/// The choice of a potential: its kind, the field that measures the depth, and the reference length
+/// r by which the depth is divided. For a convex polygon both fields are the same and the height of
+/// the roof is the radius of the inscribed circle, so `roof` and `inscribed_circle` agree. For
+/// other polygons the height of the roof is never larger than that radius.
 struct PotentialChoice {
-  enum class Kind { distance, area };
-  enum class Field { roof, distance };
-  enum class Reference { roof, inscribed_circle, length };
-  Kind kind = Kind::distance;
-  Field field = Field::roof;
-  Reference reference = Reference::roof;
-  double length = 0;  ///< m, for Reference::length
+  enum class Kind { distance, area };                       ///< Eq. 6 or Eq. 2 of the paper
+  enum class Field { roof, distance };                      ///< roof or distance to the boundary
+  enum class Reference { roof, inscribed_circle, length };  ///< the quantity used as r
+  Kind kind = Kind::distance;                               ///< kind of the potential
+  Field field = Field::roof;                                ///< measure of the depth
+  Reference reference = Reference::roof;                    ///< choice of the reference length
+  double length = 0;  ///< the reference length for Reference::length, m
 };
 
-/// The potential of a polygon, with vertices relative to polygon.origin(). Throws InvalidPolygon if
-/// there is none: for the area potential (slope 3 / altitude) of all but triangles, for the
-/// distance potential of polygons whose straight skeleton is needed (not by the distance field with
-/// another reference than the roof) and cannot be found.
+/// Returns the potential of a polygon, with vertices relative to polygon.origin(). The linear
+/// functions of the area potential have the slopes 3 / altitude. Throws InvalidPolygon
+/// - for the area potential of a polygon that is not a triangle,
+/// - if the polygon is thinner than double precision resolves, and
+/// - if the polygon is not convex, its straight skeleton is needed and none can be found. The
+///   distance field needs the skeleton only for Reference::roof.
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice = {});
 
-/// The potential seen from another origin: all points minus `shift`.
+/// The same potential in coordinates whose origin is moved by `shift`, m: all points minus `shift`.
 Potential translated(Potential potential, const Vec2& shift);
 
 }  // namespace apothem

@@ -6,9 +6,13 @@
 
 namespace apothem {
 
+/// The kernels there are (kernel.hpp). A law of friction has the number of its kernel.
+enum KernelKind { polygon_kernel, element_kernel, outline_kernel, kernel_kinds };
+
 /// One record for every kernel. `a` and `b` are two surfaces, or an edge and a face of outlines;
 /// what else the kernel knows about the contact stands in its own list, in the same order.
 struct Contact {
+  KernelKind kernel;
   int a, b;
   double depth;      ///< of the deepest point below a surface, or extent of the overlap, m
   double share;      ///< of the depth at which the potential ends; 1: beyond its end

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/archive/archive.hpp"
 
 namespace apothem {
 
@@ -23,6 +23,7 @@ struct SpringKey {
   int a, b;  ///< two surfaces, or an edge and its partner
   int part;  ///< patch of the pair, or edge of its overlap; 0 where a pair has one spring
   auto operator<=>(const SpringKey&) const = default;
+  void fields(Archive& archive) { archive("law", law)("a", a)("b", b)("part", part); }
 };
 
 struct Spring {
@@ -32,6 +33,9 @@ struct Spring {
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
 
   [[nodiscard]] double energy() const { return stiffness > 0 ? force * force / (2 * stiffness) : 0; }
+  void fields(Archive& archive) {
+    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent);
+  }
 };
 
 /// Force of a spring after a slip in m: never beyond Coulomb's limit in N.
@@ -56,6 +60,9 @@ class FrictionMemory {
   void end_step(double work);
 
   [[nodiscard]] std::span<const Spring> springs() const { return now_; }
+  /// The springs of a law, and those of a pair, in this step.
+  [[nodiscard]] std::span<const Spring> springs_of(int law) const;
+  [[nodiscard]] std::span<const Spring> springs_of(int law, int a, int b) const;
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
@@ -63,8 +70,9 @@ class FrictionMemory {
   /// What has been dissipated so far does not count.
   void start_ledger() { loss_ = 0; }
 
-  template <class Archive>
-  void fields(Archive& archive);
+  void fields(Archive& archive) {
+    archive("springs", now_)("energy", energy_)("friction_loss", loss_);
+  }
 
  private:
   std::vector<Spring> now_, before_;

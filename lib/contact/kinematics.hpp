@@ -3,6 +3,9 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
+
+#include "apothem/mesh/indices.hpp"
 
 namespace apothem {
 
@@ -16,6 +19,19 @@ struct Kinematics {
 struct ForceViews {
   std::span<double> rigid;  ///< N, N and the moment about the mass centre, N m, of each rigid body
   std::span<double> nodes;  ///< x, y of each node, N
+  /// Of each rigid body: bound of the stiffness of its contacts divided by its inertia, 1/s^2.
+  std::span<double> lambda;
+};
+
+/// A body has a vertex that is not at a finite place.
+class NotFinite : public std::domain_error {
+ public:
+  explicit NotFinite(BodyIndex body)
+      : std::domain_error("a vertex of a body is not at a finite place"), body_(body) {}
+  [[nodiscard]] BodyIndex body() const { return body_; }
+
+ private:
+  BodyIndex body_;
 };
 
 }  // namespace apothem

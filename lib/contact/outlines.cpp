@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "apothem/geometry/potential/inscribed_circle.hpp"
 
@@ -94,8 +93,8 @@ void Outlines::place(const Kinematics& now, const PlacedShapes& polygons) {
 }
 
 void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
-  double all = 0;  // NaN if a place is not finite
   for (Body& b : bodies) {
+    double all = 0;  // NaN if a place is not finite
     if (b.is_rigid()) {
       const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
       const PlacedPotential polygon = polygons.view(b.rigid);
@@ -112,8 +111,8 @@ void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
       }
     }
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
+    if (all != 0) throw NotFinite(body[b.first]);
   }
-  if (all != 0) throw std::domain_error("a vertex of a body is not at a finite place");
 }
 
 void Outlines::find_edges() {

@@ -61,7 +61,7 @@ class Outlines {
   void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
 
   /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those of
-  /// rigid bodies follow their polygons. Throws std::domain_error if a vertex is not at a finite
+  /// rigid bodies follow their polygons. Throws NotFinite if a vertex is not at a finite
   /// place.
   void place(const Kinematics& now, const PlacedShapes& polygons);
 

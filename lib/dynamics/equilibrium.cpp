@@ -30,22 +30,42 @@ constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
 constexpr std::int64_t kMostSteps = 300'000;
 
+double shortest_edge(const Model& model) {
+  double shortest = HUGE_VAL;
+  for (const DeformableBody& body : model.deformables) {
+    for (ElementIndex e = 0; e < body.mesh.element_count(); ++e) {
+      const std::span<const int> ring = body.mesh.element(e);
+      for (size_t i = 0; i < ring.size(); ++i) {
+        const int before = ring[i > 0 ? i - 1 : ring.size() - 1];
+        shortest = std::min(shortest, (body.mesh.nodes[ring[i]] - body.mesh.nodes[before]).norm());
+      }
+    }
+  }
+  return shortest;
+}
+
 }  // namespace
 
-Equilibrium::Equilibrium(const Model& model, Deformables& deformables, SurfaceContact* contact,
+Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const Terms& terms,
                          double tolerance)
     : model_(model),
-      deformables_(deformables),
-      contact_(contact),
+      dofs_(dofs),
+      terms_(terms),
       tolerance_(tolerance),
-      weight_(deformables.weights()),
+      first_(dofs.layout().node(0)),
+      shortest_edge_(shortest_edge(model)),
+      lambda_(model.bodies.size()),
       body_loads_(model.deformables.size()) {
-  const size_t n = 2 * static_cast<size_t>(deformables.elements().node_count());
+  const size_t n = dofs.layout().size() - first_;
   for (std::vector<double>* v :
-       {&element_, &mass_, &inverse_, &rest_, &drive_, &velocity_, &outside_}) {
+       {&stiffness_.elastic, &mass_, &inverse_, &rest_, &drive_, &velocity_, &outside_}) {
     v->assign(n, 0);
   }
-  surface_.assign(n / 2, 0);
+  stiffness_.contact.assign(n / 2, 0);
+  if (!dofs.weight().empty()) {
+    const std::span<const double> weight = dofs.layout().of_nodes(dofs.weight());
+    weight_.assign(weight.begin(), weight.end());
+  }
   Box scene;
   for (const DeformableBody& body : model.deformables) {
     for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
@@ -55,7 +75,13 @@ Equilibrium::Equilibrium(const Model& model, Deformables& deformables, SurfaceCo
 
 // So many steps that nothing moves more than a stride in one.
 double Equilibrium::ramp(double from, double until) const {
-  double longest = deformables_.largest_support_move(from, until);
+  double longest = 0;
+  for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
+    if (d.coordinate < first_) continue;
+    const auto axis = static_cast<size_t>(d.axis);
+    longest = std::max(longest, std::abs(d.motion->displacement(until)[axis] -
+                                         d.motion->displacement(from)[axis]));
+  }
   for (const RigidBody& body : model_.bodies) {
     if (body.motion != Motion::prescribed) continue;
     double radius = 0;
@@ -65,123 +91,130 @@ double Equilibrium::ramp(double from, double until) const {
     longest =
         std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1]) + radius * std::abs(b[2] - a[2]));
   }
-  return std::max(kRamp, std::ceil(longest / (kStride * deformables_.elements().shortest_edge())));
-}
-
-void Equilibrium::place(State& state) const {
-  deformables_.place_supports(state);
-  for (size_t i = 0; i < model_.bodies.size(); ++i) {
-    const RigidBody& body = model_.bodies[i];
-    if (body.motion != Motion::prescribed) continue;
-    const std::array<double, 3> u = body.history.displacement(state.time);
-    state.position[3 * i] = body.position.x() + u[0];
-    state.position[3 * i + 1] = body.position.y() + u[1];
-    state.position[3 * i + 2] = body.angle + u[2];
-  }
+  return std::max(kRamp, std::ceil(longest / (kStride * shortest_edge_)));
 }
 
 void Equilibrium::find_forces(State& state) {
-  if (contact_) contact_->evaluate(state);
-  deformables_.find_static_forces(state, contact_);
-  for (size_t c = 0; c < rest_.size(); ++c) {
-    rest_[c] = deformables_.held(c) ? 0 : state.node_force[c];
-  }
+  std::ranges::fill(state.layout.of_rigid(state.f), 0.);
+  Stopwatch off;
+  for (const auto& term : terms_) term->add_forces({state, state.v, 0, lambda_, off, true});
+  for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[first_ + c];
   for (size_t c = 0; c < weight_.size(); ++c) rest_[c] += weight_[c];
 }
 
 void Equilibrium::find_masses(const State& state) {
-  deformables_.elements().stiffness_sums(state.displacement, element_);
-  std::fill(surface_.begin(), surface_.end(), 0.);
-  if (contact_) {
-    contact_->add_stiffness(surface_);
-    searches_ = contact_->searches();
-  }
+  std::fill(stiffness_.elastic.begin(), stiffness_.elastic.end(), 0.);
+  std::fill(stiffness_.contact.begin(), stiffness_.contact.end(), 0.);
+  for (const auto& term : terms_) term->add_stiffness(state, stiffness_);
+  revision_ = revision();
   for (size_t c = 0; c < mass_.size(); ++c) {
-    mass_[c] = kMass * (element_[c] + surface_[c / 2]);
-    inverse_[c] = deformables_.held(c) ? 0 : 1 / mass_[c];
+    mass_[c] = kMass * (stiffness_.elastic[c] + stiffness_.contact[c / 2]);
+    inverse_[c] = held(c) ? 0 : 1 / mass_[c];
   }
+}
+
+std::int64_t Equilibrium::revision() const {
+  std::int64_t sum = 0;
+  for (const auto& term : terms_) sum += term->revision();
+  return sum;
 }
 
 void Equilibrium::check_shapes(const State& state) const {
   for (const DeformableBody& body : model_.deformables) {
-    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
-      const size_t c = 2 * (body.first_node + i);
-      if (std::max(std::abs(state.displacement[c]), std::abs(state.displacement[c + 1])) < far_) {
-        continue;
-      }
+    for (NodeIndex i = 0; i < static_cast<NodeIndex>(body.mesh.nodes.size()); ++i) {
+      const Vec2 u = state.node(body.first_node + i);
+      if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) continue;
       throw Unstable(
           fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
                       "equilibrium: nothing holds it against its loads; support it, or press it "
                       "against another body",
-                      body.name, std::hypot(state.displacement[c], state.displacement[c + 1]),
-                      state.time, state.step));
+                      body.name, u.norm(), state.time, state.step));
     }
   }
-  const std::string element = deformables_.inverted(state);
-  if (element.empty()) return;
-  throw Unstable(
-      fmt::format("{} has turned inside out at t = {:.9g} s (load step {}): the load is more than "
-                  "the material can bear; reduce it, or raise time.load_steps",
-                  element, state.time, state.step));
+  for (const auto& term : terms_) term->watch(state);
+}
+
+// Loads on nodes, and the reactions of supports with prescribed motion, N.
+std::vector<double> Equilibrium::given_forces(const State& state) const {
+  std::vector<double> forces(rest_.size(), 0);
+  for (const auto& term : terms_) term->add_given_forces(forces);
+  for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
+    if (d.coordinate >= first_) forces[d.coordinate - first_] -= state.f[d.coordinate];
+  }
+  return forces;
+}
+
+// Whether the sum of the forces on a body is small against its loads; adds to the sums of a look.
+bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
+                                const std::vector<double>& outside, LoadStep& result) {
+  const DeformableBody& body = model_.deformables[b];
+  Vec2 sum = Vec2::Zero();
+  double sizes = 0, noise = 0, residual = 0;
+  for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const size_t c = 2 * (static_cast<size_t>(body.first_node) + i) + static_cast<size_t>(axis);
+      // What acts from outside; at supports their reaction.
+      double f = outside[c] + (weight_.empty() ? 0 : weight_[c]);
+      if (held(c)) f = -state.f[first_ + c];
+      sum_loads_ += f * f;
+      sizes += std::abs(f);
+      residual += rest_[c] * rest_[c];
+      sum[axis] += rest_[c];
+      const double rounded = stiffness_.elastic[c] * std::abs(state.x[first_ + c]) +
+                             stiffness_.contact[c / 2] * std::abs(body.mesh.nodes[i][axis]);
+      noise += rounded * rounded;
+    }
+  }
+  result.load += sizes;
+  for (const auto& term : terms_) {
+    const Vec2 force = term->force_on(b);
+    sizes += std::hypot(force.x(), force.y());
+  }
+  body_loads_[b] = std::max(body_loads_[b], sizes);
+  sum_noise_ += noise;
+  sum_residual_ += residual;
+  if (residual > most_) {
+    most_ = residual;
+    result.unbalanced = b;
+  }
+  const double off = result.off[b] = sum.norm();
+  if (off > result.imbalance * body_loads_[b]) {
+    result.imbalance = off / body_loads_[b];
+    result.worst = b;
+  }
+  return off <= tolerance_ * body_loads_[b] + kNoise * std::sqrt(noise);
 }
 
 // Whether the residual, and the sum of the forces on each body, are small against the loads.
 bool Equilibrium::reached(const State& state, LoadStep& result) {
-  const std::vector<double> outside = deformables_.outside_forces(state);
-  double loads = 0, residual = 0, noise = 0, most = -1;
+  const std::vector<double> outside = given_forces(state);
+  sum_loads_ = sum_residual_ = sum_noise_ = 0;
+  most_ = -1;
   result.imbalance = result.load = 0;
   result.worst = 0;
   result.off.assign(model_.deformables.size(), 0);
   bool balanced = true;
-  for (size_t b = 0; b < model_.deformables.size(); ++b) {
-    const DeformableBody& body = model_.deformables[b];
-    Vec2 sum = Vec2::Zero();
-    double sizes = 0, own_noise = 0, own_residual = 0;
-    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
-      for (int axis = 0; axis < 2; ++axis) {
-        const size_t c = 2 * (body.first_node + i) + axis;
-        // What acts from outside; at supports their reaction.
-        double f = outside[c] + (weight_.empty() ? 0 : weight_[c]);
-        if (deformables_.held(c)) f = -state.node_force[c];
-        loads += f * f;
-        sizes += std::abs(f);
-        own_residual += rest_[c] * rest_[c];
-        sum[axis] += rest_[c];
-        const double rounded = element_[c] * std::abs(state.displacement[c]) +
-                               surface_[c / 2] * std::abs(body.mesh.nodes[i][axis]);
-        own_noise += rounded * rounded;
-      }
-    }
-    result.load += sizes;
-    if (contact_) {
-      const BodyForce f = contact_->on_deformable(static_cast<int>(b));
-      sizes += std::hypot(f.fx, f.fy);
-    }
-    body_loads_[b] = std::max(body_loads_[b], sizes);
-    noise += own_noise;
-    residual += own_residual;
-    if (own_residual > most) {
-      most = own_residual;
-      result.restless = static_cast<int>(b);
-    }
-    const double off = result.off[b] = sum.norm();
-    balanced = balanced && off <= tolerance_ * body_loads_[b] + kNoise * std::sqrt(own_noise);
-    if (off > result.imbalance * body_loads_[b]) {
-      result.imbalance = off / body_loads_[b];
-      result.worst = static_cast<int>(b);
-    }
+  for (DeformableIndex b = 0; b < static_cast<DeformableIndex>(model_.deformables.size()); ++b) {
+    balanced = body_balanced(state, b, outside, result) && balanced;
   }
-  if (contact_) {
-    rigid_force_.assign(3 * model_.bodies.size(), 0);
-    contact_->add_to_bodies(rigid_force_);
-    for (size_t k = 0; k < rigid_force_.size(); ++k) {
-      if (k % 3 < 2) loads += rigid_force_[k] * rigid_force_[k];
-    }
+  for (size_t c = 0; c < first_; ++c) {  // of contact on rigid bodies
+    if (c % 3 < 2) sum_loads_ += state.f[c] * state.f[c];
   }
-  loads_ = std::max(loads_, std::sqrt(loads));
-  residual = std::sqrt(residual);
+  loads_ = std::max(loads_, std::sqrt(sum_loads_));
+  const double residual = std::sqrt(sum_residual_);
   result.residual = loads_ > 0 ? residual / loads_ : 0;
-  return balanced && residual <= tolerance_ * loads_ + kNoise * std::sqrt(noise);
+  return balanced && residual <= tolerance_ * loads_ + kNoise * std::sqrt(sum_noise_);
+}
+
+void Equilibrium::refuse(const State& state, const LoadStep& result) const {
+  throw Unstable(fmt::format(
+      "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: nodal "
+      "forces out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of "
+      "the forces on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what "
+      "can move freely, reduce the load, or raise time.load_steps or time.tolerance",
+      state.time, state.step, result.iterations, result.residual,
+      model_.deformables[result.unbalanced].name, model_.deformables[result.worst].name,
+      result.imbalance, tolerance_));
 }
 
 void Equilibrium::move(State& state, bool first) {
@@ -202,68 +235,62 @@ void Equilibrium::move(State& state, bool first) {
       fastest = std::max(fastest, std::abs(velocity_[c]));
     }
   }
-  const double most = kStride * deformables_.elements().shortest_edge() / kStep;
-  if (contact_ && fastest > most) {
+  const double most = kStride * shortest_edge_ / kStep;
+  if (revision_ > 0 && fastest > most) {
     const double slower = most / fastest;
     for (double& v : velocity_) v *= slower;
     kinetic *= slower * slower;
   }
   kinetic_ = kinetic;
   last_ = rest_;
-  for (size_t c = 0; c < n; ++c) state.displacement[c] += kStep * velocity_[c];
+  for (size_t c = 0; c < n; ++c) state.x[first_ + c] += kStep * velocity_[c];
 }
 
-void Equilibrium::restore(const EquilibriumMemory& memory) {
-  outside_ = memory.outside;
-  loads_ = memory.loads;
-  body_loads_ = memory.body_loads;
-}
-
-LoadStep Equilibrium::find(State& state, double time, const std::function<bool()>& stop) {
-  const double from = state.time, steps = ramp(from, time);
-  const std::vector<double> before = state.displacement;
+LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
+                           const std::function<bool()>& stop) {
+  const State before = state;
+  const double loads_before = loads_;
+  const std::vector<double> body_loads_before = body_loads_;
+  const double steps = ramp(state.time, time);
   LoadStep result{time};
   ++state.step;
   // The scaled masses depend on what is near: the same bits from a checkpoint.
-  if (contact_) contact_->forget_search();
+  for (const auto& term : terms_) term->start_load_step();
   for (std::int64_t step = 0;; ++step) {
     const double share = std::min(1., static_cast<double>(step + 1) / steps);
     if (state.time != time) {
-      state.time = share < 1 ? from + share * (time - from) : time;
-      place(state);
+      state.time = share < 1 ? before.time + share * (time - before.time) : time;
+      dofs_.place_driven(state);
+      dofs_.follow(state);
     }
     find_forces(state);
-    if (step % kRenewedEvery == 0 || (contact_ && contact_->searches() != searches_)) {
-      find_masses(state);
-    }
+    if (step % kRenewedEvery == 0 || revision() != revision_) find_masses(state);
     if (step % kRenewedEvery == 0) check_shapes(state);
     if (share == 1 && step % kCheckedEvery == 0) {
       result.iterations = step;
       if (reached(state, result)) break;
-      if (!std::isfinite(result.residual) || step >= kMostSteps) {
-        throw Unstable(fmt::format(
-            "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: nodal "
-            "forces out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of "
-            "the forces on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what "
-            "can move freely, reduce the load, or raise time.load_steps or time.tolerance",
-            time, state.step, step, result.residual, model_.deformables[result.restless].name,
-            model_.deformables[result.worst].name, result.imbalance, tolerance_));
-      }
+      if (!std::isfinite(result.residual) || step >= kMostSteps) refuse(state, result);
     }
     move(state, step == 0);
     if (stop && stop()) {
+      state = before;
+      loads_ = loads_before;
+      body_loads_ = body_loads_before;
+      for (const auto& term : terms_) term->refresh(state);
       result.complete = false;
       return result;
     }
   }
   check_shapes(state);
-  const std::vector<double> outside = deformables_.outside_forces(state);
+  // The ledger itself knows the work of prescribed motion.
+  std::vector<double> loads(rest_.size(), 0);
+  for (const auto& term : terms_) term->add_given_forces(loads);
   double work = 0;
-  for (size_t c = 0; c < outside.size(); ++c) {
-    work += (outside_[c] + outside[c]) / 2 * (state.displacement[c] - before[c]);
+  for (size_t c = 0; c < loads.size(); ++c) {
+    work += (outside_[c] + loads[c]) / 2 * (state.x[first_ + c] - before.x[first_ + c]);
   }
-  deformables_.add_load_work(work);
-  outside_ = outside;
+  ledger.add_work(work);
+  outside_ = loads;
   return result;
 }
 

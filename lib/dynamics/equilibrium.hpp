@@ -2,10 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
-#include "apothem/dynamics/deformables.hpp"
-#include "apothem/dynamics/surface_contact.hpp"
+#include "apothem/dynamics/term.hpp"
+#include "apothem/model/model.hpp"
 
 namespace apothem {
 
@@ -15,61 +16,74 @@ struct LoadStep {
   std::int64_t iterations = 0;  ///< steps of dynamic relaxation
   double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
   double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
-  int worst = -1;               ///< the deformable body it is of
-  int restless = -1;            ///< the body with most of the residual
+  DeformableIndex worst = -1;   ///< the body with that imbalance
+  DeformableIndex unbalanced = -1;  ///< the body with most of the residual
   double load = 0;              ///< sum of the sizes of all loads and reactions on nodes, N
   std::vector<double> off{};    ///< size of the sum of all forces on each deformable body, N
   bool complete = true;         ///< false: stopped on the way
-};
 
-/// What a checkpoint needs to continue with the next load step.
-struct EquilibriumMemory {
-  std::vector<double> outside;     ///< forces at the last equilibrium, N
-  double loads = 0;                ///< largest norm so far, N
-  std::vector<double> body_loads;  ///< largest sum of sizes so far, N
+  void fields(Archive& archive) {
+    archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(
+        "worst", worst)("load", load)("off", off);
+  }
 };
 
 /// Dynamic relaxation. Rigid bodies must be fixed or prescribed.
 class Equilibrium {
  public:
-  /// `contact` may be null. All must outlive this object.
-  Equilibrium(const Model& model, Deformables& deformables, SurfaceContact* contact,
+  using Terms = std::vector<std::unique_ptr<Term>>;
+  /// All must outlive this object.
+  Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const Terms& terms,
               double tolerance);
 
   /// Moves loads, supports and prescribed bodies to where they are at `time` and finds the
   /// equilibrium there; books the work of loads and supports (trapezoid rule over the load step).
-  /// Not complete if `stop`, asked after each step of relaxation, says so. Then, and where it
-  /// throws Unstable because there is no equilibrium in reach, the state is not to be trusted.
-  LoadStep find(State& state, double time, const std::function<bool()>& stop);
+  /// Not complete, with the state as it was, if `stop`, asked after each step of relaxation, says
+  /// so. Throws Unstable if there is no equilibrium in reach; the state is then not to be trusted.
+  LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
 
-  [[nodiscard]] EquilibriumMemory memory() const { return {outside_, loads_, body_loads_}; }
-  void restore(const EquilibriumMemory& memory);
+  void fields(Archive& archive) {
+    archive.sized("outside", outside_);
+    archive("loads", loads_);
+    archive.sized("body_loads", body_loads_);
+  }
 
  private:
   [[nodiscard]] double ramp(double from, double until) const;
-  void place(State& state) const;
   void find_forces(State& state);
   void find_masses(const State& state);
+  [[nodiscard]] std::int64_t revision() const;
   void check_shapes(const State& state) const;
+  [[nodiscard]] std::vector<double> given_forces(const State& state) const;
   [[nodiscard]] bool reached(const State& state, LoadStep& result);
+  [[nodiscard]] bool body_balanced(const State& state, DeformableIndex body,
+                                   const std::vector<double>& outside, LoadStep& result);
+  [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
+  /// Of a node's coordinate among the vectors of this object.
+  [[nodiscard]] bool held(size_t coordinate) const {
+    return !dofs_.can_move(first_ + coordinate);
+  }
 
   const Model& model_;
-  Deformables& deformables_;
-  SurfaceContact* contact_;
+  const DegreesOfFreedom& dofs_;
+  const Terms& terms_;
   double tolerance_;
-  std::vector<double> weight_;             // of each coordinate; empty without gravity
-  std::vector<double> element_, surface_;  // stiffness of elements and contacts, N/m
+  size_t first_;                           // coordinate of the nodes
+  double shortest_edge_;                   // of the elements, m
+  std::vector<double> weight_;             // of each coordinate, N; empty without gravity
+  NodeStiffness stiffness_;
   std::vector<double> mass_, inverse_;     // scaled; inverse 0 where held
   std::vector<double> rest_, last_;        // forces out of balance, and a step before, N
   std::vector<double> drive_, velocity_;   // what accelerates, N; velocity
   std::vector<double> outside_;            // forces at the last equilibrium, N
-  std::vector<double> rigid_force_;
-  double far_ = 0;                  // m
-  double loads_ = 0;                // largest norm so far, N
-  std::vector<double> body_loads_;  // largest sum of sizes so far, N
-  double kinetic_ = 0;              // at the step before
-  int searches_ = -1;
+  std::vector<double> lambda_;             // of rigid bodies; not used
+  double far_ = 0;                         // m
+  double loads_ = 0;                       // largest norm so far, N
+  std::vector<double> body_loads_;         // largest sum of sizes so far, N
+  double sum_loads_ = 0, sum_residual_ = 0, sum_noise_ = 0, most_ = 0;  // in a look: see reached
+  double kinetic_ = 0;                     // at the step before
+  std::int64_t revision_ = -1;
 };
 
 }  // namespace apothem

@@ -1,29 +1,32 @@
 // Notices a body with a mesh whose boundary crosses itself, where no contact does so: contact of a
-// body with itself is not computed.
+// body with itself is not supported yet.
 #pragma once
 
-#include "apothem/contact/deformable_contact.hpp"
+#include "apothem/contact/outlines.hpp"
+#include "apothem/dynamics/term.hpp"
 #include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
 
 namespace apothem {
 
-class FoldWatch {
+class FoldWatch final : public Term {
  public:
-  explicit FoldWatch(const Model& model);
-
   /// True if contact itself does not notice.
   static bool needed(const Model& model);
+  explicit FoldWatch(const Model& model);
 
+  [[nodiscard]] std::string describe() const override {
+    return "a look at boundaries that cross themselves";
+  }
   /// Throws Unstable where a boundary crosses itself. Nothing to do while no node has moved far.
-  void look(const State& state);
+  void watch(const State& state) override;
 
  private:
   const Model& model_;
-  DeformableContact outlines_;
+  Outlines outlines_;
 };
 
-/// Throws Unstable if there is such a place in one of the bodies.
-void refuse_fold(const Model& model, const State& state, int body, const Vec2& place);
+/// Throws Unstable: a body touches itself at a place.
+[[noreturn]] void refuse_fold(const Model& model, const State& state, BodyIndex body,
+                              const Vec2& place);
 
 }  // namespace apothem

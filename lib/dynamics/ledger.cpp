@@ -10,118 +10,61 @@ double total(const Energies& e) {
 
 }  // namespace
 
-Ledger::Ledger(const Model& model, const State& state, double contact_energy, const Energies& nodes,
-               const Impulse& momentum_of_nodes)
-    : model_(model) {
-  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
-    const RigidBody& body = model.bodies[i];
-    if (body.motion == Motion::free) {
-      free_.push_back(i);
-      if (body.held[0] || body.held[1] || body.held[2]) held_.push_back(i);
-    } else {
-      not_free_.push_back(i);
-      if (body.motion == Motion::prescribed) driven_.push_back(i);
-    }
-  }
-  balance_.initial_energy = total(terms(state, contact_energy, nodes));
-  balance_.initial = momentum(state, momentum_of_nodes);
+void Ledger::start(const State& state, const Energies& terms) {
+  outer_ = {};
+  work_ = initial_energy_ = 0;
+  refresh(state);
+  initial_energy_ = close(state, terms).total_error;
+  initial_ = dofs_.momentum(state);
 }
 
-void Ledger::half_step(const State& state, double half_step, const std::vector<double>& moved) {
-  Impulse outer;  // force and moment about the model's origin on the free bodies from outside
-  const auto add = [&](const double* x, double fx, double fy, double moment) {
-    outer.x += fx;
-    outer.y += fy;
-    outer.angular += x[0] * fy - x[1] * fx + moment;
-  };
-  for (const int i : not_free_) {  // action and reaction
-    const size_t k = 3 * static_cast<size_t>(i);
-    add(&state.position[k], -state.force[k], -state.force[k + 1], -state.force[k + 2]);
+void Ledger::book(const State& state, double h) {
+  outer_.add({h * weight_.x, h * weight_.y, h * weight_.angular});
+  // What holds a coordinate takes the force on it.
+  for (const size_t c : dofs_.immovable()) {
+    outer_.add(dofs_.impulse(state, c, -h * state.f[c]));
   }
-  const Vec2& g = model_.gravity;
-  if (g != Vec2::Zero()) {
-    for (const int i : free_) {
-      const double m = model_.bodies[i].mass;
-      add(&state.position[3 * static_cast<size_t>(i)], m * g.x(), m * g.y(), 0);
-    }
-  }
-  for (const int i : held_) {  // the support takes what would move a held coordinate
-    const RigidBody& body = model_.bodies[i];
-    const size_t k = 3 * static_cast<size_t>(i);
-    add(&state.position[k], body.held[0] ? -(state.force[k] + body.mass * g.x()) : 0,
-        body.held[1] ? -(state.force[k + 1] + body.mass * g.y()) : 0,
-        body.held[2] ? -state.force[k + 2] : 0);
-  }
-  add_impulse({half_step * outer.x, half_step * outer.y, half_step * outer.angular});
-  for (const int i : driven_) {
-    for (size_t k = 3 * static_cast<size_t>(i), end = k + 3; k < end; ++k) {
-      balance_.external_work -= state.force[k] * moved[k] / 2;
-    }
+  for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
+    work_ -= state.f[d.coordinate] * d.move / 2;
   }
 }
 
-double Ledger::kinetic(const State& state) const {
-  double sum = 0;
-  for (const int i : free_) {
-    const RigidBody& body = model_.bodies[i];
-    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
-    sum += (body.mass * (v[0] * v[0] + v[1] * v[1]) + body.inertia * v[2] * v[2]) / 2;
+void Ledger::book_before_drift(const State& state, double dt) {
+  book(state, dt / 2);
+  // A driven coordinate of a node has no momentum of its own; the other one keeps it, and is
+  // carried along.
+  const size_t rigid = state.layout.node(0);
+  for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
+    if (d.coordinate < rigid) continue;
+    const size_t other = d.axis == 0 ? d.coordinate + 1 : d.coordinate - 1;
+    if (!dofs_.can_move(other)) continue;
+    const double p = state.v[other] * dofs_.mass(other);
+    outer_.angular += (d.axis == 0 ? dt : -dt) * state.v[d.coordinate] * p;
   }
-  return sum;
 }
 
-Energies Ledger::terms(const State& state, double contact_energy, const Energies& nodes) const {
-  Energies e = nodes;
-  e.kinetic += kinetic(state);
-  for (const int i : free_) {
-    const RigidBody& body = model_.bodies[i];
-    const double* x = &state.position[3 * static_cast<size_t>(i)];
-    // What rounding keeps out of the position counts: the fall may be far smaller than the height.
-    const double* r = &state.remainder[3 * static_cast<size_t>(i)];
-    e.gravity -= body.mass * (model_.gravity.x() * ((x[0] - body.position.x()) + r[0]) +
-                              model_.gravity.y() * ((x[1] - body.position.y()) + r[1]));
-  }
-  e.contact = contact_energy;
-  e.external_work += balance_.external_work;
+void Ledger::book_after_drift(const State& state, double dt) {
+  refresh(state);
+  book(state, dt / 2);
+}
+
+Energies Ledger::close(const State& state, const Energies& terms) const {
+  Energies e = terms;
+  e.kinetic = dofs_.kinetic(state);
+  e.gravity = dofs_.gravity_energy(state);
+  e.external_work += work_;
+  e.total_error = total(e) - initial_energy_;
   return e;
 }
 
-void Ledger::add_impulse(const Impulse& impulse) {
-  balance_.impulse.x += impulse.x;
-  balance_.impulse.y += impulse.y;
-  balance_.impulse.angular += impulse.angular;
-}
-
-Energies Ledger::energies(const State& state, double contact_energy, const Dissipation& dissipation,
-                          const Energies& nodes) const {
-  Energies e = terms(state, contact_energy, nodes);
-  e.friction_loss = dissipation.friction;
-  e.damping_loss += dissipation.damping;
-  e.total_error = total(e) - balance_.initial_energy;
-  return e;
-}
-
-Impulse Ledger::momentum(const State& state, const Impulse& of_nodes) const {
-  Impulse p = of_nodes;
-  for (const int i : free_) {
-    const RigidBody& body = model_.bodies[i];
-    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
-    const double* x = &state.position[3 * static_cast<size_t>(i)];
-    p.x += body.mass * v[0];
-    p.y += body.mass * v[1];
-    p.angular += body.mass * (x[0] * v[1] - x[1] * v[0]) + body.inertia * v[2];
-  }
-  return p;
-}
-
-Momenta Ledger::momenta(const State& state, const Impulse& of_nodes) const {
-  const Impulse p = momentum(state, of_nodes);
+Momenta Ledger::momenta(const State& state) const {
+  const Impulse p = dofs_.momentum(state);
   return {p.x,
           p.y,
           p.angular,
-          p.x - balance_.initial.x - balance_.impulse.x,
-          p.y - balance_.initial.y - balance_.impulse.y,
-          p.angular - balance_.initial.angular - balance_.impulse.angular};
+          p.x - initial_.x - outer_.x,
+          p.y - initial_.y - outer_.y,
+          p.angular - initial_.angular - outer_.angular};
 }
 
 }  // namespace apothem

@@ -1,60 +1,46 @@
 // Energy and momentum ledgers: what the integrator cannot account for is an error, and is reported.
 #pragma once
 
-#include "apothem/model/model.hpp"
+#include "apothem/dynamics/degrees_of_freedom.hpp"
 #include "apothem/model/state.hpp"
 
 namespace apothem {
 
-/// Momentum, or the time integral of a force.
-struct Impulse {
-  double x = 0, y = 0, angular = 0;
-};
-
-/// Energy that is gone for good since time 0, J.
-struct Dissipation {
-  double friction = 0, damping = 0;
-};
-
-/// What a checkpoint needs to continue the ledger.
-struct Balance {
-  double initial_energy = 0;
-  Impulse initial;  ///< momentum at time 0
-  Impulse impulse;  ///< from outside since then
-  double external_work = 0;
-};
-
 class Ledger {
  public:
-  /// `nodes`: the part of deformable bodies.
-  Ledger(const Model& model, const State& state, double contact_energy, const Energies& nodes,
-         const Impulse& momentum_of_nodes);
+  explicit Ledger(const DegreesOfFreedom& dofs) : dofs_(dofs) {}
 
-  /// Half a step's impulses on the free bodies, and the work of prescribed bodies over `moved`
-  /// (their displacement in this step), with the forces in `state`. Called before and after the
-  /// forces change.
-  void half_step(const State& state, double half_step, const std::vector<double>& moved);
+  /// Balances start here. `terms`: the energies of all terms.
+  void start(const State& state, const Energies& terms);
 
-  /// An impulse from outside that no force in `state` tells of.
-  void add_impulse(const Impulse& impulse);
+  /// The impulses of gravity and of whatever holds coordinates, and the work of prescribed motion,
+  /// with the forces in `state`: of the half of a step before the drift, and of the half after it.
+  void book_before_drift(const State& state, double dt);
+  void book_after_drift(const State& state, double dt);
+  /// An impulse, or work, from outside that no reaction tells of.
+  void add_impulse(const Impulse& impulse) { outer_.add(impulse); }
+  void add_work(double work) { work_ += work; }
 
-  [[nodiscard]] Energies energies(const State& state, double contact_energy,
-                                  const Dissipation& dissipation, const Energies& nodes) const;
-  /// Of the free rigid bodies, J.
-  [[nodiscard]] double kinetic(const State& state) const;
-  [[nodiscard]] Momenta momenta(const State& state, const Impulse& of_nodes) const;
+  /// The energies of all terms with those that the ledger knows itself, and the total error.
+  [[nodiscard]] Energies close(const State& state, const Energies& terms) const;
+  [[nodiscard]] Momenta momenta(const State& state) const;
 
-  [[nodiscard]] const Balance& balance() const { return balance_; }
-  void restore(const Balance& balance) { balance_ = balance; }
+  void fields(Archive& archive) {
+    archive("initial_energy", initial_energy_)("initial_momentum", initial_)("impulse", outer_)(
+        "external_work", work_);
+  }
+  /// After `fields` has been loaded.
+  void refresh(const State& state) { weight_ = dofs_.weight_sum(state); }
 
  private:
-  [[nodiscard]] Energies terms(const State& state, double contact_energy,
-                               const Energies& nodes) const;
-  [[nodiscard]] Impulse momentum(const State& state, const Impulse& of_nodes) const;
+  void book(const State& state, double h);
 
-  const Model& model_;
-  std::vector<int> free_, held_, driven_, not_free_;
-  Balance balance_;
+  const DegreesOfFreedom& dofs_;
+  double initial_energy_ = 0;
+  Impulse initial_;  // momentum at the start
+  Impulse outer_;    // impulses from outside since then
+  double work_ = 0;  // of loads and prescribed motion, J
+  Impulse weight_;   // of gravity where the bodies are, N and N m
 };
 
 }  // namespace apothem

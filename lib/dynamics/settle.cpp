@@ -1,17 +1,14 @@
-// Where a scene that starts settled begins: at rest under its loads, contacts pressed and friction
-// springs loaded. Bodies that are given a velocity slide in equilibrium: their friction is at its
-// limit against that velocity, and only what it leaves free (the other directions, and the
-// rotation) comes to rest.
-//
 // Dynamic relaxation with kinetic damping: explicit steps, and all bodies stop whenever the kinetic
 // energy has passed a maximum (Cundall 1982; Barnes 1988). A little drag ends the cycles in which a
 // stiff mode can escape this.
+#include "apothem/dynamics/settle.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/simulation.hpp"
+#include "apothem/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {
@@ -24,88 +21,130 @@ constexpr int kCalm = 20;            // so many steps in a row
 constexpr std::int64_t kMostSteps = 2'000'000;
 constexpr double kSlide = 1;  // s; of the given velocity, saturates every spring
 
+class Relaxation {
+ public:
+  explicit Relaxation(const SettledStart& start)
+      : model_(start.model),
+        dofs_(start.dofs),
+        state_(start.state),
+        lambda_(start.lambda),
+        limit_(start.stability_limit),
+        given_(start.state.v),
+        slip_(given_.size()) {
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    for (RigidIndex i = 0; i < state_.layout.rigid_bodies; ++i) {
+      if (model_.bodies[i].motion == Motion::free) free_.push_back(i);
+      double& radius = radius_.emplace_back(0);
+      for (const Vec2& v : model_.bodies[i].potential.vertices) {
+        radius = std::max(radius, v.norm());
+      }
+    }
+  }
+
+  void run(const std::function<void(std::span<const double>, double)>& find_forces) {
+    double last = 0;  // kinetic energy of the step before
+    int calm = 0;
+    for (std::int64_t step = 0; calm < kCalm; ++step) {
+      if (step == kMostSteps) refuse();
+      const double stiffest =
+          lambda_.empty() ? 0 : *std::max_element(lambda_.begin(), lambda_.end());
+      const double dt =
+          kStep * std::min(limit_, stiffest > 0 ? 2 / std::sqrt(stiffest) : HUGE_VAL);
+      double kinetic = accelerate(dt);
+      calm = worst_share_ <= 1 ? calm + 1 : 0;
+      if (kinetic < last) {
+        std::fill(state_.v.begin(), state_.v.end(), 0.0);
+        kinetic = 0;
+      }
+      last = kinetic;
+      for (const RigidIndex i : free_) state_.pose(i) += dt * state_.pose_rate(i);
+      for (size_t k = 0; k < slip_.size(); ++k) {
+        slip_[k] = state_.v[k] + given_[k] * (kSlide / dt);
+      }
+      find_forces(slip_, dt);
+    }
+    state_.v = given_;
+  }
+
+ private:
+  // Velocities across the given ones; returns the kinetic energy and finds the largest residual.
+  double accelerate(double dt) {
+    double kinetic = 0;
+    worst_share_ = 0;
+    worst_ = -1;
+    for (const RigidIndex i : free_) {
+      const RigidBody& body = model_.bodies[i];
+      const size_t at = state_.layout.rigid(i);
+      const Eigen::Vector3d a = residual(i);
+      const double off =
+          body.mass * std::hypot(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
+      const double place = std::abs(state_.x[at]) + std::abs(state_.x[at + 1]) + radius_[i];
+      const double may = kResidual * (body.mass * model_.gravity.norm() +
+                                      std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +
+                         kNoise * place * lambda_[i] * body.mass;
+      if (!(off <= worst_share_ * may)) {
+        worst_share_ = off / may;
+        worst_ = i;
+      }
+      for (size_t k = 0; k < 3; ++k) {
+        double& v = state_.v[at + k];
+        v += dt * a[static_cast<Eigen::Index>(k)] - kDrag * v;
+        kinetic += v * v * (k < 2 ? body.mass : body.inertia);
+      }
+    }
+    return kinetic;
+  }
+
+  // Acceleration without the part along the given velocity.
+  [[nodiscard]] Eigen::Vector3d residual(RigidIndex i) const {
+    const size_t at = state_.layout.rigid(i);
+    Eigen::Vector3d a;
+    for (size_t k = 0; k < 3; ++k) {
+      const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[at + k];
+      a[static_cast<Eigen::Index>(k)] =
+          dofs_.inverse_mass()[at + k] * state_.f[at + k] + gravity;
+    }
+    const Vec2 way(given_[at], given_[at + 1]);
+    if (way != Vec2::Zero()) {
+      const Vec2 u = way.normalized();
+      const double along = a[0] * u.x() + a[1] * u.y();
+      a[0] -= along * u.x();
+      a[1] -= along * u.y();
+    }
+    if (given_[at + 2] != 0) a[2] = 0;
+    return a;
+  }
+
+  [[noreturn]] void refuse() const {
+    throw Unrunnable(
+        fmt::format("body \"{}\" does not come to rest in {} steps: it falls, slides or tips over; "
+                    "support it, or leave out time.start",
+                    worst_ < 0 ? "" : model_.bodies[worst_].name, kMostSteps),
+        "time/start", -1);
+  }
+
+  const Model& model_;
+  const DegreesOfFreedom& dofs_;
+  State& state_;
+  const std::vector<double>& lambda_;
+  double limit_;
+  const std::vector<double> given_;
+  std::vector<double> slip_;
+  std::vector<RigidIndex> free_;
+  std::vector<double> radius_;  // of each body, m
+  double worst_share_ = 0;      // of what the residual force of a body may be
+  RigidIndex worst_ = -1;
+};
+
 }  // namespace
 
-void Simulation::settle() {
-  const std::vector<double> given = state_.velocity;
-  std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
-  if (!std::isfinite(stability_limit_)) {
-    throw Unrunnable("nothing can touch anything: no body finds a rest; leave out time.start",
+void settle(const SettledStart& start,
+            const std::function<void(std::span<const double>, double)>& find_forces) {
+  if (!std::isfinite(start.stability_limit)) {
+    throw Unrunnable("nothing can touch anything: no body comes to rest; leave out time.start",
                      "time/start", -1);
   }
-  std::vector<double> slip(given.size());
-  double last = 0;  // kinetic energy of the step before
-  int calm = 0;
-  int worst = -1;
-  for (std::int64_t step = 0; calm < kCalm; ++step) {
-    if (step == kMostSteps) {
-      throw Unrunnable(
-          fmt::format("body \"{}\" finds no rest in {} steps: it falls, slides or tips over; "
-                      "support it, or leave out time.start",
-                      worst < 0 ? "" : name(worst), kMostSteps),
-          "time/start", -1);
-    }
-    const double dt =
-        kStep * std::min(stability_limit_,
-                         worst_stiffness_ > 0 ? 2 / std::sqrt(worst_stiffness_) : HUGE_VAL);
-    // Motion, and residual forces, across the given velocity.
-    double kinetic = 0;
-    double worst_share = 0;  // of what the residual force may be
-    worst = -1;
-    for (const int i : moving_) {
-      const RigidBody& body = model_.bodies[i];
-      if (body.motion != Motion::free) continue;
-      const size_t at = 3 * static_cast<size_t>(i);
-      std::array<double, 3> a{};
-      for (size_t k = 0; k < 3; ++k) {
-        a[k] = inverse_mass_[at + k] * state_.force[at + k] + acceleration_[at + k];
-      }
-      const Vec2 way(given[at], given[at + 1]);
-      if (way != Vec2::Zero()) {
-        const Vec2 u = way.normalized();
-        const double along = a[0] * u.x() + a[1] * u.y();
-        a[0] -= along * u.x();
-        a[1] -= along * u.y();
-      }
-      if (given[at + 2] != 0) a[2] = 0;
-      const double off =
-          body.mass * std::hypot(a[0], a[1]) + std::abs(body.inertia * a[2]) / shapes_.radius(i);
-      const double place =
-          std::abs(state_.position[at]) + std::abs(state_.position[at + 1]) + shapes_.radius(i);
-      const double may = kResidual * (body.mass * model_.gravity.norm() +
-                                      std::abs(state_.force[at]) + std::abs(state_.force[at + 1])) +
-                         kNoise * place * stiffness_[i] * body.mass;
-      if (!(off <= worst_share * may)) {
-        worst_share = off / may;
-        worst = i;
-      }
-      for (size_t k = 0; k < 3; ++k) {
-        state_.velocity[at + k] += dt * a[k] - kDrag * state_.velocity[at + k];
-        kinetic +=
-            state_.velocity[at + k] * state_.velocity[at + k] * (k < 2 ? body.mass : body.inertia);
-      }
-    }
-    calm = worst_share <= 1 ? calm + 1 : 0;
-    if (kinetic < last) {
-      std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
-      kinetic = 0;
-    }
-    last = kinetic;
-    for (const int i : moving_) {
-      if (model_.bodies[i].motion != Motion::free) continue;
-      for (size_t k = 3 * static_cast<size_t>(i), end = k + 3; k < end; ++k) {
-        state_.position[k] += dt * state_.velocity[k];
-      }
-    }
-    for (size_t k = 0; k < slip.size(); ++k) {
-      slip[k] = state_.velocity[k] + given[k] * (kSlide / dt);
-    }
-    find_forces(false, slip, dt);
-  }
-  state_.velocity = given;
-  if (tangential_) tangential_->start_ledger();
-  extremes_ = {};
-  counts_ = {};
+  Relaxation(start).run(find_forces);
 }
 
 }  // namespace apothem

@@ -1,36 +1,34 @@
 #include "apothem/dynamics/time_step.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace apothem {
+#include "apothem/contact/stiffness.hpp"
+#include "apothem/dynamics/unstable.hpp"
 
-double strip_mobility(const std::array<double, 3>& inverse_mass, double arm, double breadth) {
-  const double translation = std::max(inverse_mass[0], inverse_mass[1]);
-  const double spread = breadth * breadth / 12 * inverse_mass[2];
-  const double mean = (translation + arm * arm * inverse_mass[2] + spread) / 2;
-  return mean + std::sqrt(std::max(mean * mean - translation * spread, 0.0));
-}
+namespace apothem {
 
 namespace {
 
-// An edge lying flat on something.
-struct Foot {
-  double length;
-  double mobility;
+// An edge that lies flat on another body.
+struct FlatEdge {
+  double length;    // m
+  double mobility;  // of the body against a force spread over the edge, 1/kg
 };
 
-struct Footing {
-  std::vector<Foot> feet;
-  double longest = 0;
-  double highest = 0;  // mobility
-  double slope = 0;    // 1/r, 1/m
+struct FlatEdges {
+  std::vector<FlatEdge> edges;
+  double longest = 0;   // m
+  double mobility = 0;  // the highest, 1/kg
+  double slope = 0;     // of the potential, 1/m
 };
 
-Footing footing(const RigidBody& body) {
-  Footing result;
+FlatEdges flat_edges(const RigidBody& body) {
+  FlatEdges result;
   const std::array<double, 3> inverse_mass = body.inverse_mass();
   const std::vector<Vec2>& v = body.potential.vertices;
   for (size_t i = 0; i < v.size(); ++i) {
@@ -38,19 +36,19 @@ Footing footing(const RigidBody& body) {
     const Vec2& q = v[i + 1 == v.size() ? 0 : i + 1];
     const double length = (q - p).norm();
     const double arm = std::abs((p + q).dot(q - p)) / (2 * length);
-    result.feet.push_back({length, strip_mobility(inverse_mass, arm, length)});
+    result.edges.push_back({length, strip_mobility(inverse_mass, arm, length)});
     result.longest = std::max(result.longest, length);
-    result.highest = std::max(result.highest, result.feet.back().mobility);
+    result.mobility = std::max(result.mobility, result.edges.back().mobility);
   }
   result.slope = body.potential.steepest;
   return result;
 }
 
 // lambda / k_n of two bodies, flat on each other along the worst two edges.
-double flat_contact(const Footing& a, const Footing& b) {
+double flat_contact(const FlatEdges& a, const FlatEdges& b) {
   double worst = 0;
-  for (const Foot& p : a.feet) {
-    for (const Foot& q : b.feet) {
+  for (const FlatEdge& p : a.edges) {
+    for (const FlatEdge& q : b.edges) {
       worst = std::max(worst, std::min(p.length, q.length) * (p.mobility + q.mobility));
     }
   }
@@ -63,24 +61,26 @@ std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
 double flat_mobility(const RigidBody& body) {
   double worst = 0;
-  for (const Foot& foot : footing(body).feet) worst = std::max(worst, foot.length * foot.mobility);
+  for (const FlatEdge& edge : flat_edges(body).edges) {
+    worst = std::max(worst, edge.length * edge.mobility);
+  }
   return worst;
 }
 
 StepLimit contact_step_limit(const Model& model) {
-  std::vector<Footing> footings;
-  Footing any;  // bounds every other body
+  std::vector<FlatEdges> all;
+  FlatEdges any;  // bounds every other body
   for (const RigidBody& body : model.bodies) {
-    footings.push_back(footing(body));
-    any.highest = std::max(any.highest, footings.back().highest);
-    any.slope = std::max(any.slope, footings.back().slope);
+    all.push_back(flat_edges(body));
+    any.mobility = std::max(any.mobility, all.back().mobility);
+    any.slope = std::max(any.slope, all.back().slope);
   }
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
   const auto bound = [&](int i) {
-    const Footing& f = footings[i];
-    return f.longest * (f.highest + any.highest) * (f.slope + any.slope);
+    const FlatEdges& f = all[i];
+    return f.longest * (f.mobility + any.mobility) * (f.slope + any.slope);
   };
-  std::vector<int> order(footings.size());
+  std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](int i, int j) { return std::pair(-bound(i), i) < std::pair(-bound(j), j); });
@@ -91,7 +91,7 @@ StepLimit contact_step_limit(const Model& model) {
     for (size_t l = k + 1; l < order.size(); ++l) {
       const int j = order[l];
       if (!model.bodies[i].can_move() && !model.bodies[j].can_move()) continue;
-      const double lambda = flat_contact(footings[i], footings[j]);
+      const double lambda = flat_contact(all[i], all[j]);
       if (lambda > worst) {
         worst = lambda;
         pair = {std::min(i, j), std::max(i, j)};
@@ -135,6 +135,62 @@ StepLimit motion_step_limit(const Model& model) {
     return {std::numeric_limits<double>::infinity(), "nothing to run into"};
   }
   return {kLargestStride * inradius / fastest, "speed of " + quoted(name)};
+}
+
+namespace {
+
+void require_progress(const StepChoice& choice, double end) {
+  if (choice.step > 0 && std::isfinite(choice.step) && end + choice.step > end) return;
+  throw Unrunnable(
+      fmt::format("a step of {:.3g} s ({}) makes no progress towards the end at {:.3g} s; "
+                  "check the magnitudes of time, stiffness, masses and speeds",
+                  choice.step, choice.limit.reason, end),
+      "time", -1);
+}
+
+}  // namespace
+
+StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,
+                       int frames, bool node_contact) {
+  StepChoice choice;
+  choice.limit = bounds.nodes.step < bounds.bodies.step ? bounds.nodes : bounds.bodies;
+  choice.stability = choice.limit.step;
+  if (time.statics) {
+    choice.step = time.end / time.load_steps;
+    choice.limit = {choice.step, "load steps"};
+    return choice;
+  }
+  if (time.fixed_step) {
+    choice.step = *time.fixed_step;
+    if (choice.step > choice.limit.step) {
+      throw Unrunnable(
+          fmt::format("{} s is above the stability limit of {:.6g} s ({}); give a smaller "
+                      "step or \"auto\"",
+                      choice.step, choice.limit.step, choice.limit.reason),
+          "time/step", -1);
+    }
+    require_progress(choice, time.end);
+    return choice;
+  }
+  double target = time.safety * bounds.bodies.step;
+  choice.element_safety = time.element_safety.value_or(node_contact ? .2 : .5);
+  if (choice.element_safety * bounds.nodes.step < target) {
+    target = choice.element_safety * bounds.nodes.step;
+    choice.limit = bounds.nodes;
+  }
+  const StepLimit motion = motion_step_limit(model);
+  if (motion.step < target) {
+    choice.limit = motion;
+    target = motion.step;
+  }
+  const double interval = time.end / std::max(frames, 1);
+  if (std::min(interval, time.longest_step) <= target) {
+    target = std::min(interval, time.longest_step);
+    choice.limit = {target, "interval of the output"};
+  }
+  choice.step = interval / std::max(std::ceil(interval / target * (1 - 1e-12)), 1.0);
+  require_progress(choice, time.end);
+  return choice;
 }
 
 }  // namespace apothem

@@ -1,27 +1,24 @@
-// Stability limit of the explicit step for rigid bodies in contact.
-//
-// Velocity Verlet is stable below 2/sqrt(lambda). A contact of two bodies has the stiffness
-// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (theory: Sec. 2), spread
-// over a strip across the line of action. On a body with inverse masses 1/m, 1/I the strip of
-// breadth w at the lever arm e has
-//   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
+// Bounds of the time step that are known before a run.
 #pragma once
 
-#include <array>
+#include <limits>
 #include <string>
 
-#include "apothem/contact/placed_shapes.hpp"
 #include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
 
 namespace apothem {
 
-/// lambda/K of one body, see above; 1/kg. `inverse_mass` is RigidBody::inverse_mass().
-double strip_mobility(const std::array<double, 3>& inverse_mass, double arm, double breadth);
-
 /// A bound on the time step and what sets it.
 struct StepLimit {
-  double step;         ///< s, infinite if nothing limits it
-  std::string reason;  ///< e.g. `contact of "falling" with "target"`
+  double step = std::numeric_limits<double>::infinity();  ///< s; infinite if nothing limits it
+  std::string reason = {};  ///< e.g. `contact of "falling" with "target"`
+};
+
+/// Limits of stability, which the terms find.
+struct StepBounds {
+  StepLimit bodies{.reason = "no contact can occur"};  ///< of the contacts of rigid bodies
+  StepLimit nodes;                                     ///< of nodes with elements and contacts
 };
 
 /// lambda / (k_n x sum of the slopes 1/r) of a body that lies flat on its worst edge, m/kg.
@@ -38,5 +35,19 @@ inline constexpr double kLargestStride = 0.25;
 /// Limit so that no body moves farther than that in one step, at the speeds the scene starts with
 /// or gains by falling through its own height.
 StepLimit motion_step_limit(const Model& model);
+
+/// The step of a run.
+struct StepChoice {
+  double step = 0;           ///< s
+  StepLimit limit;           ///< what limits it
+  double stability = 0;      ///< largest stable step, s; infinite if nothing can touch
+  double element_safety = 0; ///< an automatic step over the limit of the nodes
+};
+
+/// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
+/// `node_contact`: nodes can touch something. Throws Unrunnable if a fixed step is above the
+/// stability limit, or if the step makes no progress.
+StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,
+                       int frames, bool node_contact);
 
 }  // namespace apothem

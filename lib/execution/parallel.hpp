@@ -20,12 +20,16 @@ class Threads {
 
   [[nodiscard]] int count() const { return count_; }
 
+  /// True if work on so many items, each of which costs roughly `each` nanoseconds, is divided.
+  [[nodiscard]] bool worth(int items, double each) const {
+    return count_ > 1 && items * each >= kWorthThreads;
+  }
+
   /// f(first, end, worker) for chunks of [0, items), with worker in [0, count()) different for
-  /// chunks that run at the same time. `each`: what one item costs, roughly, in nanoseconds. f must
-  /// not throw.
+  /// chunks that run at the same time; see worth(). f must not throw.
   template <class F>
   void chunks(int items, double each, F&& f) const {
-    if (count_ == 1 || items * each < kWorthThreads) {
+    if (!worth(items, each)) {
       f(0, items, 0);
       return;
     }

@@ -114,8 +114,8 @@ double with_sse2(const Blocks& blocks) {
 
 enum class Machine { sse2, avx2, avx512 };
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kAllMachines = false;  // one set of instructions: three would triple the minutes of
-                                      // compilation, for the same sums
+// One instruction set only: three would triple the minutes of compilation, for the same sums.
+constexpr bool kAllMachines = false;
 #else
 constexpr bool kAllMachines = true;
 #endif

@@ -32,7 +32,7 @@ struct ElementSet {
   ElementKind kind = ElementKind::quad4;
   const Mesh* mesh = nullptr;  ///< must outlive its users; numbered along a space-filling curve
   int first_node = 0;          ///< place of the mesh's node 0 in the arrays of all nodes
-  /// elastic law and constants
+  /// Elastic law and constants.
   Elastic material;
   double density = 0;    ///< kg/m^3
   double thickness = 1;  ///< m

@@ -11,9 +11,9 @@ namespace apothem {
 template <class Law, bool damped>
 struct Response {
   static constexpr bool kDamped = damped;
-  /// elastic law
+  /// Elastic law.
   Law law;
-  /// elasticity that beta multiplies
+  /// Elasticity that beta multiplies.
   Hooke hooke;
   double beta;       ///< Rayleigh's coefficient of stiffness-proportional damping, s
   double thickness;  ///< m

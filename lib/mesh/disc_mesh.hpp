@@ -8,7 +8,7 @@ namespace apothem {
 /// Numbers of cells of a disc mesh.
 struct DiscCells {
   int quarter = 8;  ///< edges along a quarter of the circle, and along a side of the inner block
-  /// radial size of the innermost cells of the ring over that of the outermost
+  /// Radial size of the innermost cells of the ring over that of the outermost.
   double grading = 1;
 };
 

@@ -15,7 +15,7 @@
 namespace apothem {
 namespace {
 
-// gmsh's number of a node, element or entity.
+// Gmsh's number of a node, element or entity.
 using Tag = long long;
 
 std::string name(const char* kind, Tag tag) {
@@ -101,7 +101,7 @@ constexpr ElementType kSolids[]{
     {12, "27-node hexahedron"},
     {17, "20-node hexahedron"},
 };
-// gmsh's numbers of the element types that are read.
+// Gmsh's numbers of the element types that are read.
 constexpr int kPoint = 15;
 constexpr int kLine = 1;
 constexpr int kTriangle = 2;

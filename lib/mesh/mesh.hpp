@@ -14,7 +14,7 @@ namespace apothem {
 struct MeshGroup {
   std::string name;        ///< unique in its mesh
   std::vector<int> nodes;  ///< all nodes of the part, in ascending order
-  /// if the part is a line: its edges, directed as in their elements
+  /// If the part is a line: its edges, directed as in their elements.
   std::vector<std::array<int, 2>> edges;
 };
 

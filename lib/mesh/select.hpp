@@ -16,7 +16,7 @@ struct Place {
   std::optional<double> y = {};           ///< position in y, m
   std::optional<Box> box = {};            ///< box that contains the node, boundary included
   std::optional<std::string> group = {};  ///< name of a group that contains the node
-  /// select only the node nearest to this point, m, among those that meet the other conditions
+  /// Select only the node nearest to this point, m, among those that meet the other conditions.
   std::optional<Vec2> nearest = {};
 };
 

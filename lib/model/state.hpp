@@ -1,28 +1,88 @@
 // What changes while a scene runs, and what is recorded of it.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "apothem/archive/archive.hpp"
+#include "apothem/contact/contact.hpp"
+#include "apothem/contact/kinematics.hpp"
 #include "apothem/fem/stress.hpp"
 #include "apothem/geometry/polygon/point.hpp"
+#include "apothem/mesh/indices.hpp"
 
 namespace apothem {
 
-/// Of rigid bodies the generalised coordinates, three entries per body: x, y, angle of the mass
-/// centre.
+/// Where the degrees of freedom stand in the vectors of a state: x, y and angle of each rigid body,
+/// then x and y of each node.
+struct Layout {
+  int rigid_bodies = 0;
+  int nodes = 0;
+
+  [[nodiscard]] size_t size() const { return node(nodes); }
+  /// The first of the three entries of a rigid body, and of the two entries of a node.
+  [[nodiscard]] size_t rigid(RigidIndex i) const { return 3 * static_cast<size_t>(i); }
+  [[nodiscard]] size_t node(NodeIndex i) const {
+    return 3 * static_cast<size_t>(rigid_bodies) + 2 * static_cast<size_t>(i);
+  }
+  /// The parts of a vector that belong to the rigid bodies, and to the nodes.
+  template <class Vector>
+  [[nodiscard]] auto of_rigid(Vector& v) const {
+    return std::span(v).first(node(0));
+  }
+  template <class Vector>
+  [[nodiscard]] auto of_nodes(Vector& v) const {
+    return std::span(v).subspan(node(0));
+  }
+};
+
 struct State {
+  Layout layout;
   double time = 0;  ///< s
   std::int64_t step = 0;
-  std::vector<double> position;   ///< m, m, rad; relative to the model's origin
-  std::vector<double> remainder;  ///< what rounding has kept out of `position` so far
-  std::vector<double> velocity;   ///< m/s, m/s, rad/s
-  std::vector<double> force;      ///< contact force and moment about the mass centre: N, N, N m
-  // Of the nodes of deformable bodies, x and y of each:
-  std::vector<double> displacement;   ///< m, from the mesh as given
-  std::vector<double> node_velocity;  ///< m/s
-  std::vector<double> node_force;     ///< N, of elements, loads and contacts; without gravity
+  /// Of rigid bodies place (m, relative to the model's origin) and angle (rad) of the mass centre;
+  /// of nodes the displacement from the mesh as given (m).
+  std::vector<double> x;
+  std::vector<double> v;  ///< m/s, rad/s
+  /// Of rigid bodies contact force (N) and moment about the mass centre (N m); of nodes the force of
+  /// elements, loads and contacts (N). Without gravity.
+  std::vector<double> f;
+  std::vector<double> remainder;  ///< what rounding has kept out of x of rigid bodies so far
+
+  explicit State(Layout of = {})
+      : layout(of), x(of.size()), v(of.size()), f(of.size()), remainder(of.node(0)) {}
+
+  using Triple = Eigen::Map<Eigen::Vector3d>;
+  using ConstTriple = Eigen::Map<const Eigen::Vector3d>;
+  using Pair = Eigen::Map<Vec2>;
+  using ConstPair = Eigen::Map<const Vec2>;
+  /// x, y, angle of a rigid body; their rates; force and moment on it.
+  [[nodiscard]] Triple pose(RigidIndex i) { return Triple(&x[layout.rigid(i)]); }
+  [[nodiscard]] ConstTriple pose(RigidIndex i) const { return ConstTriple(&x[layout.rigid(i)]); }
+  [[nodiscard]] Triple pose_rate(RigidIndex i) { return Triple(&v[layout.rigid(i)]); }
+  [[nodiscard]] ConstTriple pose_rate(RigidIndex i) const {
+    return ConstTriple(&v[layout.rigid(i)]);
+  }
+  [[nodiscard]] ConstTriple force(RigidIndex i) const { return ConstTriple(&f[layout.rigid(i)]); }
+  /// Displacement of a node, its velocity, and the force on it.
+  [[nodiscard]] Pair node(NodeIndex i) { return Pair(&x[layout.node(i)]); }
+  [[nodiscard]] ConstPair node(NodeIndex i) const { return ConstPair(&x[layout.node(i)]); }
+  [[nodiscard]] ConstPair node_velocity(NodeIndex i) const { return ConstPair(&v[layout.node(i)]); }
+  [[nodiscard]] ConstPair node_force(NodeIndex i) const { return ConstPair(&f[layout.node(i)]); }
+
+  /// As contact sees it, with these velocities.
+  [[nodiscard]] Kinematics kinematics(std::span<const double> velocity) const {
+    return {layout.of_rigid(x), layout.of_nodes(x), velocity.first(layout.node(0)),
+            velocity.subspan(layout.node(0))};
+  }
+
+  void fields(Archive& archive) {
+    archive("time", time)("step", step);
+    archive.sized("x", x).sized("v", v).sized("f", f).sized("remainder", remainder);
+  }
 };
 
 /// The energy ledger of the moving bodies and the contacts between them and all others, in J.
@@ -46,27 +106,9 @@ struct Momenta {
   double x_error = 0, y_error = 0, angular_error = 0;
 };
 
-/// One connected contact patch of two bodies. Forces are on a.
-struct ContactRecord {
-  int a, b;            ///< bodies
-  Vec2 point;          ///< loading point, relative to the model's origin, m
-  Vec2 normal;         ///< elastic normal force, N
-  Vec2 tangential;     ///< friction and damping, N
-  double penetration;  ///< extent of the overlap along the force, m
-  double phi;          ///< largest potential met along the edges
-};
-
 /// Contact force on a body, N; `friction` sums the sizes of the friction forces.
 struct BodyForce {
   double fx = 0, fy = 0, friction = 0;
-};
-
-/// An edge of the boundary of a body in contacts of deformable bodies.
-struct SurfaceRecord {
-  int body;         ///< rigid ones first
-  Vec2 from, to;    ///< relative to the model's origin, m
-  double pressure;  ///< mean, Pa
-  double traction;  ///< mean of its friction, along the edge, Pa
 };
 
 /// A column of a history file: name and unit.

@@ -149,7 +149,7 @@ void Canvas::circle(const Vec2& centre, double radius, const Colour& inside, con
 }
 
 void Canvas::text(const Vec2& at, const std::string& text, const Font& font) {
-  // height of the capital letters of the font DejaVu over the font size
+  // Height of the capital letters of the font DejaVu over the font size.
   constexpr double kCapitals = .73;
   const double width = text_width(text, font.size);
   const double start = font.align == Align::left ? 0 : font.align == Align::centre ? .5 : 1;

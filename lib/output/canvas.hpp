@@ -31,7 +31,7 @@ Colour viridis(double share);
 struct Pen {
   Colour colour = {0, 0, 0};
   double width = 1;  ///< points
-  /// alternating lengths of dashes and gaps, points; empty: a solid line
+  /// Alternating lengths of dashes and gaps, points; empty: a solid line.
   std::vector<double> dashes = {};
 };
 

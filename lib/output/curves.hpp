@@ -25,7 +25,7 @@ struct Curve {
 struct CurvePanel {
   std::string title;
   std::string x_label, y_label;  ///< with units, as in "time [s]"
-  /// lowest and highest value of the axis; empty: chosen by gnuplot
+  /// Lowest and highest value of the axis; empty: chosen by gnuplot.
   std::optional<Vec2> x_range, y_range;
   std::vector<Curve> curves;
 };

@@ -16,7 +16,7 @@ namespace {
 constexpr double kWide = 620, kHigh = 460;  // limits of all frames of a panel together
 constexpr double kHighAlone = 340;          // limit of the height of frames in one row
 constexpr double kLeft = 62, kRight = 96, kTop = 36, kBottom = 8;
-// height of headings: panel, frame, frame in two lines
+// Height of headings: panel, frame, frame in two lines.
 constexpr double kPanelTitle = 34, kLabel = 22, kTwoLabels = 36;
 constexpr double kBelow = 40, kColumnGap = 22, kRowGap = 8;  // kBelow: numbers and name of x
 constexpr double kBarGap = 26, kBarWidth = 14, kBarHigh = 230;
@@ -28,8 +28,7 @@ const Colour kGrey{.78, .78, .78};
 const Colour kEmpty{0, 0, 0, 0};
 const Pen kOutline{{.15, .15, .15}, .7};
 
-// Turns elements into pixels.
-
+// The pixels of a picture, and which of them an element covers.
 class Raster {
  public:
   Raster(const Box& window, int width, int height)
@@ -139,7 +138,6 @@ std::vector<std::vector<Vec2>> outlines(const Mesh& mesh) {
 }
 
 // The range of some values.
-
 struct Spread {
   double low = HUGE_VAL, high = -HUGE_VAL;
   void include(double value) {

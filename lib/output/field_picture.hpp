@@ -24,7 +24,7 @@ struct FieldPanel {
   double scale = 1;           ///< factor from the field's values to the numbers in the picture
   std::string unit;           ///< unit of the numbers in the picture
   std::optional<Box> window;  ///< visible region, m; empty: all bodies
-  /// ends of the colour scale, in `unit`; empty: all values that are visible
+  /// Ends of the colour scale, in `unit`; empty: all values that are visible.
   std::optional<Vec2> range;
   std::vector<ShownField> fields;
 };

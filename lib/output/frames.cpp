@@ -68,8 +68,8 @@ class StressArrays {
   std::array<vtkNew<vtkDoubleArray>, 5> arrays_;
 };
 
+// The stress at each node: the mean over the elements around it, weighted with their areas.
 std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchyStress* stress) {
-  // The stress at each node: the mean over the elements around it, weighted with their areas.
   std::vector<CauchyStress> mean(body.mesh.nodes.size());
   std::vector<double> weight(mean.size(), 0);
   constexpr std::array kParts{&CauchyStress::xx, &CauchyStress::yy, &CauchyStress::xy,

@@ -42,7 +42,7 @@ struct Frame {
   Mesh mesh;                       ///< configuration before the run, m
   std::vector<Vec2> displacement;  ///< of each node, m
   std::vector<Vec2> velocity;      ///< of each node, m/s
-  /// of each cell, without energy density; zero for rigid bodies
+  /// Stress of each cell, without energy density; zero for rigid bodies.
   std::vector<CauchyStress> stress;
   std::vector<int> body;  ///< body of each cell; rigid bodies come first
 };

@@ -15,12 +15,12 @@ namespace apothem {
 
 /// What histories record in addition to the state and the energy and momentum ledgers.
 struct Observed {
-  /// sum of the friction forces' magnitudes on each rigid body, N
+  /// Sum of the friction forces' magnitudes on each rigid body, N.
   std::vector<double> friction = {};
   std::vector<BodyForce> contact = {};    ///< contact force on each deformable body
   std::vector<double> node_mass = {};     ///< lumped mass of each node, kg
   std::vector<CauchyStress> stress = {};  ///< of the element that holds each tracked point, Pa
-  /// boundary pressures; needed only if surfaces are tracked
+  /// Boundary pressures; needed only if surfaces are tracked.
   std::vector<SurfaceRecord> surfaces = {};
 };
 
@@ -58,12 +58,12 @@ class HistoryWriter {
   Table history_, energy_, momentum_;
 };
 
-/// A history file read back: column names without units.
 /// A history file that has been read.
-std::vector<std::string> names;            ///< column names, without units
-std::vector<std::vector<double>> columns;  ///< one per name
-/// The column with that name, or null if there is none.
-[[nodiscard]] const std::vector<double>* column(const std::string& name) const;
+struct HistoryTable {
+  std::vector<std::string> names;            ///< column names, without units
+  std::vector<std::vector<double>> columns;  ///< one per name
+  /// The column with that name, or null if there is none.
+  [[nodiscard]] const std::vector<double>* column(const std::string& name) const;
 };
 
 /// Reads a history file. Throws std::runtime_error, which names the file and line, if it is not

@@ -14,7 +14,7 @@ using Ring = std::vector<Vec2>;
 // Lengths in points.
 constexpr double kLongest = 470, kHighest = 430, kShortest = 190;  // limits of the frame
 constexpr double kLeft = 78, kRight = 92, kTop = 60, kBottom = 70;
-// of the canvas: margin at the edge, and least width
+// Margin at the edge, and least width, of the canvas.
 constexpr double kEdge = 20, kNarrowest = 480;
 constexpr double kTitle = 13, kNote = 10;  // font sizes of the title and of notes
 constexpr double kThin = 1. / 16;          // height over length below which the scales are unequal
@@ -30,7 +30,6 @@ const Pen kCircle{kBlack, 1, {5, 3}};
 const Pen kHalo{{1, 1, 1, .5}, 2};  // makes the circle's dashes visible on dark bands
 
 // Maps the polygon's local coordinates to those of the drawing.
-
 struct View {
   Vec2 start = Vec2::Zero();
   Vec2 along = Vec2::UnitX();
@@ -190,8 +189,7 @@ class Drawing {
   const Axes& axes_;
 };
 
-// Text around the drawing.
-
+// The lines of the title.
 std::vector<std::string> title(const PotentialPicture& picture, const View& view,
                                const Layout& layout) {
   std::vector<std::string> lines{

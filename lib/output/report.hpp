@@ -10,7 +10,7 @@ namespace apothem {
 /// A number beside its reference.
 struct ReportNumber {
   std::string scene;  ///< name of the scene
-  std::string what;   ///< description of the number, with its unit
+  std::string what;   ///< description of the number
   double reference = 0, value = 0;
   double tolerance = 0;  ///< allowed absolute difference
   bool met = false;      ///< whether the value is within the tolerance

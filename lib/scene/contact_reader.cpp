@@ -6,60 +6,80 @@
 #include <cmath>
 
 namespace apothem {
+namespace {
+
+// The entry of a table of names that a scene chooses.
+template <class Table>
+const auto& chosen(const JsonReader& in, const JsonValue& value, const Table& table) {
+  std::vector<std::string> names;
+  names.reserve(table.size());
+  for (const auto& entry : table) names.emplace_back(entry.name);
+  return table[in.choice(value, names)];
+}
+
+Feature feature_of(ForceDistribution distribution) {
+  switch (distribution) {
+    case ForceDistribution::variational:
+      return Feature::variational_distribution;
+    case ForceDistribution::integrated:
+      return Feature::integrated_distribution;
+    case ForceDistribution::resultant:
+      break;
+  }
+  return Feature::resultant_distribution;
+}
+
+}  // namespace
 
 void ContactReader::read(const JsonValue& value) {
   JsonObject object(in_, value);
   ContactLaw& law = model_.contact;
-  if (const JsonValue* v = object.optional("potential")) {
-    std::vector<std::string> names;
-    for (const NamedPotential& p : kPotentials) names.emplace_back(p.name);
-    law.potential.kind = kPotentials[in_.choice(*v, names)].kind;
-    potential_ = v;
-  }
+  if (const JsonValue* v = object.optional("potential")) potential(*v);
   law.normal_stiffness =
       in_.positive(object.required("normal_stiffness", "k_n in Pa (there is no default)"), "Pa");
   if (const JsonValue* v = object.optional("field")) field(*v);
   if (const JsonValue* v = object.optional("reference")) reference(*v);
-  if (const JsonValue* v = object.optional("friction")) law.friction = friction(*v, true);
-  damping_ = object.optional("damping");
-  if (damping_) damping(*damping_);
+  if (const JsonValue* v = object.optional("friction")) {
+    features_.add(Feature::friction, v);
+    law.friction = friction(*v, true);
+  }
+  if (const JsonValue* v = object.optional("damping")) damping(*v);
   pairs_ = object.optional("pairs");
-  surface(object);
+  if (pairs_) features_.add(Feature::friction_of_pairs, pairs_);
+  const JsonValue* surface_value = object.optional("surface");
+  surface(surface_value, object.optional("distribution"));
   object.finish();
 }
 
-// Of bodies with a mesh, and how its forces reach their nodes.
-void ContactReader::surface(JsonObject& object) {
-  ContactLaw& law = model_.contact;
-  const JsonValue* surface = object.optional("surface");
-  if (surface) {
-    std::vector<std::string> names;
-    for (const NamedSurface& n : kSurfaces) names.emplace_back(n.name);
-    law.surface = kSurfaces[in_.choice(*surface, names)].surface;
+void ContactReader::potential(const JsonValue& value) {
+  model_.contact.potential.kind = chosen(in_, value, kPotentials).kind;
+  if (model_.contact.potential.kind == PotentialChoice::Kind::area) {
+    features_.add(Feature::area_potential, &value);
   }
-  const auto fits = [&](const NamedDistribution& d) { return d.surface == law.surface; };
-  const NamedDistribution* known = std::find_if(kDistributions.begin(), kDistributions.end(), fits);
-  if (const JsonValue* v = object.optional("distribution")) {
-    std::vector<std::string> names;
-    for (const NamedDistribution& d : kDistributions) names.emplace_back(d.name);
-    known = &kDistributions[in_.choice(*v, names)];
-    if (!fits(*known)) {
-      const bool body = known->surface == ContactSurface::body;
-      in_.fail(*v, fmt::format("\"{}\" needs \"surface\": \"{}\"; {}", known->name,
-                               body ? "body" : "element",
-                               body ? "with elements use \"resultant\" or \"integrated\""
-                                    : "the body's own surface has \"variational\" only"));
-    }
-  }
-  law.distribution = known->distribution;
-  if (law.surface == ContactSurface::element) element_surface_ = surface;
 }
 
-// Of the whole scene, or of a pair, which may leave the stiffness to the scene.
+void ContactReader::field(const JsonValue& value) {
+  features_.add(Feature::field, &value);
+  model_.contact.potential.field = chosen(in_, value, kFields).field;
+}
+
+void ContactReader::reference(const JsonValue& value) {
+  features_.add(Feature::reference, &value);
+  PotentialChoice& choice = model_.contact.potential;
+  if (value.type == JsonValue::Type::number) {
+    choice.reference = PotentialChoice::Reference::length;
+    choice.length = in_.positive(value, "m");
+    if (!std::isfinite(1 / choice.length)) in_.fail(value, "is too small for double precision");
+    return;
+  }
+  choice.reference = chosen(in_, value, kReferences).reference;
+}
+
+// The friction of the whole scene, or of one rule for a pair. A rule takes the tangential stiffness
+// of the scene unless it gives its own, and it cannot choose the friction law.
 Friction ContactReader::friction(const JsonValue& value, bool of_scene) {
-  ContactLaw& law = model_.contact;
   JsonObject object(in_, value);
-  Friction friction = law.friction;
+  Friction friction = model_.contact.friction;
   const JsonValue& mu = object.required("coefficient", "mu, 0 or more");
   friction.coefficient = in_.number(mu, "");
   if (!(friction.coefficient >= 0)) in_.fail(mu, "must be 0 or more");
@@ -69,32 +89,51 @@ Friction ContactReader::friction(const JsonValue& value, bool of_scene) {
     object.required("tangential_stiffness", "k_s in Pa");
   }
   if (of_scene) {
-    if (const JsonValue* v = object.optional("law")) {
-      std::vector<std::string> names;
-      for (const NamedFrictionLaw& l : kFrictionLaws) names.emplace_back(l.name);
-      law.friction_law = kFrictionLaws[in_.choice(*v, names)].law;
-      friction_law_ = v;
-    }
+    if (const JsonValue* v = object.optional("law")) friction_law(*v);
   }
   object.finish();
   return friction;
 }
 
+void ContactReader::friction_law(const JsonValue& value) {
+  model_.contact.friction_law = chosen(in_, value, kFrictionLaws).law;
+  if (model_.contact.friction_law == FrictionLaw::per_edge) {
+    features_.add(Feature::per_edge_friction, &value);
+  }
+}
+
 void ContactReader::damping(const JsonValue& value) {
+  features_.add(Feature::contact_damping, &value);
   JsonObject object(in_, value);
-  std::vector<std::string> names;
-  for (const NamedDamping& d : kDampingModels) names.emplace_back(d.name);
   const NamedDamping& model =
-      kDampingModels[in_.choice(object.required("model", "normal_viscous or mass"), names)];
+      chosen(in_, object.required("model", "normal_viscous or mass"), kDampingModels);
   const std::string key(model.key);
   const std::string unit(model.unit);
   model_.contact.*model.value =
       in_.positive(object.required(key, "a positive number " + unit), unit);
   object.finish();
+  if (model_.contact.normal_damping > 0) features_.add(Feature::normal_viscous_damping, &value);
 }
 
-// After the bodies, whose names it may use.
-void ContactReader::pairs() {
+// With which surface bodies with a mesh touch, and how the contact forces reach their nodes. Either
+// value may be absent. A surface has its first distribution in kDistributions by default.
+void ContactReader::surface(const JsonValue* surface, const JsonValue* distribution) {
+  ContactLaw& law = model_.contact;
+  if (surface) law.surface = chosen(in_, *surface, kSurfaces).surface;
+  const bool by_element = law.surface == ContactSurface::element;
+  features_.add(by_element ? Feature::element_surface : Feature::body_surface, surface);
+  if (distribution) {
+    law.distribution = chosen(in_, *distribution, kDistributions).distribution;
+    features_.add(feature_of(law.distribution), distribution);
+    return;
+  }
+  law.distribution =
+      std::find_if(kDistributions.begin(), kDistributions.end(), [&](const NamedDistribution& d) {
+        return d.surface == law.surface;
+      })->distribution;
+}
+
+void ContactReader::read_pairs() {
   if (pairs_ == nullptr) return;
   for (const JsonValue& value : in_.array(*pairs_)) {
     JsonObject object(in_, value);
@@ -109,28 +148,6 @@ void ContactReader::pairs() {
   }
 }
 
-// What bodies with a mesh cannot take.
-void ContactReader::refuse_with_meshes() const {
-  const ContactLaw& law = model_.contact;
-  // What is for rigid bodies only may stand where two of them can meet.
-  if (model_.deformables.empty() || model_.bodies.size() > 1) return;
-  if (law.friction_law == FrictionLaw::per_edge) {
-    in_.fail(*friction_law_,
-             "\"per_edge\" is for rigid bodies only; bodies with a mesh have a spring per boundary "
-             "edge, or per pair of elements with \"surface\": \"element\": leave it out");
-  }
-  if (law.normal_damping > 0) {
-    in_.fail(*damping_,
-             "acts between rigid bodies only, and there are no two of them; leave it out, and give "
-             "the material of the mesh \"damping\"");
-  }
-  if (law.potential.kind == PotentialChoice::Kind::area && law.surface == ContactSurface::body) {
-    in_.fail(*potential_,
-             "\"area\" is for triangles; the surface of a body with a mesh has the depth below it: "
-             "use \"distance\", or \"surface\": \"element\" with triangles");
-  }
-}
-
 // A name that is both a body's and a material's means the body.
 ContactRule::Party ContactReader::party(const JsonValue& value) const {
   const std::string& name = in_.string(value);
@@ -142,32 +159,6 @@ ContactRule::Party ContactReader::party(const JsonValue& value) const {
     if (model_.materials[i].name == name) return {false, static_cast<int>(i)};
   }
   in_.fail(value, fmt::format("\"{}\" is neither a body nor a material", name));
-}
-
-void ContactReader::field(const JsonValue& value) {
-  PotentialChoice& choice = model_.contact.potential;
-  if (choice.kind == PotentialChoice::Kind::area) {
-    in_.fail(value, "the area potential has one field only; leave it out");
-  }
-  std::vector<std::string> names;
-  for (const NamedField& f : kFields) names.emplace_back(f.name);
-  choice.field = kFields[in_.choice(value, names)].field;
-}
-
-void ContactReader::reference(const JsonValue& value) {
-  PotentialChoice& choice = model_.contact.potential;
-  if (choice.kind == PotentialChoice::Kind::area) {
-    in_.fail(value, "the area potential has no reference length; leave it out");
-  }
-  if (value.type == JsonValue::Type::number) {
-    choice.reference = PotentialChoice::Reference::length;
-    choice.length = in_.positive(value, "m");
-    if (!std::isfinite(1 / choice.length)) in_.fail(value, "is too small for double precision");
-    return;
-  }
-  std::vector<std::string> names;
-  for (const NamedReference& r : kReferences) names.emplace_back(r.name);
-  choice.reference = kReferences[in_.choice(value, names)].reference;
 }
 
 }  // namespace apothem

@@ -1,38 +1,39 @@
-// What stands in a scene about contact.
+// Reads the contact law of a scene.
 #pragma once
 
 #include "apothem/model/model.hpp"
+#include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/json.hpp"
 
 namespace apothem {
 
 class ContactReader {
  public:
-  ContactReader(const JsonReader& in, Model& model) : in_(in), model_(model) {}
+  /// The model receives the contact law.
+  ContactReader(const JsonReader& in, Model& model, UsedFeatures& features)
+      : in_(in), model_(model), features_(features) {}
 
+  /// Reads all but the rules for pairs. Throws SceneError.
   void read(const JsonValue& value);
-  /// Rules for pairs; after the bodies, whose names these may use.
-  void pairs();
-  /// Refuses what would mean nothing because all that can touch has a mesh.
-  void refuse_with_meshes() const;
-  /// Where the scene asks for potentials of elements, or nullptr.
-  [[nodiscard]] const JsonValue* element_surface() const { return element_surface_; }
+
+  /// Reads the rules for pairs of materials or bodies. Called when the model has its bodies,
+  /// because the rules name them. Throws SceneError.
+  void read_pairs();
 
  private:
-  void surface(JsonObject& object);
-  Friction friction(const JsonValue& value, bool of_scene);
-  void damping(const JsonValue& value);
-  [[nodiscard]] ContactRule::Party party(const JsonValue& value) const;
+  void potential(const JsonValue& value);
   void field(const JsonValue& value);
   void reference(const JsonValue& value);
+  Friction friction(const JsonValue& value, bool of_scene);
+  void friction_law(const JsonValue& value);
+  void damping(const JsonValue& value);
+  void surface(const JsonValue* surface, const JsonValue* distribution);
+  [[nodiscard]] ContactRule::Party party(const JsonValue& value) const;
 
   const JsonReader& in_;
   Model& model_;
+  UsedFeatures& features_;
   const JsonValue* pairs_ = nullptr;
-  const JsonValue* potential_ = nullptr;
-  const JsonValue* friction_law_ = nullptr;
-  const JsonValue* damping_ = nullptr;
-  const JsonValue* element_surface_ = nullptr;
 };
 
 }  // namespace apothem

@@ -10,7 +10,8 @@
 namespace apothem {
 namespace {
 
-// Rows of `size` numbers with increasing times; add(row).
+// Reads rows of `size` numbers, of which the first is a time that increases from row to row, and
+// calls add() with each row.
 template <class Add>
 void rows(const JsonReader& in, const JsonValue& value, size_t size, const char* meaning,
           Add&& add) {

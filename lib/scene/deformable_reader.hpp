@@ -1,4 +1,4 @@
-// What stands in a scene about a body with a mesh: supports, loads, start.
+// Reads the supports and loads of a body with a mesh, and the histories of motions and loads.
 #pragma once
 
 #include "apothem/mesh/select.hpp"
@@ -9,10 +9,12 @@ namespace apothem {
 
 class DeformableReader {
  public:
-  /// `body` has a mesh in model coordinates, where it starts, and a material.
+  /// `body` has its material, and its mesh in model coordinates at the place where it starts. It
+  /// receives the supports and loads.
   DeformableReader(const JsonReader& in, const Model& model, DeformableBody& body)
       : in_(in), model_(model), body_(body) {}
 
+  /// Both throw SceneError.
   void supports(const JsonValue& value);
   void loads(const JsonValue& value);
 
@@ -31,10 +33,11 @@ class DeformableReader {
   const JsonReader& in_;
   const Model& model_;
   DeformableBody& body_;
-  std::vector<std::array<bool, 2>> held_;  // of each node, by an earlier support
+  std::vector<std::array<bool, 2>> held_;  // x and y of each node, by the supports read so far
 };
 
-/// [[t, vx, vy], ...], [[t, spin], ...] and [[t, factor], ...] with increasing times.
+/// Histories with increasing times: [[t, vx, vy], ...], [[t, spin], ...] and [[t, factor], ...].
+/// They throw SceneError.
 std::vector<MotionHistory::VelocityPoint> read_velocities(const JsonReader& in,
                                                           const JsonValue& value);
 std::vector<MotionHistory::SpinPoint> read_spins(const JsonReader& in, const JsonValue& value);

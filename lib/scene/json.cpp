@@ -13,7 +13,8 @@
 namespace apothem {
 namespace {
 
-// Feeds the parser and counts what it has taken: that is the position of the token it reports.
+// Feeds the parser character by character and counts what it has taken. The count is the position
+// of the token that the parser reports.
 struct CountingIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -32,9 +33,11 @@ struct CountingIterator {
   bool operator!=(const CountingIterator& other) const { return at != other.at; }
 };
 
-constexpr size_t kDeepest = 100;  // nesting: far beyond any scene, far below the stack's end
+// The deepest nesting that is read. Scenes need far less, and the stack could hold far more.
+constexpr size_t kDeepest = 100;
 
-std::string escaped(const std::string& key) {  // RFC 6901
+// A key as it stands in a JSON pointer (RFC 6901).
+std::string escaped(const std::string& key) {
   std::string result;
   for (const char c : key) {
     if (c == '~') {
@@ -48,7 +51,8 @@ std::string escaped(const std::string& key) {  // RFC 6901
   return result;
 }
 
-// SAX events -> JsonValue.
+// Builds a JsonValue from the events of nlohmann-json's SAX parser. Its public functions are those
+// that the parser calls.
 class Builder {
  public:
   Builder(const std::string& text, const std::string& file, const size_t& taken)
@@ -77,7 +81,8 @@ class Builder {
     return true;
   }
   bool parse_error(size_t position, const std::string&, const nlohmann::json::exception& error) {
-    // "[json.exception...] parse error at line 3, column 5: syntax error ...": keep the last part.
+    // The message is "[json.exception...] parse error at line 3, column 5: syntax error ...", of
+    // which only the last part is for the user.
     std::string what = error.what();
     if (const size_t colon = what.find(": "); colon != std::string::npos) what.erase(0, colon + 2);
     if (error.id == 406) what = "number out of the range of double precision";
@@ -89,8 +94,8 @@ class Builder {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(position, text_.size()));
     return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
   }
-  // Line of the token that ends `back` characters before what the parser has taken: a number is
-  // known to end only when the character behind it has been read.
+  // The line of the token that ends `back` characters before what the parser has taken. The parser
+  // knows the end of a number only when it has taken the character behind it.
   [[nodiscard]] int line(size_t back) {
     const size_t position = taken_ > back ? taken_ - back : 0;
     for (; counted_ < position; ++counted_) lines_ += text_[counted_] == '\n';
@@ -125,17 +130,19 @@ class Builder {
   const size_t& taken_;
   size_t counted_ = 0;
   int lines_ = 1;
-  std::vector<JsonValue*>
-      stack_;  // only the last item of each is ever added to: pointers stay valid
+  // The open arrays and objects. Each is the last item of the one before, and only last items grow,
+  // so the pointers stay valid.
+  std::vector<JsonValue*> stack_;
 };
 
-size_t edit_distance(std::string_view a, std::string_view b) {  // Levenshtein
+// The Levenshtein distance.
+size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
+  for (const char c : a) {
     size_t diagonal = row[0]++;
     for (size_t j = 0; j < b.size(); ++j) {
-      const size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      const size_t substitute = diagonal + (c == b[j] ? 0 : 1);
       diagonal = row[j + 1];
       row[j + 1] = std::min({substitute, diagonal + 1, row[j] + 1});
     }
@@ -143,7 +150,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {  // Levenshtein
   return row.back();
 }
 
-// The candidate that `word` was most likely meant to be.
+// The candidate that `word` was most likely meant to be, or nullptr if none is similar.
 const std::string* nearest(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string* best = nullptr;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
@@ -178,7 +185,7 @@ const char* type_name(JsonValue::Type type) {
 }  // namespace
 
 const JsonValue* JsonValue::find(std::string_view key) const {
-  // The last key may still wait for its value while the document is being parsed.
+  // While the document is being parsed, the last key may not have its value yet.
   for (size_t i = 0; i < items.size() && type == Type::object; ++i) {
     if (keys[i] == key) return &items[i];
   }
@@ -186,8 +193,8 @@ const JsonValue* JsonValue::find(std::string_view key) const {
 }
 
 JsonValue parse_json(const std::string& text, const std::string& file) {
-  if (const size_t nul = text.find('\0');
-      nul != std::string::npos) {  // the parser would stop there
+  // The parser would stop at a NUL character.
+  if (const size_t nul = text.find('\0'); nul != std::string::npos) {
     const auto lines =
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
     throw SceneError(file, 1 + static_cast<int>(lines), "", "not valid JSON: a NUL character");
@@ -303,7 +310,7 @@ const JsonValue* JsonObject::optional(const std::string& key) {
 
 const JsonValue& JsonObject::required(const std::string& key, const std::string& meaning) {
   if (const JsonValue* found = optional(key)) return *found;
-  // A misspelt key is the likeliest reason.
+  // The likeliest reason is that the key is misspelt.
   if (const std::string* close = nearest(key, value_.keys);
       close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
     reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));

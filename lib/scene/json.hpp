@@ -1,6 +1,6 @@
-// JSON that remembers where every value stood and refuses duplicate keys (nlohmann-json, which
-// parses here, does neither), and typed access to it that turns every mistake into one clear
-// SceneError.
+// JSON values that know their place in the file, and typed access to them that turns every mistake
+// into a SceneError at that place. nlohmann-json parses the text; it keeps no places and accepts
+// duplicate keys, so both are added here.
 #pragma once
 
 #include <optional>
@@ -19,24 +19,26 @@ struct JsonValue {
   bool boolean = false;
   double number = 0;
   std::string string;
-  std::vector<JsonValue> items;   ///< elements of an array, values of an object
-  std::vector<std::string> keys;  ///< of an object, in order, unique
-  int line = 0;                   ///< in the file, from 1
-  std::string pointer;            ///< RFC 6901, empty for the document
+  std::vector<JsonValue> items;   ///< elements of an array, or values of an object
+  std::vector<std::string> keys;  ///< keys of an object, unique, in the order of the file
+  int line = 0;                   ///< line in the file, counted from 1
+  std::string pointer;            ///< JSON pointer (RFC 6901), empty for the document
 
+  /// The value of a key, or nullptr if there is none or this is no object.
   [[nodiscard]] const JsonValue* find(std::string_view key) const;
 };
 
-/// Parses JSON with // and /* */ comments. Throws SceneError.
+/// Parses JSON in which // and /* */ comments are allowed. Throws SceneError.
 JsonValue parse_json(const std::string& text, const std::string& file);
 
-/// The whole file. Throws SceneError if it cannot be read.
+/// The contents of a file. Throws SceneError if it cannot be read.
 std::string read_text(const std::string& file);
 
-/// `word` in quotes and, if a candidate looks like it, "did you mean ...?".
+/// `word` in quotes, followed by "did you mean ...?" if a candidate looks like it.
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Reads values of one file. Every getter throws SceneError at the value's place.
+/// Reads the values of one file. Every getter throws SceneError at the value's place if the value
+/// is not what it must be. `unit` is named in the message.
 class JsonReader {
  public:
   explicit JsonReader(std::string file) : file_(std::move(file)) {}
@@ -48,29 +50,33 @@ class JsonReader {
 
   double number(const JsonValue& value, const std::string& unit) const;
   double positive(const JsonValue& value, const std::string& unit) const;
-  int count(const JsonValue& value) const;  ///< integer >= 0
+  /// A whole number, 0 or more.
+  int count(const JsonValue& value) const;
   const std::string& string(const JsonValue& value) const;
   const std::vector<JsonValue>& array(const JsonValue& value) const;
-  /// Array of exactly `size` numbers; `meaning` as in "[x, y] in m".
+  /// An array of exactly `size` numbers. `meaning` is named in the message, like "[x, y] in m".
   [[nodiscard]] std::vector<double> numbers(const JsonValue& value, size_t size,
                                             const std::string& meaning) const;
   [[nodiscard]] Vec2 vec2(const JsonValue& value, const std::string& unit) const;
-  /// [[x, y], ...]
+  /// Points [[x, y], ...] in m.
   [[nodiscard]] std::vector<Vec2> ring(const JsonValue& value) const;
-  /// Index of the string in `names`.
+  /// The index of a string in `names`, which must contain it.
   int choice(const JsonValue& value, const std::vector<std::string>& names) const;
 
  private:
   std::string file_;
 };
 
-/// An object being read: remembers which keys were asked for; the rest is unknown.
+/// A JSON object that is being read. It remembers which keys were asked for, so that it can refuse
+/// all others as unknown.
 class JsonObject {
  public:
   JsonObject(const JsonReader& reader, const JsonValue& value);
+  /// The value of a key, or nullptr if it is missing.
   const JsonValue* optional(const std::string& key);
+  /// The value of a key. Throws SceneError with its `meaning` if it is missing.
   const JsonValue& required(const std::string& key, const std::string& meaning);
-  /// Throws at the first key that nobody asked for.
+  /// Throws SceneError at the first key that nobody asked for. Called after the last key was read.
   void finish() const;
   [[nodiscard]] const JsonValue& value() const { return value_; }
 

@@ -1,4 +1,4 @@
-// Meshes in files of their own.
+// Reads meshes that stand in files of their own.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace apothem {
 
-/// True for names that end in .msh.
+/// Whether the name of the file ends in .msh.
 bool is_mesh_file(const std::string& file);
 
-/// A gmsh file, see parse_gmsh. Throws SceneError.
+/// Reads a file made by gmsh, see parse_gmsh(). Throws SceneError.
 Mesh read_mesh_file(const std::string& file, const MeshRules& rules = {});
 
 }  // namespace apothem

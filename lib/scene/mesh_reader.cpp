@@ -51,6 +51,7 @@ class MeshReader {
   }
 
  private:
+  // A key of the scene, and the function that makes a mesh from its value.
   struct Way {
     const char* key;
     Mesh (MeshReader::*make)(const JsonValue&) const;
@@ -71,11 +72,13 @@ class MeshReader {
 
   void read_element() {
     std::vector<std::string> names;
+    names.reserve(kElements.size());
     for (const ElementName& e : kElements) names.emplace_back(e.name);
     element_ = &kElements[in_.choice(*element_value_, names)];
   }
 
-  // Generators do not know the scene: their errors stand at the value they were made from.
+  // The generators know nothing of the scene. Their errors are reported at the value from which the
+  // mesh is made.
   Mesh made(const JsonValue& source, const Way& way) const {
     try {
       Mesh mesh = (this->*way.make)(source);
@@ -199,6 +202,7 @@ class MeshReader {
     return Polygon({origin, {far.x(), origin.y()}, far, {origin.x(), far.y()}});
   }
 
+  // The element for a mesh whose scene does not choose one.
   static ElementKind fitting(const Mesh& mesh) {
     const size_t n = mesh.element(0).size();
     for (int e = 0; e < mesh.element_count(); ++e) {
@@ -221,7 +225,7 @@ class MeshReader {
   const JsonReader& in_;
   const JsonValue& value_;
   const JsonValue* element_value_ = nullptr;
-  const ElementName* element_ = nullptr;  // null: the scene does not say
+  const ElementName* element_ = nullptr;  // null if the scene does not choose one
 };
 
 const std::array<MeshReader::Way, 6> MeshReader::kWays{{{"rectangle", &MeshReader::rectangle},

@@ -1,4 +1,4 @@
-// The mesh of a body as a scene gives it.
+// Reads the mesh of a body.
 #pragma once
 
 #include "apothem/fem/element.hpp"
@@ -12,16 +12,19 @@ struct MeshSpec {
   ElementKind element;
 };
 
-/// Reads one of
+/// Reads one of these:
 ///   { "rectangle": { "size": [x, y], "cells": [nx, ny], "origin": [x, y] } }
 ///   { "disc": { "radius": r, "centre": [x, y], "cells": n, "grading": g } }
 ///   { "fill": { "polygon": [[x,y],...], "holes": [[[x,y],...],...], "size": h } }
-///   { "voronoi": { "polygon": [[x,y],...], "cells": n, "seed": i, "lloyd": i, "shortest_edge": s }
-///   } { "file": "NAME.msh" }
-/// each with "element": a name of kElements. In place of a polygon's ring there may be the name of
-/// a file or the key "file"; "voronoi" also takes the "size" and "origin" of a rectangle. Without
-/// an "element", rectangles, discs and polygons are filled with quadrilaterals, and the element is
-/// T3 or Q4 if it fits, otherwise polygon. The mesh passes check_mesh. Throws SceneError.
+///   { "half_disc": { "radius": r, "pole": [x, y], "fine": l, "cells": n, "growth": g } }
+///   { "voronoi": { "polygon": [[x,y],...], "cells": n, "seed": i, "lloyd": i,
+///                  "shortest_edge": s } }
+///   { "file": "NAME.msh" }
+/// Each may have an "element", a name of kElements, and a "mirror". A polygon may also be the name
+/// of a file, or stand in the file of the key "file". "voronoi" also takes the "size" and "origin"
+/// of a rectangle. Without an "element", regions are filled with quadrilaterals, and the element is
+/// T3 or Q4 if it fits all of the mesh, and polygon otherwise. The mesh passes check_mesh(). Throws
+/// SceneError.
 MeshSpec read_mesh(const JsonReader& in, const JsonValue& value);
 
 }  // namespace apothem

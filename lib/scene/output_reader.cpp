@@ -10,16 +10,21 @@
 #include "apothem/model/state.hpp"
 
 namespace apothem {
+namespace {
 
-OutputReader::OutputReader(const JsonReader& in, const Model& model, double end,
-                           OutputSettings& output)
-    : in_(in), model_(model), end_(end), output_(output) {
-  const int bodies = static_cast<int>(model.bodies.size() + model.deformables.size());
-  for (int i = 0; i < bodies; ++i) names_.push_back(model.name_of(i));
+constexpr size_t kMostByDefault = 20;  // bodies in the history of a scene that does not choose
+
+// Index of the body of that name in the model's list of rigid or of deformable bodies, or -1.
+template <class Body>
+int index_in(const std::vector<Body>& bodies, const std::string& name) {
+  const auto found =
+      std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  return found == bodies.end() ? -1 : static_cast<int>(found - bodies.begin());
 }
 
+}  // namespace
+
 void OutputReader::track_by_default() {
-  constexpr size_t kMany = 20;
   std::vector<int>& track = output_.track;
   for (size_t i = 0; i < model_.bodies.size(); ++i) {
     if (model_.bodies[i].can_move()) track.push_back(static_cast<int>(i));
@@ -28,7 +33,7 @@ void OutputReader::track_by_default() {
   for (size_t i = 0; i < model_.deformables.size(); ++i) {
     deformables.push_back(static_cast<int>(i));
   }
-  if (track.size() + deformables.size() > kMany) {
+  if (track.size() + deformables.size() > kMostByDefault) {
     track.clear();
     deformables.clear();
   }
@@ -41,55 +46,40 @@ void OutputReader::tracked(const JsonValue& item) {
   const JsonValue* surface = object.optional("surface");
   const JsonValue* label = object.optional("name");
   object.finish();
-  const auto place = std::find(names_.begin(), names_.end(), in_.string(name));
-  if (place == names_.end()) in_.fail(name, "unknown body " + suggest(name.string, names_));
-  const auto index_in = [&](const auto& bodies) {
-    const auto body = std::find_if(bodies.begin(), bodies.end(),
-                                   [&](const auto& b) { return b.name == name.string; });
-    return body == bodies.end() ? -1 : static_cast<int>(body - bodies.begin());
-  };
-  const int rigid = index_in(model_.bodies);
-  const int deformable = index_in(model_.deformables);
+  const auto found = std::find(bodies_.begin(), bodies_.end(), in_.string(name));
+  if (found == bodies_.end()) in_.fail(name, "unknown body " + suggest(name.string, bodies_));
+  const int place = static_cast<int>(found - bodies_.begin());
+  const int rigid = index_in(model_.bodies, name.string);
+  const int deformable = index_in(model_.deformables, name.string);
   if (label && !point) in_.fail(*label, "goes with a \"point\"; leave it out");
-  if (surface) return tracked_surface(deformable, *surface, point);
-  if (!point) {
+  if (surface) {
+    in_.choice(*surface, {"contact"});
+    if (point) in_.fail(*surface, "and a \"point\" are tracked apart; make two entries");
+    features_.add(Feature::tracked_surface, surface, place);
+    if (deformable >= 0) track_once(output_.track_surfaces, deformable, *surface);
+  } else if (point) {
+    features_.add(Feature::tracked_point, point, place);
+    if (deformable >= 0) tracked_point(deformable, *point, label);
+  } else {
     std::vector<int>& list = rigid >= 0 ? output_.track : output_.track_deformables;
-    const int body = std::max(rigid, deformable);
-    if (std::find(list.begin(), list.end(), body) != list.end()) {
-      in_.fail(item, "is tracked already; leave it out");
-    }
-    list.push_back(body);
-    return;
+    track_once(list, std::max(rigid, deformable), item);
   }
-  if (rigid >= 0) {
-    in_.fail(*point,
-             "points are tracked in bodies with a mesh; of a rigid body leave it out: "
-             "place and angle say it all");
-  }
-  tracked_point(deformable, *point, label);
 }
 
-void OutputReader::tracked_surface(int deformable, const JsonValue& value, const JsonValue* point) {
-  std::vector<int>& list = output_.track_surfaces;
-  in_.choice(value, {"contact"});
-  if (point) in_.fail(value, "and a \"point\" are tracked apart; make two entries");
-  if (deformable < 0) in_.fail(value, "is recorded of bodies with a mesh");
-  if (model_.contact.surface != ContactSurface::body) {
-    in_.fail(value, "is not recorded with \"surface\": \"element\"");
-  }
-  if (std::find(list.begin(), list.end(), deformable) != list.end()) {
+void OutputReader::track_once(std::vector<int>& list, int body, const JsonValue& value) const {
+  if (std::find(list.begin(), list.end(), body) != list.end()) {
     in_.fail(value, "is tracked already; leave it out");
   }
-  list.push_back(deformable);
+  list.push_back(body);
 }
 
-void OutputReader::tracked_point(int index, const JsonValue& point, const JsonValue* label) {
-  const DeformableBody& body = model_.deformables[index];
+void OutputReader::tracked_point(int deformable, const JsonValue& point, const JsonValue* label) {
+  const DeformableBody& body = model_.deformables[deformable];
   const std::optional<MeshPoint> found =
       find_point(body.mesh, in_.vec2(point, "m") - model_.origin);
   if (!found) in_.fail(point, fmt::format("lies outside \"{}\"", body.name));
   TrackedPoint tracked;
-  tracked.body = index;
+  tracked.body = deformable;
   tracked.element = found->element;
   for (const int node : body.mesh.element(found->element)) {
     tracked.nodes.push_back(body.first_node + node);
@@ -100,7 +90,7 @@ void OutputReader::tracked_point(int index, const JsonValue& point, const JsonVa
       if (p.name == candidate) return true;
     }
     return candidate != body.name &&
-           std::find(names_.begin(), names_.end(), candidate) != names_.end();
+           std::find(bodies_.begin(), bodies_.end(), candidate) != bodies_.end();
   };
   tracked.name = label ? in_.string(*label) : body.name;
   if (label) {
@@ -113,20 +103,13 @@ void OutputReader::tracked_point(int index, const JsonValue& point, const JsonVa
 
 void OutputReader::read(const JsonValue& value) {
   JsonObject object(in_, value);
-  if (const JsonValue* v = object.optional("frames")) output_.frames = in_.count(*v);
-  if (const JsonValue* v = object.optional("history")) {
-    JsonObject history(in_, *v);
-    if (const JsonValue* i = history.optional("interval")) {
-      output_.history_interval = in_.positive(*i, "s");
-    }
-    if (const JsonValue* list = history.optional("track")) {
-      output_.track.clear();
-      output_.track_deformables.clear();
-      for (const JsonValue& item : in_.array(*list)) tracked(item);
-    }
-    history.finish();
+  if (const JsonValue* v = object.optional("frames")) {
+    features_.add(Feature::frames, v);
+    output_.frames = in_.count(*v);
   }
+  if (const JsonValue* v = object.optional("history")) history(*v);
   if (const JsonValue* v = object.optional("checkpoint")) {
+    features_.add(Feature::checkpoint, v);
     JsonObject checkpoint(in_, *v);
     output_.checkpoint_interval =
         in_.positive(checkpoint.required("wall_clock", "s of real time between checkpoints"), "s");
@@ -135,47 +118,66 @@ void OutputReader::read(const JsonValue& value) {
   object.finish();
 }
 
-std::vector<Expectation> OutputReader::expectations(const JsonValue& value) const {
-  std::vector<Expectation> expectations;
+void OutputReader::history(const JsonValue& value) {
+  JsonObject object(in_, value);
+  if (const JsonValue* v = object.optional("interval")) {
+    features_.add(Feature::history_interval, v);
+    output_.history_interval = in_.positive(*v, "s");
+  }
+  if (const JsonValue* list = object.optional("track")) {
+    output_.track.clear();
+    output_.track_deformables.clear();
+    for (const JsonValue& item : in_.array(*list)) tracked(item);
+  }
+  object.finish();
+}
+
+std::vector<Expectation> OutputReader::expectations(const JsonValue& value, double end) const {
   std::vector<std::string> columns;
   for (HistoryColumn& c : history_columns(model_, output_)) {
     columns.push_back(std::move(c.name));
   }
   columns.insert(columns.end(), kEnergyColumns.begin(), kEnergyColumns.end());
   columns.insert(columns.end(), kMomentumColumns.begin(), kMomentumColumns.end());
+  std::vector<Expectation> expectations;
   for (const JsonValue& item : in_.array(value)) {
-    JsonObject object(in_, item);
-    Expectation e;
-    const JsonValue& quantity = object.required("quantity", "a column of a history");
-    e.quantity = in_.string(quantity);
-    if (std::find(columns.begin(), columns.end(), e.quantity) == columns.end()) {
-      in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
-    }
-    if (const JsonValue* v = object.optional("take")) {
-      e.take = static_cast<Expectation::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
-    }
-    if (const JsonValue* v = object.optional("between")) {
-      const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
-      if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
-      if (t[0] > end_ || t[1] < 0) in_.fail(*v, "lies outside the run");
-      e.from = t[0];
-      e.until = t[1];
-    }
-    e.value = in_.number(object.required("value", "the number to expect"), "");
-    const JsonValue* absolute = object.optional("tolerance");
-    const JsonValue* relative = object.optional("relative");
-    if (absolute) e.tolerance = in_.positive(*absolute, "the quantity's unit");
-    if (relative) e.tolerance = in_.positive(*relative, "parts of the value") * std::abs(e.value);
-    if (!absolute == !relative) {
-      in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
-    }
-    if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
-    if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
-    if (const JsonValue* v = object.optional("source")) in_.string(*v);
-    object.finish();
-    expectations.push_back(std::move(e));
+    expectations.push_back(expectation(item, columns, end));
   }
   return expectations;
+}
+
+Expectation OutputReader::expectation(const JsonValue& item,
+                                      const std::vector<std::string>& columns, double end) const {
+  JsonObject object(in_, item);
+  Expectation e;
+  const JsonValue& quantity = object.required("quantity", "a column of a history");
+  e.quantity = in_.string(quantity);
+  if (std::find(columns.begin(), columns.end(), e.quantity) == columns.end()) {
+    in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
+  }
+  if (const JsonValue* v = object.optional("take")) {
+    e.take = static_cast<Expectation::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
+  }
+  if (const JsonValue* v = object.optional("between")) {
+    const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
+    if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
+    if (t[0] > end || t[1] < 0) in_.fail(*v, "lies outside the run");
+    e.from = t[0];
+    e.until = t[1];
+  }
+  e.value = in_.number(object.required("value", "the number to expect"), "");
+  const JsonValue* absolute = object.optional("tolerance");
+  const JsonValue* relative = object.optional("relative");
+  if (absolute) e.tolerance = in_.positive(*absolute, "the quantity's unit");
+  if (relative) e.tolerance = in_.positive(*relative, "parts of the value") * std::abs(e.value);
+  if (!absolute == !relative) {
+    in_.fail(item, "must give either \"tolerance\" (absolute) or \"relative\"");
+  }
+  if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
+  if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
+  if (const JsonValue* v = object.optional("source")) in_.string(*v);
+  object.finish();
+  return e;
 }
 
 bool has_control_character(const std::string& name) {

@@ -1,4 +1,4 @@
-// What stands in a scene about results: frames, histories, checkpoints, expectations.
+// Reads the part of a scene about results: frames, histories, checkpoints and expectations.
 #pragma once
 
 #include <string>
@@ -6,34 +6,45 @@
 
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
+#include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/json.hpp"
 
 namespace apothem {
 
 class OutputReader {
  public:
-  /// The model with all its bodies; `end` of the run, s.
-  OutputReader(const JsonReader& in, const Model& model, double end, OutputSettings& output);
+  /// The model is complete. `bodies` are the names of its bodies in the order of the scene. Both
+  /// must outlive this object.
+  OutputReader(const JsonReader& in, const Model& model, const std::vector<std::string>& bodies,
+               OutputSettings& output, UsedFeatures& features)
+      : in_(in), model_(model), bodies_(bodies), output_(output), features_(features) {}
 
-  /// Tracks all bodies that can move, if they are not too many.
+  /// Tracks all bodies that can move, if there are not too many of them.
   void track_by_default();
+
+  /// Reads "output". Throws SceneError.
   void read(const JsonValue& value);
-  /// After the output, whose columns they name.
-  [[nodiscard]] std::vector<Expectation> expectations(const JsonValue& value) const;
+
+  /// Reads "expect". Called last, because expectations name the columns of the histories. `end` is
+  /// the end of the run in s. Throws SceneError.
+  [[nodiscard]] std::vector<Expectation> expectations(const JsonValue& value, double end) const;
 
  private:
+  void history(const JsonValue& value);
   void tracked(const JsonValue& item);
-  void tracked_surface(int deformable, const JsonValue& value, const JsonValue* point);
-  void tracked_point(int index, const JsonValue& point, const JsonValue* label);
+  void track_once(std::vector<int>& list, int body, const JsonValue& value) const;
+  void tracked_point(int deformable, const JsonValue& point, const JsonValue* label);
+  [[nodiscard]] Expectation expectation(const JsonValue& item,
+                                        const std::vector<std::string>& columns, double end) const;
 
   const JsonReader& in_;
   const Model& model_;
-  double end_;
+  const std::vector<std::string>& bodies_;
   OutputSettings& output_;
-  std::vector<std::string> names_;  // of all bodies
+  UsedFeatures& features_;
 };
 
-/// Refuses a name that could not head columns of a CSV file.
+/// Throws SceneError for a name that cannot head the columns of a CSV file.
 void refuse_as_column(const JsonReader& in, const JsonValue& name);
 [[nodiscard]] bool has_control_character(const std::string& name);
 

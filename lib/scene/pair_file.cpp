@@ -11,7 +11,7 @@
 namespace apothem {
 namespace {
 
-// Calls read(), whose complaints are then about that polygon of the pair.
+// Calls read() and turns its InvalidPolygon into a BadPairLine about that polygon of the pair.
 template <class Read>
 auto of_polygon(const char* polygon, const Read& read) {
   try {

@@ -1,4 +1,4 @@
-// Files of pairs of polygons, with or without the forces they should give.
+// Reads files of pairs of polygons, with or without the contact forces that are expected.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace apothem {
 
-/// What the contact of a pair should be: distance potential, reference `roof`, unit stiffness;
-/// moments about the centroids. `tolerance` is for the force, as a share of own_length.
+/// The expected contact of a pair, by the distance potential with the reference `roof` and a unit
+/// stiffness. Moments are about the centroids.
 struct ExpectedContact {
   Vec2 force;           ///< on a, m
   double moment_a;      ///< m^2
@@ -19,20 +19,20 @@ struct ExpectedContact {
   double weight;        ///< W, m
   double energy;        ///< m^2
   double overlap_area;  ///< m^2
-  double own_length;    ///< boundary of either polygon inside the other, m
-  double tolerance;
+  double own_length;    ///< lengths of both boundaries inside the other polygon, summed, m
+  double tolerance;     ///< of the force, as a share of own_length
 };
 
-/// Rings as they stand in the file; not yet checked for being simple.
+/// A pair as it stands in the file. Whether its rings are simple polygons is not checked yet.
 struct PolygonPair {
   std::string name;
-  std::string kind;  ///< empty if the file does not say
+  std::string kind;  ///< empty if the file does not give it
   std::vector<Vec2> a, b;
   std::optional<ExpectedContact> expected;
 };
 
-/// A line that is not a pair: what is wrong, in which polygon ("a", "b", or "" behind both) and at
-/// which vertex.
+/// The error for a line that is not a pair. It says what is wrong, in which polygon ("a" or "b", or
+/// "" for what stands behind both) and at which vertex.
 class BadPairLine : public std::invalid_argument {
  public:
   BadPairLine(const std::string& reason, std::string polygon, int vertex)
@@ -45,13 +45,15 @@ class BadPairLine : public std::invalid_argument {
   int vertex_;
 };
 
-/// First word of a line; empty for a blank line.
+/// The first word of a line. It is empty for a blank line.
 std::string pair_name(const std::string& line);
 
-/// "name n x y ... m x y ...". Throws BadPairLine.
+/// Reads the line "name n x y ... m x y ...", where n and m are the numbers of vertices. Throws
+/// BadPairLine.
 PolygonPair parse_pair(const std::string& line);
 
-/// Either one pair per line, or JSON as in data/polygons/hard-pairs.json. Throws SceneError.
+/// Reads a file with one pair per line, or with JSON as in data/polygons/hard-pairs.json. Throws
+/// SceneError.
 std::vector<PolygonPair> read_pair_file(const std::string& file);
 
 }  // namespace apothem

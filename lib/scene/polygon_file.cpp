@@ -17,7 +17,7 @@ std::vector<Vec2> parse_wkt(const std::string& text, const std::string& file) {
   boost::geometry::model::polygon<Point> polygon;
   try {
     boost::geometry::read_wkt(text, polygon);
-  } catch (const std::exception& error) {  // read_wkt_exception, bad_lexical_cast
+  } catch (const std::exception& error) {  // Boost throws read_wkt_exception or bad_lexical_cast
     throw SceneError(file, 0, "", std::string("not a WKT polygon: ") + error.what());
   }
   if (!polygon.inners().empty()) {
@@ -25,7 +25,7 @@ std::vector<Vec2> parse_wkt(const std::string& text, const std::string& file) {
   }
   std::vector<Vec2> ring;
   for (const Point& p : polygon.outer()) ring.emplace_back(p.x(), p.y());
-  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // WKT rings are closed
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // rings of WKT repeat it
   return ring;
 }
 
@@ -52,7 +52,7 @@ std::vector<Vec2> read_ring(std::istream& line) {
   if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
   std::vector<Vec2> ring;
   for (int i = 0; i < n; ++i) {
-    std::string x, y;  // not as double: streams do not read nan or inf
+    std::string x, y;  // read as words, because streams do not read nan or inf
     if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
     char* end_x = nullptr;
     char* end_y = nullptr;

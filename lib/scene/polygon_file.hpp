@@ -1,4 +1,4 @@
-// Polygons in files of their own: [[x,y],...], {"polygon": [[x,y],...]} or WKT.
+// Reads polygons that stand in files of their own, as [[x,y],...], {"polygon": [[x,y],...]} or WKT.
 #pragma once
 
 #include <iosfwd>
@@ -9,15 +9,15 @@
 
 namespace apothem {
 
-/// The ring as it stands in the file, in world coordinates (a closing WKT vertex is dropped); not
-/// yet checked for being simple. Throws SceneError.
+/// The ring as it stands in the file, in world coordinates and without the closing vertex of WKT.
+/// Whether it is a simple polygon is not checked yet. Throws SceneError.
 std::vector<Vec2> read_polygon_file(const std::string& file);
 
-/// A ring as the words n x y ... Throws InvalidPolygon; coordinates that are no finite numbers are
-/// left to Polygon.
+/// Reads a ring given by the words n x y ..., where n is the number of vertices. Throws
+/// InvalidPolygon, but accepts infinite coordinates and NaN, which the class Polygon refuses.
 std::vector<Vec2> read_ring(std::istream& line);
 
-/// Throws InvalidPolygon if anything is left.
+/// Throws InvalidPolygon if anything but white space is left of the line.
 void require_end(std::istream& line);
 
 }  // namespace apothem

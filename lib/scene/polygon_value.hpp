@@ -1,4 +1,4 @@
-// Polygons in scenes: rings, or names of files that hold one.
+// Reads polygons in scenes, which are rings or names of files that hold one.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace apothem {
 
-/// The file that a scene names: relative to the scene's folder.
+/// The path of a file that a scene names relative to its own folder.
 std::string file_beside(const JsonReader& scene, const std::string& name);
 
-/// The polygon of [[x,y],...] in m or of the file of that name (see read_polygon_file). Throws
+/// The polygon given by [[x,y],...] in m, or by the name of a file, see read_polygon_file(). Throws
 /// SceneError, at the vertex if the ring stands in the scene.
 Polygon read_polygon(const JsonReader& in, const JsonValue& outline);
 
-/// Throws the SceneError for an outline that turned out to be unusable; `where` precedes the
-/// reason.
+/// Throws SceneError for an outline that is not a usable polygon. `where` stands before the reason
+/// in the message.
 [[noreturn]] void refuse_polygon(const JsonReader& in, const JsonValue& outline,
                                  const InvalidPolygon& error, const std::string& where = "");
 

@@ -1,4 +1,4 @@
-// A scene file, read, checked and turned into a model.
+// Reads a scene file, checks it and turns it into a model.
 #pragma once
 
 #include <string>
@@ -12,20 +12,19 @@ namespace apothem {
 
 struct Scene {
   std::string file;
-  std::string text;  ///< as read
+  std::string text;  ///< contents of the file
   Model model;
   TimeSettings time;
   OutputSettings output;
   std::vector<Expectation> expectations;
-  std::vector<int> rigid_places;  ///< of each rigid body, in the scene's list of bodies
-
-  /// An error at a JSON pointer of this scene, or at the nearest enclosing value that exists.
-  [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;
-
+  std::vector<int> rigid_places;  ///< of each rigid body, its place in the scene's list of bodies
   JsonValue document;
+
+  /// An error at a JSON pointer of this scene, or at the innermost enclosing value that exists.
+  [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;
 };
 
-/// Throws SceneError.
+/// Reads a scene. Throws SceneError if it cannot be read or is not a valid scene.
 Scene read_scene(const std::string& file);
 
 }  // namespace apothem

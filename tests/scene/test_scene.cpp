@@ -443,7 +443,7 @@ TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {
   CHECK(body.angle == 0.5);
 }
 
-TEST_CASE("a static scene refuses what has no meaning in it", "[scene]") {
+TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
   const Folder folder;
   const std::string good =
       replaced(kMeshed, "\"time\": { \"end\": 1 }",
@@ -467,11 +467,11 @@ TEST_CASE("a static scene refuses what has no meaning in it", "[scene]") {
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9 }, \"bodies\": [ { \"name\": \"r\", \"material\": "
        "\"rock\", \"polygon\": [[0, 5], [1, 5], [0, 6]] },",
-       "/bodies/0: a rigid body of a static run must be \"fixed\""},
+       "/bodies/0: is not supported yet in a static run"},
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"friction\": { \"coefficient\": 1, "
        "\"tangential_stiffness\": 1e9 } }, \"bodies\": [",
-       "/contact/friction: has no meaning"},
+       "/contact/friction: is not supported yet in a static run"},
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"damping\": { \"model\": \"normal_viscous\", "
        "\"ratio\": 0.1 } }, \"bodies\": [",
@@ -480,14 +480,24 @@ TEST_CASE("a static scene refuses what has no meaning in it", "[scene]") {
        "\"contact\": { \"normal_stiffness\": 1e9, \"pairs\": [ { \"between\": [\"rock\", "
        "\"rock\"], "
        "\"friction\": { \"coefficient\": 0 } } ] }, \"bodies\": [",
-       "/contact/pairs: has no meaning"},
+       "/contact/pairs: is not supported yet in a static run"},
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"surface\": \"element\" }, \"bodies\": [",
-       "/contact/surface: a static run needs \"body\""},
+       "/contact/surface: is not supported yet in a static run"},
   };
   for (const Case& c : cases) {
     const std::string error = error_of(folder.write("broken.json", replaced(good, c.what, c.by)));
     INFO(error);
     CHECK(error.find(c.message) != std::string::npos);
   }
+}
+
+TEST_CASE("the example in the documentation is a scene", "[scene]") {
+  const Folder folder;
+  const std::string document = test::content(test::kSource + "/docs/scene-format.md");
+  const std::string fence = "```jsonc\n";
+  const size_t start = document.find(fence) + fence.size();
+  const std::string example = document.substr(start, document.find("```", start) - start);
+  folder.write("block.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))");
+  CHECK(error_of(folder.write("example.json", example)) == "");
 }

@@ -1,0 +1,181 @@
+#include "apothem/contact/contacts.hpp"
+
+#include <algorithm>
+
+#include "apothem/contact/element_kernel.hpp"
+#include "apothem/contact/outline_kernel.hpp"
+#include "apothem/contact/polygon_kernel.hpp"
+
+namespace apothem {
+
+Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, FrictionTable table,
+                   int threads)
+    : surfaces_(std::move(surfaces)),
+      table_(std::move(table)),
+      tangential_(table_.rough() || law.normal_damping > 0) {
+  std::array<bool, kernel_kinds> needed{};
+  needed[polygon_kernel] = surfaces_.rigid_count() > 0;
+  needed[element_kernel] = surfaces_.elements().size() > 0;
+  needed[outline_kernel] = surfaces_.size() > surfaces_.shapes().size();
+  if (needed[polygon_kernel]) {
+    kernels_[polygon_kernel] =
+        std::make_unique<PolygonKernel>(surfaces_, law, table_, thickness, threads);
+  }
+  if (needed[element_kernel]) {
+    kernels_[element_kernel] =
+        std::make_unique<ElementKernel>(surfaces_, law, table_, thickness, threads);
+  }
+  if (needed[outline_kernel]) {
+    kernels_[outline_kernel] = std::make_unique<OutlineKernel>(
+        surfaces_.outlines(), law.normal_stiffness, thickness, table_, threads);
+  }
+}
+
+bool Contacts::search_if_stale() {
+  if (!search_.stale(surfaces_)) return false;
+  search_.search(surfaces_);
+  ++searches_;
+  for (std::vector<BoxPair>& pairs : pairs_) pairs.clear();
+  for (const BoxPair& pair : search_.pairs()) {
+    pairs_[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
+  }
+  for (size_t k = 0; k < kernels_.size(); ++k) {
+    if (kernels_[k]) kernels_[k]->take(pairs_[k]);
+  }
+  return true;
+}
+
+void Contacts::evaluate() {
+  contacts_.clear();
+  each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
+}
+
+const ContactFault* Contacts::fault() const {
+  for (const auto& kernel : kernels_) {
+    if (!kernel) continue;
+    if (const ContactFault* fault = kernel->fault()) return fault;
+  }
+  return nullptr;
+}
+
+void Contacts::slide(const Kinematics& now, double dt) {
+  if (!tangential_) return;
+  memory_.begin_step();
+  double work = 0;
+  each([&](Kernel& kernel) { work += kernel.slide(now, dt, memory_); });
+  memory_.end_step(work);
+}
+
+void Contacts::add_forces(const ForceViews& forces) {
+  each([&](Kernel& kernel) { kernel.add_forces(forces); });
+}
+
+std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
+  if (contact.kernel != outline_kernel) {
+    return {surfaces_.body(contact.a), surfaces_.body(contact.b)};
+  }
+  const std::vector<BodyIndex>& body = surfaces_.outlines().body;
+  return std::minmax({body[contact.a], body[contact.b]});
+}
+
+double Contacts::energy() const {
+  double sum = 0;
+  each([&](const Kernel& kernel) { sum += kernel.energy(); });
+  return sum + memory_.energy();
+}
+
+double Contacts::damping_loss() const {
+  double sum = 0;
+  each([&](const Kernel& kernel) { sum += kernel.damping_loss(); });
+  return sum;
+}
+
+void Contacts::start_ledger() {
+  memory_.start_ledger();
+  each([](Kernel& kernel) { kernel.start_ledger(); });
+}
+
+size_t Contacts::candidates() const {
+  size_t sum = 0;
+  each([&](const Kernel& kernel) { sum += kernel.candidates(); });
+  return sum;
+}
+
+PairPeak Contacts::largest_penetration() const {
+  const Contact* deepest = nullptr;
+  for (const Contact& c : contacts_) {
+    if (!deepest || c.depth > deepest->depth) deepest = &c;
+  }
+  if (!deepest) return {};
+  const auto [a, b] = bodies(*deepest);
+  return {deepest->depth, a, b};
+}
+
+PairPeak Contacts::largest_force() const {
+  PairPeak largest;
+  each([&](const Kernel& kernel) {
+    const PairPeak peak = kernel.largest_force();
+    if (peak.value > largest.value) largest = peak;
+  });
+  return largest;
+}
+
+NodeRate Contacts::node_rate(std::span<const double> node_mass) const {
+  NodeRate worst;
+  each([&](const Kernel& kernel) {
+    const NodeRate rate = kernel.rate(node_mass);
+    if (rate.value > worst.value) worst = rate;
+  });
+  return worst;
+}
+
+void Contacts::add_node_stiffness(std::span<double> stiffness) const {
+  each([&](const Kernel& kernel) { kernel.add_node_stiffness(stiffness); });
+}
+
+Vec2 Contacts::force_on(BodyIndex body) const {
+  Vec2 sum = Vec2::Zero();
+  each([&](const Kernel& kernel) { sum += kernel.force_on(body); });
+  return sum;
+}
+
+std::vector<double> Contacts::friction_sizes() const {
+  std::vector<double> sizes(static_cast<size_t>(surfaces_.body_count()));
+  each([&](const Kernel& kernel) { kernel.add_friction_sizes(memory_, sizes); });
+  return sizes;
+}
+
+std::vector<ContactRecord> Contacts::records() const {
+  std::vector<ContactRecord> records;
+  each([&](const Kernel& kernel) { kernel.add_records(memory_, records); });
+  return records;
+}
+
+std::vector<SurfaceRecord> Contacts::surface_records() const {
+  std::vector<SurfaceRecord> records;
+  each([&](const Kernel& kernel) { kernel.add_surfaces(records); });
+  return records;
+}
+
+void Contacts::forget_search() {
+  search_.forget();
+  surfaces_.outlines().forget();
+}
+
+void Contacts::refresh(const Kinematics& now) {
+  place_all(now);
+  forget_search();
+  search_if_stale();
+  evaluate();
+  if (!tangential_) return;
+  FrictionMemory memory = memory_;
+  memory.begin_step();
+  each([&](Kernel& kernel) { kernel.refresh(now, memory); });
+}
+
+void Contacts::fields(Archive& archive) {
+  archive("friction", memory_);
+  each([&](Kernel& kernel) { kernel.fields(archive); });
+}
+
+}  // namespace apothem

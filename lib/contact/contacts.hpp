@@ -1,0 +1,112 @@
+// All contact of a scene.
+//
+//   surfaces -> search -> kernels -> contacts -> friction -> forces
+//
+// Surfaces move with their bodies; the search finds pairs that are near each other; a table says
+// which kernel serves a pair (kernel.hpp); the kernels fill one list of contacts; friction follows
+// them with one memory; forces go to the degrees of freedom. A scene has the kernels that its
+// surfaces need and no others.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "apothem/contact/friction_memory.hpp"
+#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/kernel.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/contact/search.hpp"
+#include "apothem/contact/surfaces.hpp"
+
+namespace apothem {
+
+class Contacts {
+ public:
+  /// `thickness` of the model in m.
+  Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, FrictionTable table,
+           int threads);
+  Contacts(const Contacts&) = delete;
+  Contacts& operator=(const Contacts&) = delete;
+
+  /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
+  void place_all(const Kinematics& now) { surfaces_.place_all(now); }
+  void place(const Kinematics& now) { surfaces_.place(now); }
+  /// Renews the candidates if they do not serve any more; true if it did.
+  bool search_if_stale();
+  /// Contacts and normal forces where the surfaces are.
+  void evaluate();
+  /// The first contact out of the range of its method, if there is one.
+  [[nodiscard]] const ContactFault* fault() const;
+  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18: the
+  /// full-step ones would pump energy in). With dt = 0 the springs keep their forces.
+  void slide(const Kinematics& now, double dt);
+  void add_forces(const ForceViews& forces);
+
+  /// Ascending within a kernel.
+  [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+  /// The bodies of a contact.
+  [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
+  [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
+  [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
+
+  /// Elastic energy of contacts and springs, J. Not for every step.
+  [[nodiscard]] double energy() const;
+  [[nodiscard]] double friction_loss() const { return memory_.loss(); }
+  [[nodiscard]] double damping_loss() const;
+  /// What has been dissipated so far does not count.
+  void start_ledger();
+
+  [[nodiscard]] std::int64_t searches() const { return searches_; }
+  [[nodiscard]] size_t candidates() const;
+  /// Of the last step: the largest penetration (m) and normal force (N) of a pair of bodies. The
+  /// force is not known for pairs with a mesh.
+  [[nodiscard]] PairPeak largest_penetration() const;
+  [[nodiscard]] PairPeak largest_force() const;
+
+  [[nodiscard]] NodeRate node_rate(std::span<const double> node_mass) const;
+  void add_node_stiffness(std::span<double> stiffness) const;
+  /// The force on a deformable body, N.
+  [[nodiscard]] Vec2 force_on(BodyIndex body) const;
+  /// The sizes of the friction forces on each body, summed, N.
+  [[nodiscard]] std::vector<double> friction_sizes() const;
+  /// One for each contact patch.
+  [[nodiscard]] std::vector<ContactRecord> records() const;
+  /// The boundary edges that take part in contact with meshes.
+  [[nodiscard]] std::vector<SurfaceRecord> surface_records() const;
+
+  /// Has the next step search anew.
+  void forget_search();
+  /// Finds candidates, contacts and forces again after `fields` has been loaded.
+  void refresh(const Kinematics& now);
+  void fields(Archive& archive);
+
+ private:
+  template <class F>
+  void each(F&& f) const {
+    for (const auto& kernel : kernels_) {
+      if (kernel) f(*kernel);
+    }
+  }
+
+  Surfaces surfaces_;
+  FrictionTable table_;
+  Search search_;
+  std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
+  std::array<std::vector<BoxPair>, kernel_kinds> pairs_;
+  bool tangential_;  // there is friction or damping
+  std::vector<Contact> contacts_;
+  FrictionMemory memory_;
+  std::int64_t searches_ = 0;
+};
+
+/// A vertex of a body that lies farther inside another body than potentials near surfaces reach, so
+/// that contact would not feel it. Pairs of rigid bodies are not looked at: their potentials reach
+/// to their centres.
+struct Buried {
+  BodyIndex inner, outer;
+  Vec2 place;  ///< m
+};
+std::optional<Buried> find_buried(const Outlines& outlines);
+
+}  // namespace apothem

@@ -1,0 +1,314 @@
+#include "apothem/contact/element_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "apothem/contact/groups.hpp"
+#include "apothem/contact/normal_damping.hpp"
+#include "apothem/contact/stiffness.hpp"
+#include "apothem/mesh/locate.hpp"
+
+namespace apothem {
+
+ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
+                             const FrictionTable& table, double thickness, int threads)
+    : surfaces_(surfaces),
+      table_(table),
+      stiffness_(law.normal_stiffness * thickness),
+      thickness_(thickness),
+      distribution_(law.distribution),
+      pairs_(surfaces, threads) {
+  tangential_.clear(static_cast<size_t>(surfaces.body_count()));
+}
+
+std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
+  if (surfaces_.is_rigid(i)) return {};
+  return surfaces_.elements().nodes(i - surfaces_.rigid_count());
+}
+
+bool ElementKernel::convex(SurfaceIndex i) const {
+  return surfaces_.is_rigid(i) || surfaces_.elements().convex(i - surfaces_.rigid_count());
+}
+
+void ElementKernel::evaluate(std::vector<Contact>& contacts) {
+  pairs_.evaluate();
+  normal_.clear(static_cast<size_t>(surfaces_.body_count()));
+  touches_.clear();
+  fault_.reset();
+  for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
+    if (!pairs_[p].touching()) continue;
+    const auto [a, b] = pairs_.pairs()[p];
+    const bool bent = !convex(a) || !convex(b);
+    if (bent || pairs_.too_deep(p)) {
+      const SurfaceIndex at = convex(a) ? (surfaces_.is_rigid(b) ? a : b) : a;
+      fault_ = {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element,
+                surfaces_.body(a), surfaces_.body(b), surfaces_.reference(at),
+                pairs_[p].penetration};
+      return;
+    }
+    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness_));
+    add_touch(p);
+  }
+}
+
+void ElementKernel::add_touch(size_t p) {
+  const PairIntegral& pair = pairs_[p];
+  const auto [a, b] = pairs_.pairs()[p];
+  const Vec2 force = stiffness_ * pair.force;
+  Resultant& on_a = normal_.sums[surfaces_.body(a)];
+  Resultant& on_b = normal_.sums[surfaces_.body(b)];
+  on_a.force += force;
+  on_b.force -= force;
+  if (surfaces_.is_rigid(a)) on_a.moment += stiffness_ * pair.moment_a;
+  if (surfaces_.is_rigid(b)) on_b.moment += stiffness_ * pair.moment_b;
+  const Vec2 offset = surfaces_.between(a, b);
+  const Vec2 point = loading_point(pair);
+  touches_.push_back(
+      {a, b, static_cast<int>(p), force, point, offset, stiffness_ * pair.weight});
+  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
+    find_corners(i, at, of_a_);
+    distribute(of_a_, f, normal_);
+  };
+  if (distribution_ == ForceDistribution::resultant) {
+    add(a, force, point);
+    add(b, -force, point + offset);
+    return;
+  }
+  const PlacedShapes& shapes = surfaces_.shapes();
+  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
+  for (const BoundaryRun& run : runs_) {
+    add(a, stiffness_ * run.force, run.centre);
+    add(b, -stiffness_ * run.force, run.centre + offset);
+  }
+}
+
+// `point`: relative to the reference point. Rigid bodies have no nodes.
+void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const {
+  corners.nodes = nodes(i);
+  const size_t count = corners.nodes.size();
+  if (count == 0) return;
+  const PlacedPotential view = surfaces_.shapes().view(i);
+  corners.ring.resize(count), corners.weights.resize(count);
+  for (size_t k = 0; k < count; ++k) corners.ring[k] = Vec2(view.x[k], view.y[k]) - point;
+  interpolation_weights(corners.ring, corners.weights);
+}
+
+void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& to) {
+  for (size_t k = 0; k < corners.nodes.size(); ++k) {
+    to.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
+  }
+}
+
+// Of the material at a point.
+Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
+                                const Kinematics& now) const {
+  if (surfaces_.is_rigid(i)) {
+    const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
+    return Vec2(v[0], v[1]) + cross(v[2], point);
+  }
+  Vec2 sum = Vec2::Zero();
+  for (size_t k = 0; k < corners.nodes.size(); ++k) {
+    const double* v = &now.node_velocity[2 * static_cast<size_t>(corners.nodes[k])];
+    sum += corners.weights[k] * Vec2(v[0], v[1]);
+  }
+  return sum;
+}
+
+double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+  if (!table_.rough()) return 0;
+  const double power_before = power(now);
+  tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
+  for (Touch& t : touches_) {
+    const Friction& friction = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
+    if (!(friction.coefficient > 0)) continue;
+    const double normal = t.force.norm();
+    if (!(normal > kNoResultant * t.pressure)) continue;
+    const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
+    const Vec2 tangent = tangent_of(t.force);
+    const Vec2 point_b = t.point + t.offset;
+    find_corners(t.a, t.point, of_a_);
+    find_corners(t.b, point_b, of_b_);
+    const Vec2 rate = velocity_at(t.a, t.point, of_a_, now) - velocity_at(t.b, point_b, of_b_, now);
+    const double stiffness = friction.tangential_stiffness * thickness_;
+    const double force =
+        apothem::slide(before.empty() ? 0 : before[0].force, rate.dot(tangent) * dt, stiffness,
+                       friction.coefficient * normal);
+    memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});
+    t.friction = force * tangent;
+    const auto apply = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+      Resultant& sum = tangential_.sums[surfaces_.body(i)];
+      sum.force += f;
+      if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
+      distribute(at, f, tangential_);
+    };
+    apply(t.a, t.friction, t.point, of_a_);
+    apply(t.b, -t.friction, point_b, of_b_);
+  }
+  return dt / 2 * (power_before + power(now));
+}
+
+// Of the friction forces on the bodies, W.
+double ElementKernel::power(const Kinematics& now) const {
+  double sum = 0;
+  for (const auto& [node, force] : tangential_.nodes) {
+    const double* v = &now.node_velocity[2 * static_cast<size_t>(node)];
+    sum += force.x() * v[0] + force.y() * v[1];
+  }
+  for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
+    const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
+    const Resultant& on = tangential_.sums[i];
+    sum += on.force.x() * v[0] + on.force.y() * v[1] + on.moment * v[2];
+  }
+  return sum;
+}
+
+void ElementKernel::add_forces(const ForceViews& forces) {
+  for (const Forces* part : {&normal_, &tangential_}) {
+    for (const auto& [node, force] : part->nodes) {
+      forces.nodes[2 * static_cast<size_t>(node)] += force.x();
+      forces.nodes[2 * static_cast<size_t>(node) + 1] += force.y();
+    }
+  }
+  for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
+    double* f = &forces.rigid[3 * static_cast<size_t>(i)];
+    f[0] += normal_.sums[i].force.x() + tangential_.sums[i].force.x();
+    f[1] += normal_.sums[i].force.y() + tangential_.sums[i].force.y();
+    f[2] += normal_.sums[i].moment + tangential_.sums[i].moment;
+  }
+}
+
+NodeRate ElementKernel::rate(std::span<const double> node_mass) const {
+  const auto bodies = static_cast<size_t>(surfaces_.body_count());
+  std::vector<double> slope(bodies), other(bodies);  // own, and the steepest among the others
+  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
+    double& own = slope[surfaces_.body(i)];
+    own = std::max(own, surfaces_.shapes().slope(i));
+  }
+  for (size_t a = 0; a < bodies; ++a) {
+    for (size_t b = 0; b < bodies; ++b) {
+      if (a != b) other[a] = std::max(other[a], slope[b]);
+    }
+  }
+  NodeRate worst;
+  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+    const double mass = node_mass[node];
+    if (!(mass > 0) || other[body] == 0) continue;
+    const double value = node_rate(stiffness_, slope[body] + other[body], length, mass);
+    if (value > worst.value) worst = {value, body};
+  }
+  return worst;
+}
+
+void ElementKernel::add_node_stiffness(std::span<double> stiffness) const {
+  std::vector<double> slope(stiffness.size());  // 1/r_c + 1/r_t
+  const PlacedShapes& shapes = surfaces_.shapes();
+  for (const auto& [a, b] : pairs_.pairs()) {
+    for (const SurfaceIndex i : {a, b}) {
+      for (const NodeIndex n : nodes(i)) {
+        slope[n] = std::max(slope[n], shapes.slope(a) + shapes.slope(b));
+      }
+    }
+  }
+  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+    stiffness[node] += node_rate(stiffness_, slope[node], length);
+  }
+}
+
+void ElementKernel::add_friction_sizes(const FrictionMemory& /*memory*/,
+                                       std::span<double> of_body) const {
+  for (const Touch& t : touches_) {
+    of_body[surfaces_.body(t.a)] += t.friction.norm();
+    of_body[surfaces_.body(t.b)] += t.friction.norm();
+  }
+}
+
+// What acts on polygons goes to the nearest edge of their boundary.
+void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
+  const size_t begin = records.size();
+  std::vector<size_t> first;  // record of each surface
+  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
+    first.push_back(records.size());
+    const PlacedPotential view = surfaces_.shapes().view(i);
+    const Vec2 place = surfaces_.reference(i);
+    for (int k = 0; k < view.size; ++k) {
+      if (!surfaces_.is_rigid(i) && !surfaces_.elements().outer(i - surfaces_.rigid_count(), k)) {
+        continue;
+      }
+      records.push_back({surfaces_.body(i), place + Vec2(view.x[k], view.y[k]),
+                         place + Vec2(view.x[k + 1], view.y[k + 1])});
+    }
+  }
+  first.push_back(records.size());
+  if (records.size() == begin) return;
+  const auto distance = [](const SurfaceRecord& e, const Vec2& p) {
+    const Vec2 edge = e.to - e.from;
+    const double along = std::clamp((p - e.from).dot(edge) / edge.squaredNorm(), 0., 1.);
+    return (e.from + along * edge - p).norm();
+  };
+  const auto add = [&](SurfaceIndex i, const Vec2& point, const Vec2& force, const Vec2& friction) {
+    const Vec2 place = surfaces_.reference(i) + point;
+    SurfaceRecord* nearest = &records[first[i]];
+    for (size_t r = first[i]; r < first[i + 1]; ++r) {
+      if (distance(records[r], place) < distance(*nearest, place)) nearest = &records[r];
+    }
+    const Vec2 edge = nearest->to - nearest->from;
+    const double area = edge.norm() * thickness_;
+    nearest->pressure += cross(Vec2(edge / edge.norm()), force) / area;
+    nearest->traction += friction.dot(edge) / edge.norm() / area;
+  };
+  for (const Touch& t : touches_) {
+    add(t.a, t.point, t.force, t.friction);
+    add(t.b, t.point + t.offset, -t.force, -t.friction);
+  }
+}
+
+// Pairs of polygons belong together if on both sides the polygons are the same or share a node.
+std::vector<int> ElementKernel::patches() const {
+  const auto adjacent = [&](SurfaceIndex p, SurfaceIndex q) {
+    if (p == q) return true;
+    const std::span<const NodeIndex> of_p = nodes(p), of_q = nodes(q);
+    return std::find_first_of(of_p.begin(), of_p.end(), of_q.begin(), of_q.end()) != of_p.end();
+  };
+  Groups groups(touches_.size());
+  std::vector<std::pair<int, int>> keys;
+  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements there
+  for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
+    const Touch& t = touches_[i];
+    keys.emplace_back(surfaces_.body(t.a), surfaces_.body(t.b));
+    for (const NodeIndex node : nodes(surfaces_.is_rigid(t.a) ? t.b : t.a)) {
+      for (const int j : at_node[node]) {
+        const Touch& u = touches_[j];
+        if (keys[j] == keys[i] && adjacent(t.a, u.a) && adjacent(t.b, u.b)) groups.join(i, j);
+      }
+      at_node[node].push_back(i);
+    }
+  }
+  return groups.numbers(keys);
+}
+
+void ElementKernel::add_records(const FrictionMemory& /*memory*/,
+                                std::vector<ContactRecord>& records) const {
+  const std::vector<int> patch = patches();
+  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
+  std::vector<ContactRecord> found(static_cast<size_t>(count));
+  std::vector<double> weights(found.size());
+  for (size_t i = 0; i < touches_.size(); ++i) {
+    const Touch& t = touches_[i];
+    const PairIntegral& pair = pairs_[static_cast<size_t>(t.pair)];
+    ContactRecord& sum = found[static_cast<size_t>(patch[i])];
+    sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
+    sum.normal += t.force;
+    sum.tangential += t.friction;
+    sum.point += pair.weight * (surfaces_.reference(t.a) + t.point);
+    sum.penetration = std::max(sum.penetration, pair.penetration);
+    sum.phi = std::max(sum.phi, pair.largest_phi);
+    weights[static_cast<size_t>(patch[i])] += pair.weight;
+  }
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (weights[i] > 0) found[i].point /= weights[i];
+  }
+  records.insert(records.end(), found.begin(), found.end());
+}
+
+}  // namespace apothem

@@ -1,0 +1,103 @@
+// Contact of deformable bodies by the potentials of their outermost elements (the paper, Sec. 3;
+// theory: Sec. 5.2), for comparison with OutlineKernel.
+//
+// The pair kernel gives force and loading point of each pair of polygons, shape functions turn them
+// into nodal forces. Those are not the gradient of an energy, and the potentials vanish on borders
+// between elements that are not part of any surface.
+//
+// Friction has one spring for each pair of polygons (Eqs. 10-14): along the tangent of the normal
+// force, it follows the relative velocity of the two materials at the action point, SUM N_i v_i, and
+// goes back to the corners by the same N_i. It keeps linear and angular momentum, and is lost with
+// its pair: every border between elements that slides over another one takes the friction of its
+// neighbours away.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/kernel.hpp"
+#include "apothem/contact/pair_integrals.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
+
+namespace apothem {
+
+class ElementKernel final : public Kernel {
+ public:
+  /// `distribution` of the law: resultant or integrated; `thickness` in m. All must outlive this
+  /// object.
+  ElementKernel(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+                double thickness, int threads);
+
+  void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
+  void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void add_forces(const ForceViews& forces) override;
+
+  [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
+  /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
+  [[nodiscard]] NodeRate rate(std::span<const double> node_mass) const override;
+  void add_node_stiffness(std::span<double> stiffness) const override;
+  [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
+  [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
+    return normal_.sums[body].force + tangential_.sums[body].force;
+  }
+  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
+  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void add_surfaces(std::vector<SurfaceRecord>& records) const override;
+
+ private:
+  /// Two polygons that touch.
+  struct Touch {
+    SurfaceIndex a, b;
+    int pair;
+    Vec2 force;       ///< on a, N
+    Vec2 point;       ///< where it acts, relative to a's reference point, m
+    Vec2 offset;      ///< a's reference point minus b's, m
+    double pressure;  ///< the sum of the sizes of what the force is the sum of, N
+    Vec2 friction = Vec2::Zero();  ///< on a, N
+  };
+  struct NodeForce {
+    NodeIndex node;
+    Vec2 force;
+  };
+  struct Forces {
+    std::vector<NodeForce> nodes;
+    std::vector<Resultant> sums;  ///< of each body
+    void clear(size_t bodies) {
+      nodes.clear();
+      sums.assign(bodies, {});
+    }
+  };
+  /// A point of an element as the weighted mean of its corners.
+  struct Corners {
+    std::span<const NodeIndex> nodes;
+    std::vector<double> weights;
+    std::vector<Vec2> ring;
+  };
+  [[nodiscard]] std::span<const NodeIndex> nodes(SurfaceIndex i) const;
+  [[nodiscard]] bool convex(SurfaceIndex i) const;
+  void find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const;
+  [[nodiscard]] Vec2 velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
+                                 const Kinematics& now) const;
+  static void distribute(const Corners& corners, const Vec2& force, Forces& to);
+  void add_touch(size_t pair);
+  [[nodiscard]] double power(const Kinematics& now) const;
+  [[nodiscard]] std::vector<int> patches() const;
+
+  const Surfaces& surfaces_;
+  const FrictionTable& table_;
+  double stiffness_, thickness_;  // k_n times the thickness, N/m; m
+  ForceDistribution distribution_;
+  PairIntegrals pairs_;
+  std::vector<Touch> touches_;  // ascending
+  Forces normal_, tangential_;
+  std::optional<ContactFault> fault_;
+  PatchWorkspace workspace_;
+  std::vector<BoundaryRun> runs_;
+  std::vector<PairIntegral> patches_;
+  Corners of_a_, of_b_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,30 @@
+#include "apothem/contact/friction_table.hpp"
+
+namespace apothem {
+
+FrictionTable::FrictionTable(const ContactLaw& law, const std::vector<MaterialIndex>& material,
+                             int materials) {
+  std::vector<char> named(material.size());
+  for (const ContactRule& rule : law.rules) {
+    for (const ContactRule::Party& party : rule.between) {
+      if (party.is_body) named[party.index] = 1;
+    }
+  }
+  std::vector<BodyIndex> first;  // of each kind
+  std::vector<int> of_material(materials, -1);
+  for (BodyIndex a = 0; a < static_cast<BodyIndex>(material.size()); ++a) {
+    int& known = of_material[material[a]];
+    kind_.push_back(named[a] || known < 0 ? static_cast<int>(first.size()) : known);
+    if (!named[a]) known = kind_.back();
+    if (kind_.back() == static_cast<int>(first.size())) first.push_back(a);
+  }
+  kinds_ = first.size();
+  for (const BodyIndex a : first) {
+    for (const BodyIndex b : first) {
+      table_.push_back(friction_between(law, a, material[a], b, material[b]));
+      rough_ = rough_ || table_.back().coefficient > 0;
+    }
+  }
+}
+
+}  // namespace apothem

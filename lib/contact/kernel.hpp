@@ -1,0 +1,101 @@
+// A kernel finds the contacts of some pairs of surfaces and the forces in them. Kernels keep their
+// own mathematics; what surrounds them exists once, in Contacts.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "apothem/contact/contact.hpp"
+#include "apothem/contact/friction_memory.hpp"
+#include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/surfaces.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+
+namespace apothem {
+
+/// Two bodies that are deeper in each other than their potentials reach, so that the forces are not
+/// to be trusted, or an element out of the range of its method.
+struct ContactFault {
+  enum class Kind { singular_area, centre, collar, element, not_convex, self_contact };
+  Kind kind;
+  BodyIndex a, b;       ///< a is in b where that makes a difference
+  Vec2 place = Vec2::Zero();  ///< m
+  double depth = 0;     ///< m
+  double limit = 0;     ///< m
+};
+
+/// A largest value and the two bodies it is of.
+struct PairPeak {
+  double value = 0;
+  BodyIndex a = -1, b = -1;
+};
+
+/// Bound of the frequency of the nodes, w^2 in 1/s^2.
+struct NodeRate {
+  double value = 0;
+  BodyIndex body = -1;
+};
+
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+
+  /// After a search: the pairs that this kernel serves, ascending.
+  virtual void take(std::span<const BoxPair> pairs) = 0;
+  /// Finds the contacts of its pairs and the normal forces in them; appends the contacts in
+  /// ascending order. The same bits for any number of threads. No allocation unless there are more
+  /// contacts than ever before.
+  virtual void evaluate(std::vector<Contact>& contacts) = 0;
+  /// The worst of its contacts that is out of the range of its method, if there is one.
+  [[nodiscard]] virtual const ContactFault* fault() const = 0;
+  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt = 0
+  /// the springs keep their forces. Returns the work of friction on the bodies since the last call,
+  /// J.
+  virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
+  /// Finds the forces of friction again after the memory has been restored, if `fields` does not
+  /// hold them.
+  virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
+  /// Adds all forces, normal ones first.
+  virtual void add_forces(const ForceViews& forces) = 0;
+  /// Of the last call: the largest normal force of a pair of bodies. Not known to all kernels.
+  [[nodiscard]] virtual PairPeak largest_force() const { return {}; }
+
+  /// Elastic energy of the normal contact, J. Not for every step.
+  [[nodiscard]] virtual double energy() const = 0;
+  /// Energy dissipated by contact damping since the start, J.
+  [[nodiscard]] virtual double damping_loss() const { return 0; }
+  virtual void start_ledger() {}
+  [[nodiscard]] virtual NodeRate rate(std::span<const double> /*node_mass*/) const { return {}; }
+  /// Adds to each node near another body the same bound as a stiffness, N/m.
+  virtual void add_node_stiffness(std::span<double> /*stiffness*/) const {}
+
+  [[nodiscard]] virtual size_t candidates() const = 0;
+  /// The force on a deformable body, N.
+  [[nodiscard]] virtual Vec2 force_on(BodyIndex /*body*/) const { return Vec2::Zero(); }
+  /// Adds the sizes of the friction forces on each body, N.
+  virtual void add_friction_sizes(const FrictionMemory& memory,
+                                  std::span<double> of_body) const = 0;
+  /// Appends one record for each contact patch; ascending pairs of bodies.
+  virtual void add_records(const FrictionMemory& memory,
+                           std::vector<ContactRecord>& records) const = 0;
+  /// Appends the boundary edges of its surfaces.
+  virtual void add_surfaces(std::vector<SurfaceRecord>& /*records*/) const {}
+
+  virtual void fields(Archive& /*archive*/) {}
+};
+
+/// Which kernel serves a pair of surfaces.
+inline constexpr std::array<std::array<KernelKind, 3>, 3> kKernelOf{{
+    // polygon         element         outline
+    {polygon_kernel, element_kernel, outline_kernel},  // polygon
+    {element_kernel, element_kernel, kernel_kinds},    // element
+    {outline_kernel, kernel_kinds, outline_kernel},    // outline
+}};
+
+inline KernelKind kernel_of(SurfaceKind a, SurfaceKind b) {
+  return kKernelOf[static_cast<size_t>(a)][static_cast<size_t>(b)];
+}
+
+}  // namespace apothem

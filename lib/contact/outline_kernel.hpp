@@ -1,0 +1,76 @@
+// Contact of deformable bodies with each other and with rigid ones: nodal forces that are the
+// gradient of an energy, from the collars of the deformed outlines (theory: Sec. 5.2).
+//
+//   E = k_n SUM over pairs of bodies  INT over the overlap  (h_a/r_a + h_b/r_b) dA
+//
+// with the depth h below each body's own surface. Every term is a sum over (edge of one outline) x
+// (face of the other's collar); only the vertices of the outlines get forces.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apothem/contact/kernel.hpp"
+#include "apothem/contact/outline_friction.hpp"
+#include "apothem/execution/parallel.hpp"
+
+namespace apothem {
+
+class OutlineKernel final : public Kernel {
+ public:
+  /// `stiffness`: k_n in Pa; `thickness` in m. All must outlive this object.
+  OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
+                const FrictionTable& table, int threads);
+
+  void take(std::span<const BoxPair> pairs) override;
+  void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void add_forces(const ForceViews& forces) override;
+
+  [[nodiscard]] double energy() const override;
+  /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (theory: Sec. 5.4) for nodes of
+  /// these masses in kg (0 where held). Needs placed outlines.
+  [[nodiscard]] NodeRate rate(std::span<const double> node_mass) const override;
+  void add_node_stiffness(std::span<double> stiffness) const override;
+  [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
+  [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
+  /// Normal contact and friction on a body; without friction.
+  [[nodiscard]] Resultant resultant(BodyIndex body) const;
+  [[nodiscard]] Resultant normal_resultant(BodyIndex body) const { return sum(body, fx_, fy_); }
+  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
+  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void add_surfaces(std::vector<SurfaceRecord>& records) const override;
+
+  [[nodiscard]] const std::vector<EdgeFace>& candidates_list() const { return candidates_; }
+  [[nodiscard]] const std::vector<EdgeFaceContact>& contacts() const { return contacts_; }
+
+ private:
+  void find_candidates(BodyIndex a, BodyIndex b);
+  void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
+                   std::vector<Contact>& contacts);
+  void find_fault();
+  void note_depth(double share, int edge, int face, double u);
+  [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
+                              std::span<const double> fy) const;
+  /// The number of each contact's patch; ascending pairs of bodies. Not for every step.
+  [[nodiscard]] std::vector<int> patches() const;
+
+  const Outlines& outlines_;
+  double stiffness_, thickness_;  // k_n times the thickness, N/m; m
+  Threads threads_;
+  std::optional<OutlineFriction> friction_;  // only where there is friction
+  std::vector<EdgeFace> candidates_;
+  std::vector<int> near_edges_, near_faces_;
+  std::vector<CollarPiece<double>> pieces_;  // of the candidates, with several threads
+  std::vector<char> met_;
+  std::vector<EdgeFaceContact> contacts_;
+  std::vector<double> slope_;     // k_n thickness / r of each edge's face, N/m^2
+  std::vector<double> ends_;      // force of each edge on its two ends, along its inward normal, N
+  std::vector<double> areas_;     // of the overlap over each edge, m^2
+  std::vector<double> fx_, fy_;   // normal forces on the vertices, N
+  double deepest_ = 0, worst_ = 0;  // depth in m; largest share of the depth of a collar
+  std::optional<ContactFault> fault_;
+};
+
+}  // namespace apothem

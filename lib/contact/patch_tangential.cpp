@@ -1,0 +1,259 @@
+#include "apothem/contact/patch_tangential.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace apothem {
+namespace {
+
+// Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
+// length: twice the worst of a million pairs (docs/verification.md).
+constexpr double kForceError = 1.2;
+
+}  // namespace
+
+// What matching patches needs of a run; the next step makes the rest anew.
+static void describe(Archive& archive, BoundaryRun& run) {
+  archive("of_a", run.of_a)("edge", run.edge)("patch", run.patch)("from", run.from)("to", run.to)(
+      "length", run.length);
+}
+
+PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law,
+                                 const FrictionTable& table, double thickness)
+    : surfaces_(surfaces), law_(law), table_(table), thickness_(thickness) {}
+
+double PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
+                              const Kinematics& now, double dt, FrictionMemory& memory) {
+  double work = dt / 2 * power(now);
+  const double damped_before = damping_loss_;
+  std::swap(now_, before_);
+  now_.clear();
+  place_ = {};
+  forces_.clear();
+  for (const int pair : touching) step_pair(pairs, static_cast<size_t>(pair), now, dt, memory);
+  work += dt / 2 * power(now);
+  // Damping keeps a ledger of its own.
+  return table_.rough() ? work + (damping_loss_ - damped_before) : 0;
+}
+
+void PatchTangential::fields(Archive& archive) {
+  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers)("forces", forces_)(
+      "damping_loss", damping_loss_);
+}
+
+// Of all forces on the bodies, W.
+double PatchTangential::power(const Kinematics& now) const {
+  double sum = 0;
+  for (const TangentialForce& f : forces_) {
+    sum += PairMotion(surfaces_, now, f.a, f.b).power(f.force, f.moment_a, f.moment_b);
+  }
+  return sum;
+}
+
+// Leaves place_ at the pair, if it was there before.
+const PatchTangential::PairHistory* PatchTangential::find_before(RigidIndex a, RigidIndex b) {
+  while (place_.pair < before_.pairs.size()) {
+    const PairHistory& pair = before_.pairs[place_.pair];
+    if (std::pair(pair.a, pair.b) == std::pair(a, b)) return &pair;
+    if (std::pair(pair.a, pair.b) > std::pair(a, b)) return nullptr;
+    ++place_.pair;
+    place_.run += static_cast<size_t>(pair.runs);
+    place_.damper += static_cast<size_t>(pair.patches);
+  }
+  return nullptr;
+}
+
+void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now,
+                                double dt, FrictionMemory& memory) {
+  const auto [a, b] = pairs.pairs()[pair];
+  const Friction& friction = table_.between(a, b);
+  const bool rough = friction.coefficient > 0, damped = law_.normal_damping > 0;
+  if (!rough && !damped) return;
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const PairMotion motion(surfaces_, now, a, b);
+  runs_.clear();
+  if (edgewise() || !shapes.view(a).convex() || !shapes.view(b).convex()) {
+    contact_patches(shapes.view(a), shapes.view(b), motion.between, workspace_, runs_, patches_);
+  } else {
+    patches_.assign(1, pairs[pair]);
+  }
+  const PairHistory* const before = find_before(a, b);
+  const std::span<const Spring> springs = memory.before(polygon_kernel, a, b);
+  find_shares(before);
+  if (damped) {
+    inherit_dampers(std::span<const PatchDamper>(before_.dampers)
+                        .subspan(before ? place_.damper : 0, ancestors_));
+  }
+  if (rough && !edgewise()) inherit_springs(springs);
+  TangentialForce total{.a = a, .b = b};
+  for (size_t j = 0; j < patches_.size(); ++j) {
+    const PairIntegral& patch = patches_[j];
+    if (damped) {
+      PatchDamper& d = dampers_[j];
+      damping_loss_ += damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a,
+                            b, patch, motion, dt, d);
+      total.add(d.damping, d.damping_a, d.damping_b);
+    }
+    if (!rough || edgewise()) continue;
+    const double error =
+        kForceError * std::numeric_limits<double>::epsilon() *
+        (shapes.radius(a) + shapes.radius(b)) *
+        (patch.own_length_a * shapes.slope(b) + patch.own_length_b * shapes.slope(a));
+    resultant(motion, dt, friction, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
+              springs_[j], total, memory);
+  }
+  if (rough && edgewise()) {
+    per_edge(motion, dt, friction, {polygon_kernel, a, b, 0}, springs, total, memory);
+  }
+  if (damped) now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
+  now_.runs.insert(now_.runs.end(), runs_.begin(), runs_.end());
+  now_.pairs.push_back({a, b, static_cast<int>(patches_.size()), static_cast<int>(runs_.size())});
+  forces_.push_back(total);
+}
+
+// What the patches before hand down to those of now: everything to the only heir, otherwise in
+// proportion to the normal forces of those that share boundary with it. Forces are neither invented
+// nor lost; the elastic energy that a merger of springs leaves over is dissipated.
+void PatchTangential::find_shares(const PairHistory* before) {
+  const size_t heirs = patches_.size();
+  ancestors_ = before ? static_cast<size_t>(before->patches) : 0;
+  if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return;
+  shared_length({before_.runs.data() + place_.run, static_cast<size_t>(before->runs)},
+                before->patches, runs_, static_cast<int>(heirs), shares_);
+  for (size_t i = 0; i < ancestors_; ++i) {
+    double* const share = &shares_[i * heirs];
+    double sum = 0;
+    for (size_t j = 0; j < heirs; ++j) {
+      share[j] = share[j] > 0 ? patches_[j].force.norm() : 0;
+      sum += share[j];
+    }
+    for (size_t j = 0; j < heirs; ++j) share[j] = sum > 0 ? share[j] / sum : 0;
+  }
+}
+
+void PatchTangential::inherit_springs(std::span<const Spring> before) {
+  springs_.assign(patches_.size(), {});
+  if (before.empty()) return;
+  if (before.size() == 1 && springs_.size() == 1) {
+    springs_[0] = before[0];
+    return;
+  }
+  for (size_t i = 0; i < before.size(); ++i) {
+    for (size_t j = 0; j < springs_.size(); ++j) {
+      const double share = shares_[i * springs_.size() + j];
+      if (!(share > 0)) continue;
+      Vec2 tangent = tangent_of(patches_[j].force);
+      if (tangent == Vec2::Zero()) tangent = before[i].tangent;
+      springs_[j].force += share * before[i].force * tangent.dot(before[i].tangent);
+    }
+  }
+}
+
+void PatchTangential::inherit_dampers(std::span<const PatchDamper> before) {
+  dampers_.assign(patches_.size(), {});
+  if (before.empty()) return;
+  if (before.size() == 1 && dampers_.size() == 1) {
+    dampers_[0] = before[0];
+    return;
+  }
+  for (size_t i = 0; i < before.size(); ++i) {
+    for (size_t j = 0; j < dampers_.size(); ++j) {
+      const double share = shares_[i * dampers_.size() + j];
+      if (share > 0) dampers_[j].add(share, before[i]);
+    }
+  }
+}
+
+// The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
+// number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
+// slip against b: the sign of Eq. 12 is a misprint.
+void PatchTangential::resultant(const PairMotion& motion, double dt, const Friction& friction,
+                                SpringKey key, const PairIntegral& patch, double force_error,
+                                Spring& spring, TangentialForce& total,
+                                FrictionMemory& memory) const {
+  spring.key = key;
+  spring.stiffness = friction.tangential_stiffness * thickness_;
+  const double size = patch.force.norm();
+  if (!(size > kNoResultant * patch.weight)) {
+    spring.force = 0;
+    memory.keep(spring);
+    return;
+  }
+  const Vec2 tangent = tangent_of(patch.force);
+  const Vec2 point = loading_point(patch);
+  Vec2 normal = law_.normal_stiffness * thickness_ * patch.force;
+  if (law_.normal_damping > 0) normal += dampers_[static_cast<size_t>(key.part)].damping;
+  const Vec2 velocity = motion.slip(point);
+  double slip = velocity.dot(tangent);
+  // The tangent is only as exact as the force: what it makes of an approach is no slip.
+  if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
+  spring.force =
+      apothem::slide(spring.force, slip * dt, spring.stiffness, friction.coefficient * normal.norm());
+  spring.tangent = tangent;
+  memory.keep(spring);
+  const Vec2 force = spring.force * tangent;
+  total.add(force, cross(point, force), -cross(point + motion.between, force));
+  total.stiffness += spring.stiffness;
+  total.arm = std::max({total.arm, std::abs(cross(point, tangent)),
+                        std::abs(cross(point + motion.between, tangent))});
+}
+
+// The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
+// against the motion meet a false tangential force.
+void PatchTangential::per_edge(const PairMotion& motion, double dt, const Friction& friction,
+                               SpringKey key, std::span<const Spring> before,
+                               TangentialForce& total, FrictionMemory& memory) {
+  const double stiffness = friction.tangential_stiffness * thickness_;
+  const int edges_of_a = surfaces_.shapes().view(key.a).size;
+  auto old = before.begin();
+  for (const BoundaryRun& run : runs_) {
+    key.part = run.of_a ? run.edge : edges_of_a + run.edge;
+    while (old != before.end() && old->key < key) ++old;
+    double spring = 0;
+    if (old != before.end() && old->key == key) spring = (old++)->force;
+    const Vec2 tangent = tangent_of(run.force);
+    spring = apothem::slide(
+        spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
+        friction.coefficient * law_.normal_stiffness * thickness_ * run.force.norm());
+    memory.keep({key, spring, stiffness, tangent});
+    const Vec2 force = spring * tangent;
+    total.add(force, cross(run.centre, force), -cross(run.centre + motion.between, force));
+    total.stiffness += stiffness;
+    total.arm = std::max({total.arm, std::abs(cross(run.centre, tangent)),
+                          std::abs(cross(run.centre + motion.between, tangent))});
+  }
+}
+
+PatchTangential::PatchForces PatchTangential::report(const PairIntegrals& pairs, size_t pair,
+                                                     const FrictionMemory& memory,
+                                                     Cursor& cursor) const {
+  const auto [a, b] = pairs.pairs()[pair];
+  const auto order = [](const PairHistory& p) { return std::pair(p.a, p.b); };
+  while (cursor.pair < now_.pairs.size() && order(now_.pairs[cursor.pair]) < std::pair(a, b)) {
+    cursor.damper += static_cast<size_t>(now_.pairs[cursor.pair++].patches);
+  }
+  const bool known =
+      cursor.pair < now_.pairs.size() && order(now_.pairs[cursor.pair]) == std::pair(a, b);
+  const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
+  PatchForces result;
+  std::vector<BoundaryRun> runs;
+  const PlacedPotential view_a = surfaces_.shapes().view(a), view_b = surfaces_.shapes().view(b);
+  if (view_a.convex() && view_b.convex() && !(edgewise() && !springs.empty())) {
+    result.patches.assign(1, pairs[pair]);
+  } else {
+    PatchWorkspace workspace;
+    contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, result.patches);
+  }
+  result.tangential.assign(result.patches.size(), Vec2::Zero());
+  for (size_t j = 0; known && law_.normal_damping > 0 && j < result.patches.size(); ++j) {
+    result.tangential[j] += now_.dampers[cursor.damper + j].damping;
+  }
+  size_t run = 0;
+  for (const Spring& spring : springs) {
+    const auto patch = static_cast<size_t>(edgewise() ? runs[run++].patch : spring.key.part);
+    result.tangential[patch] += spring.force * spring.tangent;
+  }
+  return result;
+}
+
+}  // namespace apothem

@@ -1,0 +1,116 @@
+// Friction and normal damping between polygons of rigid bodies: the forces beside the normal ones,
+// by contact patches (theory: Sec. 3). Only scenes that ask for them have this.
+//
+//   resultant   one spring for each patch, at right angles to its normal force (Eqs. 10-14)
+//   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
+#pragma once
+
+#include <vector>
+
+#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/contact/normal_damping.hpp"
+#include "apothem/contact/pair_integrals.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
+
+namespace apothem {
+
+/// Friction and damping of one pair; moments about the mass centres.
+struct TangentialForce {
+  RigidIndex a, b;
+  Vec2 force = Vec2::Zero();  ///< on a, N
+  double moment_a = 0, moment_b = 0;  ///< N m
+  double stiffness = 0;  ///< of the springs, N/m
+  double arm = 0;        ///< largest lever of a spring about either mass centre, m
+
+  void add(const Vec2& on_a, double about_a, double about_b) {
+    force += on_a;
+    moment_a += about_a;
+    moment_b += about_b;
+  }
+  void fields(Archive& archive) {
+    archive("a", a)("b", b)("force", force)("moment_a", moment_a)("moment_b", moment_b);
+  }
+};
+
+class PatchTangential {
+ public:
+  /// `thickness` in m.
+  PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+                  double thickness);
+
+  /// One step further: see Kernel::slide. `touching`: the pairs in contact.
+  double slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
+               double dt, FrictionMemory& memory);
+
+  /// Of the touching pairs with friction or damping, ascending.
+  [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
+  [[nodiscard]] double damping_loss() const { return damping_loss_; }
+  void start_ledger() { damping_loss_ = 0; }
+
+  /// The patches of a pair with what acts in them, from the springs kept in this step.
+  struct PatchForces {
+    std::vector<PairIntegral> patches;
+    std::vector<Vec2> tangential;  ///< N
+  };
+  /// Where the next report looks first: pairs must be asked for in ascending order.
+  struct Cursor {
+    size_t pair = 0, damper = 0;
+  };
+  [[nodiscard]] PatchForces report(const PairIntegrals& pairs, size_t pair,
+                                   const FrictionMemory& memory, Cursor& cursor) const;
+
+  void fields(Archive& archive);
+
+ private:
+  /// What a pair had in the step before; the lists of runs and dampers follow in this order.
+  struct PairHistory {
+    RigidIndex a, b;
+    int patches, runs;
+    void fields(Archive& archive) {
+      archive("a", a)("b", b)("patches", patches)("runs", runs);
+    }
+  };
+  struct History {
+    std::vector<PairHistory> pairs;  // ascending
+    std::vector<BoundaryRun> runs;   // of pairs that are not both convex, or of per_edge
+    std::vector<PatchDamper> dampers;
+    void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
+  };
+  struct Place {  // in a History
+    size_t pair = 0, run = 0, damper = 0;
+  };
+
+  [[nodiscard]] bool edgewise() const { return law_.friction_law == FrictionLaw::per_edge; }
+  [[nodiscard]] const PairHistory* find_before(RigidIndex a, RigidIndex b);
+  void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt,
+                 FrictionMemory& memory);
+  void find_shares(const PairHistory* before);
+  void inherit_springs(std::span<const Spring> before);
+  void inherit_dampers(std::span<const PatchDamper> before);
+  void resultant(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
+                 const PairIntegral& patch, double force_error, Spring& spring,
+                 TangentialForce& total, FrictionMemory& memory) const;
+  void per_edge(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
+                std::span<const Spring> before, TangentialForce& total, FrictionMemory& memory);
+  [[nodiscard]] double power(const Kinematics& now) const;
+
+  const Surfaces& surfaces_;
+  const ContactLaw law_;
+  const FrictionTable& table_;
+  double thickness_;
+  History now_, before_;
+  Place place_;  // of the next pair of the step before
+  std::vector<TangentialForce> forces_;
+  double damping_loss_ = 0;
+  // Of the pair at hand; kept for their memory.
+  PatchWorkspace workspace_;
+  std::vector<BoundaryRun> runs_;
+  std::vector<PairIntegral> patches_;
+  size_t ancestors_ = 0;
+  std::vector<double> shares_;  // of each ancestor that goes to each patch of now
+  std::vector<Spring> springs_;
+  std::vector<PatchDamper> dampers_;
+};
+
+}  // namespace apothem

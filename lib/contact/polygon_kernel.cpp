@@ -1,0 +1,147 @@
+#include "apothem/contact/polygon_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/contact/stiffness.hpp"
+
+namespace apothem {
+
+PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
+                             const FrictionTable& table, double thickness, int threads)
+    : surfaces_(surfaces),
+      stiffness_(law.normal_stiffness * thickness),
+      pairs_(surfaces, threads) {
+  if (table.rough() || law.normal_damping > 0) {
+    tangential_.emplace(surfaces, law, table, thickness);
+  }
+}
+
+void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
+  pairs_.evaluate();
+  touching_.clear();
+  contact_stiffness_.clear();
+  fault_.reset();
+  for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
+    const PairIntegral& pair = pairs_[p];
+    if (!pair.touching()) continue;
+    contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, stiffness_));
+    touching_.push_back(static_cast<int>(p));
+    contact_stiffness_.push_back(contacts.back().stiffness);
+    if (!fault_ && pairs_.too_deep(p)) {
+      const auto [a, b] = pairs_.pairs()[p];
+      fault_ = {pair.largest_phi > kDeepestPhi ? ContactFault::Kind::singular_area
+                                               : ContactFault::Kind::centre,
+                a, b, surfaces_.reference(a) + loading_point(pair), pair.penetration};
+    }
+  }
+}
+
+double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+  return tangential_ ? tangential_->slide(pairs_, touching_, now, dt, memory) : 0;
+}
+
+void PolygonKernel::add_forces(const ForceViews& forces) {
+  add_normal(forces);
+  if (tangential_) add_tangential(forces);
+}
+
+bool PolygonKernel::both_respond(RigidIndex a, RigidIndex b) const {
+  const std::array<double, 3>&u = surfaces_.rigid(a).inverse_mass,
+  &w = surfaces_.rigid(b).inverse_mass;
+  return u[0] + u[2] > 0 && w[0] + w[2] > 0;
+}
+
+void PolygonKernel::add_normal(const ForceViews& forces) {
+  largest_force_ = {};
+  for (size_t i = 0; i < touching_.size(); ++i) {
+    const auto p = static_cast<size_t>(touching_[i]);
+    const PairIntegral& pair = pairs_[p];
+    const auto [a, b] = pairs_.pairs()[p];
+    double* fa = &forces.rigid[3 * static_cast<size_t>(a)];
+    double* fb = &forces.rigid[3 * static_cast<size_t>(b)];
+    const double fx = stiffness_ * pair.force.x();
+    const double fy = stiffness_ * pair.force.y();
+    fa[0] += fx;
+    fa[1] += fy;
+    fa[2] += stiffness_ * pair.moment_a;
+    fb[0] -= fx;
+    fb[1] -= fy;
+    fb[2] += stiffness_ * pair.moment_b;
+    const double force = std::sqrt(fx * fx + fy * fy);
+    if (!(force > 0)) continue;
+    if (force > largest_force_.value) largest_force_ = {force, a, b};
+    // No lever is longer than the body; where pushes from two sides cancel, M/F says nothing.
+    const auto arm = [&](RigidIndex body, double moment) {
+      return std::min(std::abs(stiffness_ * moment) / force, surfaces_.shapes().radius(body));
+    };
+    const double k = (both_respond(a, b) ? 2 : 1) * contact_stiffness_[i];
+    forces.lambda[a] += k * strip_mobility(surfaces_.rigid(a).inverse_mass, arm(a, pair.moment_a),
+                                           pair.breadth);
+    forces.lambda[b] += k * strip_mobility(surfaces_.rigid(b).inverse_mass, arm(b, pair.moment_b),
+                                           pair.breadth);
+  }
+}
+
+void PolygonKernel::add_tangential(const ForceViews& forces) const {
+  for (const TangentialForce& t : tangential_->forces()) {
+    double* fa = &forces.rigid[3 * static_cast<size_t>(t.a)];
+    double* fb = &forces.rigid[3 * static_cast<size_t>(t.b)];
+    fa[0] += t.force.x();
+    fa[1] += t.force.y();
+    fa[2] += t.moment_a;
+    fb[0] -= t.force.x();
+    fb[1] -= t.force.y();
+    fb[2] += t.moment_b;
+    const double k = (both_respond(t.a, t.b) ? 2 : 1) * t.stiffness;
+    for (const RigidIndex i : {t.a, t.b}) {
+      forces.lambda[i] += k * strip_mobility(surfaces_.rigid(i).inverse_mass, t.arm, 0);
+    }
+  }
+}
+
+void PolygonKernel::add_friction_sizes(const FrictionMemory& memory,
+                                       std::span<double> of_body) const {
+  const std::span<const Spring> springs = memory.springs_of(polygon_kernel);
+  for (size_t i = 0; i < springs.size();) {
+    const SpringKey pair = springs[i].key;
+    double size = 0;
+    for (; i < springs.size() && springs[i].key.a == pair.a && springs[i].key.b == pair.b; ++i) {
+      size += std::abs(springs[i].force);
+    }
+    of_body[pair.a] += size;
+    of_body[pair.b] += size;
+  }
+}
+
+void PolygonKernel::add_records(const FrictionMemory& memory,
+                                std::vector<ContactRecord>& records) const {
+  PatchTangential::Cursor cursor;
+  PatchWorkspace workspace;
+  std::vector<BoundaryRun> runs;
+  for (const int touching : touching_) {
+    const auto p = static_cast<size_t>(touching);
+    const auto [a, b] = pairs_.pairs()[p];
+    PatchTangential::PatchForces found;
+    if (tangential_) {
+      found = tangential_->report(pairs_, p, memory, cursor);
+    } else {
+      const PlacedPotential view_a = surfaces_.shapes().view(a);
+      const PlacedPotential view_b = surfaces_.shapes().view(b);
+      if (view_a.convex() && view_b.convex()) {
+        found.patches.assign(1, pairs_[p]);
+      } else {
+        contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, found.patches);
+      }
+      found.tangential.assign(found.patches.size(), Vec2::Zero());
+    }
+    for (size_t j = 0; j < found.patches.size(); ++j) {
+      const PairIntegral& patch = found.patches[j];
+      records.push_back({a, b, surfaces_.reference(a) + loading_point(patch),
+                         stiffness_ * patch.force, found.tangential[j], patch.penetration,
+                         patch.largest_phi});
+    }
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,56 @@
+// Contact of rigid bodies: the potentials of their whole polygons, by the pair kernel.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apothem/contact/kernel.hpp"
+#include "apothem/contact/pair_integrals.hpp"
+#include "apothem/contact/patch_tangential.hpp"
+
+namespace apothem {
+
+class PolygonKernel final : public Kernel {
+ public:
+  /// `thickness` in m. All must outlive this object.
+  PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+                double thickness, int threads);
+
+  void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
+  void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
+  void add_forces(const ForceViews& forces) override;
+  [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
+
+  [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
+  [[nodiscard]] double damping_loss() const override {
+    return tangential_ ? tangential_->damping_loss() : 0;
+  }
+  void start_ledger() override {
+    if (tangential_) tangential_->start_ledger();
+  }
+  [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
+  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
+  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void fields(Archive& archive) override {
+    if (tangential_) archive("tangential", *tangential_);
+  }
+
+ private:
+  void add_normal(const ForceViews& forces);
+  void add_tangential(const ForceViews& forces) const;
+  [[nodiscard]] bool both_respond(RigidIndex a, RigidIndex b) const;
+
+  const Surfaces& surfaces_;
+  double stiffness_;  // k_n times the thickness, N/m
+  PairIntegrals pairs_;
+  std::optional<PatchTangential> tangential_;  // only where there is friction or damping
+  std::vector<int> touching_;                  // pairs
+  std::vector<double> contact_stiffness_;      // of these, N/m
+  std::optional<ContactFault> fault_;
+  PairPeak largest_force_;
+};
+
+}  // namespace apothem

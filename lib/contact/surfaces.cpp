@@ -1,0 +1,67 @@
+#include "apothem/contact/surfaces.hpp"
+
+#include <algorithm>
+
+namespace apothem {
+
+void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
+  const SurfaceIndex i = shapes_.add(potential);
+  kinds_.push_back(SurfaceKind::polygon);
+  bodies_.push_back(body_count_++);
+  pose_.push_back({});
+  if (rigid.moves) moving_.push_back(i);
+  rigid_.push_back(rigid);
+  if (collars_) outlines_.add_rigid(potential.vertices, i, 1 / potential.steepest);
+}
+
+void Surfaces::add_outline(const Mesh& mesh, NodeIndex first_node,
+                           std::optional<double> reference) {
+  outlines_.add_mesh(mesh, boundary(mesh), first_node, reference);
+  kinds_.push_back(SurfaceKind::outline);
+  bodies_.push_back(body_count_++);
+}
+
+void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice) {
+  elements_.add(mesh, boundary(mesh), first_node, body_count_, choice, shapes_);
+  kinds_.resize(shapes_.size(), SurfaceKind::element);
+  bodies_.resize(shapes_.size(), body_count_);
+  pose_.resize(shapes_.size());
+  ++body_count_;
+}
+
+bool Surfaces::responsive(SurfaceIndex i) const {
+  if (!is_rigid(i)) return true;
+  const std::array<double, 3>& w = rigid_[i].inverse_mass;
+  return w[0] + w[1] + w[2] > 0;
+}
+
+double Surfaces::inradius(SurfaceIndex i) const {
+  return is_rigid(i) ? rigid_[i].inradius : 1 / shapes_.slope(i);
+}
+
+void Surfaces::place_polygon(RigidIndex i, const Kinematics& now) {
+  const double* x = &now.pose[3 * static_cast<size_t>(i)];
+  if (0 * x[0] + 0 * x[1] + 0 * x[2] != 0) throw NotFinite(i);
+  pose_[i] = {x[0], x[1], x[2]};
+  shapes_.place(i, x[0], x[1], x[2]);
+}
+
+void Surfaces::place_meshes(const Kinematics& now) {
+  if (elements_.size() > 0) {
+    const auto first = static_cast<size_t>(rigid_count());
+    elements_.place(now, rigid_count(), shapes_, std::span(pose_).subspan(first));
+  }
+  if (has_outlines()) outlines_.place(now, shapes_);
+}
+
+void Surfaces::place_all(const Kinematics& now) {
+  for (RigidIndex i = 0; i < rigid_count(); ++i) place_polygon(i, now);
+  place_meshes(now);
+}
+
+void Surfaces::place(const Kinematics& now) {
+  for (const RigidIndex i : moving_) place_polygon(i, now);
+  place_meshes(now);
+}
+
+}  // namespace apothem

@@ -1,0 +1,271 @@
+#include "apothem/dynamics/contact_term.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/dynamics/fold_watch.hpp"
+#include "apothem/dynamics/unstable.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kPolygonSkin = 0.1;  // of the mean size of rigid bodies
+constexpr double kMeshSkin = 0.25;    // of the shortest reference length
+
+double polygon_skin(const Model& model) {
+  double area = 0;
+  int count = 0;
+  for (const RigidBody& body : model.bodies) {
+    if (!body.can_move()) continue;
+    area += body.area;
+    ++count;
+  }
+  return count > 0 ? kPolygonSkin * std::sqrt(area / count) : 0;
+}
+
+FrictionTable friction_table(const Model& model) {
+  std::vector<MaterialIndex> material;
+  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
+  for (BodyIndex i = 0; i < bodies; ++i) material.push_back(model.material_of(i));
+  return {model.contact, material, static_cast<int>(model.materials.size())};
+}
+
+}  // namespace
+
+double shortest_inradius(const Model& model) {
+  double shortest = HUGE_VAL;
+  for (const DeformableBody& body : model.deformables) {
+    shortest = std::min(shortest, boundary_inradius(body.mesh, boundary(body.mesh)));
+  }
+  return shortest;
+}
+
+bool ContactTerm::needed(const Model& model) {
+  return model.bodies.size() + model.deformables.size() > 1;
+}
+
+bool ContactTerm::touches_meshes(const Model& model) {
+  return !model.deformables.empty() && needed(model);
+}
+
+Surfaces ContactTerm::surfaces_of(const Model& model) {
+  const bool meshes = !model.deformables.empty();
+  const bool outlines = meshes && model.contact.surface == ContactSurface::body;
+  Surfaces surfaces(polygon_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
+                    outlines);
+  for (const RigidBody& body : model.bodies) {
+    surfaces.add_polygon(body.potential, {body.inverse_mass(), body.inradius, body.can_move()});
+  }
+  const PotentialChoice& choice = model.contact.potential;
+  std::optional<double> reference;
+  if (choice.reference == PotentialChoice::Reference::length) reference = choice.length;
+  for (const DeformableBody& body : model.deformables) {
+    if (outlines) {
+      surfaces.add_outline(body.mesh, body.first_node, reference);
+      continue;
+    }
+    try {
+      surfaces.add_elements(body.mesh, body.first_node, choice);
+    } catch (const InvalidPolygon& error) {
+      throw Unrunnable(fmt::format("elements of \"{}\" cannot have potentials of their own: {}; "
+                                   "use another mesh or \"surface\": \"body\"",
+                                   body.name, error.what()),
+                       "contact/surface", -1);
+    }
+  }
+  return surfaces;
+}
+
+ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const State& state,
+                         int threads)
+    : model_(model),
+      dofs_(dofs),
+      contacts_(model.contact, model.thickness, surfaces_of(model), friction_table(model),
+                threads) {
+  double inradius = HUGE_VAL;
+  for (const RigidBody& body : model.bodies) inradius = std::min(inradius, body.inradius);
+  largest_stride_ = kLargestStride * inradius;
+  try {
+    contacts_.place_all(state.kinematics(state.v));
+  } catch (const NotFinite& error) {
+    throw Unrunnable(error.what(), "bodies", -1);
+  }
+  if (touches_meshes(model)) refuse_buried(state);
+}
+
+// Contact of meshes is felt near surfaces only: a body deep inside another one would feel nothing.
+void ContactTerm::refuse_buried(const State& state) const {
+  Outlines outlines;
+  for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
+    const Potential& potential = model_.bodies[i].potential;
+    outlines.add_rigid(potential.vertices, i, 1 / potential.steepest);
+  }
+  for (const DeformableBody& body : model_.deformables) {
+    outlines.add_mesh(body.mesh, boundary(body.mesh), body.first_node);
+  }
+  outlines.place(state.kinematics(state.v), contacts_.surfaces().shapes());
+  const std::optional<Buried> found = find_buried(outlines);
+  if (!found) return;
+  const Vec2 world = found->place + model_.origin;
+  throw Unrunnable(
+      fmt::format("\"{}\" is inside \"{}\" at ({:.6g}, {:.6g}) m, {}, deeper than contact reaches: "
+                  "move them apart",
+                  name(found->inner), name(found->outer), world.x(), world.y(), at_time(state)),
+      "bodies", -1);
+}
+
+std::string ContactTerm::describe() const {
+  const ContactLaw& law = model_.contact;
+  std::string text = fmt::format(
+      "contact of {} surfaces, {} potential, k_n = {:g} Pa", contacts_.surfaces().size(),
+      law.potential.kind == PotentialChoice::Kind::area ? "area" : "distance",
+      law.normal_stiffness);
+  if (touches_meshes(model_)) {
+    text += law.surface == ContactSurface::body ? "; meshes by the potentials of their boundaries"
+                                                : "; meshes by the potentials of their elements";
+  }
+  return text;
+}
+
+void ContactTerm::check_drift(const State& state, double dt) {
+  double stride = 0;
+  RigidIndex farthest = -1;
+  const Surfaces& surfaces = contacts_.surfaces();
+  for (RigidIndex i = 0; i < surfaces.rigid_count(); ++i) {
+    if (!surfaces.rigid(i).moves) continue;
+    const double* v = &state.v[state.layout.rigid(i)];
+    const double far = std::max(std::abs(v[0]), std::abs(v[1])) +
+                       std::abs(v[2]) * surfaces.shapes().radius(i);
+    if (far > stride) {
+      stride = far;
+      farthest = i;
+    }
+  }
+  if (!(stride * dt > largest_stride_) || surfaces.rigid_count() < 2) return;
+  throw Unstable(fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
+                             "smallest inradius: contacts would be missed; reduce time.step or "
+                             "time.safety",
+                             name(farthest), stride * dt, at_time(state)),
+                 farthest);
+}
+
+void ContactTerm::add_forces(const Evaluation& now) {
+  State& state = now.state;
+  const Kinematics kinematics = state.kinematics(now.velocity);
+  try {
+    contacts_.place(kinematics);
+  } catch (const NotFinite& error) {
+    const bool rigid = error.body() < static_cast<BodyIndex>(model_.bodies.size());
+    refuse_infinite(state, (rigid ? "body \"" : "a node of \"") + name(error.body()) + '"',
+                    rigid ? error.body() : -1);
+  }
+  now.clock.lap(Phase::place);
+  if (contacts_.search_if_stale() && !now.trial) ++counts_.searches;
+  now.clock.lap(Phase::search);
+  contacts_.evaluate();
+  if (const ContactFault* fault = contacts_.fault()) refuse(*fault, state);
+  contacts_.slide(kinematics, now.dt);
+  now.clock.lap(Phase::contact);
+  contacts_.add_forces(
+      {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda});
+  now.clock.lap(Phase::gather);
+  if (now.trial) return;
+  counts_.candidate_pairs += static_cast<std::int64_t>(contacts_.candidates());
+  counts_.touching_now = static_cast<int>(contacts_.contacts().size());
+  counts_.touching_pairs += counts_.touching_now;
+  note_peaks(state);
+}
+
+void ContactTerm::note_peaks(const State& state) {
+  if (contacts_.contacts().empty()) return;
+  const auto note = [&](const PairPeak& found, Peak& peak) {
+    if (found.value > peak.value) peak = {found.value, state.time, found.a, found.b};
+  };
+  note(contacts_.largest_penetration(), penetration_);
+  note(contacts_.largest_force(), force_);
+}
+
+void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
+  using Kind = ContactFault::Kind;
+  if (fault.kind == Kind::self_contact) refuse_fold(model_, state, fault.a, fault.place);
+  const Vec2 world = fault.place + model_.origin;
+  const std::string where =
+      fmt::format("at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {})", world.x(), world.y(), state.time,
+                  state.step);
+  if (fault.kind == Kind::not_convex) {
+    throw Unstable(fmt::format(
+        "an element in the contact of \"{}\" and \"{}\" is no longer convex {}: it cannot keep its "
+        "potential; reduce the load or time.safety, or use \"surface\": \"body\"",
+        name(fault.a), name(fault.b), where));
+  }
+  const char* advice = "the contact is too soft for this load; raise contact.normal_stiffness";
+  if (fault.kind == Kind::collar) {
+    advice = "the contact is too soft for this load or the part too thin; raise "
+             "contact.normal_stiffness";
+  }
+  if (state.step == 0) advice = "move them apart";
+  if (fault.kind == Kind::collar) {
+    throw Unstable(fmt::format(
+        "\"{}\" is {:.3g} m deep in \"{}\" {}, where its potential near the surface ends at {:.3g} "
+        "m: {}",
+        name(fault.a), fault.depth, name(fault.b), where, fault.limit, advice));
+  }
+  const char* how = fault.kind == Kind::singular_area
+                        ? "up to the singular area of one of them (phi = 1)"
+                    : fault.kind == Kind::centre
+                        ? "as deep as the centre of one of them"
+                        : "as deep as the potential of an element or body reaches";
+  throw Unstable(fmt::format("bodies \"{}\" and \"{}\" overlap {} {}: {}", name(fault.a),
+                             name(fault.b), how, where, advice),
+                 fault.kind == Kind::element ? -1 : std::max(fault.a, fault.b));
+}
+
+void ContactTerm::add_energies(const State& state, double /*dt*/, Energies& e) {
+  e.contact += contacts_.energy();
+  e.friction_loss += contacts_.friction_loss();
+  e.damping_loss += contacts_.damping_loss();
+  if (!touches_meshes(model_)) return;
+  // The kernels of meshes do not know the forces of pairs: here they are summed over the patches.
+  const std::vector<ContactRecord> records = contacts_.records();
+  Vec2 force = Vec2::Zero();
+  for (size_t i = 0; i < records.size(); ++i) {
+    const BodyIndex a = records[i].a, b = records[i].b;
+    force += records[i].normal;
+    if (i + 1 < records.size() && records[i + 1].a == a && records[i + 1].b == b) continue;
+    if (force.norm() > force_.value) force_ = {force.norm(), state.time, a, b};
+    force = Vec2::Zero();
+  }
+}
+
+void ContactTerm::start_ledger() {
+  contacts_.start_ledger();
+  penetration_ = force_ = {};
+  counts_ = {};
+}
+
+void ContactTerm::bound_step(StepBounds& bounds) {
+  bounds.bodies = contact_step_limit(model_);
+  if (!touches_meshes(model_)) return;
+  const Surfaces& surfaces = contacts_.surfaces();
+  double steepest = 0;  // of the potentials of meshes, 1/m
+  for (SurfaceIndex i = surfaces.rigid_count(); i < surfaces.size(); ++i) {
+    steepest = std::max(steepest, surfaces.has_outlines() ? surfaces.outlines().bodies[i].slope()
+                                                          : surfaces.shapes().slope(i));
+  }
+  double rigid = 0;
+  for (const RigidBody& body : model_.bodies) {
+    if (!body.can_move()) continue;
+    rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
+  }
+  const double rate = std::sqrt(contacts_.node_rate(dofs_.free_node_mass()).value +
+                                model_.stiffness() * rigid);
+  bounds.nodes = {2 / std::hypot(2 / bounds.nodes.step, rate), "elements and their contacts"};
+}
+
+void ContactTerm::fields(Archive& archive) {
+  archive("contacts", contacts_)("penetration", penetration_)("force", force_)("counts", counts_);
+}
+
+}  // namespace apothem

@@ -1,0 +1,86 @@
+// All contact of a scene as a term: from the model to surfaces, from faults to messages.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "apothem/contact/contacts.hpp"
+#include "apothem/dynamics/term.hpp"
+#include "apothem/model/model.hpp"
+
+namespace apothem {
+
+/// A largest value of a run: when, and of which two bodies.
+struct Peak {
+  double value = 0;
+  double time = 0;
+  BodyIndex a = -1, b = -1;
+  void fields(Archive& archive) { archive("value", value)("time", time)("a", a)("b", b); }
+};
+
+/// What contact counts, over all steps so far.
+struct ContactCounts {
+  std::int64_t searches = 0;
+  std::int64_t candidate_pairs = 0;  ///< summed over the steps; of meshes edges and faces
+  std::int64_t touching_pairs = 0;   ///< likewise
+  int touching_now = 0;
+  void fields(Archive& archive) {
+    archive("searches", searches)("candidate_pairs", candidate_pairs)(
+        "touching_pairs", touching_pairs)("touching_now", touching_now);
+  }
+};
+
+class ContactTerm final : public Term {
+ public:
+  /// True if a force on a body could come from another body.
+  static bool needed(const Model& model);
+  /// True if a body with a mesh can touch another body.
+  static bool touches_meshes(const Model& model);
+  /// Throws Unrunnable if elements cannot have potentials of their own, or a body with a mesh and
+  /// another body are inside each other.
+  ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const State& state, int threads);
+
+  [[nodiscard]] std::string describe() const override;
+  /// Throws Unstable where bodies are out of the method's range.
+  void add_forces(const Evaluation& evaluation) override;
+  /// Throws Unstable if a body has moved so far that contacts may have been missed.
+  void check_drift(const State& state, double dt) override;
+  void add_energies(const State& state, double dt, Energies& energies) override;
+  void start_ledger() override;
+  void bound_step(StepBounds& bounds) override;
+
+  void start_load_step() override { contacts_.forget_search(); }
+  [[nodiscard]] std::int64_t revision() const override { return contacts_.searches(); }
+  void add_stiffness(const State& /*state*/, NodeStiffness& stiffness) override {
+    contacts_.add_node_stiffness(stiffness.contact);
+  }
+  [[nodiscard]] Vec2 force_on(DeformableIndex body) const override {
+    return contacts_.force_on(contacts_.surfaces().rigid_count() + body);
+  }
+  void fields(Archive& archive) override;
+  void refresh(const State& state) override { contacts_.refresh(state.kinematics(state.v)); }
+
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+  [[nodiscard]] const Peak& penetration() const { return penetration_; }
+  [[nodiscard]] const Peak& force() const { return force_; }
+  [[nodiscard]] const ContactCounts& counts() const { return counts_; }
+
+ private:
+  static Surfaces surfaces_of(const Model& model);
+  void refuse_buried(const State& state) const;
+  [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
+  void note_peaks(const State& state);
+  [[nodiscard]] const std::string& name(BodyIndex body) const { return model_.name_of(body); }
+
+  const Model& model_;
+  const DegreesOfFreedom& dofs_;
+  Contacts contacts_;
+  double largest_stride_ = 0;  // m
+  Peak penetration_, force_;
+  ContactCounts counts_;
+};
+
+/// The smallest inradius of elements at the boundaries of all meshes, m.
+double shortest_inradius(const Model& model);
+
+}  // namespace apothem

@@ -1,0 +1,234 @@
+#include "apothem/dynamics/degrees_of_freedom.hpp"
+
+#include <array>
+
+namespace apothem {
+
+DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> node_mass)
+    : model_(model),
+      layout_{static_cast<int>(model.bodies.size()), static_cast<int>(node_mass.size())} {
+  for (const RigidBody& body : model.bodies) add_rigid(body);
+  for (const DeformableBody& body : model.deformables) {
+    add_nodes(body, node_mass.subspan(static_cast<size_t>(body.first_node)));
+  }
+  if (model.gravity == Vec2::Zero()) acceleration_.clear();
+  weight_ = acceleration_;
+  for (size_t c = 0; c < weight_.size(); ++c) {
+    if (can_move(c)) weight_[c] /= inverse_mass_[c];
+  }
+  for (size_t c = 0; c < layout_.size(); ++c) {
+    if (!can_move(c)) immovable_.push_back(c);
+  }
+  const size_t rigid = layout_.node(0);
+  for (size_t c = 0; c < weight_.size(); ++c) {
+    const size_t axis = c < rigid ? c % 3 : (c - rigid) % 2;
+    if (axis == 0) weight_at_start_.x += weight_[c];
+    if (axis == 1) weight_at_start_.y += weight_[c];
+  }
+  for (size_t c = rigid; c < weight_.size(); c += 2) {
+    weight_at_start_.angular += start_[c] * weight_[c + 1] - start_[c + 1] * weight_[c];
+  }
+}
+
+void DegreesOfFreedom::add_rigid(const RigidBody& body) {
+  const size_t first = inverse_mass_.size();
+  const std::array<double, 3> inverse = body.inverse_mass();
+  const std::array<double, 3> place{body.position.x(), body.position.y(), body.angle};
+  for (int k = 0; k < 3; ++k) {
+    inverse_mass_.push_back(inverse[k]);
+    mass_.push_back(k < 2 ? body.mass : body.inertia);
+    acceleration_.push_back(k < 2 && inverse[k] > 0 ? model_.gravity[k] : 0);
+    start_.push_back(place[k]);
+    if (body.motion == Motion::prescribed) {
+      driven_.push_back({first + static_cast<size_t>(k), k, &body.history, place[k]});
+    }
+  }
+}
+
+void DegreesOfFreedom::add_nodes(const DeformableBody& body, std::span<const double> mass) {
+  for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) {
+      inverse_mass_.push_back(1 / mass[i]);
+      mass_.push_back(mass[i]);
+      acceleration_.push_back(model_.gravity[axis]);
+      start_.push_back(body.mesh.nodes[i][axis]);
+    }
+  }
+  add_supports(body);
+}
+
+void DegreesOfFreedom::add_supports(const DeformableBody& body) {
+  for (const Support& support : body.supports) {
+    for (const int node : support.nodes) {
+      for (int axis = 0; axis < 2; ++axis) {
+        if (!support.held[axis]) continue;
+        const size_t c = layout_.node(body.first_node + node) + static_cast<size_t>(axis);
+        inverse_mass_[c] = acceleration_[c] = 0;
+        if (!support.motion.velocity.empty()) driven_.push_back({c, axis, &support.motion, 0});
+      }
+    }
+  }
+}
+
+State DegreesOfFreedom::start() const {
+  State state(layout_);
+  for (RigidIndex i = 0; i < layout_.rigid_bodies; ++i) {
+    const RigidBody& body = model_.bodies[i];
+    for (int k = 0; k < 3; ++k) state.pose(i)[k] = start_[layout_.rigid(i) + size_t(k)];
+    state.pose_rate(i) << body.velocity, body.spin;
+  }
+  for (const DeformableBody& body : model_.deformables) {
+    const auto n = static_cast<int>(body.mesh.nodes.size());
+    double whole = 0;
+    Vec2 centre = Vec2::Zero();
+    for (int i = 0; i < n; ++i) {
+      const double m = mass_[layout_.node(body.first_node + i)];
+      whole += m;
+      centre += m * body.mesh.nodes[i];
+    }
+    centre /= whole;
+    for (int i = 0; i < n; ++i) {
+      const Vec2 v = body.velocity + cross(body.spin, Vec2(body.mesh.nodes[i] - centre));
+      for (int axis = 0; axis < 2; ++axis) {
+        const size_t c = layout_.node(body.first_node + i) + static_cast<size_t>(axis);
+        if (can_move(c)) state.v[c] = v[axis];
+      }
+    }
+  }
+  follow(state);
+  return state;
+}
+
+void DegreesOfFreedom::kick(State& state, double h) const {
+  const size_t n = inverse_mass_.size();
+  double* v = state.v.data();
+  const double* f = state.f.data();
+  if (acceleration_.empty()) {
+    for (size_t c = 0; c < n; ++c) v[c] += h * (inverse_mass_[c] * f[c]);
+  } else {
+    for (size_t c = 0; c < n; ++c) v[c] += h * (inverse_mass_[c] * f[c] + acceleration_[c]);
+  }
+}
+
+void DegreesOfFreedom::steer(State& state, double dt) {
+  for (Driven& d : driven_) {
+    const double goal =
+        d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
+    d.move = goal - state.x[d.coordinate];
+    state.v[d.coordinate] = d.move / dt;
+  }
+}
+
+void DegreesOfFreedom::drift(State& state, double dt) const {
+  const size_t rigid = layout_.node(0), n = layout_.size();
+  double* x = state.x.data();
+  const double* v = state.v.data();
+  double* r = state.remainder.data();
+  // Compensated sum (Kahan): at constant velocity every step rounds the same way, and the angular
+  // momentum of a million steps would show it. Displacements of nodes are small: they need none.
+  for (size_t c = 0; c < rigid; ++c) {
+    if (!(inverse_mass_[c] > 0)) continue;
+    const double dx = dt * v[c] + r[c];
+    const double sum = x[c] + dx;
+    r[c] = dx - (sum - x[c]);
+    x[c] = sum;
+  }
+  for (size_t c = rigid; c < n; ++c) x[c] += dt * v[c];
+  for (const Driven& d : driven_) {
+    if (d.coordinate < rigid) x[d.coordinate] += d.move;
+  }
+}
+
+void DegreesOfFreedom::follow(State& state) const {
+  for (const Driven& d : driven_) {
+    state.v[d.coordinate] = d.motion->rate(state.time)[static_cast<size_t>(d.axis)];
+  }
+}
+
+void DegreesOfFreedom::place_driven(State& state) const {
+  for (const Driven& d : driven_) {
+    state.x[d.coordinate] =
+        d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
+  }
+}
+
+void DegreesOfFreedom::plan_moves(const State& state, double time) {
+  for (Driven& d : driven_) {
+    const auto axis = static_cast<size_t>(d.axis);
+    d.move = d.motion->displacement(time)[axis] - d.motion->displacement(state.time)[axis];
+  }
+}
+
+std::vector<double> DegreesOfFreedom::free_node_mass() const {
+  std::vector<double> mass;
+  for (NodeIndex i = 0; i < layout_.nodes; ++i) {
+    const size_t c = layout_.node(i);
+    mass.push_back(can_move(c) || can_move(c + 1) ? mass_[c] : 0);
+  }
+  return mass;
+}
+
+double DegreesOfFreedom::kinetic(const State& state) const {
+  double sum = 0;
+  for (size_t c = 0; c < layout_.size(); ++c) {
+    if (can_move(c)) sum += mass_[c] * state.v[c] * state.v[c] / 2;
+  }
+  return sum;
+}
+
+double DegreesOfFreedom::gravity_energy(const State& state) const {
+  double sum = 0;
+  const size_t rigid = layout_.node(0);
+  for (size_t c = 0; c < weight_.size(); ++c) {
+    // What rounding keeps out of the position counts: the fall may be far smaller than the height.
+    sum -= weight_[c] *
+           (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : state.x[c]);
+  }
+  return sum;
+}
+
+Impulse DegreesOfFreedom::momentum(const State& state) const {
+  Impulse sum;
+  for (size_t c = 0; c < layout_.size(); ++c) {
+    if (can_move(c)) sum.add(impulse(state, c, mass_[c] * state.v[c]));
+  }
+  return sum;
+}
+
+Impulse DegreesOfFreedom::impulse(const State& state, size_t c, double j) const {
+  const size_t rigid = layout_.node(0);
+  if (c < rigid) {
+    const size_t axis = c % 3;
+    if (axis == 0) return {j, 0, -state.x[c + 1] * j};
+    if (axis == 1) return {0, j, state.x[c - 1] * j};
+    return {0, 0, j};
+  }
+  if ((c - rigid) % 2 == 0) return {j, 0, -(start_[c + 1] + state.x[c + 1]) * j};
+  return {0, j, (start_[c - 1] + state.x[c - 1]) * j};
+}
+
+Impulse DegreesOfFreedom::weight_sum(const State& state) const {
+  Impulse sum = weight_at_start_;
+  const size_t rigid = layout_.node(0), n = weight_.size();
+  if (n == 0) return sum;
+  const double* x = state.x.data();
+  for (size_t c = 0; c < rigid; c += 3) {
+    sum.angular += x[c] * weight_[c + 1] - x[c + 1] * weight_[c];
+  }
+  // What displacements add, in four sums, so that none waits for the one before.
+  std::array<double, 4> part{};
+  const size_t whole = n - (n - rigid) % 8;
+  for (size_t c = rigid; c < whole; c += 8) {
+    for (size_t k = 0; k < 4; ++k) {
+      const size_t i = c + 2 * k;
+      part[k] += x[i] * weight_[i + 1] - x[i + 1] * weight_[i];
+    }
+  }
+  for (size_t i = whole; i < n; i += 2) {
+    part[0] += x[i] * weight_[i + 1] - x[i + 1] * weight_[i];
+  }
+  sum.angular += (part[0] + part[1]) + (part[2] + part[3]);
+  return sum;
+}
+
+}  // namespace apothem

@@ -1,0 +1,96 @@
+// What the equations of motion are written in: the coordinates of rigid bodies and nodes, which of
+// them forces can move, and how they move in a step.
+//
+// Velocity Verlet in kick-drift-kick form (Eqs. 16-20): symplectic, so energy oscillates with order
+// dt^2 and does not drift, and momenta are kept to round-off.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "apothem/model/model.hpp"
+#include "apothem/model/state.hpp"
+
+namespace apothem {
+
+/// Momentum, or the time integral of a force: N s, and N m s about the model's origin.
+struct Impulse {
+  double x = 0, y = 0, angular = 0;
+  void add(const Impulse& other) {
+    x += other.x, y += other.y, angular += other.angular;
+  }
+  void fields(Archive& archive) { archive("x", x)("y", y)("angular", angular); }
+};
+
+class DegreesOfFreedom {
+ public:
+  /// `node_mass` in kg.
+  DegreesOfFreedom(const Model& model, std::span<const double> node_mass);
+
+  /// Where all bodies are, and how they move, at time 0.
+  [[nodiscard]] State start() const;
+
+  /// v += h (f/m + g).
+  void kick(State& state, double h) const;
+  /// Gives coordinates with prescribed motion the velocity that leads them to where they are at
+  /// `state.time`, dt later.
+  void steer(State& state, double dt);
+  /// x += dt v.
+  void drift(State& state, double dt) const;
+  /// Gives coordinates with prescribed motion their velocity at `state.time`.
+  void follow(State& state) const;
+  /// Puts coordinates with prescribed motion where they are at `state.time`.
+  void place_driven(State& state) const;
+
+  /// A coordinate with prescribed motion.
+  struct Driven {
+    size_t coordinate;
+    int axis;  ///< of the motion: x, y, angle
+    const MotionHistory* motion;
+    double start;     ///< at time 0
+    double move = 0;  ///< in this step
+  };
+  [[nodiscard]] const std::vector<Driven>& driven() const { return driven_; }
+  /// Sets the moves of a whole load step, from state.time until `time`.
+  void plan_moves(const State& state, double time);
+
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
+  [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
+  [[nodiscard]] bool can_move(size_t coordinate) const { return inverse_mass_[coordinate] > 0; }
+  /// kg and kg m^2 of every coordinate.
+  [[nodiscard]] double mass(size_t coordinate) const { return mass_[coordinate]; }
+  /// Of gravity on coordinates that can move, m/s^2; empty without gravity.
+  [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
+  /// The same as forces, N; empty without gravity.
+  [[nodiscard]] const std::vector<double>& weight() const { return weight_; }
+  /// Coordinates that forces cannot move.
+  [[nodiscard]] const std::vector<size_t>& immovable() const { return immovable_; }
+  /// Of each node, kg; 0 where both coordinates are held.
+  [[nodiscard]] std::vector<double> free_node_mass() const;
+
+  /// Kinetic energy of what forces can move, J.
+  [[nodiscard]] double kinetic(const State& state) const;
+  /// Potential energy of gravity, zero at time 0, J.
+  [[nodiscard]] double gravity_energy(const State& state) const;
+  [[nodiscard]] Impulse momentum(const State& state) const;
+  /// Of an impulse J on one coordinate (N s, or N m s).
+  [[nodiscard]] Impulse impulse(const State& state, size_t coordinate, double j) const;
+  /// Force and torque of gravity on what it moves, N and N m.
+  [[nodiscard]] Impulse weight_sum(const State& state) const;
+
+ private:
+  void add_rigid(const RigidBody& body);
+  void add_nodes(const DeformableBody& body, std::span<const double> mass);
+  void add_supports(const DeformableBody& body);
+
+  const Model& model_;
+  Layout layout_;
+  std::vector<double> inverse_mass_, mass_, acceleration_, weight_;
+  std::vector<double> start_;  // x, y, angle of rigid bodies; places of nodes in the mesh as given
+  std::vector<size_t> immovable_;
+  std::vector<Driven> driven_;
+  Impulse weight_at_start_;  // of gravity; its torque of nodes only, in the meshes as given
+};
+
+}  // namespace apothem

@@ -1,0 +1,114 @@
+#include "apothem/dynamics/elements.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apothem/dynamics/unstable.hpp"
+#include "apothem/fem/spectrum.hpp"
+
+namespace apothem {
+namespace {
+
+std::vector<ElementSet> element_sets(const Model& model) {
+  std::vector<ElementSet> sets;
+  for (const DeformableBody& body : model.deformables) {
+    const Material& m = model.materials[body.material];
+    sets.push_back({body.element, &body.mesh, body.first_node, m.elastic, m.density,
+                    model.thickness, m.stiffness_damping});
+  }
+  return sets;
+}
+
+}  // namespace
+
+Elements::Elements(const Model& model, int threads)
+    : model_(model), elements_(element_sets(model), threads) {}
+
+void Elements::start(const DegreesOfFreedom& dofs, State& state) {
+  find_limit(dofs, state);
+  const Layout& layout = state.layout;
+  first_damping_power_ = damping_power_ =
+      elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v), layout.of_nodes(state.f));
+}
+
+std::string Elements::describe() const {
+  std::string kinds;
+  bool damped = false;
+  for (const DeformableBody& body : model_.deformables) {
+    const Material& m = model_.materials[body.material];
+    damped = damped || m.stiffness_damping > 0;
+    const std::string kind =
+        fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
+                    kElasticLaws[static_cast<size_t>(m.elastic.law)],
+                    kPlanes[static_cast<size_t>(m.elastic.plane)]);
+    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+  }
+  return fmt::format("{} finite elements, {} nodes: {}{}", elements_.element_count(),
+                     elements_.node_count(), kinds,
+                     damped ? "; damping in proportion to the stiffness" : "");
+}
+
+void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
+  const Layout& layout = state.layout;
+  const double lambda = largest_eigenvalue(elements_, layout.of_nodes(state.x),
+                                           layout.of_nodes(dofs.inverse_mass()));
+  if (!(lambda > 0)) {
+    limit_ = {HUGE_VAL, "no element can move"};
+    return;
+  }
+  const double w = std::sqrt(lambda);
+  double beta = 0;
+  for (const DeformableBody& body : model_.deformables) {
+    beta = std::max(beta, model_.materials[body.material].stiffness_damping);
+  }
+  // Damping lags behind by half a step (T. Belytschko et al. 2014, Sec. 6.2).
+  const double ratio = beta * w / 2;
+  limit_ = {2 / (w * (std::sqrt(1 + ratio * ratio) + ratio)),
+            ratio > 0 ? "elements and their damping" : "elements"};
+}
+
+void Elements::add_forces(const Evaluation& now) {
+  State& state = now.state;
+  const Layout& layout = state.layout;
+  const double power =
+      elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v), layout.of_nodes(state.f));
+  if (now.dt > 0) {
+    damping_power_ = power;
+    summed_damping_loss_ += now.dt * power;
+  }
+  now.clock.lap(Phase::elements);
+}
+
+void Elements::watch(const State& state) {
+  const FiniteElements::Collapse worst =
+      elements_.smallest_ratio(state.layout.of_nodes(state.x));
+  if (worst.ratio > 0) return;
+  const DeformableBody& body = model_.deformables[worst.set];
+  Vec2 centre = Vec2::Zero();
+  const std::span<const int> nodes = body.mesh.element(worst.element);
+  for (const int node : nodes) centre += body.mesh.nodes[node] / static_cast<double>(nodes.size());
+  centre += model_.origin;
+  throw Unstable(
+      fmt::format("the element at ({:.6g}, {:.6g}) m of \"{}\" has turned inside out {}: the load is "
+                  "more than the material can bear, or the step is too long; reduce the load or "
+                  "time.safety, or raise time.load_steps",
+                  centre.x(), centre.y(), body.name, at_time(state)));
+}
+
+void Elements::add_energies(const State& state, double dt, Energies& e) {
+  e.strain += elements_.strain_energy(state.layout.of_nodes(state.x));
+  // Of the last force only half a step has acted (-dt/2 [v.C.v] since the start), and each power
+  // was taken with the velocity half a step before its force: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
+  e.damping_loss += summed_damping_loss_ - dt / 4 * (damping_power_ - first_damping_power_);
+}
+
+void Elements::bound_step(StepBounds& bounds) {
+  bounds.nodes = limit_;
+}
+
+void Elements::add_stiffness(const State& state, NodeStiffness& stiffness) {
+  elements_.stiffness_sums(state.layout.of_nodes(state.x), stiffness.elastic);
+}
+
+}  // namespace apothem

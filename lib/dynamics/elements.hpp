@@ -1,0 +1,45 @@
+// The finite elements of all deformable bodies as a term: internal forces, strain energy, damping in
+// proportion to the stiffness.
+#pragma once
+
+#include <vector>
+
+#include "apothem/dynamics/term.hpp"
+#include "apothem/fem/finite_elements.hpp"
+#include "apothem/model/model.hpp"
+
+namespace apothem {
+
+class Elements final : public Term {
+ public:
+  static bool needed(const Model& model) { return !model.deformables.empty(); }
+  Elements(const Model& model, int threads);
+  /// Before the first step: `dofs` and `state` belong to the masses of these elements.
+  void start(const DegreesOfFreedom& dofs, State& state);
+
+  [[nodiscard]] std::string describe() const override;
+  /// Sets the forces on the nodes, which nobody has touched before.
+  void add_forces(const Evaluation& evaluation) override;
+  /// Throws Unstable if an element has turned inside out.
+  void watch(const State& state) override;
+  void add_energies(const State& state, double dt, Energies& energies) override;
+  void bound_step(StepBounds& bounds) override;
+  void add_stiffness(const State& state, NodeStiffness& stiffness) override;
+  void fields(Archive& archive) override {
+    archive("summed_damping_loss", summed_damping_loss_)("damping_power", damping_power_);
+  }
+
+  [[nodiscard]] const FiniteElements& elements() const { return elements_; }
+
+ private:
+  void find_limit(const DegreesOfFreedom& dofs, const State& state);
+
+  const Model& model_;
+  FiniteElements elements_;
+  StepLimit limit_;
+  double summed_damping_loss_ = 0;  // J
+  double damping_power_ = 0;        // at the last step, W
+  double first_damping_power_ = 0;  // at the start, W
+};
+
+}  // namespace apothem

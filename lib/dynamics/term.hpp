@@ -1,0 +1,79 @@
+// A term: something that acts on bodies in a step - elements, loads, contact, damping.
+//
+// A scene has a short list of terms, those that it needs. The step, the static solver, the settled
+// start, the ledger and the checkpoint go through the list and do not know who is on it. A term is
+// asked a handful of times per step, never per pair or element.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "apothem/dynamics/ledger.hpp"
+#include "apothem/dynamics/stopwatch.hpp"
+#include "apothem/dynamics/time_step.hpp"
+#include "apothem/model/state.hpp"
+
+namespace apothem {
+
+/// What a term gets when it is asked for its forces.
+struct Evaluation {
+  State& state;                      ///< x where forces are asked for, v half a step before
+  std::span<const double> velocity;  ///< what springs and dampers follow over dt
+  double dt;                         ///< s; 0: nothing has moved since the last evaluation
+  std::span<double> lambda;  ///< of each rigid body: bound of stiffness / inertia, 1/s^2; to add to
+  Stopwatch& clock;
+  bool trial = false;  ///< the static solver tries a state: nothing of it is recorded
+};
+
+/// Bounds of the stiffness that acts on nodes, for the static solver.
+struct NodeStiffness {
+  std::vector<double> elastic;  ///< of each coordinate against its displacement, N/m
+  std::vector<double> contact;  ///< of each node against its place, N/m
+};
+
+class Term {
+ public:
+  virtual ~Term() = default;
+
+  /// What it is and how much of it there is, in words for `apothem check`.
+  [[nodiscard]] virtual std::string describe() const = 0;
+
+  /// Adds the forces on rigid bodies and nodes to state.f, where those of the bodies begin at zero
+  /// and those of the nodes with the elements' (Elements is the first term where there are nodes).
+  /// Throws Unstable.
+  virtual void add_forces(const Evaluation& /*evaluation*/) {}
+  /// Slows bodies down over h (s), exactly for any h.
+  virtual void damp(State& /*state*/, double /*h*/, Ledger& /*ledger*/) {}
+  /// Work and impulses from outside over h (s), with the forces of the last evaluation and the
+  /// velocities of the half step.
+  virtual void book(const State& /*state*/, double /*h*/, Ledger& /*ledger*/) {}
+  /// After a drift of dt (s). Throws Unstable if the step was too long for the velocities.
+  virtual void check_drift(const State& /*state*/, double /*dt*/) {}
+  /// From time to time. Throws Unstable if a body is out of the range of the method.
+  virtual void watch(const State& /*state*/) {}
+
+  /// Adds its stored and dissipated energies, J. Not for every step.
+  virtual void add_energies(const State& /*state*/, double /*dt*/, Energies& /*energies*/) {}
+  /// What has been dissipated so far does not count.
+  virtual void start_ledger() {}
+
+  /// Lowers the bounds of the time step. Terms are asked in their order.
+  virtual void bound_step(StepBounds& /*bounds*/) {}
+
+  // For static runs:
+  virtual void start_load_step() {}
+  /// Changes when the stiffness may have changed at once.
+  [[nodiscard]] virtual std::int64_t revision() const { return 0; }
+  virtual void add_stiffness(const State& /*state*/, NodeStiffness& /*stiffness*/) {}
+  /// Adds given forces on nodes, N.
+  virtual void add_given_forces(std::span<double> /*of_nodes*/) const {}
+  /// The resultant of what other bodies do to a deformable one, N.
+  [[nodiscard]] virtual Vec2 force_on(DeformableIndex /*body*/) const { return Vec2::Zero(); }
+
+  /// What it remembers, for checkpoints.
+  virtual void fields(Archive& /*archive*/) {}
+  /// After `fields` has been loaded, with the state that belongs to it.
+  virtual void refresh(const State& /*state*/) {}
+};
+
+}  // namespace apothem

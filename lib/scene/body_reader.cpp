@@ -1,0 +1,233 @@
+#include "apothem/scene/body_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/mesh/measure.hpp"
+#include "apothem/mesh/reorder.hpp"
+#include "apothem/scene/deformable_reader.hpp"
+#include "apothem/scene/output_reader.hpp"
+#include "apothem/scene/polygon_value.hpp"
+
+namespace apothem {
+
+void BodyReader::read(const JsonValue& list) {
+  // All shapes are read before any body, because the origin of the model's coordinates depends on
+  // where the scene lies.
+  std::vector<Shape> shapes;
+  Box box;
+  for (const JsonValue& value : list.items) {
+    shapes.push_back(read_shape(value));
+    const Box own = extent(value, shapes.back());
+    box.include(own.x0, own.y0);
+    box.include(own.x1, own.y1);
+  }
+  model_.origin = local_origin(box);
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    if (const auto* polygon = std::get_if<Polygon>(&shapes[i])) {
+      rigid_body(list.items[i], *polygon);
+    } else {
+      deformable_body(list.items[i], std::move(std::get<MeshSpec>(shapes[i])));
+    }
+  }
+}
+
+BodyReader::Shape BodyReader::read_shape(const JsonValue& value) {
+  JsonObject object(in_, value);
+  if (const JsonValue* mesh = object.optional("mesh")) {
+    if (const JsonValue* v = object.optional("polygon")) {
+      in_.fail(*v,
+               "a body is rigid with a \"polygon\" or deformable with a \"mesh\": leave one out");
+    }
+    return read_mesh(in_, *mesh);
+  }
+  return read_polygon(in_, object.required("polygon",
+                                           "[[x,y],...] in m, or the name of a file; "
+                                           "or a \"mesh\""));
+}
+
+// A box around the place where the body starts, in world coordinates.
+Box BodyReader::extent(const JsonValue& value, const Shape& shape) const {
+  Box box;
+  if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+    box = bounding_box(*polygon);
+  } else {
+    for (const Vec2& x : std::get<MeshSpec>(shape).mesh.nodes) box.include(x.x(), x.y());
+  }
+  if (const JsonValue* v = value.find("position")) {
+    const Vec2 p = in_.vec2(*v, "m");
+    box = Box{p.x(), p.y(), p.x(), p.y()}.grown(box.extent());
+  }
+  return box;
+}
+
+void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
+  JsonObject object(in_, value);
+  RigidBody body;
+  name_and_material(object, body.name, body.material);
+  rigid_places_.push_back(place());
+  features_.add(Feature::rigid_body, &value, place());
+  object.required("polygon", "");
+  give_shape(value, polygon, body);
+  if (const JsonValue* v = object.optional("position")) {
+    body.position = in_.vec2(*v, "m") - model_.origin;
+  }
+  if (const JsonValue* v = object.optional("angle")) body.angle = in_.number(*v, "rad");
+  if (const JsonValue* v = object.optional("motion")) {
+    body.motion = motion(*v);
+    if (body.motion == Motion::prescribed) prescribed_motion(*v, body.history);
+  }
+  if (body.motion == Motion::free) features_.add(Feature::free_rigid_body, &value, place());
+  if (const JsonValue* v = object.optional("fix")) held_coordinates(*v, body);
+  initial_velocity(object, body.velocity, body.spin);
+  refuse_held_velocity(value, body);
+  object.finish();
+  model_.bodies.push_back(std::move(body));
+}
+
+// Potential, mass and inertia. A polygon for which the area potential is not defined is left
+// without them, because the scene is refused as soon as all of it has been read.
+void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body) {
+  const JsonValue& outline = *value.find("polygon");
+  if (polygon.size() > 3) {
+    const bool ring = outline.type == JsonValue::Type::array && outline.items.size() > 3;
+    features_.add(Feature::polygon_beyond_triangle, ring ? &outline.items[3] : &outline, place());
+    if (features_.uses(Feature::area_potential)) return;
+  }
+  try {
+    set_shape(body, polygon, model_);
+  } catch (const InvalidPolygon& error) {
+    refuse_polygon(in_, outline, error);
+  }
+  if (!(body.mass > 0 && body.inertia > 0 && std::isfinite(1 / body.mass) &&
+        std::isfinite(1 / body.inertia) && std::isfinite(body.potential.steepest))) {
+    in_.fail(value,
+             fmt::format("has a mass of {:g} kg and an inertia of {:g} kg m^2, out of the range "
+                         "of double precision; check density, thickness and size",
+                         body.mass, body.inertia));
+  }
+}
+
+void BodyReader::deformable_body(const JsonValue& value, MeshSpec spec) {
+  JsonObject object(in_, value);
+  DeformableBody body;
+  name_and_material(object, body.name, body.material);
+  const Material& material = model_.materials[body.material];
+  if (!(material.elastic.young > 0) || !materials_.items[body.material].find("poisson")) {
+    in_.fail(*value.find("material"),
+             fmt::format("a body with a mesh needs \"young\" (Pa) and \"poisson\" of material "
+                         "\"{}\"",
+                         material.name));
+  }
+  features_.add(Feature::body_with_mesh, &object.required("mesh", ""), place());
+  body.element = spec.element;
+  body.mesh = std::move(spec.mesh);
+  place_mesh(object, body.mesh);
+  reorder_along_curve(body.mesh);
+  body.first_node = model_.node_count();
+  DeformableReader reader(in_, model_, body);
+  if (const JsonValue* v = object.optional("supports")) reader.supports(*v);
+  if (const JsonValue* v = object.optional("loads")) reader.loads(*v);
+  initial_velocity(object, body.velocity, body.spin);
+  if (const JsonValue* v = object.optional("motion")) motion(*v);
+  object.finish();
+  model_.deformables.push_back(std::move(body));
+}
+
+// Moves the mesh so that its centroid is at "position", and turns it about it by "angle".
+void BodyReader::place_mesh(JsonObject& object, Mesh& mesh) const {
+  const JsonValue* position = object.optional("position");
+  const JsonValue* angle = object.optional("angle");
+  for (Vec2& x : mesh.nodes) x -= model_.origin;
+  if (!position && !angle) return;
+  const Vec2 centre = mesh_centroid(mesh);
+  const Vec2 goal = position ? Vec2(in_.vec2(*position, "m") - model_.origin) : centre;
+  const double a = angle ? in_.number(*angle, "rad") : 0;
+  for (Vec2& x : mesh.nodes) {
+    const Vec2 arm = x - centre;
+    x = goal + Vec2(std::cos(a) * arm.x() - std::sin(a) * arm.y(),
+                    std::sin(a) * arm.x() + std::cos(a) * arm.y());
+  }
+}
+
+void BodyReader::name_and_material(JsonObject& object, std::string& name, int& material) {
+  const JsonValue& name_value = object.required("name", "a string, unique among the bodies");
+  name = in_.string(name_value);
+  refuse_as_column(in_, name_value);
+  if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+    in_.fail(
+        name_value,
+        fmt::format("\"{}\" is already the name of another body; give each body its own", name));
+  }
+  names_.push_back(name);
+  const JsonValue& material_value = object.required("material", "the name of a material");
+  const std::string& wanted = in_.string(material_value);
+  std::vector<std::string> known;
+  for (const Material& m : model_.materials) known.push_back(m.name);
+  const auto found = std::find(known.begin(), known.end(), wanted);
+  if (found == known.end()) {
+    in_.fail(material_value, fmt::format("unknown material {}", suggest(wanted, known)));
+  }
+  material = static_cast<int>(found - known.begin());
+}
+
+Motion BodyReader::motion(const JsonValue& value) {
+  if (value.type == JsonValue::Type::string) {
+    if (in_.choice(value, {"free", "fixed"}) == 0) return Motion::free;
+    features_.add(Feature::fixed_motion, &value, place());
+    return Motion::fixed;
+  }
+  if (value.type != JsonValue::Type::object) {
+    in_.fail(value,
+             "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
+             "[[t,w],...]}");
+  }
+  features_.add(Feature::prescribed_motion, &value, place());
+  return Motion::prescribed;
+}
+
+void BodyReader::prescribed_motion(const JsonValue& value, MotionHistory& history) const {
+  JsonObject object(in_, value);
+  if (const JsonValue* v = object.optional("velocity")) history.velocity = read_velocities(in_, *v);
+  if (const JsonValue* v = object.optional("spin")) history.spin = read_spins(in_, *v);
+  object.finish();
+  if (history.velocity.empty() && history.spin.empty()) {
+    in_.fail(value,
+             "must give a velocity or a spin history with at least one row; for a body at rest use "
+             "\"fixed\"");
+  }
+}
+
+void BodyReader::held_coordinates(const JsonValue& value, RigidBody& body) {
+  features_.add(Feature::held_coordinates, &value, place());
+  for (const JsonValue& coordinate : in_.array(value)) {
+    body.held[in_.choice(coordinate, {"x", "y", "angle"})] = true;
+  }
+}
+
+void BodyReader::initial_velocity(JsonObject& object, Vec2& velocity, double& spin) {
+  if (const JsonValue* v = object.optional("velocity")) {
+    features_.add(Feature::initial_velocity, v, place());
+    velocity = in_.vec2(*v, "m/s");
+  }
+  if (const JsonValue* v = object.optional("spin")) {
+    features_.add(Feature::initial_velocity, v, place());
+    spin = in_.number(*v, "rad/s");
+  }
+}
+
+void BodyReader::refuse_held_velocity(const JsonValue& value, const RigidBody& body) const {
+  constexpr const char* kHeldVelocity =
+      "must be 0 in a direction that \"fix\" holds; leave it out or take the direction from "
+      "\"fix\"";
+  for (int k = 0; k < 2; ++k) {
+    if (body.held[k] && body.velocity[k] != 0) {
+      in_.fail(value.find("velocity")->items[k], kHeldVelocity);
+    }
+  }
+  if (body.held[2] && body.spin != 0) in_.fail(*value.find("spin"), kHeldVelocity);
+}
+
+}  // namespace apothem

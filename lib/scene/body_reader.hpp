@@ -1,0 +1,57 @@
+// Reads the bodies of a scene: rigid bodies, which have a polygon, and deformable ones, which have
+// a mesh.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "apothem/model/model.hpp"
+#include "apothem/scene/compatibility.hpp"
+#include "apothem/scene/json.hpp"
+#include "apothem/scene/mesh_reader.hpp"
+
+namespace apothem {
+
+class BodyReader {
+ public:
+  /// The model holds the contact law and the materials, which stand at `materials` in the scene. It
+  /// receives the bodies, and the origin of its coordinates.
+  BodyReader(const JsonReader& in, const JsonValue& materials, Model& model, UsedFeatures& features)
+      : in_(in), materials_(materials), model_(model), features_(features) {}
+
+  /// Reads the scene's list of bodies. Throws SceneError.
+  void read(const JsonValue& list);
+
+  /// Names of all bodies, in the order of the list.
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// For each rigid body of the model, its place in the list.
+  [[nodiscard]] const std::vector<int>& rigid_places() const { return rigid_places_; }
+
+ private:
+  using Shape = std::variant<Polygon, MeshSpec>;
+
+  Shape read_shape(const JsonValue& value);
+  Box extent(const JsonValue& value, const Shape& shape) const;
+  void rigid_body(const JsonValue& value, const Polygon& polygon);
+  void give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body);
+  void deformable_body(const JsonValue& value, MeshSpec spec);
+  void place_mesh(JsonObject& object, Mesh& mesh) const;
+  void name_and_material(JsonObject& object, std::string& name, int& material);
+  Motion motion(const JsonValue& value);
+  void prescribed_motion(const JsonValue& value, MotionHistory& history) const;
+  void held_coordinates(const JsonValue& value, RigidBody& body);
+  void initial_velocity(JsonObject& object, Vec2& velocity, double& spin);
+  void refuse_held_velocity(const JsonValue& value, const RigidBody& body) const;
+  /// The place in the scene's list of the body that is being read.
+  [[nodiscard]] int place() const { return static_cast<int>(names_.size()) - 1; }
+
+  const JsonReader& in_;
+  const JsonValue& materials_;
+  Model& model_;
+  UsedFeatures& features_;
+  std::vector<std::string> names_;
+  std::vector<int> rigid_places_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,280 @@
+// Which features of a scene do not go together. The table kIncompatible is the only place where
+// that is decided: the readers of the scene collect the features that a scene uses, and
+// refuse_incompatible() goes through the table. docs/scene-format.md shows the same table, and a
+// test holds the two against each other.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "apothem/scene/json.hpp"
+
+namespace apothem {
+
+/// What a scene can ask for, as far as it restricts what else the scene can ask for.
+enum class Feature {
+  // Time.
+  dynamic_run,
+  static_run,
+  time_step,
+  fixed_step,
+  safety,
+  start,
+  settled_start,
+  load_steps,
+  tolerance,
+  // Contact.
+  area_potential,
+  field,
+  reference,
+  body_surface,
+  element_surface,
+  variational_distribution,
+  integrated_distribution,
+  resultant_distribution,
+  friction,
+  per_edge_friction,
+  friction_of_pairs,
+  contact_damping,
+  normal_viscous_damping,
+  // Materials.
+  material_damping,
+  // One body.
+  rigid_body,
+  free_rigid_body,
+  body_with_mesh,
+  polygon_beyond_triangle,
+  fixed_motion,
+  prescribed_motion,
+  held_coordinates,
+  initial_velocity,
+  // All bodies together.
+  rigid_bodies_only,
+  mesh_in_every_contact,
+  outline_in_every_contact,
+  // Output.
+  frames,
+  history_interval,
+  checkpoint,
+  tracked_point,
+  tracked_surface,
+};
+
+/// How messages and the documentation name a feature.
+struct FeatureText {
+  Feature feature;
+  std::string_view what;   ///< the keys that ask for it, in the documentation
+  std::string_view where;  ///< "in", "with" or "for" it, behind the verdict on another feature
+};
+
+/// In the order of Feature. A text that no row of kIncompatible needs is left empty.
+inline constexpr std::array kFeatureTexts{
+    FeatureText{Feature::dynamic_run, "", "in a dynamic run"},
+    FeatureText{Feature::static_run, "`time.mode`: `static`", "in a static run"},
+    FeatureText{Feature::time_step, "`time.step`", ""},
+    FeatureText{Feature::fixed_step, "", "with a fixed step"},
+    FeatureText{Feature::safety, "`time.safety`", ""},
+    FeatureText{Feature::start, "`time.start`", ""},
+    FeatureText{Feature::settled_start, "`time.start`: `settled`", ""},
+    FeatureText{Feature::load_steps, "`time.load_steps`", ""},
+    FeatureText{Feature::tolerance, "`time.tolerance`", ""},
+    FeatureText{Feature::area_potential, "`contact.potential`: `area`", "with the area potential"},
+    FeatureText{Feature::field, "`contact.field`", ""},
+    FeatureText{Feature::reference, "`contact.reference`", ""},
+    FeatureText{Feature::body_surface, "", "with \"surface\": \"body\""},
+    FeatureText{Feature::element_surface, "`contact.surface`: `element`",
+                "with \"surface\": \"element\""},
+    FeatureText{Feature::variational_distribution, "`contact.distribution`: `variational`", ""},
+    FeatureText{Feature::integrated_distribution, "`contact.distribution`: `integrated`", ""},
+    FeatureText{Feature::resultant_distribution, "`contact.distribution`: `resultant`", ""},
+    FeatureText{Feature::friction, "`contact.friction`", ""},
+    FeatureText{Feature::per_edge_friction, "`contact.friction.law`: `per_edge`", ""},
+    FeatureText{Feature::friction_of_pairs, "`contact.pairs`", ""},
+    FeatureText{Feature::contact_damping, "`contact.damping`", ""},
+    FeatureText{Feature::normal_viscous_damping, "`contact.damping.model`: `normal_viscous`", ""},
+    FeatureText{Feature::material_damping, "`damping` of a material", ""},
+    FeatureText{Feature::rigid_body, "", "for a rigid body"},
+    FeatureText{Feature::free_rigid_body, "a rigid body of `motion`: `free`", ""},
+    FeatureText{Feature::body_with_mesh, "", "for a body with a mesh"},
+    FeatureText{Feature::polygon_beyond_triangle,
+                "a rigid body whose `polygon` has more than three vertices", ""},
+    FeatureText{Feature::fixed_motion, "`motion`: `fixed`", "for a fixed body"},
+    FeatureText{Feature::prescribed_motion, "`motion` with histories",
+                "for a body of prescribed motion"},
+    FeatureText{Feature::held_coordinates, "`fix` of a rigid body", ""},
+    FeatureText{Feature::initial_velocity, "`velocity` or `spin` of a body", ""},
+    FeatureText{Feature::rigid_bodies_only, "", "where no body has a mesh"},
+    FeatureText{Feature::mesh_in_every_contact, "",
+                "where bodies have a mesh and fewer than two are rigid"},
+    FeatureText{Feature::outline_in_every_contact, "",
+                "where bodies have a mesh, fewer than two are rigid, and \"surface\" is \"body\""},
+    FeatureText{Feature::frames, "`output.frames`", ""},
+    FeatureText{Feature::history_interval, "`output.history.interval`", ""},
+    FeatureText{Feature::checkpoint, "`output.checkpoint`", ""},
+    FeatureText{Feature::tracked_point, "`point` of a tracked body", ""},
+    FeatureText{Feature::tracked_surface, "`surface` of a tracked body", ""},
+};
+
+constexpr const FeatureText& text_of(Feature feature) {
+  return kFeatureTexts[static_cast<size_t>(feature)];
+}
+
+/// Whether a combination is refused because nothing could be computed for it, or because the
+/// computation has not been written.
+enum class Verdict { has_no_meaning, not_supported_yet };
+
+constexpr std::string_view text_of(Verdict verdict) {
+  return verdict == Verdict::has_no_meaning ? "has no meaning" : "is not supported yet";
+}
+
+/// Two features that a scene must not use together. The error stands at the value of `asked`.
+struct Incompatibility {
+  Feature asked;
+  Feature with;
+  Verdict verdict;
+  std::string_view why;
+  std::string_view instead;  ///< what would be right
+};
+
+/// The first row that fits a scene is the one that the user reads.
+inline constexpr std::array kIncompatible{
+    // The contact law.
+    Incompatibility{Feature::field, Feature::area_potential, Verdict::has_no_meaning,
+                    "the area potential has one field only", "leave it out"},
+    Incompatibility{Feature::reference, Feature::area_potential, Verdict::has_no_meaning,
+                    "the area potential has no reference length", "leave it out"},
+    Incompatibility{Feature::polygon_beyond_triangle, Feature::area_potential,
+                    Verdict::has_no_meaning, "the area potential is defined for triangles only",
+                    "use \"potential\": \"distance\""},
+    Incompatibility{Feature::resultant_distribution, Feature::body_surface, Verdict::has_no_meaning,
+                    "it gives the resultant of two elements to their nodes, and here bodies touch "
+                    "as a whole",
+                    "leave it out, because \"resultant\" needs \"surface\": \"element\""},
+    Incompatibility{Feature::integrated_distribution, Feature::body_surface,
+                    Verdict::not_supported_yet,
+                    "on the surface of a body the nodal forces are the gradient of the energy",
+                    "leave it out, because \"integrated\" needs \"surface\": \"element\""},
+    Incompatibility{Feature::variational_distribution, Feature::element_surface,
+                    Verdict::not_supported_yet,
+                    "the gradient of the energy is computed on the surface of a body only",
+                    "use \"resultant\" or \"integrated\", because \"variational\" needs "
+                    "\"surface\": \"body\""},
+    // One body.
+    Incompatibility{Feature::fixed_motion, Feature::body_with_mesh, Verdict::has_no_meaning,
+                    "a body with a mesh is \"free\" to deform",
+                    "hold parts of it by \"supports\", or give it a polygon"},
+    Incompatibility{Feature::prescribed_motion, Feature::body_with_mesh, Verdict::has_no_meaning,
+                    "a body with a mesh is \"free\" to deform",
+                    "move parts of it by \"supports\", or give it a polygon"},
+    Incompatibility{Feature::initial_velocity, Feature::fixed_motion, Verdict::has_no_meaning,
+                    "a fixed body has no initial velocity or spin",
+                    "leave it out, or make the motion \"free\""},
+    Incompatibility{Feature::initial_velocity, Feature::prescribed_motion, Verdict::has_no_meaning,
+                    "the histories of \"motion\" give its velocity and spin", "leave it out"},
+    Incompatibility{Feature::held_coordinates, Feature::fixed_motion, Verdict::has_no_meaning,
+                    "only a body of \"free\" motion takes \"fix\"", "leave it out"},
+    Incompatibility{Feature::held_coordinates, Feature::prescribed_motion, Verdict::has_no_meaning,
+                    "only a body of \"free\" motion takes \"fix\"", "leave it out"},
+    // Time.
+    Incompatibility{Feature::time_step, Feature::static_run, Verdict::has_no_meaning,
+                    "no motion is integrated over time", "leave it out"},
+    Incompatibility{Feature::safety, Feature::static_run, Verdict::has_no_meaning,
+                    "no motion is integrated over time", "leave it out"},
+    Incompatibility{Feature::start, Feature::static_run, Verdict::has_no_meaning,
+                    "every load step ends in equilibrium", "leave it out"},
+    Incompatibility{Feature::load_steps, Feature::dynamic_run, Verdict::has_no_meaning,
+                    "it goes with \"mode\": \"static\"", "leave it out"},
+    Incompatibility{Feature::tolerance, Feature::dynamic_run, Verdict::has_no_meaning,
+                    "it goes with \"mode\": \"static\"", "leave it out"},
+    Incompatibility{Feature::safety, Feature::fixed_step, Verdict::has_no_meaning,
+                    "it goes with an automatic step only", "leave it out"},
+    Incompatibility{Feature::settled_start, Feature::body_with_mesh, Verdict::not_supported_yet,
+                    "the equilibrium at the start is found for rigid bodies only",
+                    "leave it out, and find equilibria by \"mode\": \"static\""},
+    // Static runs.
+    Incompatibility{Feature::static_run, Feature::rigid_bodies_only, Verdict::not_supported_yet,
+                    "a static run finds the equilibrium of bodies with a mesh",
+                    "give a body a mesh, or start a dynamic run with \"start\": \"settled\""},
+    Incompatibility{
+        Feature::free_rigid_body, Feature::static_run, Verdict::not_supported_yet,
+        "a static run finds the equilibrium of bodies with a mesh, not of free rigid ones",
+        "make the body \"fixed\", prescribe its \"motion\", or give it a mesh"},
+    Incompatibility{Feature::initial_velocity, Feature::static_run, Verdict::has_no_meaning,
+                    "nothing moves in an equilibrium", "leave it out"},
+    Incompatibility{Feature::material_damping, Feature::static_run, Verdict::has_no_meaning,
+                    "nothing moves in an equilibrium", "leave it out"},
+    Incompatibility{Feature::contact_damping, Feature::static_run, Verdict::has_no_meaning,
+                    "nothing moves in an equilibrium", "leave it out"},
+    Incompatibility{Feature::friction, Feature::static_run, Verdict::not_supported_yet,
+                    "a static run finds the equilibrium of contacts without friction",
+                    "leave it out, or load slowly in a dynamic run with damping"},
+    Incompatibility{Feature::friction_of_pairs, Feature::static_run, Verdict::not_supported_yet,
+                    "a static run finds the equilibrium of contacts without friction",
+                    "leave it out, or load slowly in a dynamic run with damping"},
+    Incompatibility{Feature::element_surface, Feature::static_run, Verdict::not_supported_yet,
+                    "equilibria are sought for forces that are the gradient of an energy, and the "
+                    "nodal forces of element potentials are not",
+                    "use \"surface\": \"body\""},
+    Incompatibility{Feature::frames, Feature::static_run, Verdict::has_no_meaning,
+                    "a static run writes a row and a frame per load step",
+                    "leave it out, and choose \"load_steps\""},
+    Incompatibility{Feature::history_interval, Feature::static_run, Verdict::has_no_meaning,
+                    "a static run writes a row and a frame per load step",
+                    "leave it out, and choose \"load_steps\""},
+    Incompatibility{Feature::checkpoint, Feature::static_run, Verdict::not_supported_yet,
+                    "a static run writes a checkpoint only when it is stopped", "leave it out"},
+    // Bodies with a mesh.
+    Incompatibility{Feature::per_edge_friction, Feature::mesh_in_every_contact,
+                    Verdict::not_supported_yet, "\"per_edge\" acts between rigid bodies only",
+                    "leave it out; meshes have a spring per boundary edge, or per pair of elements "
+                    "with \"surface\": \"element\""},
+    Incompatibility{Feature::normal_viscous_damping, Feature::mesh_in_every_contact,
+                    Verdict::not_supported_yet, "it acts between rigid bodies only",
+                    "leave it out, and give the material of the mesh \"damping\""},
+    Incompatibility{Feature::area_potential, Feature::outline_in_every_contact,
+                    Verdict::has_no_meaning,
+                    "the area potential is defined for triangles, not for the outline of a mesh",
+                    "use \"distance\", or \"surface\": \"element\" with triangles"},
+    // Output.
+    Incompatibility{Feature::tracked_point, Feature::rigid_body, Verdict::has_no_meaning,
+                    "the columns of a point hold the stress of its element",
+                    "leave it out, because position and angle of the body give every point of it"},
+    Incompatibility{Feature::tracked_surface, Feature::rigid_body, Verdict::not_supported_yet,
+                    "contact pressure is recorded for bodies with a mesh only", "leave it out"},
+    Incompatibility{Feature::tracked_surface, Feature::element_surface, Verdict::not_supported_yet,
+                    "contact pressure is recorded for the surface of a body only",
+                    "leave it out; surfaces.pvd has the mean pressure on each boundary edge"},
+};
+
+/// The text of the error, without its place in the scene.
+std::string message_of(const Incompatibility& pair);
+
+/// The features that a scene uses, each with the value in the scene that asks for it and the body
+/// that it belongs to.
+class UsedFeatures {
+ public:
+  static constexpr int kWholeScene = -1;
+
+  /// `at` is the value that asks for the feature, or nullptr if the feature is the default. `body`
+  /// is the place in the scene's list of bodies. Of several values that ask for the same feature of
+  /// the same body, the first one is kept.
+  void add(Feature feature, const JsonValue* at = nullptr, int body = kWholeScene);
+
+  /// The values that ask for a feature, by body.
+  [[nodiscard]] const std::map<int, const JsonValue*>& values(Feature feature) const;
+
+  /// Whether the feature is used by a body, or by the whole scene. For kWholeScene: whether it is
+  /// used at all.
+  [[nodiscard]] bool uses(Feature feature, int body = kWholeScene) const;
+
+ private:
+  std::array<std::map<int, const JsonValue*>, kFeatureTexts.size()> values_;
+};
+
+/// Throws SceneError for the first row of kIncompatible of which the scene uses both features. A
+/// feature of one body meets features of the same body and of the whole scene.
+void refuse_incompatible(const JsonReader& in, const UsedFeatures& features);
+
+}  // namespace apothem

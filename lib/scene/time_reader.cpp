@@ -1,0 +1,80 @@
+#include "apothem/scene/time_reader.hpp"
+
+#include <fmt/format.h>
+
+namespace apothem {
+namespace {
+
+class TimeReader {
+ public:
+  TimeReader(const JsonReader& in, UsedFeatures& features) : in_(in), features_(features) {}
+
+  TimeSettings read(const JsonValue& value) {
+    JsonObject object(in_, value);
+    time_.end = in_.positive(object.required("end", "in s"), "s");
+    const JsonValue* mode = object.optional("mode");
+    time_.statics = mode && in_.choice(*mode, {"dynamic", "static"}) == 1;
+    features_.add(time_.statics ? Feature::static_run : Feature::dynamic_run, mode);
+    if (const JsonValue* v = object.optional("load_steps")) load_steps(*v);
+    if (const JsonValue* v = object.optional("tolerance")) tolerance(*v);
+    if (const JsonValue* v = object.optional("step")) step(*v);
+    if (const JsonValue* v = object.optional("start")) start(*v);
+    if (const JsonValue* v = object.optional("safety")) safety(*v);
+    object.finish();
+    return time_;
+  }
+
+ private:
+  void load_steps(const JsonValue& value) {
+    features_.add(Feature::load_steps, &value);
+    time_.load_steps = in_.count(value);
+    if (time_.load_steps < 1) in_.fail(value, "must be at least 1");
+  }
+
+  void tolerance(const JsonValue& value) {
+    features_.add(Feature::tolerance, &value);
+    time_.tolerance = in_.positive(value, "parts of the loads");
+    if (!(time_.tolerance >= 1e-12 && time_.tolerance <= 1e-2)) {
+      in_.fail(value, fmt::format("must lie between 1e-12 and 1e-2, not {}", time_.tolerance));
+    }
+  }
+
+  void step(const JsonValue& value) {
+    features_.add(Feature::time_step, &value);
+    if (value.type == JsonValue::Type::string) {
+      in_.choice(value, {"auto"});
+      return;
+    }
+    features_.add(Feature::fixed_step, &value);
+    time_.fixed_step = in_.positive(value, "s");
+    if (*time_.fixed_step > time_.end) in_.fail(value, "is longer than the whole run");
+  }
+
+  void start(const JsonValue& value) {
+    features_.add(Feature::start, &value);
+    time_.settled = in_.choice(value, {"as_given", "settled"}) == 1;
+    if (time_.settled) features_.add(Feature::settled_start, &value);
+  }
+
+  void safety(const JsonValue& value) {
+    features_.add(Feature::safety, &value);
+    time_.safety = in_.positive(value, "parts of the stability limit");
+    time_.element_safety = time_.safety;
+    if (time_.safety > 0.8) {
+      in_.fail(value,
+               fmt::format("must not exceed 0.8 of the stability limit, is {}", time_.safety));
+    }
+  }
+
+  const JsonReader& in_;
+  UsedFeatures& features_;
+  TimeSettings time_;
+};
+
+}  // namespace
+
+TimeSettings read_time(const JsonReader& in, const JsonValue& value, UsedFeatures& features) {
+  return TimeReader(in, features).read(value);
+}
+
+}  // namespace apothem

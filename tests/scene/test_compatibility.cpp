@@ -1,0 +1,316 @@
+// Which features of a scene go together: every row of the table is tried, and the documentation
+// shows the same table.
+#include "apothem/scene/compatibility.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "apothem/scene/scene.hpp"
+#include "folder.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+using test::Folder;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const kRigid = R"({
+  "materials": { "rock": { "density": 2000 } },
+  "contact": { "normal_stiffness": 1e9 },
+  "bodies": [
+    { "name": "floor", "material": "rock", "motion": "fixed",
+      "polygon": [[0, -2], [2, 0], [-2, 0]] },
+    { "name": "stone", "material": "rock", "polygon": [[0, 1], [1, 2], [-1, 2]] } ],
+  "time": { "end": 1 } })";
+
+const char* const kMeshed = R"({
+  "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+  "contact": { "normal_stiffness": 1e9 },
+  "bodies": [
+    { "name": "floor", "material": "rock", "motion": "fixed",
+      "polygon": [[0, -2], [2, 0], [-2, 0]] },
+    { "name": "block", "material": "rock",
+      "mesh": { "rectangle": { "size": [1, 1], "cells": [1, 1], "origin": [0, 1] } } } ],
+  "time": { "end": 1 } })";
+
+const char* const kStatic = R"({
+  "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+  "contact": { "normal_stiffness": 1e9 },
+  "bodies": [
+    { "name": "floor", "material": "rock", "motion": "fixed",
+      "polygon": [[0, -2], [2, 0], [-2, 0]] },
+    { "name": "block", "material": "rock",
+      "mesh": { "rectangle": { "size": [1, 1], "cells": [1, 1], "origin": [0, 1] } } } ],
+  "time": { "end": 1, "mode": "static" } })";
+
+struct Change {
+  const char* pointer;
+  const char* value;
+};
+
+// A scene that uses both features of a row. Without the last change it is accepted.
+struct Trial {
+  Feature asked, with;
+  const char* scene;
+  std::vector<Change> changes;
+  const char* place;  // JSON pointer of the error
+};
+
+using F = Feature;
+const char* const kMotion = R"({ "velocity": [[0, 1, 0]] })";
+const char* const kMassDamping = R"({ "model": "mass", "rate": 1 })";
+const std::vector<Trial> kTrials{
+    {F::field,
+     F::area_potential,
+     kRigid,
+     {{"/contact/potential", "\"area\""}, {"/contact/field", "\"roof\""}},
+     "/contact/field"},
+    {F::reference,
+     F::area_potential,
+     kRigid,
+     {{"/contact/potential", "\"area\""}, {"/contact/reference", "0.5"}},
+     "/contact/reference"},
+    {F::polygon_beyond_triangle,
+     F::area_potential,
+     kRigid,
+     {{"/contact/potential", "\"area\""},
+      {"/bodies/1/polygon", "[[0, 1], [1, 1], [1, 2], [0, 2]]"}},
+     "/bodies/1/polygon/3"},
+    {F::resultant_distribution,
+     F::body_surface,
+     kMeshed,
+     {{"/contact/distribution", "\"resultant\""}},
+     "/contact/distribution"},
+    {F::integrated_distribution,
+     F::body_surface,
+     kMeshed,
+     {{"/contact/surface", "\"body\""}, {"/contact/distribution", "\"integrated\""}},
+     "/contact/distribution"},
+    {F::variational_distribution,
+     F::element_surface,
+     kMeshed,
+     {{"/contact/surface", "\"element\""}, {"/contact/distribution", "\"variational\""}},
+     "/contact/distribution"},
+    {F::fixed_motion,
+     F::body_with_mesh,
+     kMeshed,
+     {{"/bodies/1/motion", "\"fixed\""}},
+     "/bodies/1/motion"},
+    {F::prescribed_motion,
+     F::body_with_mesh,
+     kMeshed,
+     {{"/bodies/1/motion", kMotion}},
+     "/bodies/1/motion"},
+    {F::initial_velocity,
+     F::fixed_motion,
+     kRigid,
+     {{"/bodies/1/spin", "1"}, {"/bodies/0/velocity", "[0, 0]"}},
+     "/bodies/0/velocity"},
+    {F::initial_velocity,
+     F::prescribed_motion,
+     kRigid,
+     {{"/bodies/1/motion", kMotion}, {"/bodies/1/spin", "1"}},
+     "/bodies/1/spin"},
+    {F::held_coordinates,
+     F::fixed_motion,
+     kRigid,
+     {{"/bodies/1/fix", "[\"x\"]"}, {"/bodies/0/fix", "[\"x\"]"}},
+     "/bodies/0/fix"},
+    {F::held_coordinates,
+     F::prescribed_motion,
+     kRigid,
+     {{"/bodies/1/motion", kMotion}, {"/bodies/1/fix", "[\"angle\"]"}},
+     "/bodies/1/fix"},
+    {F::time_step, F::static_run, kStatic, {{"/time/step", "\"auto\""}}, "/time/step"},
+    {F::safety, F::static_run, kStatic, {{"/time/safety", "0.1"}}, "/time/safety"},
+    {F::start, F::static_run, kStatic, {{"/time/start", "\"as_given\""}}, "/time/start"},
+    {F::load_steps, F::dynamic_run, kMeshed, {{"/time/load_steps", "4"}}, "/time/load_steps"},
+    {F::tolerance, F::dynamic_run, kMeshed, {{"/time/tolerance", "1e-6"}}, "/time/tolerance"},
+    {F::safety,
+     F::fixed_step,
+     kRigid,
+     {{"/time/step", "1e-4"}, {"/time/safety", "0.1"}},
+     "/time/safety"},
+    {F::settled_start, F::body_with_mesh, kMeshed, {{"/time/start", "\"settled\""}}, "/time/start"},
+    {F::static_run, F::rigid_bodies_only, kRigid, {{"/time/mode", "\"static\""}}, "/time/mode"},
+    {F::free_rigid_body,
+     F::static_run,
+     kStatic,
+     {{"/bodies/0/motion", kMotion}, {"/bodies/0/motion", "\"free\""}},
+     "/bodies/0"},
+    {F::initial_velocity,
+     F::static_run,
+     kStatic,
+     {{"/bodies/1/velocity", "[0, 0]"}},
+     "/bodies/1/velocity"},
+    {F::material_damping,
+     F::static_run,
+     kStatic,
+     {{"/materials/rock/damping", R"({ "model": "rayleigh", "mass": 1 })"}},
+     "/materials/rock/damping"},
+    {F::contact_damping,
+     F::static_run,
+     kStatic,
+     {{"/contact/damping", kMassDamping}},
+     "/contact/damping"},
+    {F::friction,
+     F::static_run,
+     kStatic,
+     {{"/contact/friction", R"({ "coefficient": 1, "tangential_stiffness": 1e9 })"}},
+     "/contact/friction"},
+    {F::friction_of_pairs, F::static_run, kStatic, {{"/contact/pairs", "[]"}}, "/contact/pairs"},
+    {F::element_surface,
+     F::static_run,
+     kStatic,
+     {{"/contact/surface", "\"body\""}, {"/contact/surface", "\"element\""}},
+     "/contact/surface"},
+    {F::frames, F::static_run, kStatic, {{"/output/frames", "5"}}, "/output/frames"},
+    {F::history_interval,
+     F::static_run,
+     kStatic,
+     {{"/output/history/interval", "0.1"}},
+     "/output/history/interval"},
+    {F::checkpoint,
+     F::static_run,
+     kStatic,
+     {{"/output/checkpoint", R"({ "wall_clock": 600 })"}},
+     "/output/checkpoint"},
+    {F::per_edge_friction,
+     F::mesh_in_every_contact,
+     kMeshed,
+     {{"/contact/friction",
+       R"({ "coefficient": 1, "tangential_stiffness": 1e9, "law": "resultant" })"},
+      {"/contact/friction/law", "\"per_edge\""}},
+     "/contact/friction/law"},
+    {F::normal_viscous_damping,
+     F::mesh_in_every_contact,
+     kMeshed,
+     {{"/contact/damping", kMassDamping},
+      {"/contact/damping", R"({ "model": "normal_viscous", "ratio": 0.1 })"}},
+     "/contact/damping"},
+    {F::area_potential,
+     F::outline_in_every_contact,
+     kMeshed,
+     {{"/contact/potential", "\"area\""}},
+     "/contact/potential"},
+    {F::tracked_point,
+     F::rigid_body,
+     kMeshed,
+     {{"/output/history/track", R"([ { "body": "block", "point": [0.5, 1.5] } ])"},
+      {"/output/history/track/0/body", "\"floor\""}},
+     "/output/history/track/0/point"},
+    {F::tracked_surface,
+     F::rigid_body,
+     kMeshed,
+     {{"/output/history/track", R"([ { "body": "block", "surface": "contact" } ])"},
+      {"/output/history/track/0/body", "\"floor\""}},
+     "/output/history/track/0/surface"},
+    {F::tracked_surface,
+     F::element_surface,
+     kMeshed,
+     {{"/output/history/track", R"([ { "body": "block", "surface": "contact" } ])"},
+      {"/contact/surface", "\"element\""}},
+     "/output/history/track/0/surface"},
+};
+
+std::string error_of(const Json& scene) {
+  const Folder folder;
+  const std::string file = folder.write("scene.json", scene.dump());
+  try {
+    read_scene(file);
+  } catch (const SceneError& error) {
+    return std::string(error.what()).substr(file.size());
+  }
+  return "";
+}
+
+void apply(Json& scene, const Change& change) {
+  scene[Json::json_pointer(change.pointer)] = Json::parse(change.value);
+}
+
+// The table as docs/scene-format.md shows it.
+std::string markdown() {
+  std::string text =
+      "| feature | verdict | combination | reason | what to do instead |\n"
+      "| --- | --- | --- | --- | --- |\n";
+  for (const Incompatibility& pair : kIncompatible) {
+    for (const std::string_view cell : {text_of(pair.asked).what, text_of(pair.verdict),
+                                        text_of(pair.with).where, pair.why, pair.instead}) {
+      text += "| " + std::string(cell) + " ";
+    }
+    text += "|\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("every pair of features that do not go together is refused", "[scene]") {
+  for (const Incompatibility& pair : kIncompatible) {
+    INFO(text_of(pair.asked).what << " " << text_of(pair.with).where);
+    const auto trial = std::find_if(kTrials.begin(), kTrials.end(), [&](const Trial& t) {
+      return t.asked == pair.asked && t.with == pair.with;
+    });
+    REQUIRE(trial != kTrials.end());
+    Json scene = Json::parse(trial->scene);
+    for (size_t i = 0; i + 1 < trial->changes.size(); ++i) apply(scene, trial->changes[i]);
+    CHECK(error_of(scene) == "");
+    apply(scene, trial->changes.back());
+    CHECK(error_of(scene) == ":1: " + std::string(trial->place) + ": " + message_of(pair));
+  }
+  CHECK(kTrials.size() == kIncompatible.size());
+}
+
+TEST_CASE("an unsupported pair is called so, with a remedy", "[scene]") {
+  for (const Incompatibility& pair : kIncompatible) {
+    const std::string message = message_of(pair);
+    INFO(message);
+    CHECK((message.find("not supported yet") != std::string::npos) ==
+          (pair.verdict == Verdict::not_supported_yet));
+    CHECK(message.ends_with("; " + std::string(pair.instead)));
+    // It is a row of a table in Markdown, too.
+    CHECK(message.find('|') == std::string::npos);
+  }
+}
+
+TEST_CASE("what is for rigid bodies only may stand where two of them can meet", "[scene]") {
+  for (const Change& change :
+       {Change{"/contact/potential", "\"area\""},
+        {"/contact/damping", R"({ "model": "normal_viscous", "ratio": 0.1 })"},
+        {"/contact/friction",
+         R"({ "coefficient": 1, "tangential_stiffness": 1e9, "law": "per_edge" })"}}) {
+    INFO(change.pointer);
+    Json scene = Json::parse(kMeshed);
+    apply(scene, change);
+    CHECK(error_of(scene).find("fewer than two are rigid") != std::string::npos);
+    scene["bodies"].push_back(Json::parse(kRigid)["bodies"][1]);
+    CHECK(error_of(scene) == "");
+  }
+}
+
+TEST_CASE("a distribution goes with the surface it belongs to, and with no other", "[scene]") {
+  for (const NamedDistribution& distribution : kDistributions) {
+    for (const NamedSurface& surface : kSurfaces) {
+      INFO(distribution.name << " " << surface.name);
+      Json scene = Json::parse(kMeshed);
+      scene["contact"]["surface"] = surface.name;
+      scene["contact"]["distribution"] = distribution.name;
+      CHECK(error_of(scene).empty() == (distribution.surface == surface.surface));
+    }
+  }
+}
+
+TEST_CASE("the documentation shows the table of what does not go together", "[scene]") {
+  const std::string document = test::content(test::kSource + "/docs/scene-format.md");
+  const std::string table = markdown();
+  INFO("docs/scene-format.md must contain exactly this table:\n" << table);
+  std::istringstream rows(table);
+  for (std::string row; std::getline(rows, row);) {
+    INFO(row);
+    CHECK(document.find("\n" + row + "\n") != std::string::npos);
+  }
+  CHECK(document.find("\n\n" + table + "\n") != std::string::npos);
+}
