@@ -189,11 +189,11 @@ void cross_pair_patches(benchmark::State& state) {
 
 void impact_steps(benchmark::State& state) {
   const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impact-asymmetric.json");
-  std::optional<Simulation> simulation;
+  std::unique_ptr<Simulation> simulation;
   for (auto _ : state) {
     if (!simulation || simulation->state().time >= scene.time.end) {
       state.PauseTiming();
-      simulation.emplace(scene.model, scene.time, scene.output.frames, 1);
+      simulation = std::make_unique<Simulation>(scene.model, scene.time, scene.output.frames, 1);
       state.ResumeTiming();
     }
     simulation->step();

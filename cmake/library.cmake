@@ -19,3 +19,9 @@ function(apothem_library name)
   target_compile_features(apothem_${name} PUBLIC cxx_std_20)
   target_link_libraries(apothem_${name} PRIVATE $<BUILD_INTERFACE:apothem_options>)
 endfunction()
+
+# What the sources must know of the build: the version, and where shipped data are.
+set(APOTHEM_GENERATED ${PROJECT_BINARY_DIR}/generated)
+file(RELATIVE_PATH APOTHEM_DATA_FROM_PROGRAM
+     ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/apothem)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/version.hpp.in ${APOTHEM_GENERATED}/version.hpp @ONLY)

@@ -51,9 +51,7 @@ class Archive {
   }
 
   template <class T>
-  Archive& operator()(const char* name, std::vector<T>& list)
-    requires(!std::is_same_v<T, double>)
-  {
+  Archive& operator()(const char* name, std::vector<T>& list) requires(!std::is_same_v<T, double>) {
     list.resize(enter_list(name, list.size()));
     for (T& value : list) {
       enter_item();

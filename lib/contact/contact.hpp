@@ -21,12 +21,12 @@ struct Contact {
 
 /// What acts in one contact patch, a connected part of the overlap of two bodies. Forces act on a.
 struct ContactRecord {
-  BodyIndex a, b;                   ///< a < b
-  Vec2 point = Vec2::Zero();        ///< loading point relative to the origin of the model, m
-  Vec2 normal = Vec2::Zero();       ///< elastic normal force, N
-  Vec2 tangential = Vec2::Zero();   ///< friction and damping, N
-  double penetration = 0;           ///< extent of the overlap along the force, or depth, m
-  double phi = 0;                   ///< largest potential met
+  BodyIndex a, b;                  ///< a < b
+  Vec2 point = Vec2::Zero();       ///< loading point relative to the origin of the model, m
+  Vec2 normal = Vec2::Zero();      ///< elastic normal force, N
+  Vec2 tangential = Vec2::Zero();  ///< friction and damping, N
+  double penetration = 0;          ///< extent of the overlap along the force, or depth, m
+  double phi = 0;                  ///< largest potential met
 };
 
 /// A resultant on a body: force and moment about the mass centre of a rigid body.

@@ -38,8 +38,8 @@ class Contacts {
   void evaluate();
   /// The first contact out of the range of its method, if there is one.
   [[nodiscard]] const ContactFault* fault() const;
-  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18: the
-  /// full-step ones would pump energy in). With dt = 0 the springs keep their forces.
+  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18:
+  /// the full-step ones would pump energy in). With dt = 0 the springs keep their forces.
   void slide(const Kinematics& now, double dt);
   void add_forces(const ForceViews& forces);
 

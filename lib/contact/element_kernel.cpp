@@ -64,8 +64,7 @@ void ElementKernel::add_touch(size_t p) {
   if (surfaces_.is_rigid(b)) on_b.moment += stiffness_ * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back(
-      {a, b, static_cast<int>(p), force, point, offset, stiffness_ * pair.weight});
+  touches_.push_back({a, b, static_cast<int>(p), force, point, offset, stiffness_ * pair.weight});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
     find_corners(i, at, of_a_);
     distribute(of_a_, f, normal_);

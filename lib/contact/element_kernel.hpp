@@ -6,10 +6,10 @@
 // between elements that are not part of any surface.
 //
 // Friction has one spring for each pair of polygons (Eqs. 10-14): along the tangent of the normal
-// force, it follows the relative velocity of the two materials at the action point, SUM N_i v_i, and
-// goes back to the corners by the same N_i. It keeps linear and angular momentum, and is lost with
-// its pair: every border between elements that slides over another one takes the friction of its
-// neighbours away.
+// force, it follows the relative velocity of the two materials at the action point, SUM N_i v_i,
+// and goes back to the corners by the same N_i. It keeps linear and angular momentum, and is lost
+// with its pair: every border between elements that slides over another one takes the friction of
+// its neighbours away.
 #pragma once
 
 #include <optional>
@@ -44,7 +44,8 @@ class ElementKernel final : public Kernel {
     return normal_.sums[body].force + tangential_.sums[body].force;
   }
   void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
-  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void add_records(const FrictionMemory& memory,
+                   std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
@@ -52,10 +53,10 @@ class ElementKernel final : public Kernel {
   struct Touch {
     SurfaceIndex a, b;
     int pair;
-    Vec2 force;       ///< on a, N
-    Vec2 point;       ///< where it acts, relative to a's reference point, m
-    Vec2 offset;      ///< a's reference point minus b's, m
-    double pressure;  ///< the sum of the sizes of what the force is the sum of, N
+    Vec2 force;                    ///< on a, N
+    Vec2 point;                    ///< where it acts, relative to a's reference point, m
+    Vec2 offset;                   ///< a's reference point minus b's, m
+    double pressure;               ///< the sum of the sizes of what the force is the sum of, N
     Vec2 friction = Vec2::Zero();  ///< on a, N
   };
   struct NodeForce {

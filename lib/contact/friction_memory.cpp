@@ -22,17 +22,17 @@ std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
 }
 
 std::span<const Spring> FrictionMemory::springs_of(int law) const {
-  const auto [first, end] = std::equal_range(
-      now_.begin(), now_.end(), Spring{.key = {law, 0, 0, 0}},
-      [](const Spring& s, const Spring& t) { return s.key.law < t.key.law; });
+  const auto [first, end] =
+      std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, 0, 0, 0}},
+                       [](const Spring& s, const Spring& t) { return s.key.law < t.key.law; });
   return {first, end};
 }
 
 std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const {
   const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
-  const auto [first, end] = std::equal_range(
-      now_.begin(), now_.end(), Spring{.key = {law, a, b, 0}},
-      [&](const Spring& s, const Spring& t) { return pair_of(s) < pair_of(t); });
+  const auto [first, end] =
+      std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, a, b, 0}},
+                       [&](const Spring& s, const Spring& t) { return pair_of(s) < pair_of(t); });
   return {first, end};
 }
 

@@ -32,7 +32,9 @@ struct Spring {
   double stiffness = 0;         ///< N/m
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
 
-  [[nodiscard]] double energy() const { return stiffness > 0 ? force * force / (2 * stiffness) : 0; }
+  [[nodiscard]] double energy() const {
+    return stiffness > 0 ? force * force / (2 * stiffness) : 0;
+  }
   void fields(Archive& archive) {
     archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent);
   }

@@ -20,10 +20,10 @@ namespace apothem {
 struct ContactFault {
   enum class Kind { singular_area, centre, collar, element, not_convex, self_contact };
   Kind kind;
-  BodyIndex a, b;       ///< a is in b where that makes a difference
+  BodyIndex a, b;             ///< a is in b where that makes a difference
   Vec2 place = Vec2::Zero();  ///< m
-  double depth = 0;     ///< m
-  double limit = 0;     ///< m
+  double depth = 0;           ///< m
+  double limit = 0;           ///< m
 };
 
 /// A largest value and the two bodies it is of.
@@ -50,9 +50,9 @@ class Kernel {
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
   /// The worst of its contacts that is out of the range of its method, if there is one.
   [[nodiscard]] virtual const ContactFault* fault() const = 0;
-  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt = 0
-  /// the springs keep their forces. Returns the work of friction on the bodies since the last call,
-  /// J.
+  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =
+  /// 0 the springs keep their forces. Returns the work of friction on the bodies since the last
+  /// call, J.
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
   /// Finds the forces of friction again after the memory has been restored, if `fields` does not
   /// hold them.

@@ -14,8 +14,8 @@ namespace apothem {
 /// worth following.
 inline constexpr double kNoResultant = 1e-9;
 
-/// Direction in which friction acts: (-n_y, n_x), n the direction of the normal force; zero if there
-/// is no normal force.
+/// Direction in which friction acts: (-n_y, n_x), n the direction of the normal force; zero if
+/// there is no normal force.
 inline Vec2 tangent_of(const Vec2& normal_force) {
   const double size = normal_force.norm();
   return size > 0 ? Vec2(Vec2(-normal_force.y(), normal_force.x()) / size) : Vec2(Vec2::Zero());
@@ -47,9 +47,9 @@ struct PairMotion {
 /// What the damping of a patch remembers: its elastic force and its own, on the first body of the
 /// pair, with the moments about the two mass centres.
 struct PatchDamper {
-  Vec2 normal = Vec2::Zero();         ///< N
-  double moment_a = 0, moment_b = 0;  ///< N m
-  Vec2 damping = Vec2::Zero();        ///< N
+  Vec2 normal = Vec2::Zero();           ///< N
+  double moment_a = 0, moment_b = 0;    ///< N m
+  Vec2 damping = Vec2::Zero();          ///< N
   double damping_a = 0, damping_b = 0;  ///< N m
 
   /// Adds a share of another one.

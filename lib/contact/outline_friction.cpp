@@ -84,8 +84,7 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
     if (!(normal > 0)) continue;
     // New contact joins without a slip of its own; contact that ends takes its share along.
     const double force =
-        before.empty() ? 0
-                       : before[0].force * std::min(1., spring.stiffness / before[0].stiffness);
+        before.empty() ? 0 : before[0].force * std::min(1., spring.stiffness / before[0].stiffness);
     spring.force =
         apothem::slide(force, rate / normal * dt, spring.stiffness, friction.coefficient * normal);
     memory.keep(spring);

@@ -31,13 +31,14 @@ struct EdgeFaceContact {
 
 class OutlineFriction {
  public:
-  /// `slope`: k_n thickness / r of each face, N/m^2; `thickness` in m. All must outlive this object.
+  /// `slope`: k_n thickness / r of each face, N/m^2; `thickness` in m. All must outlive this
+  /// object.
   OutlineFriction(const Outlines& outlines, const FrictionTable& table,
                   const std::vector<double>& slope, double thickness)
       : outlines_(outlines), table_(table), slope_(slope), thickness_(thickness) {}
 
-  /// One step further: see Kernel::slide. Slip that is spread over more contact keeps its force, and
-  /// springs of contact that has ended are lost: friction never adds energy.
+  /// One step further: see Kernel::slide. Slip that is spread over more contact keeps its force,
+  /// and springs of contact that has ended are lost: friction never adds energy.
   double slide(const std::vector<EdgeFaceContact>& contacts, const Kinematics& now, double dt,
                FrictionMemory& memory);
 

@@ -39,7 +39,8 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   [[nodiscard]] Resultant normal_resultant(BodyIndex body) const { return sum(body, fx_, fy_); }
   void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
-  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void add_records(const FrictionMemory& memory,
+                   std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
   [[nodiscard]] const std::vector<EdgeFace>& candidates_list() const { return candidates_; }
@@ -65,10 +66,10 @@ class OutlineKernel final : public Kernel {
   std::vector<CollarPiece<double>> pieces_;  // of the candidates, with several threads
   std::vector<char> met_;
   std::vector<EdgeFaceContact> contacts_;
-  std::vector<double> slope_;     // k_n thickness / r of each edge's face, N/m^2
-  std::vector<double> ends_;      // force of each edge on its two ends, along its inward normal, N
-  std::vector<double> areas_;     // of the overlap over each edge, m^2
-  std::vector<double> fx_, fy_;   // normal forces on the vertices, N
+  std::vector<double> slope_;    // k_n thickness / r of each edge's face, N/m^2
+  std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
+  std::vector<double> areas_;    // of the overlap over each edge, m^2
+  std::vector<double> fx_, fy_;  // normal forces on the vertices, N
   double deepest_ = 0, worst_ = 0;  // depth in m; largest share of the depth of a collar
   std::optional<ContactFault> fault_;
 };

@@ -143,15 +143,15 @@ void Outlines::find_depths() {
   }
   for (int i = 0; i < n; ++i) {
     const int p = previous[i], q = next[i];
-    depth[i] = std::min({events_[previous[p]], events_[p], events_[i], events_[q], events_[next[q]]});
+    depth[i] =
+        std::min({events_[previous[p]], events_[p], events_[i], events_[q], events_[next[q]]});
   }
 }
 
 Outlines::Corners Outlines::corners(int i) const {
   const int j = next[i];
   const double h = depth[i];
-  return {x[i],             y[i],             x[i] + h * mx[i],
-          y[i] + h * my[i], x[j] + h * mx[j], y[j] + h * my[j]};
+  return {x[i], y[i], x[i] + h * mx[i], y[i] + h * my[i], x[j] + h * mx[j], y[j] + h * my[j]};
 }
 
 void Outlines::find_boxes(double growth) {
@@ -224,8 +224,7 @@ void Outlines::find_clearance(BodyIndex b) {
     const double time = h / closing;
     if (time >= std::max({clearance[f], clearance[v], clearance[previous[v]]})) return;
     const CollarFace<double> front = face(f);
-    const double tau =
-        tx[f] * (px + time * mx[v]) + ty[f] * (py + time * my[v]) - front.length / 2;
+    const double tau = tx[f] * (px + time * mx[v]) + ty[f] * (py + time * my[v]) - front.length / 2;
     const double left = front.alpha() * time, right = front.beta() * time;
     if (tau < left - front.length || tau > right + front.length) return;
     for (const int k : {f, v, previous[v]}) clearance[k] = std::min(clearance[k], time);

@@ -32,20 +32,20 @@ class Outlines {
     [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
     [[nodiscard]] double slope() const { return 1 / reference; }  ///< of its potential, 1/m
   };
-  std::vector<Body> bodies;               ///< in the order of BodyIndex
-  std::vector<BodyIndex> body;            ///< of each vertex
-  std::vector<int> next, previous;        ///< vertices around each vertex
-  std::vector<NodeIndex> node;            ///< of each vertex; -1 on a rigid body
-  std::vector<double> cap;                ///< largest depth of the collar at each edge, m
-  std::vector<double> x, y;               ///< present place of each vertex, m
-  std::vector<double> mx, my;             ///< direction of the bisector at each vertex
-  std::vector<double> tx, ty;             ///< unit tangent of each edge
-  std::vector<double> length;             ///< of each edge, m
-  std::vector<double> clearance;          ///< height at which the fronts of other edges arrive, m
-  std::vector<double> depth;              ///< of the collar at each edge, m
-  std::vector<Box> edge_boxes;            ///< of the edges at the last search, grown by half the skin
-  std::vector<Box> face_boxes;            ///< of the faces, likewise
-  std::vector<Box> body_boxes;            ///< of the edges and faces of each body, likewise
+  std::vector<Body> bodies;         ///< in the order of BodyIndex
+  std::vector<BodyIndex> body;      ///< of each vertex
+  std::vector<int> next, previous;  ///< vertices around each vertex
+  std::vector<NodeIndex> node;      ///< of each vertex; -1 on a rigid body
+  std::vector<double> cap;          ///< largest depth of the collar at each edge, m
+  std::vector<double> x, y;         ///< present place of each vertex, m
+  std::vector<double> mx, my;       ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;       ///< unit tangent of each edge
+  std::vector<double> length;       ///< of each edge, m
+  std::vector<double> clearance;    ///< height at which the fronts of other edges arrive, m
+  std::vector<double> depth;        ///< of the collar at each edge, m
+  std::vector<Box> edge_boxes;      ///< of the edges at the last search, grown by half the skin
+  std::vector<Box> face_boxes;      ///< of the faces, likewise
+  std::vector<Box> body_boxes;      ///< of the edges and faces of each body, likewise
 
   /// `skin`: how far corners of edges and faces may move between two searches, twice over, m.
   explicit Outlines(double skin = 0) : skin_(skin) {}
@@ -60,9 +60,8 @@ class Outlines {
   /// in m.
   void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
 
-  /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those of
-  /// rigid bodies follow their polygons. Throws NotFinite if a vertex is not at a finite
-  /// place.
+  /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those
+  /// of rigid bodies follow their polygons. Throws NotFinite if a vertex is not at a finite place.
   void place(const Kinematics& now, const PlacedShapes& polygons);
 
   /// True if an edge or a face has moved through half the skin since the last search.
@@ -88,8 +87,20 @@ class Outlines {
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {
     const int j = next[i];
-    return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],             length[i],
-            mx[i], my[i], mx[j], my[j], depth[i], depth[previous[i]], depth[j]};
+    return {x[i],
+            y[i],
+            x[j],
+            y[j],
+            tx[i],
+            ty[i],
+            length[i],
+            mx[i],
+            my[i],
+            mx[j],
+            my[j],
+            depth[i],
+            depth[previous[i]],
+            depth[j]};
   }
 
  private:

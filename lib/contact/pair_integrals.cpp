@@ -42,7 +42,11 @@ Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
   const auto [a, b] = pairs_[p];
   const PairIntegral& pair = integrals_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
-  return {kernel, a, b, pair.penetration, pair.largest_phi,
+  return {kernel,
+          a,
+          b,
+          pair.penetration,
+          pair.largest_phi,
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }
 

@@ -187,8 +187,8 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const Frict
   double slip = velocity.dot(tangent);
   // The tangent is only as exact as the force: what it makes of an approach is no slip.
   if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
-  spring.force =
-      apothem::slide(spring.force, slip * dt, spring.stiffness, friction.coefficient * normal.norm());
+  spring.force = apothem::slide(spring.force, slip * dt, spring.stiffness,
+                                friction.coefficient * normal.norm());
   spring.tangent = tangent;
   memory.keep(spring);
   const Vec2 force = spring.force * tangent;

@@ -18,10 +18,10 @@ namespace apothem {
 /// Friction and damping of one pair; moments about the mass centres.
 struct TangentialForce {
   RigidIndex a, b;
-  Vec2 force = Vec2::Zero();  ///< on a, N
+  Vec2 force = Vec2::Zero();          ///< on a, N
   double moment_a = 0, moment_b = 0;  ///< N m
-  double stiffness = 0;  ///< of the springs, N/m
-  double arm = 0;        ///< largest lever of a spring about either mass centre, m
+  double stiffness = 0;               ///< of the springs, N/m
+  double arm = 0;                     ///< largest lever of a spring about either mass centre, m
 
   void add(const Vec2& on_a, double about_a, double about_b) {
     force += on_a;
@@ -67,9 +67,7 @@ class PatchTangential {
   struct PairHistory {
     RigidIndex a, b;
     int patches, runs;
-    void fields(Archive& archive) {
-      archive("a", a)("b", b)("patches", patches)("runs", runs);
-    }
+    void fields(Archive& archive) { archive("a", a)("b", b)("patches", patches)("runs", runs); }
   };
   struct History {
     std::vector<PairHistory> pairs;  // ascending

@@ -9,9 +9,7 @@ namespace apothem {
 
 PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
                              const FrictionTable& table, double thickness, int threads)
-    : surfaces_(surfaces),
-      stiffness_(law.normal_stiffness * thickness),
-      pairs_(surfaces, threads) {
+    : surfaces_(surfaces), stiffness_(law.normal_stiffness * thickness), pairs_(surfaces, threads) {
   if (table.rough() || law.normal_damping > 0) {
     tangential_.emplace(surfaces, law, table, thickness);
   }
@@ -48,7 +46,7 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 
 bool PolygonKernel::both_respond(RigidIndex a, RigidIndex b) const {
   const std::array<double, 3>&u = surfaces_.rigid(a).inverse_mass,
-  &w = surfaces_.rigid(b).inverse_mass;
+                           &w = surfaces_.rigid(b).inverse_mass;
   return u[0] + u[2] > 0 && w[0] + w[2] > 0;
 }
 
@@ -76,10 +74,10 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
       return std::min(std::abs(stiffness_ * moment) / force, surfaces_.shapes().radius(body));
     };
     const double k = (both_respond(a, b) ? 2 : 1) * contact_stiffness_[i];
-    forces.lambda[a] += k * strip_mobility(surfaces_.rigid(a).inverse_mass, arm(a, pair.moment_a),
-                                           pair.breadth);
-    forces.lambda[b] += k * strip_mobility(surfaces_.rigid(b).inverse_mass, arm(b, pair.moment_b),
-                                           pair.breadth);
+    forces.lambda[a] +=
+        k * strip_mobility(surfaces_.rigid(a).inverse_mass, arm(a, pair.moment_a), pair.breadth);
+    forces.lambda[b] +=
+        k * strip_mobility(surfaces_.rigid(b).inverse_mass, arm(b, pair.moment_b), pair.breadth);
   }
 }
 

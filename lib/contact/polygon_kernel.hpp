@@ -33,7 +33,8 @@ class PolygonKernel final : public Kernel {
   }
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
-  void add_records(const FrictionMemory& memory, std::vector<ContactRecord>& records) const override;
+  void add_records(const FrictionMemory& memory,
+                   std::vector<ContactRecord>& records) const override;
   void fields(Archive& archive) override {
     if (tangential_) archive("tangential", *tangential_);
   }

@@ -1,7 +1,7 @@
 // The broad phase: which pairs of surfaces are near each other.
 //
-// Every surface has a box, grown by half of its skin. The pairs of these boxes serve until a surface
-// leaves its grown box, so that most steps need no search.
+// Every surface has a box, grown by half of its skin. The pairs of these boxes serve until a
+// surface leaves its grown box, so that most steps need no search.
 #pragma once
 
 #include <span>

@@ -26,7 +26,10 @@ class Surfaces {
   /// How far boundaries may move between two searches, twice over, m: the polygons of rigid bodies
   /// and the surfaces of meshes. `collars`: polygons get outlines too.
   Surfaces(double polygon_skin, double mesh_skin, bool collars)
-      : polygon_skin_(polygon_skin), mesh_skin_(mesh_skin), collars_(collars), outlines_(mesh_skin) {}
+      : polygon_skin_(polygon_skin),
+        mesh_skin_(mesh_skin),
+        collars_(collars),
+        outlines_(mesh_skin) {}
 
   /// A rigid body as contact sees it.
   struct Rigid {

@@ -136,19 +136,20 @@ void ContactTerm::check_drift(const State& state, double dt) {
   for (RigidIndex i = 0; i < surfaces.rigid_count(); ++i) {
     if (!surfaces.rigid(i).moves) continue;
     const double* v = &state.v[state.layout.rigid(i)];
-    const double far = std::max(std::abs(v[0]), std::abs(v[1])) +
-                       std::abs(v[2]) * surfaces.shapes().radius(i);
+    const double far =
+        std::max(std::abs(v[0]), std::abs(v[1])) + std::abs(v[2]) * surfaces.shapes().radius(i);
     if (far > stride) {
       stride = far;
       farthest = i;
     }
   }
   if (!(stride * dt > largest_stride_) || surfaces.rigid_count() < 2) return;
-  throw Unstable(fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
-                             "smallest inradius: contacts would be missed; reduce time.step or "
-                             "time.safety",
-                             name(farthest), stride * dt, at_time(state)),
-                 farthest);
+  throw Unstable(
+      fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
+                  "smallest inradius: contacts would be missed; reduce time.step or "
+                  "time.safety",
+                  name(farthest), stride * dt, at_time(state)),
+      farthest);
 }
 
 void ContactTerm::add_forces(const Evaluation& now) {
@@ -191,9 +192,8 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   using Kind = ContactFault::Kind;
   if (fault.kind == Kind::self_contact) refuse_fold(model_, state, fault.a, fault.place);
   const Vec2 world = fault.place + model_.origin;
-  const std::string where =
-      fmt::format("at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {})", world.x(), world.y(), state.time,
-                  state.step);
+  const std::string where = fmt::format("at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {})", world.x(),
+                                        world.y(), state.time, state.step);
   if (fault.kind == Kind::not_convex) {
     throw Unstable(fmt::format(
         "an element in the contact of \"{}\" and \"{}\" is no longer convex {}: it cannot keep its "
@@ -202,8 +202,9 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   }
   const char* advice = "the contact is too soft for this load; raise contact.normal_stiffness";
   if (fault.kind == Kind::collar) {
-    advice = "the contact is too soft for this load or the part too thin; raise "
-             "contact.normal_stiffness";
+    advice =
+        "the contact is too soft for this load or the part too thin; raise "
+        "contact.normal_stiffness";
   }
   if (state.step == 0) advice = "move them apart";
   if (fault.kind == Kind::collar) {
@@ -212,11 +213,10 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
         "m: {}",
         name(fault.a), fault.depth, name(fault.b), where, fault.limit, advice));
   }
-  const char* how = fault.kind == Kind::singular_area
-                        ? "up to the singular area of one of them (phi = 1)"
-                    : fault.kind == Kind::centre
-                        ? "as deep as the centre of one of them"
-                        : "as deep as the potential of an element or body reaches";
+  const char* how =
+      fault.kind == Kind::singular_area ? "up to the singular area of one of them (phi = 1)"
+      : fault.kind == Kind::centre      ? "as deep as the centre of one of them"
+                                        : "as deep as the potential of an element or body reaches";
   throw Unstable(fmt::format("bodies \"{}\" and \"{}\" overlap {} {}: {}", name(fault.a),
                              name(fault.b), how, where, advice),
                  fault.kind == Kind::element ? -1 : std::max(fault.a, fault.b));
@@ -259,8 +259,8 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     if (!body.can_move()) continue;
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
-  const double rate = std::sqrt(contacts_.node_rate(dofs_.free_node_mass()).value +
-                                model_.stiffness() * rigid);
+  const double rate =
+      std::sqrt(contacts_.node_rate(dofs_.free_node_mass()).value + model_.stiffness() * rigid);
   bounds.nodes = {2 / std::hypot(2 / bounds.nodes.step, rate), "elements and their contacts"};
 }
 

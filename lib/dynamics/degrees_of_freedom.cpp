@@ -112,8 +112,7 @@ void DegreesOfFreedom::kick(State& state, double h) const {
 
 void DegreesOfFreedom::steer(State& state, double dt) {
   for (Driven& d : driven_) {
-    const double goal =
-        d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
+    const double goal = d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
     d.move = goal - state.x[d.coordinate];
     state.v[d.coordinate] = d.move / dt;
   }
@@ -181,8 +180,7 @@ double DegreesOfFreedom::gravity_energy(const State& state) const {
   const size_t rigid = layout_.node(0);
   for (size_t c = 0; c < weight_.size(); ++c) {
     // What rounding keeps out of the position counts: the fall may be far smaller than the height.
-    sum -= weight_[c] *
-           (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : state.x[c]);
+    sum -= weight_[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : state.x[c]);
   }
   return sum;
 }

@@ -16,9 +16,7 @@ namespace apothem {
 /// Momentum, or the time integral of a force: N s, and N m s about the model's origin.
 struct Impulse {
   double x = 0, y = 0, angular = 0;
-  void add(const Impulse& other) {
-    x += other.x, y += other.y, angular += other.angular;
-  }
+  void add(const Impulse& other) { x += other.x, y += other.y, angular += other.angular; }
   void fields(Archive& archive) { archive("x", x)("y", y)("angular", angular); }
 };
 

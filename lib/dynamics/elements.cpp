@@ -51,8 +51,8 @@ std::string Elements::describe() const {
 
 void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
   const Layout& layout = state.layout;
-  const double lambda = largest_eigenvalue(elements_, layout.of_nodes(state.x),
-                                           layout.of_nodes(dofs.inverse_mass()));
+  const double lambda =
+      largest_eigenvalue(elements_, layout.of_nodes(state.x), layout.of_nodes(dofs.inverse_mass()));
   if (!(lambda > 0)) {
     limit_ = {HUGE_VAL, "no element can move"};
     return;
@@ -81,19 +81,18 @@ void Elements::add_forces(const Evaluation& now) {
 }
 
 void Elements::watch(const State& state) {
-  const FiniteElements::Collapse worst =
-      elements_.smallest_ratio(state.layout.of_nodes(state.x));
+  const FiniteElements::Collapse worst = elements_.smallest_ratio(state.layout.of_nodes(state.x));
   if (worst.ratio > 0) return;
   const DeformableBody& body = model_.deformables[worst.set];
   Vec2 centre = Vec2::Zero();
   const std::span<const int> nodes = body.mesh.element(worst.element);
   for (const int node : nodes) centre += body.mesh.nodes[node] / static_cast<double>(nodes.size());
   centre += model_.origin;
-  throw Unstable(
-      fmt::format("the element at ({:.6g}, {:.6g}) m of \"{}\" has turned inside out {}: the load is "
-                  "more than the material can bear, or the step is too long; reduce the load or "
-                  "time.safety, or raise time.load_steps",
-                  centre.x(), centre.y(), body.name, at_time(state)));
+  throw Unstable(fmt::format(
+      "the element at ({:.6g}, {:.6g}) m of \"{}\" has turned inside out {}: the load is "
+      "more than the material can bear, or the step is too long; reduce the load or "
+      "time.safety, or raise time.load_steps",
+      centre.x(), centre.y(), body.name, at_time(state)));
 }
 
 void Elements::add_energies(const State& state, double dt, Energies& e) {
@@ -103,9 +102,7 @@ void Elements::add_energies(const State& state, double dt, Energies& e) {
   e.damping_loss += summed_damping_loss_ - dt / 4 * (damping_power_ - first_damping_power_);
 }
 
-void Elements::bound_step(StepBounds& bounds) {
-  bounds.nodes = limit_;
-}
+void Elements::bound_step(StepBounds& bounds) { bounds.nodes = limit_; }
 
 void Elements::add_stiffness(const State& state, NodeStiffness& stiffness) {
   elements_.stiffness_sums(state.layout.of_nodes(state.x), stiffness.elastic);

@@ -1,5 +1,5 @@
-// The finite elements of all deformable bodies as a term: internal forces, strain energy, damping in
-// proportion to the stiffness.
+// The finite elements of all deformable bodies as a term: internal forces, strain energy, damping
+// in proportion to the stiffness.
 #pragma once
 
 #include <vector>

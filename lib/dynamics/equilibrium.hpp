@@ -12,15 +12,15 @@ namespace apothem {
 
 /// How the equilibrium of a load step was found.
 struct LoadStep {
-  double time = 0;              ///< s
-  std::int64_t iterations = 0;  ///< steps of dynamic relaxation
-  double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
-  double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
-  DeformableIndex worst = -1;   ///< the body with that imbalance
+  double time = 0;                  ///< s
+  std::int64_t iterations = 0;      ///< steps of dynamic relaxation
+  double residual = 0;              ///< norm of the nodal forces out of balance / norm of the loads
+  double imbalance = 0;             ///< largest sum of the forces on a body / sum of their sizes
+  DeformableIndex worst = -1;       ///< the body with that imbalance
   DeformableIndex unbalanced = -1;  ///< the body with most of the residual
-  double load = 0;              ///< sum of the sizes of all loads and reactions on nodes, N
-  std::vector<double> off{};    ///< size of the sum of all forces on each deformable body, N
-  bool complete = true;         ///< false: stopped on the way
+  double load = 0;                  ///< sum of the sizes of all loads and reactions on nodes, N
+  std::vector<double> off{};        ///< size of the sum of all forces on each deformable body, N
+  bool complete = true;             ///< false: stopped on the way
 
   void fields(Archive& archive) {
     archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(
@@ -61,28 +61,26 @@ class Equilibrium {
   [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
   /// Of a node's coordinate among the vectors of this object.
-  [[nodiscard]] bool held(size_t coordinate) const {
-    return !dofs_.can_move(first_ + coordinate);
-  }
+  [[nodiscard]] bool held(size_t coordinate) const { return !dofs_.can_move(first_ + coordinate); }
 
   const Model& model_;
   const DegreesOfFreedom& dofs_;
   const Terms& terms_;
   double tolerance_;
-  size_t first_;                           // coordinate of the nodes
-  double shortest_edge_;                   // of the elements, m
-  std::vector<double> weight_;             // of each coordinate, N; empty without gravity
+  size_t first_;                // coordinate of the nodes
+  double shortest_edge_;        // of the elements, m
+  std::vector<double> weight_;  // of each coordinate, N; empty without gravity
   NodeStiffness stiffness_;
-  std::vector<double> mass_, inverse_;     // scaled; inverse 0 where held
-  std::vector<double> rest_, last_;        // forces out of balance, and a step before, N
-  std::vector<double> drive_, velocity_;   // what accelerates, N; velocity
-  std::vector<double> outside_;            // forces at the last equilibrium, N
-  std::vector<double> lambda_;             // of rigid bodies; not used
-  double far_ = 0;                         // m
-  double loads_ = 0;                       // largest norm so far, N
-  std::vector<double> body_loads_;         // largest sum of sizes so far, N
+  std::vector<double> mass_, inverse_;    // scaled; inverse 0 where held
+  std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
+  std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
+  std::vector<double> outside_;           // forces at the last equilibrium, N
+  std::vector<double> lambda_;            // of rigid bodies; not used
+  double far_ = 0;                        // m
+  double loads_ = 0;                      // largest norm so far, N
+  std::vector<double> body_loads_;        // largest sum of sizes so far, N
   double sum_loads_ = 0, sum_residual_ = 0, sum_noise_ = 0, most_ = 0;  // in a look: see reached
-  double kinetic_ = 0;                     // at the step before
+  double kinetic_ = 0;                                                  // at the step before
   std::int64_t revision_ = -1;
 };
 

@@ -53,7 +53,8 @@ ContactCounts Simulation::counts() const { return contact_ ? contact_->counts() 
 PhaseSeconds Simulation::phase_seconds() const {
   PhaseSeconds seconds = clock_.seconds();
   for (double& s : seconds) {
-    s *= timed_steps_ > 0 ? static_cast<double>(own_steps()) / static_cast<double>(timed_steps_) : 0;
+    s *=
+        timed_steps_ > 0 ? static_cast<double>(own_steps()) / static_cast<double>(timed_steps_) : 0;
   }
   return seconds;
 }

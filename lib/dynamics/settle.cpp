@@ -48,8 +48,7 @@ class Relaxation {
       if (step == kMostSteps) refuse();
       const double stiffest =
           lambda_.empty() ? 0 : *std::max_element(lambda_.begin(), lambda_.end());
-      const double dt =
-          kStep * std::min(limit_, stiffest > 0 ? 2 / std::sqrt(stiffest) : HUGE_VAL);
+      const double dt = kStep * std::min(limit_, stiffest > 0 ? 2 / std::sqrt(stiffest) : HUGE_VAL);
       double kinetic = accelerate(dt);
       calm = worst_share_ <= 1 ? calm + 1 : 0;
       if (kinetic < last) {
@@ -79,8 +78,8 @@ class Relaxation {
       const double off =
           body.mass * std::hypot(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
       const double place = std::abs(state_.x[at]) + std::abs(state_.x[at + 1]) + radius_[i];
-      const double may = kResidual * (body.mass * model_.gravity.norm() +
-                                      std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +
+      const double may = kResidual * (body.mass * model_.gravity.norm() + std::abs(state_.f[at]) +
+                                      std::abs(state_.f[at + 1])) +
                          kNoise * place * lambda_[i] * body.mass;
       if (!(off <= worst_share_ * may)) {
         worst_share_ = off / may;
@@ -101,8 +100,7 @@ class Relaxation {
     Eigen::Vector3d a;
     for (size_t k = 0; k < 3; ++k) {
       const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[at + k];
-      a[static_cast<Eigen::Index>(k)] =
-          dofs_.inverse_mass()[at + k] * state_.f[at + k] + gravity;
+      a[static_cast<Eigen::Index>(k)] = dofs_.inverse_mass()[at + k] * state_.f[at + k] + gravity;
     }
     const Vec2 way(given_[at], given_[at + 1]);
     if (way != Vec2::Zero()) {

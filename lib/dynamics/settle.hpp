@@ -15,9 +15,9 @@ namespace apothem {
 struct SettledStart {
   const Model& model;
   const DegreesOfFreedom& dofs;
-  State& state;                        ///< is brought to rest; keeps the velocities that are given
-  const std::vector<double>& lambda;   ///< of each body's contacts after a search for forces, 1/s^2
-  double stability_limit;              ///< known before the run, s
+  State& state;                       ///< is brought to rest; keeps the velocities that are given
+  const std::vector<double>& lambda;  ///< of each body's contacts after a search for forces, 1/s^2
+  double stability_limit;             ///< known before the run, s
 };
 
 /// `find_forces`: fills state.f and lambda; its arguments are the velocities that friction follows

@@ -108,8 +108,8 @@ class Simulation {
   State state_;
   Ledger ledger_;
   std::vector<std::unique_ptr<Term>> terms_;
-  Elements* elements_ = nullptr;    // of the terms: for reports
-  ContactTerm* contact_ = nullptr;  // likewise
+  Elements* elements_ = nullptr;              // of the terms: for reports
+  ContactTerm* contact_ = nullptr;            // likewise
   std::unique_ptr<Equilibrium> equilibrium_;  // only in static scenes
 
   StepChoice choice_;

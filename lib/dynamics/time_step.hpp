@@ -38,10 +38,10 @@ StepLimit motion_step_limit(const Model& model);
 
 /// The step of a run.
 struct StepChoice {
-  double step = 0;           ///< s
-  StepLimit limit;           ///< what limits it
-  double stability = 0;      ///< largest stable step, s; infinite if nothing can touch
-  double element_safety = 0; ///< an automatic step over the limit of the nodes
+  double step = 0;            ///< s
+  StepLimit limit;            ///< what limits it
+  double stability = 0;       ///< largest stable step, s; infinite if nothing can touch
+  double element_safety = 0;  ///< an automatic step over the limit of the nodes
 };
 
 /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.

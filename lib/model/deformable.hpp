@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apothem/fem/element.hpp"
+#include "apothem/mesh/indices.hpp"
 #include "apothem/mesh/mesh.hpp"
 #include "apothem/model/history.hpp"
 
@@ -34,10 +35,10 @@ struct PressureLoad {
 
 struct DeformableBody {
   std::string name;
-  int material = 0;
+  MaterialIndex material = 0;
   ElementKind element = ElementKind::quad4;
-  Mesh mesh;           ///< in model coordinates, along a space-filling curve
-  int first_node = 0;  ///< in the nodal arrays of the state
+  Mesh mesh;                 ///< in model coordinates, along a space-filling curve
+  NodeIndex first_node = 0;  ///< in the nodal arrays of the state
   std::vector<Support> supports;
   std::vector<DeadLoad> dead_loads;
   std::vector<PressureLoad> pressures;
@@ -47,10 +48,10 @@ struct DeformableBody {
 
 /// A point of a deformable body: the weighted mean of nodes; its stress is that of an element.
 struct TrackedPoint {
-  std::string name;        ///< heads its columns
-  int body = 0;            ///< deformable one
-  int element = 0;         ///< of its mesh, the one that holds the point
-  std::vector<int> nodes;  ///< in the nodal arrays of the state
+  std::string name;  ///< heads its columns
+  DeformableIndex body = 0;
+  ElementIndex element = 0;  ///< of its mesh, the one that holds the point
+  std::vector<NodeIndex> nodes;
   std::vector<double> weights;
 };
 

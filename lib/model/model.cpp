@@ -7,12 +7,12 @@ std::array<double, 3> RigidBody::inverse_mass() const {
   return {held[0] ? 0 : 1 / mass, held[1] ? 0 : 1 / mass, held[2] ? 0 : 1 / inertia};
 }
 
-const std::string& Model::name_of(int body) const {
+const std::string& Model::name_of(BodyIndex body) const {
   const int rigid = static_cast<int>(bodies.size());
   return body < rigid ? bodies[body].name : deformables[body - rigid].name;
 }
 
-int Model::material_of(int body) const {
+MaterialIndex Model::material_of(BodyIndex body) const {
   const int rigid = static_cast<int>(bodies.size());
   return body < rigid ? bodies[body].material : deformables[body - rigid].material;
 }

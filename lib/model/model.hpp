@@ -26,7 +26,7 @@ enum class Motion { free, fixed, prescribed };
 /// A rigid body. Its shape is kept in the body frame: relative to the mass centre, at angle 0.
 struct RigidBody {
   std::string name;
-  int material = 0;
+  MaterialIndex material = 0;
   Potential potential;  ///< body frame
   double area = 0;      ///< m^2
   double mass = 0;      ///< kg, with the model's thickness
@@ -56,8 +56,8 @@ struct Model {
   std::vector<DeformableBody> deformables;
 
   // All bodies are numbered rigid ones first.
-  [[nodiscard]] const std::string& name_of(int body) const;
-  [[nodiscard]] int material_of(int body) const;
+  [[nodiscard]] const std::string& name_of(BodyIndex body) const;
+  [[nodiscard]] MaterialIndex material_of(BodyIndex body) const;
 
   /// Of all deformable bodies.
   [[nodiscard]] int node_count() const;

@@ -24,11 +24,11 @@ struct TimeSettings {
 };
 
 struct OutputSettings {
-  int frames = 100;                        ///< besides the one at time 0
-  std::optional<double> history_interval;  ///< s; empty: end / 1000
-  std::vector<int> track;                  ///< rigid bodies in history.csv
-  std::vector<int> track_deformables;      ///< deformable bodies as a whole
-  std::vector<int> track_surfaces;         ///< deformable bodies whose contact pressure counts
+  int frames = 100;                                ///< besides the one at time 0
+  std::optional<double> history_interval;          ///< s; empty: end / 1000
+  std::vector<RigidIndex> track;                   ///< rigid bodies in history.csv
+  std::vector<DeformableIndex> track_deformables;  ///< deformable bodies as a whole
+  std::vector<DeformableIndex> track_surfaces;  ///< deformable bodies whose contact pressure counts
   std::vector<TrackedPoint> points;
   std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
 };

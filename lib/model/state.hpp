@@ -47,8 +47,8 @@ struct State {
   /// of nodes the displacement from the mesh as given (m).
   std::vector<double> x;
   std::vector<double> v;  ///< m/s, rad/s
-  /// Of rigid bodies contact force (N) and moment about the mass centre (N m); of nodes the force of
-  /// elements, loads and contacts (N). Without gravity.
+  /// Of rigid bodies contact force (N) and moment about the mass centre (N m); of nodes the force
+  /// of elements, loads and contacts (N). Without gravity.
   std::vector<double> f;
   std::vector<double> remainder;  ///< what rounding has kept out of x of rigid bodies so far
 
@@ -116,10 +116,6 @@ struct Column {
   const char* name;
   const char* unit;
 };
-inline constexpr std::array kBodyColumns{
-    Column{"x", "m"},    Column{"y", "m"},    Column{"angle", "rad"},
-    Column{"vx", "m/s"}, Column{"vy", "m/s"}, Column{"spin", "rad/s"},
-    Column{"fx", "N"},   Column{"fy", "N"},   Column{"friction", "N"}};
 /// Of a point of a deformable body.
 inline constexpr std::array kPointColumns{
     Column{"ux", "m"},   Column{"uy", "m"},   Column{"vx", "m/s"},

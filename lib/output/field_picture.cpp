@@ -165,7 +165,7 @@ Spread spread(const Field& field, const Box& window) {
 }
 
 // Positions and scales of a panel. Lengths in points unless stated.
-struct Layout {
+struct PanelLayout {
   Box window;              // visible region, m
   double low, high_value;  // ends of the colour scale
   bool values_below, values_above;
@@ -195,8 +195,8 @@ std::string number(double value) {
 }
 
 // Chooses the number of columns that makes the frames largest.
-Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
-  Layout layout{};
+PanelLayout lay_out(const FieldPanel& panel, const Canvas& ruler) {
+  PanelLayout layout{};
   layout.window = panel.window ? *panel.window : box_around(panel.fields);
   const double w = layout.window.x1 - layout.window.x0;
   const double h = layout.window.y1 - layout.window.y0;
@@ -245,7 +245,7 @@ Layout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   return layout;
 }
 
-void draw_panel(Canvas& canvas, const FieldPanel& panel, const Layout& layout, const Vec2& corner) {
+void draw_panel(Canvas& canvas, const FieldPanel& panel, const PanelLayout& layout, const Vec2& corner) {
   const double left = corner.x() + kLeft;
   std::string title = panel.quantity->meaning;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
@@ -287,7 +287,7 @@ void draw_panel(Canvas& canvas, const FieldPanel& panel, const Layout& layout, c
 
 std::string draw_fields(const FieldFigure& figure, PictureFormat format) {
   const Canvas ruler(format, 1, 1);
-  std::vector<Layout> layouts;
+  std::vector<PanelLayout> layouts;
   double width = 2 * kLeft + ruler.text_width(figure.title, kFigureFont);
   double height = kTop + kBottom;
   for (const FieldPanel& panel : figure.panels) {

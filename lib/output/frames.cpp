@@ -21,6 +21,7 @@
 #include <stdexcept>
 
 #include "apothem/mesh/measure.hpp"
+#include "apothem/model/body_quantities.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
 
@@ -87,93 +88,124 @@ std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchySt
   return mean;
 }
 
-vtkNew<vtkUnstructuredGrid> bodies(const Model& model, const State& state,
-                                   const std::vector<CauchyStress>& stresses) {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> body_id = integers("body");
-  vtkNew<vtkIntArray> material = integers("material");
-  vtkNew<vtkDoubleArray> displacement = doubles("displacement", 3);
-  vtkNew<vtkDoubleArray> velocity = doubles("velocity", 3);
-  vtkNew<vtkDoubleArray> rotation = doubles("rotation", 1);
-  vtkNew<vtkDoubleArray> spin = doubles("spin", 1);
-  vtkNew<vtkDoubleArray> force = doubles("contact_force", 3);
-  StressArrays of_cells, of_points;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < model.bodies.size(); ++i) {
-    const RigidBody& body = model.bodies[i];
-    const double* x = &state.position[3 * i];
-    const double* v = &state.velocity[3 * i];
-    const Vec2 centre(x[0], x[1]);
+// The bodies of a frame: a rigid one is a cell, and so is an element.
+class BodyGrid {
+ public:
+  BodyGrid(const Model& model, const FrameContents& frame) : model_(model), frame_(frame) {
+    points_->SetDataTypeToDouble();
+    for (const BodyQuantity& quantity : kBodyQuantities) {
+      if (quantity.in_frames) quantities_.push_back({&quantity, doubles(quantity.name, 1)});
+    }
+    for (RigidIndex i = 0; i < static_cast<RigidIndex>(model.bodies.size()); ++i) add_rigid(i);
+    const CauchyStress* stress = frame.stresses.data();
+    for (DeformableIndex i = 0; i < static_cast<DeformableIndex>(model.deformables.size()); ++i) {
+      add_deformable(i, stress);
+      stress += model.deformables[i].mesh.element_count();
+    }
+  }
+
+  vtkNew<vtkUnstructuredGrid> grid() {
+    vtkNew<vtkUnstructuredGrid> grid;
+    grid->SetPoints(points_);
+    grid->SetCells(VTK_POLYGON, cells_);
+    if (!model_.deformables.empty()) {
+      of_cells_.add_to(grid->GetCellData());
+      of_points_.add_to(grid->GetPointData());
+    }
+    grid->GetPointData()->AddArray(displacement_);
+    grid->GetPointData()->AddArray(velocity_);
+    for (vtkDataArray* array :
+         std::initializer_list<vtkDataArray*>{body_, material_, rotation_, spin_, force_}) {
+      grid->GetCellData()->AddArray(array);
+    }
+    for (const auto& [quantity, array] : quantities_) grid->GetCellData()->AddArray(array);
+    add_time(grid, frame_.state.time);
+    std::vector<std::string> names;
+    const auto bodies = static_cast<BodyIndex>(model_.bodies.size() + model_.deformables.size());
+    for (BodyIndex b = 0; b < bodies; ++b) names.push_back(model_.name_of(b));
+    add_names(grid, "body_names", names);
+    names.clear();
+    for (const Material& m : model_.materials) names.push_back(m.name);
+    add_names(grid, "material_names", names);
+    return grid;
+  }
+
+ private:
+  void add_rigid(RigidIndex i) {
+    const RigidBody& body = model_.bodies[i];
+    const auto x = frame_.state.pose(i), v = frame_.state.pose_rate(i);
+    const Vec2 centre = x.head<2>();
     const auto turned = [](const Vec2& p, double angle) -> Vec2 {
       const double c = std::cos(angle);
       const double s = std::sin(angle);
       return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
     };
-    cells->InsertNextCell(body.potential.size());
+    cells_->InsertNextCell(body.potential.size());
     for (const Vec2& vertex : body.potential.vertices) {
       const Vec2 arm = turned(vertex, x[2]);
       const Vec2 u = (centre - body.position) + (arm - turned(vertex, body.angle));
-      const Vec2 w = Vec2(v[0], v[1]) + cross(v[2], arm);
-      const Vec2 p = centre + arm + model.origin;
-      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
-      displacement->InsertNextTuple3(u.x(), u.y(), 0);
-      velocity->InsertNextTuple3(w.x(), w.y(), 0);
-      of_points.add({});
+      cells_->InsertCellPoint(add_point(centre + arm, u, v.head<2>() + cross(v[2], arm)));
+      of_points_.add({});
     }
-    of_cells.add({});
-    body_id->InsertNextValue(static_cast<int>(i));
-    material->InsertNextValue(body.material);
-    rotation->InsertNextValue(x[2] - body.angle);
-    spin->InsertNextValue(v[2]);
-    force->InsertNextTuple3(state.force[3 * i], state.force[3 * i + 1], 0);
-    names.push_back(body.name);
+    const auto f = frame_.state.force(i);
+    add_cell(i, x[2] - body.angle, v[2], f.head<2>(), {}, motion(i));
   }
-  const CauchyStress* stress = stresses.data();
-  for (const DeformableBody& body : model.deformables) {
-    const vtkIdType first = points->GetNumberOfPoints();
-    for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
-      const size_t c = 2 * (body.first_node + i);
-      const Vec2 u(state.displacement[c], state.displacement[c + 1]);
-      const Vec2 p = body.mesh.nodes[i] + u + model.origin;
-      points->InsertNextPoint(p.x(), p.y(), 0);
-      displacement->InsertNextTuple3(u.x(), u.y(), 0);
-      velocity->InsertNextTuple3(state.node_velocity[c], state.node_velocity[c + 1], 0);
+
+  void add_deformable(DeformableIndex i, const CauchyStress* stress) {
+    const DeformableBody& body = model_.deformables[i];
+    const vtkIdType first = points_->GetNumberOfPoints();
+    for (int n = 0; n < static_cast<int>(body.mesh.nodes.size()); ++n) {
+      const Vec2 u = frame_.state.node(body.first_node + n);
+      add_point(body.mesh.nodes[n] + u, u, frame_.state.node_velocity(body.first_node + n));
     }
-    for (const CauchyStress& s : nodal_means(body, stress)) of_points.add(s);
-    for (int e = 0; e < body.mesh.element_count(); ++e, ++stress) {
-      cells->InsertNextCell(static_cast<int>(body.mesh.element(e).size()));
-      for (const int node : body.mesh.element(e)) cells->InsertCellPoint(first + node);
-      body_id->InsertNextValue(static_cast<int>(names.size()));
-      material->InsertNextValue(body.material);
-      rotation->InsertNextValue(0);
-      spin->InsertNextValue(0);
-      force->InsertNextTuple3(0, 0, 0);
-      of_cells.add(*stress);
+    for (const CauchyStress& s : nodal_means(body, stress)) of_points_.add(s);
+    const BodyIndex b = static_cast<BodyIndex>(model_.bodies.size()) + i;
+    const BodyMotion of_body = motion(b);
+    for (ElementIndex e = 0; e < body.mesh.element_count(); ++e) {
+      cells_->InsertNextCell(static_cast<int>(body.mesh.element(e).size()));
+      for (const int node : body.mesh.element(e)) cells_->InsertCellPoint(first + node);
+      add_cell(b, 0, 0, Vec2::Zero(), stress[e], of_body);
     }
-    names.push_back(body.name);
   }
-  grid->SetPoints(points);
-  grid->SetCells(VTK_POLYGON, cells);
-  if (!model.deformables.empty()) {
-    of_cells.add_to(grid->GetCellData());
-    of_points.add_to(grid->GetPointData());
+
+  [[nodiscard]] BodyMotion motion(BodyIndex body) const {
+    return motion_of(model_, frame_.state, body, frame_.forces[body], frame_.node_mass);
   }
-  grid->GetPointData()->AddArray(displacement);
-  grid->GetPointData()->AddArray(velocity);
-  for (vtkDataArray* array :
-       std::initializer_list<vtkDataArray*>{body_id, material, rotation, spin, force}) {
-    grid->GetCellData()->AddArray(array);
+
+  vtkIdType add_point(const Vec2& place, const Vec2& u, const Vec2& v) {
+    displacement_->InsertNextTuple3(u.x(), u.y(), 0);
+    velocity_->InsertNextTuple3(v.x(), v.y(), 0);
+    const Vec2 p = place + model_.origin;
+    return points_->InsertNextPoint(p.x(), p.y(), 0);
   }
-  add_time(grid, state.time);
-  add_names(grid, "body_names", names);
-  names.clear();
-  for (const Material& m : model.materials) names.push_back(m.name);
-  add_names(grid, "material_names", names);
-  return grid;
-}
+
+  void add_cell(BodyIndex body, double rotation, double spin, const Vec2& force,
+                const CauchyStress& stress, const BodyMotion& of_body) {
+    body_->InsertNextValue(body);
+    material_->InsertNextValue(model_.material_of(body));
+    rotation_->InsertNextValue(rotation);
+    spin_->InsertNextValue(spin);
+    force_->InsertNextTuple3(force.x(), force.y(), 0);
+    of_cells_.add(stress);
+    for (const auto& [quantity, array] : quantities_) {
+      array->InsertNextValue(quantity->value(of_body));
+    }
+  }
+
+  const Model& model_;
+  const FrameContents& frame_;
+  vtkNew<vtkPoints> points_;
+  vtkNew<vtkCellArray> cells_;
+  vtkNew<vtkIntArray> body_ = integers("body");
+  vtkNew<vtkIntArray> material_ = integers("material");
+  vtkNew<vtkDoubleArray> displacement_ = doubles("displacement", 3);
+  vtkNew<vtkDoubleArray> velocity_ = doubles("velocity", 3);
+  vtkNew<vtkDoubleArray> rotation_ = doubles("rotation", 1);
+  vtkNew<vtkDoubleArray> spin_ = doubles("spin", 1);
+  vtkNew<vtkDoubleArray> force_ = doubles("contact_force", 3);
+  std::vector<std::pair<const BodyQuantity*, vtkSmartPointer<vtkDoubleArray>>> quantities_;
+  StressArrays of_cells_, of_points_;
+};
 
 vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
                                     const std::vector<ContactRecord>& contacts) {
@@ -257,128 +289,27 @@ std::string collection(const char* series, const std::vector<double>& times) {
 
 }  // namespace
 
-namespace {
-
-// Throws std::runtime_error for a missing file, for which VTK would print its own message.
-void require_file(const std::string& file) {
-  if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": there is no such file");
-}
-
-// Time and file of the first frame of a series not before `time` and not after `latest`, s. Throws
-// std::runtime_error if there is none.
-std::pair<double, std::string> frame_file(const std::string& folder, const char* series,
-                                          double time, double latest) {
-  const std::string file = fmt::format("{}/{}.pvd", folder, series);
-  require_file(file);
-  vtkSmartPointer<vtkXMLDataElement> document;
-  document.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
-  vtkXMLDataElement* list = document ? document->FindNestedElementWithName("Collection") : nullptr;
-  if (!list) throw std::runtime_error(file + ": cannot be read");
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
-    vtkXMLDataElement* entry = list->GetNestedElement(i);
-    double at = 0;
-    if (!entry->GetScalarAttribute("timestep", at) || !entry->GetAttribute("file")) continue;
-    if (at < time - 1e-6 * (latest - time) || at > latest) continue;
-    const std::string frame = folder + "/" + entry->GetAttribute("file");
-    require_file(frame);
-    return {at, frame};
-  }
-  throw std::runtime_error(fmt::format("{}: there is no frame at {} s", folder, time));
-}
-
-// The array with that name. Throws std::runtime_error if there is none.
-vtkDataArray* array_of(vtkDataSetAttributes* data, const char* name, const std::string& file) {
-  vtkDataArray* found = data->GetArray(name);
-  if (!found) throw std::runtime_error(fmt::format("{}: has no array \"{}\"", file, name));
-  return found;
-}
-
-}  // namespace
-
-Frame read_frame(const std::string& folder, double time, double latest) {
-  Frame frame;
-  std::string file;
-  std::tie(frame.time, file) = frame_file(folder, "frames", time, latest);
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  const auto array = [&](vtkDataSetAttributes* data, const char* name) {
-    return array_of(data, name, file);
-  };
-  const auto vectors = [&](const char* name) {
-    vtkDataArray* values = array(grid->GetPointData(), name);
-    std::vector<Vec2> result;
-    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
-      result.emplace_back(values->GetComponent(i, 0), values->GetComponent(i, 1));
-    }
-    return result;
-  };
-  frame.displacement = vectors("displacement");
-  frame.velocity = vectors("velocity");
-  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
-    const double* p = grid->GetPoint(i);
-    frame.mesh.nodes.emplace_back(Vec2(p[0], p[1]) - frame.displacement[i]);
-  }
-  vtkDataArray* body = array(grid->GetCellData(), "body");
-  vtkDataArray* stress = array(grid->GetCellData(), "stress");
-  vtkDataArray* across = array(grid->GetCellData(), "stress_zz");
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    grid->GetCellPoints(c, corners);
-    frame.mesh.add_element(std::vector<int>(corners->begin(), corners->end()));
-    frame.body.push_back(static_cast<int>(body->GetTuple1(c)));
-    frame.stress.push_back({stress->GetComponent(c, 0), stress->GetComponent(c, 1),
-                            stress->GetComponent(c, 2), across->GetTuple1(c)});
-  }
-  return frame;
-}
-
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
     : folder_(std::move(folder)), model_(model), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
 }
 
-void FrameWriter::write(const State& state, const std::vector<ContactRecord>& contacts,
-                        const std::vector<CauchyStress>& stresses,
-                        const std::vector<SurfaceRecord>& surfaces) {
-  const size_t frame = times_.size();
-  write_file(folder_ + "/" + file_name("bodies", frame), xml(bodies(model_, state, stresses)));
-  write_file(folder_ + "/" + file_name("contacts", frame),
-             xml(patches(model_, state.time, contacts)));
-  if (!surfaces.empty()) {
-    write_file(folder_ + "/" + file_name("surfaces", frame),
-               xml(boundaries(model_, state.time, surfaces)));
+void FrameWriter::write(const FrameContents& frame) {
+  const size_t number = times_.size();
+  const double time = frame.state.time;
+  write_file(folder_ + "/" + file_name("bodies", number), xml(BodyGrid(model_, frame).grid()));
+  write_file(folder_ + "/" + file_name("contacts", number),
+             xml(patches(model_, time, frame.contacts)));
+  if (!frame.surfaces.empty()) {
+    write_file(folder_ + "/" + file_name("surfaces", number),
+               xml(boundaries(model_, time, frame.surfaces)));
   }
-  times_.push_back(state.time);
-  if (!surfaces.empty()) {
+  times_.push_back(time);
+  if (!frame.surfaces.empty()) {
     write_file(folder_ + "/surfaces.pvd", collection("surfaces", times_));
   }
   write_file(folder_ + "/frames.pvd", collection("bodies", times_));
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
-}
-
-std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest) {
-  const std::string file = frame_file(folder, "surfaces", time, latest).second;
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  vtkDataArray* body = array_of(grid->GetCellData(), "body", file);
-  vtkDataArray* pressure = array_of(grid->GetCellData(), "contact_pressure", file);
-  vtkDataArray* traction = array_of(grid->GetCellData(), "tangential_traction", file);
-  std::vector<SurfaceRecord> surfaces;
-  vtkNew<vtkIdList> ends;
-  const auto end = [&](vtkIdType i) {
-    const double* p = grid->GetPoint(ends->GetId(i));
-    return Vec2(p[0], p[1]);
-  };
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    grid->GetCellPoints(c, ends);
-    surfaces.push_back({static_cast<int>(body->GetTuple1(c)), end(0), end(1),
-                        pressure->GetTuple1(c), traction->GetTuple1(c)});
-  }
-  return surfaces;
 }
 
 void write_mesh(const std::string& file, const PolygonMesh& mesh) {

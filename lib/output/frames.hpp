@@ -13,6 +13,17 @@
 
 namespace apothem {
 
+/// What a frame shows.
+struct FrameContents {
+  const State& state;
+  std::vector<ContactRecord> contacts = {};
+  /// One for each element of all deformable bodies, in the order of the model.
+  std::vector<CauchyStress> stresses = {};
+  std::vector<SurfaceRecord> surfaces = {};
+  std::vector<BodyForce> forces = {};  ///< contact force on each body, rigid ones first
+  std::vector<double> node_mass = {};  ///< kg
+};
+
 /// Writes the time series of a run into a folder of results.
 class FrameWriter {
  public:
@@ -21,10 +32,8 @@ class FrameWriter {
   FrameWriter(std::string folder, const Model& model, std::vector<double> times = {});
 
   /// Writes the next frame and then the .pvd files, so that every file that these list is complete.
-  /// `stresses` holds one stress for each element of all deformable bodies, in the order of the
-  /// model. Throws SystemFailure; the earlier frames are then intact.
-  void write(const State& state, const std::vector<ContactRecord>& contacts,
-             const std::vector<CauchyStress>& stresses, const std::vector<SurfaceRecord>& surfaces);
+  /// Throws SystemFailure; the earlier frames are then intact.
+  void write(const FrameContents& frame);
 
   /// Times of all frames so far, s.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }

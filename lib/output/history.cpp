@@ -8,6 +8,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "apothem/model/body_quantities.hpp"
 #include "apothem/model/columns.hpp"
 
 namespace apothem {
@@ -21,49 +22,6 @@ void add_row(std::string& rows, double time, const Numbers&... numbers) {
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), time);
   (fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), numbers), ...);
   rows += '\n';
-}
-
-// The motion of a deformable body as if it were rigid: position and velocity of the mass centre,
-// mean rotation and spin.
-struct MeanMotion {
-  Vec2 place = Vec2::Zero(), velocity = Vec2::Zero();
-  double angle = 0, spin = 0;
-};
-MeanMotion mean_motion(const DeformableBody& body, const State& state,
-                       const std::vector<double>& mass) {
-  MeanMotion mean;
-  Vec2 reference = Vec2::Zero();
-  double whole = 0;
-  const auto n = body.mesh.nodes.size();
-  const auto first = static_cast<size_t>(body.first_node);
-  const auto at = [&](const std::vector<double>& v, size_t i) -> Vec2 {
-    return {v[2 * (first + i)], v[2 * (first + i) + 1]};
-  };
-  for (size_t i = 0; i < n; ++i) {
-    const double m = mass[first + i];
-    whole += m;
-    reference += m * body.mesh.nodes[i];
-    mean.place += m * at(state.displacement, i);
-    mean.velocity += m * at(state.node_velocity, i);
-  }
-  reference /= whole;
-  mean.place = mean.place / whole + reference;
-  mean.velocity /= whole;
-  // The angle of the best-fitting rotation, and the angular momentum over the present moment of
-  // inertia.
-  double turned = 0, straight = 0, angular = 0, inertia = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const double m = mass[first + i];
-    const Vec2 before = body.mesh.nodes[i] - reference;
-    const Vec2 now = body.mesh.nodes[i] + at(state.displacement, i) - mean.place;
-    turned += m * cross(before, now);
-    straight += m * before.dot(now);
-    angular += m * cross(now, Vec2(at(state.node_velocity, i) - mean.velocity));
-    inertia += m * now.squaredNorm();
-  }
-  mean.angle = std::atan2(turned, straight);
-  mean.spin = angular / inertia;
-  return mean;
 }
 
 // The largest pressure on a surface, and twice the root of the pressure-weighted mean square
@@ -126,20 +84,16 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
                         const Observed& observed) {
   std::string& rows = history_.rows;
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
-  for (const int i : settings_.track) {
-    const double* x = &state.position[3 * static_cast<size_t>(i)];
-    const double* v = &state.velocity[3 * static_cast<size_t>(i)];
-    const double* f = &state.force[3 * static_cast<size_t>(i)];
-    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
-                   x[0] + model_.origin.x(), x[1] + model_.origin.y(), x[2], v[0], v[1], v[2], f[0],
-                   f[1], observed.friction[i]);
-  }
-  for (const int i : settings_.track_deformables) {
-    const MeanMotion m = mean_motion(model_.deformables[i], state, observed.node_mass);
-    const BodyForce& f = observed.contact[i];
-    fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"),
-                   m.place.x() + model_.origin.x(), m.place.y() + model_.origin.y(), m.angle,
-                   m.velocity.x(), m.velocity.y(), m.spin, f.fx, f.fy, f.friction);
+  const auto add_body = [&](BodyIndex body) {
+    const BodyMotion motion =
+        motion_of(model_, state, body, observed.contact[body], observed.node_mass);
+    for (const BodyQuantity& quantity : kBodyQuantities) {
+      fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), quantity.value(motion));
+    }
+  };
+  for (const RigidIndex i : settings_.track) add_body(i);
+  for (const DeformableIndex i : settings_.track_deformables) {
+    add_body(static_cast<BodyIndex>(model_.bodies.size()) + i);
   }
   for (const int i : settings_.track_surfaces) {
     const Pressed contact = pressed(observed.surfaces, static_cast<int>(model_.bodies.size()) + i);
@@ -150,10 +104,10 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
     const TrackedPoint& point = settings_.points[i];
     std::array<double, 4> value{};
     for (size_t k = 0; k < point.nodes.size(); ++k) {
-      const size_t c = 2 * static_cast<size_t>(point.nodes[k]);
-      for (size_t axis = 0; axis < 2; ++axis) {
-        value[axis] += point.weights[k] * state.displacement[c + axis];
-        value[2 + axis] += point.weights[k] * state.node_velocity[c + axis];
+      for (int axis = 0; axis < 2; ++axis) {
+        const auto at = static_cast<size_t>(axis);
+        value[at] += point.weights[k] * state.node(point.nodes[k])[axis];
+        value[2 + at] += point.weights[k] * state.node_velocity(point.nodes[k])[axis];
       }
     }
     const CauchyStress& s = observed.stress[i];

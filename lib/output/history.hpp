@@ -15,9 +15,7 @@ namespace apothem {
 
 /// What histories record in addition to the state and the energy and momentum ledgers.
 struct Observed {
-  /// Sum of the friction forces' magnitudes on each rigid body, N.
-  std::vector<double> friction = {};
-  std::vector<BodyForce> contact = {};    ///< contact force on each deformable body
+  std::vector<BodyForce> contact = {};    ///< contact force on each body, rigid ones first
   std::vector<double> node_mass = {};     ///< lumped mass of each node, kg
   std::vector<CauchyStress> stress = {};  ///< of the element that holds each tracked point, Pa
   /// Boundary pressures; needed only if surfaces are tracked.

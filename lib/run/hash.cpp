@@ -1,0 +1,51 @@
+#include "apothem/run/hash.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+namespace apothem {
+namespace {
+
+// FNV-1a, 64 bits.
+class Hash {
+ public:
+  void add(const void* data, size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3U;
+  }
+  void add(std::span<const double> values) { add(values.data(), values.size_bytes()); }
+  void add(const Vec2& v) { add(v.data(), 2 * sizeof(double)); }
+  [[nodiscard]] std::string text() const { return fmt::format("fnv1a64:{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+}  // namespace
+
+std::string scene_hash(const Scene& scene) {
+  Hash hash;
+  hash.add(scene.text.data(), scene.text.size());
+  for (const RigidBody& body : scene.model.bodies) {
+    for (const Vec2& v : body.potential.vertices) hash.add(v);
+  }
+  for (const DeformableBody& body : scene.model.deformables) {
+    for (const Vec2& v : body.mesh.nodes) hash.add(v);
+  }
+  return hash.text();
+}
+
+std::string state_hash(const State& state) {
+  Hash hash;
+  hash.add(&state.time, sizeof state.time);
+  for (const std::vector<double>* v : {&state.x, &state.v, &state.f}) {
+    hash.add(state.layout.of_rigid(*v));
+  }
+  for (const std::vector<double>* v : {&state.x, &state.v, &state.f}) {
+    hash.add(state.layout.of_nodes(*v));
+  }
+  return hash.text();
+}
+
+}  // namespace apothem

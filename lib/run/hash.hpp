@@ -1,0 +1,17 @@
+// Hashes of scenes and of states: equal hashes mean equal bits.
+#pragma once
+
+#include <string>
+
+#include "apothem/model/state.hpp"
+#include "apothem/scene/scene.hpp"
+
+namespace apothem {
+
+/// Of the scene as read, with the polygons and meshes that stand in files of their own.
+std::string scene_hash(const Scene& scene);
+
+/// Of time, places, velocities and forces.
+std::string state_hash(const State& state);
+
+}  // namespace apothem

@@ -1,0 +1,214 @@
+#include "apothem/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/output/files.hpp"
+#include "apothem/run/folder.hpp"
+#include "apothem/run/hash.hpp"
+#include "apothem/run/summary.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr std::int64_t kLookEvery = 64;  // steps between looks at the clock
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start) {
+  TimeSettings time = scene.time;
+  if (start == Start::checkpoint) time.settled = false;
+  try {
+    return std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads);
+  } catch (const Unrunnable& error) {
+    const std::string index =
+        error.body() >= 0 ? "/" + std::to_string(scene.rigid_places[error.body()]) : "";
+    throw scene.error_at("/" + error.key() + index, error.what());
+  }
+}
+
+bool Schedule::due(double time, double step) {
+  if (!(time >= static_cast<double>(next_) * interval_ - 1e-6 * step)) return false;
+  next_ = static_cast<std::int64_t>(std::floor(time / interval_ + 1e-6)) + 1;
+  return true;
+}
+
+Run::Run(Scene scene, const RunSettings& settings)
+    : scene_(std::move(scene)),
+      settings_(settings),
+      simulation_(make_simulation(scene_, settings.threads,
+                                  settings.resume ? Start::checkpoint : Start::scene)),
+      scene_hash_(scene_hash(scene_)) {
+  const std::string& folder = settings_.folder;
+  if (settings_.resume) {
+    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
+  } else if (!folder.empty()) {
+    prepare_folder(folder, settings_.overwrite);
+  }
+  rows_ =
+      Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
+  pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
+  start_ = last_checkpoint_ = Clock::now();
+  if (folder.empty()) return;
+  HistoryWriter::Sizes sizes{};
+  std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
+  history_.emplace(folder, scene_.model, scene_.output, sizes);
+  frames_.emplace(folder, scene_.model, progress_.frame_times);
+}
+
+double Run::seconds() const { return seconds_since(start_); }
+
+bool Run::reached(double time) const {
+  if (scene_.time.statics) return state().time >= time * (1 - 1e-12);
+  return state().time >= time - 1e-6 * simulation_->step_size();
+}
+
+bool Run::step() {
+  if (reached(scene_.time.end)) return false;
+  if (last_row_ < 0 && !settings_.resume) record(true, true);
+  if (scene_.time.statics) return load_step();
+  simulation_->step();
+  const double step = simulation_->step_size();
+  const bool last = reached(scene_.time.end);
+  const bool row = rows_.due(state().time, step);
+  const bool frame = pictures_.due(state().time, step) && scene_.output.frames > 0;
+  record(row || last, frame || last);
+  return true;
+}
+
+bool Run::load_step() {
+  const std::int64_t count = scene_.time.load_steps, next = state().step + 1;
+  const double time = next < count
+                          ? scene_.time.end * static_cast<double>(next) / static_cast<double>(count)
+                          : scene_.time.end;
+  const LoadStep found = simulation_->balance(time, [&] { return stop_.load(); });
+  if (!found.complete) return false;
+  progress_.load_steps.push_back(found);
+  record(true, true);
+  return true;
+}
+
+void Run::loop(double until) {
+  if (!settings_.resume && state().step == 0) record(true, true);
+  const std::int64_t count = scene_.time.load_steps;
+  const auto more = [&] {
+    if (!scene_.time.statics) return !reached(until);
+    // A load step is taken whole: only if it does not lead beyond the time.
+    const double next =
+        scene_.time.end * static_cast<double>(state().step + 1) / static_cast<double>(count);
+    return state().step < count && next <= until * (1 + 1e-12);
+  };
+  while (!stop_ && more() && step()) {
+    if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
+    if (on_progress_) on_progress_(*this);
+    const std::optional<double>& interval = scene_.output.checkpoint_interval;
+    if (interval && seconds_since(last_checkpoint_) > *interval) {
+      save();
+      last_checkpoint_ = Clock::now();
+    }
+  }
+  status_ = more() ? Status::interrupted : Status::done;
+}
+
+Run::Status Run::run(std::optional<double> until) {
+  const double end = std::min(until.value_or(scene_.time.end), scene_.time.end);
+  try {
+    try {
+      loop(end);
+      close(end);
+    } catch (const Unstable& error) {
+      flush();
+      status_ = Status::unstable;
+      message_ = error.what();
+    }
+  } catch (const SystemFailure& error) {
+    status_ = Status::failed;
+    message_ = error.what();
+    try {
+      if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+    } catch (const SystemFailure&) {
+      // The one that is thrown below came first.
+    }
+    throw;
+  }
+  if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+  return status_;
+}
+
+void Run::close(double until) {
+  flush();
+  if (reached(scene_.time.end)) {
+    if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
+  } else {
+    save();
+    if (!scene_.time.statics) {
+      record(true, true);  // shows where the run stopped; a resumed run takes it back
+      flush();
+    }
+  }
+  if (status_ == Status::interrupted) {
+    message_ = fmt::format(
+        "interrupted at t = {:.9g} s; all files are complete, --resume continues", state().time);
+  } else if (!(until < scene_.time.end)) {
+    judge();
+  }
+}
+
+void Run::record(bool row, bool frame) {
+  if (!history_) return;
+  const Clock::time_point before = Clock::now();
+  if (row && last_row_ != state().step) write_row();
+  if (frame && last_frame_ != state().step) write_frame();
+  output_seconds_ += seconds_since(before);
+}
+
+void Run::write_row() {
+  last_row_ = state().step;
+  Simulation& s = *simulation_;
+  history_->add(
+      s.state(), s.energies(), s.momenta(),
+      {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),
+       scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces()});
+}
+
+void Run::write_frame() {
+  last_frame_ = state().step;
+  history_->flush();
+  const Simulation& s = *simulation_;
+  frames_->write(
+      {s.state(), s.contacts(), s.stresses(), s.surfaces(), s.contact_forces(), s.node_mass()});
+}
+
+void Run::flush() {
+  if (history_) history_->flush();
+}
+
+void Run::save() {
+  if (!history_) return;
+  history_->flush();
+  const HistoryWriter::Sizes sizes = history_->sizes();
+  progress_.history_sizes.assign(sizes.begin(), sizes.end());
+  progress_.frame_times = frames_->times();
+  progress_.next_row = rows_.next();
+  progress_.next_frame = pictures_.next();
+  write_checkpoint(settings_.folder, scene_hash_, *simulation_, progress_);
+}
+
+void Run::judge() {
+  if (settings_.folder.empty()) return;
+  for (const Expectation& expectation : scene_.expectations) {
+    try {
+      outcomes_.push_back(evaluate(expectation, settings_.folder));
+    } catch (const std::runtime_error&) {  // no row in its window
+      outcomes_.push_back({std::nan(""), false});
+    }
+  }
+}
+
+}  // namespace apothem

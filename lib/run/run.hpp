@@ -1,0 +1,124 @@
+// A scene that runs: model, simulation, schedule, outputs and checkpoint in one object.
+//
+//   Run run(read_scene("scene.json"), {.folder = "out/scene"});
+//   run.run();
+//
+// The program, the tests, `apothem reproduce` and programs of a user's own drive this object.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/output/frames.hpp"
+#include "apothem/output/history.hpp"
+#include "apothem/run/checkpoint.hpp"
+#include "apothem/scene/scene.hpp"
+
+namespace apothem {
+
+struct RunSettings {
+  std::string folder;  ///< of the results; empty: no files are written
+  int threads = 1;
+  bool resume = false;     ///< continue from the checkpoint of the folder
+  bool overwrite = false;  ///< results of an earlier run in the folder may be replaced
+};
+
+/// Where a simulation begins: as its scene says, or from a checkpoint that follows (it need not
+/// settle).
+enum class Start { scene, checkpoint };
+
+/// Throws SceneError, with the place in the scene, instead of Unrunnable. The scene must outlive
+/// the simulation.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads,
+                                            Start start = Start::scene);
+
+/// Says when the next record is due; a record falls on the first step at or after its time.
+class Schedule {
+ public:
+  explicit Schedule(double interval = 0, std::int64_t next = 1)
+      : interval_(interval), next_(next) {}
+  [[nodiscard]] std::int64_t next() const { return next_; }
+  /// `time` and step size in s.
+  bool due(double time, double step);
+
+ private:
+  double interval_;
+  std::int64_t next_;
+};
+
+class Run {
+ public:
+  enum class Status { running, done, interrupted, unstable, failed };
+
+  /// Throws SceneError if the scene cannot be run, or if the folder holds results or no checkpoint
+  /// against the settings; SystemFailure if files cannot be written.
+  Run(Scene scene, const RunSettings& settings);
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  /// One step, or load step, with the records that are due after it. False, without a step, if the
+  /// run is at its end or was asked to stop during a load step. Throws Unstable and SystemFailure.
+  bool step();
+  /// Steps until a time in s, by default the end of the scene, until request_stop(), or until the
+  /// run becomes unstable; then closes the run: files are complete, a run that is not at its end
+  /// leaves a checkpoint, and at its end the expectations of the scene are judged. Throws
+  /// SystemFailure.
+  Status run(std::optional<double> until = {});
+  /// Asks run() to finish its step and stop. May be called from a signal handler.
+  void request_stop() { stop_ = true; }
+  /// Called every so many steps, and after every load step.
+  void on_progress(std::function<void(const Run&)> call) { on_progress_ = std::move(call); }
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const RunSettings& settings() const { return settings_; }
+  [[nodiscard]] Simulation& simulation() { return *simulation_; }
+  [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
+  [[nodiscard]] const State& state() const { return simulation_->state(); }
+  [[nodiscard]] Status status() const { return status_; }
+  /// Why the run has stopped; empty if it is done.
+  [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
+  /// One for each expectation of the scene, after a run to its end.
+  [[nodiscard]] const std::vector<Outcome>& outcomes() const { return outcomes_; }
+  /// Seconds of wall clock: in all, and for output.
+  [[nodiscard]] double seconds() const;
+  [[nodiscard]] double output_seconds() const { return output_seconds_; }
+
+ private:
+  [[nodiscard]] bool reached(double time) const;
+  void loop(double until);
+  bool load_step();
+  void record(bool row, bool frame);
+  void write_row();
+  void write_frame();
+  void flush();
+  void save();
+  void close(double until);
+  void judge();
+
+  Scene scene_;
+  RunSettings settings_;
+  std::unique_ptr<Simulation> simulation_;
+  std::string scene_hash_;
+  Progress progress_;
+  std::optional<HistoryWriter> history_;  // only with a folder
+  std::optional<FrameWriter> frames_;     // likewise
+  Schedule rows_, pictures_;
+  std::int64_t last_row_ = -1, last_frame_ = -1;  // steps
+  std::atomic<bool> stop_ = false;
+  std::function<void(const Run&)> on_progress_;
+  Status status_ = Status::running;
+  std::string message_;
+  std::vector<Outcome> outcomes_;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_, last_checkpoint_;
+  double output_seconds_ = 0;
+};
+
+}  // namespace apothem

@@ -1,0 +1,133 @@
+#include "apothem/run/summary.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "apothem/output/files.hpp"
+#include "apothem/run/hash.hpp"
+#include "apothem/run/run.hpp"
+#include "version.hpp"
+
+namespace apothem {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Run::Status status) {
+  switch (status) {
+    case Run::Status::running:
+      return "running";
+    case Run::Status::done:
+      return "done";
+    case Run::Status::interrupted:
+      return "interrupted";
+    case Run::Status::unstable:
+      return "unstable";
+    case Run::Status::failed:
+      return "failed";
+  }
+  return "";
+}
+
+Json wall_time(const Run& run, double seconds) {
+  Json parts;
+  const PhaseSeconds phases = run.simulation().phase_seconds();
+  for (size_t i = 0; i < phases.size(); ++i) parts[kPhaseNames[i]] = phases[i];
+  parts["output"] = run.output_seconds();
+  parts["total"] = seconds;
+  return parts;
+}
+
+void add_peaks(Json& json, const Run& run) {
+  const Model& model = run.scene().model;
+  const auto where = [&](const Peak& p) {
+    std::vector<std::string> names;
+    if (p.a >= 0) names = {model.name_of(p.a), model.name_of(p.b)};
+    return Json{{"time", p.time}, {"bodies", names}};
+  };
+  const Extremes extremes = run.simulation().extremes();
+  json["largest_penetration"] = extremes.penetration.value;
+  json["largest_penetration_at"] = where(extremes.penetration);
+  json["largest_contact_force"] = extremes.force.value;
+  json["largest_contact_force_at"] = where(extremes.force);
+  json["largest_energy_error"] = extremes.energy_error;
+}
+
+void add_load_steps(Json& json, const Run& run) {
+  const Model& model = run.scene().model;
+  json.erase("steps_per_second");
+  json["stability_limit"] = nullptr;
+  Json& found = json["load_steps"] = Json::array();
+  for (const LoadStep& s : run.load_steps()) {
+    found.push_back({{"time", s.time},
+                     {"iterations", s.iterations},
+                     {"residual", s.residual},
+                     {"imbalance", s.imbalance},
+                     {"of", model.deformables[s.worst].name}});
+  }
+  Json& balance = json["balance"] = Json::array();
+  if (run.load_steps().empty()) return;
+  const LoadStep& last = run.load_steps().back();
+  for (size_t i = 0; i < last.off.size(); ++i) {
+    balance.push_back({{"body", model.deformables[i].name},
+                       {"force", last.off[i]},
+                       {"of_load", imbalance_of_load(last, i)}});
+  }
+}
+
+Json expectations(const Run& run) {
+  Json list = Json::array();
+  for (size_t i = 0; i < run.outcomes().size(); ++i) {
+    const Expectation& e = run.scene().expectations[i];
+    list.push_back({{"label", e.label},
+                    {"quantity", e.quantity},
+                    {"take", kTakes[static_cast<size_t>(e.take)]},
+                    {"expected", e.value},
+                    {"tolerance", e.tolerance},
+                    {"value", run.outcomes()[i].value},
+                    {"met", run.outcomes()[i].met}});
+  }
+  return list;
+}
+
+}  // namespace
+
+double imbalance_of_load(const LoadStep& step, size_t body) {
+  return step.load > 0 ? step.off[body] / step.load : 0;
+}
+
+void write_summary(const Run& run, const std::string& scene_hash) {
+  const Scene& scene = run.scene();
+  const Simulation& simulation = run.simulation();
+  const State& state = run.state();
+  const ContactCounts counts = simulation.counts();
+  const double steps = std::max(static_cast<double>(state.step), 1.0);
+  const double wall = run.seconds();
+  Json json{{"name", scene.model.name},
+            {"scene", scene.file},
+            {"scene_hash", scene_hash},
+            {"version", kVersion},
+            {"status", name_of(run.status())},
+            {"threads", run.settings().threads},
+            {"time", state.time},
+            {"steps", state.step},
+            {"dt", simulation.step_size()},
+            {"dt_limited_by", scene.time.fixed_step ? "time.step of the scene"
+                                                    : simulation.step_choice().limit.reason},
+            {"stability_limit", simulation.step_choice().stability},
+            {"steps_per_second", static_cast<double>(simulation.own_steps()) / wall},
+            {"wall_time", wall_time(run, wall)},
+            {"pairs_per_step",
+             {{"candidates", static_cast<double>(counts.candidate_pairs) / steps},
+              {"touching", static_cast<double>(counts.touching_pairs) / steps}}},
+            {"searches", counts.searches}};
+  add_peaks(json, run);
+  json["final_state_hash"] = state_hash(state);
+  if (scene.time.statics) add_load_steps(json, run);
+  if (!run.message().empty()) json["message"] = run.message();
+  json["expectations"] = expectations(run);
+  // JSON knows no infinity: where nothing limits the step, the limit is null.
+  write_file(run.settings().folder + "/run.json",
+             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace apothem
