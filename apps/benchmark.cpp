@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"

@@ -1,6 +1,7 @@
 #include "apothem/contact/contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apothem/contact/element_kernel.hpp"
 #include "apothem/contact/outline_kernel.hpp"
@@ -78,6 +79,14 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
   return std::minmax({body[contact.a], body[contact.b]});
 }
 
+std::pair<BodyIndex, BodyIndex> Contacts::bodies(const SpringKey& key) const {
+  if (key.law != outline_kernel) return {surfaces_.body(key.a), surfaces_.body(key.b)};
+  // The partner of an edge is a body, or a face of a mesh that slides on a rigid body.
+  const Outlines& o = surfaces_.outlines();
+  const BodyIndex own = o.body[key.a];
+  return {own, o.bodies[own].is_rigid() ? o.body[key.b] : key.b};
+}
+
 double Contacts::energy() const {
   double sum = 0;
   each([&](const Kernel& kernel) { sum += kernel.energy(); });
@@ -141,7 +150,11 @@ Vec2 Contacts::force_on(BodyIndex body) const {
 
 std::vector<double> Contacts::friction_sizes() const {
   std::vector<double> sizes(static_cast<size_t>(surfaces_.body_count()));
-  each([&](const Kernel& kernel) { kernel.add_friction_sizes(memory_, sizes); });
+  for (const Spring& spring : memory_.springs()) {
+    const auto [a, b] = bodies(spring.key);
+    sizes[a] += std::abs(spring.force);
+    sizes[b] += std::abs(spring.force);
+  }
   return sizes;
 }
 

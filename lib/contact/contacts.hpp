@@ -45,8 +45,9 @@ class Contacts {
 
   /// Ascending within a kernel.
   [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
-  /// The bodies of a contact.
+  /// The bodies of a contact, and of a spring.
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
+  [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const SpringKey& key) const;
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "apothem/contact/groups.hpp"
 #include "apothem/contact/normal_damping.hpp"
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/geometry/spatial/groups.hpp"
 #include "apothem/mesh/locate.hpp"
 
 namespace apothem {
@@ -197,29 +197,6 @@ NodeRate ElementKernel::rate(std::span<const double> node_mass) const {
     if (value > worst.value) worst = {value, body};
   }
   return worst;
-}
-
-void ElementKernel::add_node_stiffness(std::span<double> stiffness) const {
-  std::vector<double> slope(stiffness.size());  // 1/r_c + 1/r_t
-  const PlacedShapes& shapes = surfaces_.shapes();
-  for (const auto& [a, b] : pairs_.pairs()) {
-    for (const SurfaceIndex i : {a, b}) {
-      for (const NodeIndex n : nodes(i)) {
-        slope[n] = std::max(slope[n], shapes.slope(a) + shapes.slope(b));
-      }
-    }
-  }
-  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
-    stiffness[node] += node_rate(stiffness_, slope[node], length);
-  }
-}
-
-void ElementKernel::add_friction_sizes(const FrictionMemory& /*memory*/,
-                                       std::span<double> of_body) const {
-  for (const Touch& t : touches_) {
-    of_body[surfaces_.body(t.a)] += t.friction.norm();
-    of_body[surfaces_.body(t.b)] += t.friction.norm();
-  }
 }
 
 // What acts on polygons goes to the nearest edge of their boundary.

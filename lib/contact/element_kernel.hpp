@@ -38,12 +38,10 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
   /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
   [[nodiscard]] NodeRate rate(std::span<const double> node_mass) const override;
-  void add_node_stiffness(std::span<double> stiffness) const override;
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
     return normal_.sums[body].force + tangential_.sums[body].force;
   }
-  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apothem/contact/kinematics.hpp"
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/indices.hpp"
 #include "apothem/mesh/mesh.hpp"

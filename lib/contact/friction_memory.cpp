@@ -21,13 +21,6 @@ std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
   return std::span<const Spring>(before_).subspan(first, next_ - first);
 }
 
-std::span<const Spring> FrictionMemory::springs_of(int law) const {
-  const auto [first, end] =
-      std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, 0, 0, 0}},
-                       [](const Spring& s, const Spring& t) { return s.key.law < t.key.law; });
-  return {first, end};
-}
-
 std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const {
   const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
   const auto [first, end] =

@@ -62,8 +62,7 @@ class FrictionMemory {
   void end_step(double work);
 
   [[nodiscard]] std::span<const Spring> springs() const { return now_; }
-  /// The springs of a law, and those of a pair, in this step.
-  [[nodiscard]] std::span<const Spring> springs_of(int law) const;
+  /// The springs of a pair in this step.
   [[nodiscard]] std::span<const Spring> springs_of(int law, int a, int b) const;
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }

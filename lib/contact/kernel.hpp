@@ -74,9 +74,6 @@ class Kernel {
   [[nodiscard]] virtual size_t candidates() const = 0;
   /// The force on a deformable body, N.
   [[nodiscard]] virtual Vec2 force_on(BodyIndex /*body*/) const { return Vec2::Zero(); }
-  /// Adds the sizes of the friction forces on each body, N.
-  virtual void add_friction_sizes(const FrictionMemory& memory,
-                                  std::span<double> of_body) const = 0;
   /// Appends one record for each contact patch; ascending pairs of bodies.
   virtual void add_records(const FrictionMemory& memory,
                            std::vector<ContactRecord>& records) const = 0;

@@ -9,11 +9,11 @@
 
 #include <vector>
 
-#include "apothem/contact/collar.hpp"
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/friction_table.hpp"
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/outlines.hpp"
+#include "apothem/geometry/integrals/collar.hpp"
 
 namespace apothem {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/contact/groups.hpp"
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/geometry/spatial/groups.hpp"
 
 namespace apothem {
 namespace {
@@ -195,7 +195,7 @@ Resultant OutlineKernel::sum(BodyIndex b, std::span<const double> fx,
 }
 
 Resultant OutlineKernel::resultant(BodyIndex body) const {
-  Resultant on = normal_resultant(body);
+  Resultant on = sum(body, fx_, fy_);
   if (!friction_) return on;
   const Resultant tangential = sum(body, friction_->fx(), friction_->fy());
   on.force += tangential.force;
@@ -245,17 +245,6 @@ void OutlineKernel::add_node_stiffness(std::span<double> stiffness) const {
   }
   for (int i = 0; i < o.size(); ++i) {
     if (o.node[i] >= 0) stiffness[o.node[i]] += node_rate(stiffness_, slope[i], o.share(i));
-  }
-}
-
-void OutlineKernel::add_friction_sizes(const FrictionMemory& memory,
-                                       std::span<double> of_body) const {
-  const Outlines& o = outlines_;
-  for (const Spring& spring : memory.springs_of(outline_kernel)) {
-    const BodyIndex own = o.body[spring.key.a];
-    const BodyIndex other = o.bodies[own].is_rigid() ? o.body[spring.key.b] : spring.key.b;
-    of_body[own] += std::abs(spring.force);
-    of_body[other] += std::abs(spring.force);
   }
 }
 

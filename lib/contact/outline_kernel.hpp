@@ -35,18 +35,12 @@ class OutlineKernel final : public Kernel {
   void add_node_stiffness(std::span<double> stiffness) const override;
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
-  /// Normal contact and friction on a body; without friction.
-  [[nodiscard]] Resultant resultant(BodyIndex body) const;
-  [[nodiscard]] Resultant normal_resultant(BodyIndex body) const { return sum(body, fx_, fy_); }
-  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
-  [[nodiscard]] const std::vector<EdgeFace>& candidates_list() const { return candidates_; }
-  [[nodiscard]] const std::vector<EdgeFaceContact>& contacts() const { return contacts_; }
-
  private:
+  [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
                    std::vector<Contact>& contacts);

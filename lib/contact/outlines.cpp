@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-
 namespace apothem {
 namespace {
 
@@ -15,26 +13,6 @@ void include(Box& box, const Box& other) {
 }
 
 }  // namespace
-
-std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop) {
-  std::vector<double> radii;
-  for (const ElementIndex element : loop.elements) {
-    std::vector<Vec2> corners;
-    for (const int n : mesh.element(element)) corners.push_back(mesh.nodes[n]);
-    const Polygon polygon(corners);
-    radii.push_back(polygon.is_convex() ? inscribed_circle(polygon).radius
-                                        : largest_inscribed_circle(polygon).radius);
-  }
-  return radii;
-}
-
-double boundary_inradius(const Mesh& mesh, const Boundary& boundary) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const BoundaryLoop& loop : boundary.loops) {
-    for (const double r : inradii(mesh, loop)) smallest = std::min(smallest, r);
-  }
-  return smallest;
-}
 
 void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                         std::optional<double> reference) {

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "apothem/contact/collar.hpp"
 #include "apothem/contact/kinematics.hpp"
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/collar.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 #include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/indices.hpp"
@@ -126,10 +126,5 @@ class Outlines {
   std::vector<BoxPair> near_pairs_;
   std::optional<SelfContact> self_contact_;
 };
-
-/// Inradii of the elements at the edges of a line of the boundary, m.
-std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop);
-/// The smallest inradius of the elements at the boundary, m.
-double boundary_inradius(const Mesh& mesh, const Boundary& boundary);
 
 }  // namespace apothem

@@ -81,10 +81,20 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
   const std::span<const Spring> springs = memory.before(polygon_kernel, a, b);
   find_shares(before);
   if (damped) {
-    inherit_dampers(std::span<const PatchDamper>(before_.dampers)
-                        .subspan(before ? place_.damper : 0, ancestors_));
+    const std::span<const PatchDamper> dampers(before_.dampers);
+    inherit(dampers.subspan(before ? place_.damper : 0, ancestors_), dampers_,
+            [](PatchDamper& heir, double share, const PatchDamper& old, const PairIntegral&) {
+              heir.add(share, old);
+            });
   }
-  if (rough && !edgewise()) inherit_springs(springs);
+  if (rough && !edgewise()) {
+    inherit(springs, springs_,
+            [](Spring& heir, double share, const Spring& old, const PairIntegral& patch) {
+              Vec2 tangent = tangent_of(patch.force);
+              if (tangent == Vec2::Zero()) tangent = old.tangent;
+              heir.force += share * old.force * tangent.dot(old.tangent);
+            });
+  }
   TangentialForce total{.a = a, .b = b};
   for (size_t j = 0; j < patches_.size(); ++j) {
     const PairIntegral& patch = patches_[j];
@@ -131,35 +141,17 @@ void PatchTangential::find_shares(const PairHistory* before) {
   }
 }
 
-void PatchTangential::inherit_springs(std::span<const Spring> before) {
-  springs_.assign(patches_.size(), {});
-  if (before.empty()) return;
-  if (before.size() == 1 && springs_.size() == 1) {
-    springs_[0] = before[0];
+template <class T, class Add>
+void PatchTangential::inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const {
+  now.assign(patches_.size(), {});
+  if (before.size() == 1 && now.size() == 1) {
+    now[0] = before[0];
     return;
   }
   for (size_t i = 0; i < before.size(); ++i) {
-    for (size_t j = 0; j < springs_.size(); ++j) {
-      const double share = shares_[i * springs_.size() + j];
-      if (!(share > 0)) continue;
-      Vec2 tangent = tangent_of(patches_[j].force);
-      if (tangent == Vec2::Zero()) tangent = before[i].tangent;
-      springs_[j].force += share * before[i].force * tangent.dot(before[i].tangent);
-    }
-  }
-}
-
-void PatchTangential::inherit_dampers(std::span<const PatchDamper> before) {
-  dampers_.assign(patches_.size(), {});
-  if (before.empty()) return;
-  if (before.size() == 1 && dampers_.size() == 1) {
-    dampers_[0] = before[0];
-    return;
-  }
-  for (size_t i = 0; i < before.size(); ++i) {
-    for (size_t j = 0; j < dampers_.size(); ++j) {
-      const double share = shares_[i * dampers_.size() + j];
-      if (share > 0) dampers_[j].add(share, before[i]);
+    for (size_t j = 0; j < now.size(); ++j) {
+      const double share = shares_[i * now.size() + j];
+      if (share > 0) add(now[j], share, before[i], patches_[j]);
     }
   }
 }

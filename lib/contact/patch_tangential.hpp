@@ -84,8 +84,8 @@ class PatchTangential {
   void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt,
                  FrictionMemory& memory);
   void find_shares(const PairHistory* before);
-  void inherit_springs(std::span<const Spring> before);
-  void inherit_dampers(std::span<const PatchDamper> before);
+  template <class T, class Add>
+  void inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const;
   void resultant(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
                  const PairIntegral& patch, double force_error, Spring& spring,
                  TangentialForce& total, FrictionMemory& memory) const;

@@ -98,20 +98,6 @@ void PolygonKernel::add_tangential(const ForceViews& forces) const {
   }
 }
 
-void PolygonKernel::add_friction_sizes(const FrictionMemory& memory,
-                                       std::span<double> of_body) const {
-  const std::span<const Spring> springs = memory.springs_of(polygon_kernel);
-  for (size_t i = 0; i < springs.size();) {
-    const SpringKey pair = springs[i].key;
-    double size = 0;
-    for (; i < springs.size() && springs[i].key.a == pair.a && springs[i].key.b == pair.b; ++i) {
-      size += std::abs(springs[i].force);
-    }
-    of_body[pair.a] += size;
-    of_body[pair.b] += size;
-  }
-}
-
 void PolygonKernel::add_records(const FrictionMemory& memory,
                                 std::vector<ContactRecord>& records) const {
   PatchTangential::Cursor cursor;

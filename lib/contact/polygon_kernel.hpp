@@ -32,7 +32,6 @@ class PolygonKernel final : public Kernel {
     if (tangential_) tangential_->start_ledger();
   }
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
-  void add_friction_sizes(const FrictionMemory& memory, std::span<double> of_body) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
   void fields(Archive& archive) override {

@@ -15,7 +15,7 @@
 
 #include "apothem/contact/element_surfaces.hpp"
 #include "apothem/contact/outlines.hpp"
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 
 namespace apothem {
 

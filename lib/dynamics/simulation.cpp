@@ -87,8 +87,8 @@ void Simulation::make_terms(int threads) {
   if (FoldWatch::needed(model_)) terms_.push_back(std::make_unique<FoldWatch>(model_));
 }
 
-void Simulation::add_force(const std::string& name, AppliedForce::Function function) {
-  terms_.push_back(std::make_unique<AppliedForce>(name, dofs_, std::move(function)));
+void Simulation::add(std::unique_ptr<Term> term) {
+  terms_.push_back(std::move(term));
   find_forces(state_.v, 0);
   ledger_.start(state_, energies_of_terms());
 }

@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "apothem/dynamics/applied_force.hpp"
 #include "apothem/dynamics/contact_term.hpp"
 #include "apothem/dynamics/elements.hpp"
 #include "apothem/dynamics/equilibrium.hpp"
@@ -44,8 +43,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Adds a force of the user's own, before the first step. See AppliedForce.
-  void add_force(const std::string& name, AppliedForce::Function function);
+  /// Puts a term at the end of the list, before the first step.
+  void add(std::unique_ptr<Term> term);
 
   /// One step. Throws Unstable; the state is then not to be trusted.
   void step();
@@ -64,6 +63,7 @@ class Simulation {
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const DegreesOfFreedom& degrees_of_freedom() const { return dofs_; }
   [[nodiscard]] double step_size() const { return choice_.step; }
   /// How the step was chosen; its limit changes if contacts turn out stiffer.
   [[nodiscard]] const StepChoice& step_choice() const { return choice_; }

@@ -1,12 +1,15 @@
 #include "apothem/mesh/boundary.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
+#include "apothem/geometry/potential/inscribed_circle.hpp"
 #include "apothem/mesh/invalid_mesh.hpp"
 #include "apothem/mesh/measure.hpp"
 
 namespace apothem {
+
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
   std::vector<int> parent(mesh.element_count());
   std::iota(parent.begin(), parent.end(), 0);
@@ -64,5 +67,25 @@ Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
 }
 
 Boundary boundary(const Mesh& mesh) { return boundary(mesh, mesh_edges(mesh)); }
+
+std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop) {
+  std::vector<double> radii;
+  for (const int element : loop.elements) {
+    std::vector<Vec2> corners;
+    for (const int n : mesh.element(element)) corners.push_back(mesh.nodes[n]);
+    const Polygon polygon(corners);
+    radii.push_back(polygon.is_convex() ? inscribed_circle(polygon).radius
+                                        : largest_inscribed_circle(polygon).radius);
+  }
+  return radii;
+}
+
+double boundary_inradius(const Mesh& mesh, const Boundary& boundary) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const BoundaryLoop& loop : boundary.loops) {
+    for (const double r : inradii(mesh, loop)) smallest = std::min(smallest, r);
+  }
+  return smallest;
+}
 
 }  // namespace apothem

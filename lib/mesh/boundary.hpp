@@ -30,4 +30,9 @@ Boundary boundary(const Mesh& mesh, const std::vector<MeshEdge>& edges);
 /// The number of parts of the mesh that no common edge connects. `edges` is mesh_edges(mesh).
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges);
 
+/// Inradii of the elements at the edges of a line of the boundary, m.
+std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop);
+/// The smallest inradius of the elements at the boundary, m.
+double boundary_inradius(const Mesh& mesh, const Boundary& boundary);
+
 }  // namespace apothem

@@ -1,14 +1,70 @@
-// The columns of history.csv.
+// What is recorded: the columns of the histories, and the quantities of bodies for histories and
+// frames, each of which stands here once.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
+#include "apothem/model/state.hpp"
 
 namespace apothem {
 
+/// How a body moves and what acts on it from contacts. A deformable body moves as its mass centre,
+/// its mean rotation, its momentum and its angular momentum say.
+struct BodyMotion {
+  Vec2 place = Vec2::Zero();     ///< of the mass centre, world coordinates, m
+  double angle = 0;              ///< rad
+  Vec2 velocity = Vec2::Zero();  ///< m/s
+  double spin = 0;               ///< rad/s
+  BodyForce contact;
+};
+
+/// `contact`: what acts on the body (only the friction is needed of a rigid one); `node_mass` of
+/// all nodes, kg.
+BodyMotion motion_of(const Model& model, const State& state, BodyIndex body,
+                     const BodyForce& contact, const std::vector<double>& node_mass);
+
+/// A quantity of a body. A new one is a line here: it becomes a column NAME.quantity of
+/// history.csv, and with `in_frames` an array of the cells in the frames.
+struct BodyQuantity {
+  const char* name;
+  const char* unit;
+  bool in_frames;
+  double (*value)(const BodyMotion&);
+};
+inline constexpr std::array kBodyQuantities{
+    BodyQuantity{"x", "m", false, [](const BodyMotion& b) { return b.place.x(); }},
+    BodyQuantity{"y", "m", false, [](const BodyMotion& b) { return b.place.y(); }},
+    BodyQuantity{"angle", "rad", false, [](const BodyMotion& b) { return b.angle; }},
+    BodyQuantity{"vx", "m/s", false, [](const BodyMotion& b) { return b.velocity.x(); }},
+    BodyQuantity{"vy", "m/s", false, [](const BodyMotion& b) { return b.velocity.y(); }},
+    BodyQuantity{"spin", "rad/s", false, [](const BodyMotion& b) { return b.spin; }},
+    BodyQuantity{"fx", "N", false, [](const BodyMotion& b) { return b.contact.fx; }},
+    BodyQuantity{"fy", "N", false, [](const BodyMotion& b) { return b.contact.fy; }},
+    BodyQuantity{"friction", "N", true, [](const BodyMotion& b) { return b.contact.friction; }}};
+
+/// A column of a history file: name and unit.
+struct Column {
+  const char* name;
+  const char* unit;
+};
+/// Columns of a tracked point of a deformable body.
+inline constexpr std::array kPointColumns{
+    Column{"ux", "m"},   Column{"uy", "m"},   Column{"vx", "m/s"},
+    Column{"vy", "m/s"}, Column{"sxx", "Pa"}, Column{"syy", "Pa"},
+    Column{"sxy", "Pa"}, Column{"s1", "Pa"},  Column{"s2", "Pa"}};
+/// Columns of the contact of a deformable body.
+inline constexpr std::array kSurfaceColumns{Column{"pressure", "Pa"}, Column{"half_width", "m"}};
+inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
+                                           "gravity",       "friction_loss", "damping_loss",
+                                           "external_work", "total_error"};
+inline constexpr std::array kMomentumColumns{"px",       "py",       "angular",
+                                             "px_error", "py_error", "angular_error"};
+
+/// A column of history.csv.
 struct HistoryColumn {
   std::string name;  ///< as in "beam.ux"
   const char* unit;

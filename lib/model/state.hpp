@@ -111,22 +111,4 @@ struct BodyForce {
   double fx = 0, fy = 0, friction = 0;
 };
 
-/// A column of a history file: name and unit.
-struct Column {
-  const char* name;
-  const char* unit;
-};
-/// Of a point of a deformable body.
-inline constexpr std::array kPointColumns{
-    Column{"ux", "m"},   Column{"uy", "m"},   Column{"vx", "m/s"},
-    Column{"vy", "m/s"}, Column{"sxx", "Pa"}, Column{"syy", "Pa"},
-    Column{"sxy", "Pa"}, Column{"s1", "Pa"},  Column{"s2", "Pa"}};
-/// Of the contacts of a deformable body.
-inline constexpr std::array kSurfaceColumns{Column{"pressure", "Pa"}, Column{"half_width", "m"}};
-inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
-                                           "gravity",       "friction_loss", "damping_loss",
-                                           "external_work", "total_error"};
-inline constexpr std::array kMomentumColumns{"px",       "py",       "angular",
-                                             "px_error", "py_error", "angular_error"};
-
 }  // namespace apothem

@@ -245,7 +245,8 @@ PanelLayout lay_out(const FieldPanel& panel, const Canvas& ruler) {
   return layout;
 }
 
-void draw_panel(Canvas& canvas, const FieldPanel& panel, const PanelLayout& layout, const Vec2& corner) {
+void draw_panel(Canvas& canvas, const FieldPanel& panel, const PanelLayout& layout,
+                const Vec2& corner) {
   const double left = corner.x() + kLeft;
   std::string title = panel.quantity->meaning;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));

@@ -21,7 +21,7 @@
 #include <stdexcept>
 
 #include "apothem/mesh/measure.hpp"
-#include "apothem/model/body_quantities.hpp"
+#include "apothem/model/columns.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
 

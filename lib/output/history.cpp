@@ -8,7 +8,6 @@
 #include <iterator>
 #include <sstream>
 
-#include "apothem/model/body_quantities.hpp"
 #include "apothem/model/columns.hpp"
 
 namespace apothem {

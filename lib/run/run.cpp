@@ -69,6 +69,11 @@ bool Run::reached(double time) const {
   return state().time >= time - 1e-6 * simulation_->step_size();
 }
 
+void Run::add_force(const std::string& name, AppliedForce::Function function) {
+  simulation_->add(
+      std::make_unique<AppliedForce>(name, simulation_->degrees_of_freedom(), std::move(function)));
+}
+
 bool Run::step() {
   if (reached(scene_.time.end)) return false;
   if (last_row_ < 0 && !settings_.resume) record(true, true);

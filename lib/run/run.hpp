@@ -17,6 +17,7 @@
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
+#include "apothem/run/applied_force.hpp"
 #include "apothem/run/checkpoint.hpp"
 #include "apothem/scene/scene.hpp"
 
@@ -61,6 +62,10 @@ class Run {
   Run(Scene scene, const RunSettings& settings);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
+
+  /// Adds a force of the user's own, before the first step: see AppliedForce. `name`: what it is in
+  /// words.
+  void add_force(const std::string& name, AppliedForce::Function function);
 
   /// One step, or load step, with the records that are due after it. False, without a step, if the
   /// run is at its end or was asked to stop during a load step. Throws Unstable and SystemFailure.

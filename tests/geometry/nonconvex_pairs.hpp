@@ -4,7 +4,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "support.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "fuzz/hard_pairs.hpp"
 #include "fuzz/pair_check.hpp"

@@ -1,4 +1,4 @@
-#include "apothem/dynamics/applied_force.hpp"
+#include "apothem/run/applied_force.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "apothem/contact/placed_shapes.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 
 #include <cmath>
 
