@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "apothem/dynamics/deformables.hpp"
+#include "apothem/dynamics/elements.hpp"
 #include "apothem/geometry/meshing/voronoi.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "apothem/mesh/reorder.hpp"
@@ -58,15 +58,20 @@ void force(benchmark::State& state, ElementKind kind) {
 // A whole step of the nodes: forces, two kicks, drift.
 void step(benchmark::State& state, ElementKind kind) {
   const Model model = model_of(block(kind, static_cast<int>(state.range(0))));
-  State s;
-  Deformables deformables(model, s, 1);
-  const double dt = .5 * deformables.limit().step;
+  Elements elements(model, 1);
+  const DegreesOfFreedom dofs(model, elements.elements().mass());
+  State s = dofs.start();
+  elements.start(dofs, s);
+  StepBounds bounds;
+  elements.bound_step(bounds);
+  const double dt = .5 * bounds.nodes.step;
+  Stopwatch clock;
   for (auto _ : state) {
-    deformables.kick(s, dt / 2);
-    deformables.drift(s, dt);
-    deformables.find_forces(s, dt, nullptr);
-    deformables.kick(s, dt / 2);
-    benchmark::DoNotOptimize(s.displacement.data());
+    dofs.kick(s, dt / 2);
+    dofs.drift(s, dt);
+    elements.add_forces({s, s.v, dt, {}, clock});
+    dofs.kick(s, dt / 2);
+    benchmark::DoNotOptimize(s.x.data());
   }
   report(state, model.deformables[0].mesh.element_count());
 }

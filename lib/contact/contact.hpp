@@ -15,7 +15,7 @@ struct Contact {
   KernelKind kernel;
   int a, b;
   double depth;      ///< of the deepest point below a surface, or extent of the overlap, m
-  double share;      ///< of the depth at which the potential ends; 1: beyond its end
+  double share;      ///< of the depth at which the potential ends; 1 or more: beyond
   double stiffness;  ///< bound of the change of the force over the depth, N/m (theory: Sec. 2)
 };
 

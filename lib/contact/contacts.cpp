@@ -51,12 +51,17 @@ void Contacts::evaluate() {
   each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
 }
 
-const ContactFault* Contacts::fault() const {
-  for (const auto& kernel : kernels_) {
-    if (!kernel) continue;
-    if (const ContactFault* fault = kernel->fault()) return fault;
+std::optional<ContactFault> Contacts::fault() const {
+  for (const Contact& contact : contacts_) {
+    if (contact.share < 1) continue;
+    ContactFault fault = kernels_[contact.kernel]->fault(contact);
+    fault.depth = largest_penetration().value;
+    return fault;
   }
-  return nullptr;
+  if (const auto& self = surfaces_.outlines().self_contact()) {
+    return ContactFault{ContactFault::Kind::self_contact, self->body, self->body, self->place};
+  }
+  return {};
 }
 
 void Contacts::slide(const Kinematics& now, double dt) {
@@ -88,15 +93,11 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const SpringKey& key) const {
 }
 
 double Contacts::energy() const {
-  double sum = 0;
-  each([&](const Kernel& kernel) { sum += kernel.energy(); });
-  return sum + memory_.energy();
+  return sum<double>([](const Kernel& k) { return k.energy(); }) + memory_.energy();
 }
 
 double Contacts::damping_loss() const {
-  double sum = 0;
-  each([&](const Kernel& kernel) { sum += kernel.damping_loss(); });
-  return sum;
+  return sum<double>([](const Kernel& k) { return k.damping_loss(); });
 }
 
 void Contacts::start_ledger() {
@@ -105,9 +106,7 @@ void Contacts::start_ledger() {
 }
 
 size_t Contacts::candidates() const {
-  size_t sum = 0;
-  each([&](const Kernel& kernel) { sum += kernel.candidates(); });
-  return sum;
+  return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }
 
 PairPeak Contacts::largest_penetration() const {
@@ -121,21 +120,13 @@ PairPeak Contacts::largest_penetration() const {
 }
 
 PairPeak Contacts::largest_force() const {
-  PairPeak largest;
-  each([&](const Kernel& kernel) {
-    const PairPeak peak = kernel.largest_force();
-    if (peak.value > largest.value) largest = peak;
-  });
-  return largest;
+  return kernels_[polygon_kernel] ? kernels_[polygon_kernel]->largest_force() : PairPeak{};
 }
 
-NodeRate Contacts::node_rate(std::span<const double> node_mass) const {
-  NodeRate worst;
-  each([&](const Kernel& kernel) {
-    const NodeRate rate = kernel.rate(node_mass);
-    if (rate.value > worst.value) worst = rate;
-  });
-  return worst;
+double Contacts::node_rate(std::span<const double> node_mass) const {
+  double rate = 0;
+  each([&](const Kernel& kernel) { rate = std::max(rate, kernel.rate(node_mass)); });
+  return rate;
 }
 
 void Contacts::add_node_stiffness(std::span<double> stiffness) const {
@@ -143,9 +134,9 @@ void Contacts::add_node_stiffness(std::span<double> stiffness) const {
 }
 
 Vec2 Contacts::force_on(BodyIndex body) const {
-  Vec2 sum = Vec2::Zero();
-  each([&](const Kernel& kernel) { sum += kernel.force_on(body); });
-  return sum;
+  Vec2 force = Vec2::Zero();
+  each([&](const Kernel& kernel) { force += kernel.force_on(body); });
+  return force;
 }
 
 std::vector<double> Contacts::friction_sizes() const {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apothem/contact/friction_memory.hpp"
@@ -37,7 +38,7 @@ class Contacts {
   /// Contacts and normal forces where the surfaces are.
   void evaluate();
   /// The first contact out of the range of its method, if there is one.
-  [[nodiscard]] const ContactFault* fault() const;
+  [[nodiscard]] std::optional<ContactFault> fault() const;
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18:
   /// the full-step ones would pump energy in). With dt = 0 the springs keep their forces.
   void slide(const Kinematics& now, double dt);
@@ -65,7 +66,8 @@ class Contacts {
   [[nodiscard]] PairPeak largest_penetration() const;
   [[nodiscard]] PairPeak largest_force() const;
 
-  [[nodiscard]] NodeRate node_rate(std::span<const double> node_mass) const;
+  /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.
+  [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_node_stiffness(std::span<double> stiffness) const;
   /// The force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
@@ -88,6 +90,12 @@ class Contacts {
     for (const auto& kernel : kernels_) {
       if (kernel) f(*kernel);
     }
+  }
+  template <class T, class F>
+  [[nodiscard]] T sum(F&& f) const {
+    T all{};
+    each([&](const Kernel& kernel) { all += f(kernel); });
+    return all;
   }
 
   Surfaces surfaces_;

@@ -35,21 +35,23 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
   pairs_.evaluate();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   touches_.clear();
-  fault_.reset();
   for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
     if (!pairs_[p].touching()) continue;
     const auto [a, b] = pairs_.pairs()[p];
-    const bool bent = !convex(a) || !convex(b);
-    if (bent || pairs_.too_deep(p)) {
-      const SurfaceIndex at = convex(a) ? (surfaces_.is_rigid(b) ? a : b) : a;
-      fault_ = {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element,
-                surfaces_.body(a), surfaces_.body(b), surfaces_.reference(at),
-                pairs_[p].penetration};
+    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness_));
+    if (!convex(a) || !convex(b) || pairs_.too_deep(p)) {
+      contacts.back().share = 1;  // nothing beyond is to be trusted
       return;
     }
-    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness_));
     add_touch(p);
   }
+}
+
+ContactFault ElementKernel::fault(const Contact& c) const {
+  const bool bent = !convex(c.a) || !convex(c.b);
+  const SurfaceIndex at = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
+  return {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element, surfaces_.body(c.a),
+          surfaces_.body(c.b), surfaces_.reference(at)};
 }
 
 void ElementKernel::add_touch(size_t p) {
@@ -177,7 +179,7 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-NodeRate ElementKernel::rate(std::span<const double> node_mass) const {
+double ElementKernel::rate(std::span<const double> node_mass) const {
   const auto bodies = static_cast<size_t>(surfaces_.body_count());
   std::vector<double> slope(bodies), other(bodies);  // own, and the steepest among the others
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
@@ -189,12 +191,11 @@ NodeRate ElementKernel::rate(std::span<const double> node_mass) const {
       if (a != b) other[a] = std::max(other[a], slope[b]);
     }
   }
-  NodeRate worst;
+  double worst = 0;
   for (const auto& [node, body, length] : surfaces_.elements().shares()) {
     const double mass = node_mass[node];
     if (!(mass > 0) || other[body] == 0) continue;
-    const double value = node_rate(stiffness_, slope[body] + other[body], length, mass);
-    if (value > worst.value) worst = {value, body};
+    worst = std::max(worst, node_rate(stiffness_, slope[body] + other[body], length, mass));
   }
   return worst;
 }

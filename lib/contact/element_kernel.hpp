@@ -31,13 +31,13 @@ class ElementKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
   void evaluate(std::vector<Contact>& contacts) override;
-  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
 
   [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
   /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
-  [[nodiscard]] NodeRate rate(std::span<const double> node_mass) const override;
+  [[nodiscard]] double rate(std::span<const double> node_mass) const override;
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
     return normal_.sums[body].force + tangential_.sums[body].force;
@@ -92,7 +92,6 @@ class ElementKernel final : public Kernel {
   PairIntegrals pairs_;
   std::vector<Touch> touches_;  // ascending
   Forces normal_, tangential_;
-  std::optional<ContactFault> fault_;
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;

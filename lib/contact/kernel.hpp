@@ -32,12 +32,6 @@ struct PairPeak {
   BodyIndex a = -1, b = -1;
 };
 
-/// Bound of the frequency of the nodes, w^2 in 1/s^2.
-struct NodeRate {
-  double value = 0;
-  BodyIndex body = -1;
-};
-
 class Kernel {
  public:
   virtual ~Kernel() = default;
@@ -48,8 +42,8 @@ class Kernel {
   /// ascending order. The same bits for any number of threads. No allocation unless there are more
   /// contacts than ever before.
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
-  /// The worst of its contacts that is out of the range of its method, if there is one.
-  [[nodiscard]] virtual const ContactFault* fault() const = 0;
+  /// Where and why one of its contacts, with a share of 1 or more, is out of range.
+  [[nodiscard]] virtual ContactFault fault(const Contact& contact) const = 0;
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =
   /// 0 the springs keep their forces. Returns the work of friction on the bodies since the last
   /// call, J.
@@ -67,7 +61,8 @@ class Kernel {
   /// Energy dissipated by contact damping since the start, J.
   [[nodiscard]] virtual double damping_loss() const { return 0; }
   virtual void start_ledger() {}
-  [[nodiscard]] virtual NodeRate rate(std::span<const double> /*node_mass*/) const { return {}; }
+  /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
+  [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
   /// Adds to each node near another body the same bound as a stiffness, N/m.
   virtual void add_node_stiffness(std::span<double> /*stiffness*/) const {}
 

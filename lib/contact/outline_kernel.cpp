@@ -74,9 +74,8 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
 
 void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
+  const size_t first = contacts.size();
   contacts_.clear();
-  deepest_ = worst_ = 0;
-  fault_.reset();
   std::fill(ends_.begin(), ends_.end(), 0.);
   std::fill(areas_.begin(), areas_.end(), 0.);
   const int count = static_cast<int>(candidates_.size());
@@ -92,14 +91,14 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
     }
   } else {
     pieces_.resize(count), met_.resize(count);
-    threads_.chunks(count, kCandidateTime, [&](int first, int end, int) {
-      for (int c = first; c < end; ++c) met_[c] = find_piece(c, pieces_[c]);
+    threads_.chunks(count, kCandidateTime, [&](int begin, int end, int) {
+      for (int c = begin; c < end; ++c) met_[c] = find_piece(c, pieces_[c]);
     });
     for (int c = 0; c < count; ++c) {
       if (met_[c]) add_contact(candidates_[c], pieces_[c], contacts);
     }
   }
-  find_fault();
+  find_complements(std::span(contacts).subspan(first));
   for (int i = 0; i < o.size(); ++i) {
     const int p = o.previous[i];
     const double own = ends_[2 * i], before = ends_[2 * p + 1];
@@ -127,34 +126,29 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
     contacts_.emplace_back(e, f, p);
     contacts.push_back({outline_kernel, e, f, p.deepest, share, on_edge * (p.to - p.from)});
   }
-  deepest_ = std::max(deepest_, p.deepest);
-  if (share > worst_) note_depth(share, e, f, (p.from + p.to) / 2);
 }
 
-void OutlineKernel::note_depth(double share, int e, int f, double u) {
+// Where a body contains the end of a collar without its outline crossing it, Green's theorem has
+// taken the complement: such contacts are beyond the collar as well.
+void OutlineKernel::find_complements(std::span<Contact> contacts) const {
   const Outlines& o = outlines_;
-  worst_ = share;
-  const Vec2 place = o.point(e) + u * (o.point(o.next[e]) - o.point(e));
-  fault_ = {ContactFault::Kind::collar, o.body[e], o.body[f], place, 0, o.depth[f]};
+  for (Contact& c : contacts) {
+    if (areas_[c.b] < -kRound * o.length[c.b] * o.depth[c.b]) c.share = 1;
+  }
 }
 
-void OutlineKernel::find_fault() {
+ContactFault OutlineKernel::fault(const Contact& c) const {
   const Outlines& o = outlines_;
-  // Where a body contains the end of a collar without its outline crossing it, Green's theorem has
-  // taken the complement.
-  for (const auto& [e, f, p] : contacts_) {
-    if (worst_ < 1 && areas_[f] < -kRound * o.length[f] * o.depth[f]) {
-      note_depth(1, e, f, (p.from + p.to) / 2);
-    }
-  }
-  if (worst_ >= 1) {
-    fault_->depth = deepest_;
-  } else {
-    fault_.reset();
-    if (const auto& self = o.self_contact()) {
-      fault_ = {ContactFault::Kind::self_contact, self->body, self->body, self->place};
-    }
-  }
+  const auto found =
+      std::find_if(contacts_.begin(), contacts_.end(),
+                   [&](const EdgeFaceContact& k) { return k.edge == c.a && k.face == c.b; });
+  const double u = (found->piece.from + found->piece.to) / 2;
+  return {ContactFault::Kind::collar,
+          o.body[c.a],
+          o.body[c.b],
+          o.point(c.a) + u * (o.point(o.next[c.a]) - o.point(c.a)),
+          0,
+          o.depth[c.b]};
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -209,7 +203,7 @@ double OutlineKernel::energy() const {
   return sum;
 }
 
-NodeRate OutlineKernel::rate(std::span<const double> node_mass) const {
+double OutlineKernel::rate(std::span<const double> node_mass) const {
   const Outlines& o = outlines_;
   // The steepest potential among the others: of the first and second of all.
   double first = 0, second = 0;
@@ -222,14 +216,13 @@ NodeRate OutlineKernel::rate(std::span<const double> node_mass) const {
       second = std::max(second, slope);
     }
   }
-  NodeRate worst;
+  double worst = 0;
   for (int i = 0; i < o.size(); ++i) {
     const double mass = o.node[i] < 0 ? 0 : node_mass[o.node[i]];
     const BodyIndex b = o.body[i];
     const double other = b == steepest ? second : first;
     if (!(mass > 0) || other == 0) continue;
-    const double value = node_rate(stiffness_, o.bodies[b].slope() + other, o.share(i), mass);
-    if (value > worst.value) worst = {value, b};
+    worst = std::max(worst, node_rate(stiffness_, o.bodies[b].slope() + other, o.share(i), mass));
   }
   return worst;
 }

@@ -24,14 +24,14 @@ class OutlineKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
-  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
 
   [[nodiscard]] double energy() const override;
   /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (theory: Sec. 5.4) for nodes of
   /// these masses in kg (0 where held). Needs placed outlines.
-  [[nodiscard]] NodeRate rate(std::span<const double> node_mass) const override;
+  [[nodiscard]] double rate(std::span<const double> node_mass) const override;
   void add_node_stiffness(std::span<double> stiffness) const override;
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
@@ -44,8 +44,7 @@ class OutlineKernel final : public Kernel {
   void find_candidates(BodyIndex a, BodyIndex b);
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
                    std::vector<Contact>& contacts);
-  void find_fault();
-  void note_depth(double share, int edge, int face, double u);
+  void find_complements(std::span<Contact> contacts) const;
   [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
                               std::span<const double> fy) const;
   /// The number of each contact's patch; ascending pairs of bodies. Not for every step.
@@ -64,8 +63,6 @@ class OutlineKernel final : public Kernel {
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
   std::vector<double> areas_;    // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
-  double deepest_ = 0, worst_ = 0;  // depth in m; largest share of the depth of a collar
-  std::optional<ContactFault> fault_;
 };
 
 }  // namespace apothem

@@ -216,36 +216,24 @@ void PatchTangential::per_edge(const PairMotion& motion, double dt, const Fricti
   }
 }
 
-PatchTangential::PatchForces PatchTangential::report(const PairIntegrals& pairs, size_t pair,
-                                                     const FrictionMemory& memory,
-                                                     Cursor& cursor) const {
-  const auto [a, b] = pairs.pairs()[pair];
-  const auto order = [](const PairHistory& p) { return std::pair(p.a, p.b); };
-  while (cursor.pair < now_.pairs.size() && order(now_.pairs[cursor.pair]) < std::pair(a, b)) {
+void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+                             std::span<const Spring> springs, Cursor& cursor) const {
+  const std::pair pair(patches[0].a, patches[0].b);
+  const auto order = [&] {
+    const PairHistory& p = now_.pairs[cursor.pair];
+    return std::pair(p.a, p.b);
+  };
+  while (cursor.pair < now_.pairs.size() && order() < pair) {
     cursor.damper += static_cast<size_t>(now_.pairs[cursor.pair++].patches);
   }
-  const bool known =
-      cursor.pair < now_.pairs.size() && order(now_.pairs[cursor.pair]) == std::pair(a, b);
-  const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
-  PatchForces result;
-  std::vector<BoundaryRun> runs;
-  const PlacedPotential view_a = surfaces_.shapes().view(a), view_b = surfaces_.shapes().view(b);
-  if (view_a.convex() && view_b.convex() && !(edgewise() && !springs.empty())) {
-    result.patches.assign(1, pairs[pair]);
-  } else {
-    PatchWorkspace workspace;
-    contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, result.patches);
+  if (cursor.pair == now_.pairs.size() || order() != pair) return;
+  for (size_t j = 0; law_.normal_damping > 0 && j < patches.size(); ++j) {
+    patches[j].tangential += now_.dampers[cursor.damper + j].damping;
   }
-  result.tangential.assign(result.patches.size(), Vec2::Zero());
-  for (size_t j = 0; known && law_.normal_damping > 0 && j < result.patches.size(); ++j) {
-    result.tangential[j] += now_.dampers[cursor.damper + j].damping;
+  for (size_t i = 0; i < springs.size(); ++i) {
+    const int patch = edgewise() ? runs[i].patch : springs[i].key.part;
+    patches[static_cast<size_t>(patch)].tangential += springs[i].force * springs[i].tangent;
   }
-  size_t run = 0;
-  for (const Spring& spring : springs) {
-    const auto patch = static_cast<size_t>(edgewise() ? runs[run++].patch : spring.key.part);
-    result.tangential[patch] += spring.force * spring.tangent;
-  }
-  return result;
 }
 
 }  // namespace apothem

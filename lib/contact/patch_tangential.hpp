@@ -48,17 +48,15 @@ class PatchTangential {
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
   void start_ledger() { damping_loss_ = 0; }
 
-  /// The patches of a pair with what acts in them, from the springs kept in this step.
-  struct PatchForces {
-    std::vector<PairIntegral> patches;
-    std::vector<Vec2> tangential;  ///< N
-  };
-  /// Where the next report looks first: pairs must be asked for in ascending order.
+  /// Where the next pair is looked for first: pairs must be asked for in ascending order.
   struct Cursor {
     size_t pair = 0, damper = 0;
   };
-  [[nodiscard]] PatchForces report(const PairIntegrals& pairs, size_t pair,
-                                   const FrictionMemory& memory, Cursor& cursor) const;
+  /// Adds the tangential forces to the records of a pair, one for each patch. `runs`: of the pair,
+  /// needed by the law per_edge.
+  void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+              std::span<const Spring> springs, Cursor& cursor) const;
+  [[nodiscard]] bool edgewise() const { return law_.friction_law == FrictionLaw::per_edge; }
 
   void fields(Archive& archive);
 
@@ -79,7 +77,6 @@ class PatchTangential {
     size_t pair = 0, run = 0, damper = 0;
   };
 
-  [[nodiscard]] bool edgewise() const { return law_.friction_law == FrictionLaw::per_edge; }
   [[nodiscard]] const PairHistory* find_before(RigidIndex a, RigidIndex b);
   void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt,
                  FrictionMemory& memory);

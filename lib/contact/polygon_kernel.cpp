@@ -19,20 +19,24 @@ void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
   pairs_.evaluate();
   touching_.clear();
   contact_stiffness_.clear();
-  fault_.reset();
   for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
     const PairIntegral& pair = pairs_[p];
     if (!pair.touching()) continue;
     contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, stiffness_));
     touching_.push_back(static_cast<int>(p));
     contact_stiffness_.push_back(contacts.back().stiffness);
-    if (!fault_ && pairs_.too_deep(p)) {
-      const auto [a, b] = pairs_.pairs()[p];
-      fault_ = {pair.largest_phi > kDeepestPhi ? ContactFault::Kind::singular_area
-                                               : ContactFault::Kind::centre,
-                a, b, surfaces_.reference(a) + loading_point(pair), pair.penetration};
-    }
+    if (pairs_.too_deep(p)) contacts.back().share = 1;
   }
+}
+
+ContactFault PolygonKernel::fault(const Contact& c) const {
+  const auto touching = std::find_if(touching_.begin(), touching_.end(), [&](int p) {
+    return pairs_.pairs()[static_cast<size_t>(p)] == BoxPair{c.a, c.b};
+  });
+  const PairIntegral& pair = pairs_[static_cast<size_t>(*touching)];
+  return {pair.largest_phi > kDeepestPhi ? ContactFault::Kind::singular_area
+                                         : ContactFault::Kind::centre,
+          c.a, c.b, surfaces_.reference(c.a) + loading_point(pair)};
 }
 
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -103,28 +107,26 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
   PatchTangential::Cursor cursor;
   PatchWorkspace workspace;
   std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
   for (const int touching : touching_) {
     const auto p = static_cast<size_t>(touching);
     const auto [a, b] = pairs_.pairs()[p];
-    PatchTangential::PatchForces found;
-    if (tangential_) {
-      found = tangential_->report(pairs_, p, memory, cursor);
+    const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
+    const PlacedPotential view_a = surfaces_.shapes().view(a);
+    const PlacedPotential view_b = surfaces_.shapes().view(b);
+    const bool by_edges = tangential_ && tangential_->edgewise() && !springs.empty();
+    if (view_a.convex() && view_b.convex() && !by_edges) {
+      patches.assign(1, pairs_[p]);
     } else {
-      const PlacedPotential view_a = surfaces_.shapes().view(a);
-      const PlacedPotential view_b = surfaces_.shapes().view(b);
-      if (view_a.convex() && view_b.convex()) {
-        found.patches.assign(1, pairs_[p]);
-      } else {
-        contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, found.patches);
-      }
-      found.tangential.assign(found.patches.size(), Vec2::Zero());
+      contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, patches);
     }
-    for (size_t j = 0; j < found.patches.size(); ++j) {
-      const PairIntegral& patch = found.patches[j];
+    const size_t first = records.size();
+    for (const PairIntegral& patch : patches) {
       records.push_back({a, b, surfaces_.reference(a) + loading_point(patch),
-                         stiffness_ * patch.force, found.tangential[j], patch.penetration,
+                         stiffness_ * patch.force, Vec2::Zero(), patch.penetration,
                          patch.largest_phi});
     }
+    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs, cursor);
   }
 }
 

@@ -18,7 +18,7 @@ class PolygonKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
   void evaluate(std::vector<Contact>& contacts) override;
-  [[nodiscard]] const ContactFault* fault() const override { return fault_ ? &*fault_ : nullptr; }
+  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
@@ -49,7 +49,6 @@ class PolygonKernel final : public Kernel {
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   std::vector<int> touching_;                  // pairs
   std::vector<double> contact_stiffness_;      // of these, N/m
-  std::optional<ContactFault> fault_;
   PairPeak largest_force_;
 };
 

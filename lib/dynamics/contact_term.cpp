@@ -126,6 +126,12 @@ std::string ContactTerm::describe() const {
     text += law.surface == ContactSurface::body ? "; meshes by the potentials of their boundaries"
                                                 : "; meshes by the potentials of their elements";
   }
+  text += friction_table(model_).rough() ? fmt::format("; friction, mu = {:g}, {} rules by pair",
+                                                       law.friction.coefficient, law.rules.size())
+                                         : "; no friction";
+  if (law.normal_damping > 0) {
+    text += fmt::format("; normal viscous damping, ratio {:g}", law.normal_damping);
+  }
   return text;
 }
 
@@ -166,7 +172,7 @@ void ContactTerm::add_forces(const Evaluation& now) {
   if (contacts_.search_if_stale() && !now.trial) ++counts_.searches;
   now.clock.lap(Phase::search);
   contacts_.evaluate();
-  if (const ContactFault* fault = contacts_.fault()) refuse(*fault, state);
+  if (const auto fault = contacts_.fault()) refuse(*fault, state);
   contacts_.slide(kinematics, now.dt);
   now.clock.lap(Phase::contact);
   contacts_.add_forces(
@@ -260,7 +266,7 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
   const double rate =
-      std::sqrt(contacts_.node_rate(dofs_.free_node_mass()).value + model_.stiffness() * rigid);
+      std::sqrt(contacts_.node_rate(dofs_.free_node_mass()) + model_.stiffness() * rigid);
   bounds.nodes = {2 / std::hypot(2 / bounds.nodes.step, rate), "elements and their contacts"};
 }
 

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/mesh/measure.hpp"
 
 namespace apothem {
 namespace {
@@ -30,20 +31,6 @@ constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
 constexpr std::int64_t kMostSteps = 300'000;
 
-double shortest_edge(const Model& model) {
-  double shortest = HUGE_VAL;
-  for (const DeformableBody& body : model.deformables) {
-    for (ElementIndex e = 0; e < body.mesh.element_count(); ++e) {
-      const std::span<const int> ring = body.mesh.element(e);
-      for (size_t i = 0; i < ring.size(); ++i) {
-        const int before = ring[i > 0 ? i - 1 : ring.size() - 1];
-        shortest = std::min(shortest, (body.mesh.nodes[ring[i]] - body.mesh.nodes[before]).norm());
-      }
-    }
-  }
-  return shortest;
-}
-
 }  // namespace
 
 Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const Terms& terms,
@@ -53,7 +40,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       terms_(terms),
       tolerance_(tolerance),
       first_(dofs.layout().node(0)),
-      shortest_edge_(shortest_edge(model)),
+      shortest_edge_(HUGE_VAL),
       lambda_(model.bodies.size()),
       body_loads_(model.deformables.size()) {
   const size_t n = dofs.layout().size() - first_;
@@ -68,6 +55,7 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   }
   Box scene;
   for (const DeformableBody& body : model.deformables) {
+    shortest_edge_ = std::min(shortest_edge_, mesh_quality(body.mesh).shortest_edge);
     for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
   }
   far_ = kFar * scene.extent();

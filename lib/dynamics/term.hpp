@@ -9,8 +9,8 @@
 #include <string>
 
 #include "apothem/dynamics/ledger.hpp"
-#include "apothem/dynamics/stopwatch.hpp"
 #include "apothem/dynamics/time_step.hpp"
+#include "apothem/execution/stopwatch.hpp"
 #include "apothem/model/state.hpp"
 
 namespace apothem {

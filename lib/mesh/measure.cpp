@@ -79,4 +79,35 @@ MeshQuality mesh_quality(const Mesh& mesh) {
   return q;
 }
 
+MeanMotion mean_motion(const Mesh& mesh, std::span<const double> displacement,
+                       std::span<const double> velocity, std::span<const double> mass) {
+  const auto at = [](std::span<const double> v, size_t i) { return Vec2(v[2 * i], v[2 * i + 1]); };
+  MeanMotion mean;
+  Vec2 reference = Vec2::Zero();
+  double whole = 0;
+  const size_t n = mesh.nodes.size();
+  for (size_t i = 0; i < n; ++i) {
+    whole += mass[i];
+    reference += mass[i] * mesh.nodes[i];
+    mean.place += mass[i] * at(displacement, i);
+    mean.velocity += mass[i] * at(velocity, i);
+  }
+  reference /= whole;
+  mean.place = mean.place / whole + reference;
+  mean.velocity /= whole;
+  double turned = 0, straight = 0, angular = 0, inertia = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const double m = mass[i];
+    const Vec2 before = mesh.nodes[i] - reference;
+    const Vec2 now = mesh.nodes[i] + at(displacement, i) - mean.place;
+    turned += m * cross(before, now);
+    straight += m * before.dot(now);
+    angular += m * cross(now, Vec2(at(velocity, i) - mean.velocity));
+    inertia += m * now.squaredNorm();
+  }
+  mean.angle = std::atan2(turned, straight);
+  mean.spin = angular / inertia;
+  return mean;
+}
+
 }  // namespace apothem

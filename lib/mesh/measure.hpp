@@ -1,6 +1,8 @@
 // Sizes and quality of a mesh and of its elements.
 #pragma once
 
+#include <span>
+
 #include "apothem/mesh/mesh.hpp"
 
 namespace apothem {
@@ -39,5 +41,17 @@ struct MeshQuality {
 };
 /// Measures all elements.
 MeshQuality mesh_quality(const Mesh& mesh);
+
+/// The rigid motion that a deformed and moving mesh is nearest to.
+struct MeanMotion {
+  Vec2 place = Vec2::Zero();     ///< of the mass centre, m
+  double angle = 0;              ///< of the rotation that fits the displacements best, rad
+  Vec2 velocity = Vec2::Zero();  ///< of the mass centre, m/s
+  double spin = 0;               ///< angular momentum over the present moment of inertia, rad/s
+};
+
+/// Displacement (m) and velocity (m/s) hold x and y of each node; `mass` of each node in kg.
+MeanMotion mean_motion(const Mesh& mesh, std::span<const double> displacement,
+                       std::span<const double> velocity, std::span<const double> mass);
 
 }  // namespace apothem

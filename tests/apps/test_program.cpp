@@ -131,9 +131,44 @@ TEST_CASE("check prints the plan", "[program]") {
   const Folder folder;
   const Result r = run({"check", kScene}, folder);
   CHECK(r.code == 0);
-  for (const char* word :
-       {"bodies", "time step", "limited by", "contact", "friction", "finite elements"})
+  for (const char* word : {"bodies", "time step", "limited by", "contact", "friction"})
     CHECK(r.out.find(word) != std::string::npos);
+}
+
+TEST_CASE("check prints the terms of the step, one to a line, and no others", "[program]") {
+  const Folder folder;
+  const auto terms = [&](const std::string& file) {
+    const Result r = run({"check", file}, folder);
+    INFO(r.err);
+    CHECK(r.code == 0);
+    return r.out.substr(r.out.find("terms of the step:"));
+  };
+  const std::string rigid = terms(kScene);
+  CHECK(lines(rigid) == 2);
+  CHECK(rigid.find("\n  + contact of 2 surfaces, distance potential, k_n = 2e+10 Pa") !=
+        std::string::npos);
+  CHECK(rigid.find("no friction") != std::string::npos);
+  CHECK(rigid.find("finite elements") == std::string::npos);
+
+  const std::string rough = terms(test::kSource + "/data/scenes/incline-up-mu-06.json");
+  CHECK(lines(rough) == 2);
+  CHECK(rough.find("friction, mu = 0.6") != std::string::npos);
+
+  const std::string beam = terms(test::kSource + "/data/scenes/cantilever-q4.json");
+  CHECK(lines(beam) == 4);
+  CHECK(beam.find("\n  + 1000 finite elements, 1111 nodes: Q4") != std::string::npos);
+  CHECK(beam.find("\n  + loads: 1 by forces, 0 by pressures") != std::string::npos);
+  CHECK(beam.find("\n  + a look at boundaries that cross themselves") != std::string::npos);
+
+  const std::string blocks = terms(test::kSource + "/data/scenes/pressed-blocks.json");
+  CHECK(lines(blocks) == 4);
+  CHECK(blocks.find("meshes by the potentials of their boundaries") != std::string::npos);
+
+  const std::string alone = folder.write("alone.json", R"({
+    "materials": { "rock": { "density": 2000 } },
+    "bodies": [ { "name": "alone", "material": "rock", "polygon": [[0, 0], [1, 0], [0, 1]] } ],
+    "time": { "end": 1, "step": 0.01 } })");
+  CHECK(terms(alone).starts_with("terms of the step: none\n"));
 }
 
 TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
@@ -199,7 +234,7 @@ TEST_CASE("Ctrl-C during a load step keeps the one before, and --resume goes on 
   CHECK(Json::parse(content(folder / "cut/run.json"))["steps"] == 3);
   const std::string checkpoint = content(folder / "cut/checkpoint.json");
   Json damaged = Json::parse(checkpoint);
-  damaged["load_steps"][0]["worst"] = 1;  // of one body
+  damaged["progress"]["load_steps"][0]["worst"] = 1;  // of one body
   folder.write("cut/checkpoint.json", damaged.dump());
   CHECK(run({"run", file, "-o", folder / "cut", "--resume"}, folder).code == 2);
   folder.write("cut/checkpoint.json", checkpoint);
@@ -436,7 +471,8 @@ TEST_CASE("a resumed run of rubbing meshes continues bit for bit", "[program]") 
     "time": { "end": 1.5e-3 }, "output": { "frames": 5, "history": { "interval": 1e-5 } } })");
   REQUIRE(run({"run", file, "-o", folder / "whole"}, folder).code == 0);
   REQUIRE(run({"run", file, "-o", folder / "parts", "--until", "8e-4"}, folder).code == 0);
-  REQUIRE(Json::parse(content(folder / "parts/checkpoint.json"))["slips"]["slips"].size() > 0);
+  const Json checkpoint = Json::parse(content(folder / "parts/checkpoint.json"));
+  REQUIRE(checkpoint["simulation"]["term_1"]["contacts"]["friction"]["springs"].size() > 0);
   REQUIRE(run({"run", file, "-o", folder / "parts", "--resume", "--threads", "2"}, folder).code ==
           0);
   const HistoryTable history = read_history(folder / "whole/history.csv");

@@ -73,7 +73,7 @@ Curve cantilever(ElementKind kind, double h) {
     curve.time.push_back(simulation.state().time);
     double uy = 0;
     for (size_t i = 0; i < corners.size(); ++i) {
-      uy += tip.weights[i] * simulation.state().displacement[2 * corners[i] + 1];
+      uy += tip.weights[i] * simulation.state().node(corners[i]).y();
     }
     curve.deflection.push_back(uy);
   }

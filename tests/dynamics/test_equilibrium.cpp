@@ -92,7 +92,7 @@ TEST_CASE("relaxation finds the deflection that Newton's method finds", "[equili
       Simulation simulation(model, time, 2, 1);
       simulation.balance(.5);
       const LoadStep step = simulation.balance(1);
-      const std::vector<double>& u = simulation.state().displacement;
+      const std::vector<double>& u = simulation.state().x;  // of nodes only
       double worst = 0;
       for (size_t c = 0; c < u.size(); ++c) {
         worst = std::max(worst, std::abs(u[c] - exact[static_cast<ptrdiff_t>(c)]));
@@ -130,15 +130,14 @@ double patch_error(double stiffness) {
   time.tolerance = 1e-9;
   Simulation simulation(model, time, 1, 1);
   simulation.balance(1);
-  const std::vector<BodyForce> forces = simulation.deformable_forces();
+  const std::vector<BodyForce> forces = simulation.contact_forces();
   CHECK(std::abs(forces[1].fy - p) < 1e-5 * p);
   CHECK(std::abs(forces[0].fy + p) < 1e-5 * p);
   const std::vector<CauchyStress> stresses = simulation.stresses();
   // The load is dead, and the blocks grow wider under it.
-  const std::vector<double>& u = simulation.state().displacement;
   const auto side = [&](double x) {
-    return u[2 * static_cast<size_t>(model.deformables[1].first_node +
-                                     nodes_where(upper.mesh, {.nearest = Vec2(x, 1)})[0])];
+    const int node = nodes_where(upper.mesh, {.nearest = Vec2(x, 1)})[0];
+    return simulation.state().node(model.deformables[1].first_node + node).x();
   };
   const double stress = p / (1 + side(1) - side(0));
   double worst = 0;
@@ -196,7 +195,7 @@ Hertz hertz(double b_over_radius, int cells, double stiffness) {
   for (int i = 1; i <= kSteps; ++i) {
     result.iterations += simulation.balance(static_cast<double>(i) / kSteps).iterations;
   }
-  result.balance = simulation.deformable_forces()[1].fy / force - 1;
+  result.balance = simulation.contact_forces()[1].fy / force - 1;
   // p^2 = p0^2 (1 - x^2/b^2) is a straight line in x^2; where it ends, fitted to the edges with
   // more than a fifth of the peak.
   std::vector<std::pair<double, double>> points;

@@ -1,7 +1,9 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
+#include "archive/saved.hpp"
 #include "friction_models.hpp"
+#include "term_of.hpp"
 
 using namespace apothem;
 using test::add;
@@ -14,7 +16,7 @@ namespace {
 
 double speed_after(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step();
-  return simulation.state().velocity[3];
+  return simulation.state().pose_rate(1)[0];
 }
 
 // Velocity 0.4 s after the block has turned, minus theory.
@@ -52,12 +54,12 @@ TEST_CASE("sliding from equilibrium follows theory", "[friction]") {
     while (simulation.state().time < .3) {
       simulation.step();
       const State& state = simulation.state();
-      REQUIRE(std::abs(state.velocity[3] - (speed - slowing * state.time)) < 1e-8);
+      REQUIRE(std::abs(state.pose_rate(1)[0] - (speed - slowing * state.time)) < 1e-8);
     }
     const RigidBody& block = model.bodies[1];
-    CHECK(simulation.friction()[1] ==
+    CHECK(simulation.contact_forces()[1].friction ==
           Approx(coefficient * block.mass * kG * std::cos(angle)).epsilon(1e-8));
-    CHECK(simulation.friction()[0] == simulation.friction()[1]);
+    CHECK(simulation.contact_forces()[0].friction == simulation.contact_forces()[1].friction);
     CHECK(std::abs(simulation.energies().total_error) <
           1e-8 * model.bodies[1].mass * speed * speed / 2);
   }
@@ -129,7 +131,7 @@ TEST_CASE("straight approach meets no friction, not even round-off; per edge it 
       double most = 0;
       while (simulation.state().time < .1) {
         simulation.step();
-        most = std::max(most, simulation.friction()[1]);
+        most = std::max(most, simulation.contact_forces()[1].friction);
       }
       CHECK(simulation.extremes().force.value > 1e4);
       if (law == FrictionLaw::resultant) CHECK(most == 0);
@@ -175,8 +177,8 @@ TEST_CASE("a block squeezed in one U-shaped body rubs on both sides", "[friction
   // Flat on flat: N = k d (W/r_U + (W - d)/r_block) on each side, by the roof height of the U.
   const double normal =
       2e9 * d * (1 / model.bodies[0].inradius + (1 - d) / model.bodies[1].inradius);
-  CHECK(simulation.state().force[3] == Approx(0).margin(1e-3 * normal));
-  CHECK(simulation.state().force[4] == Approx(2 * mu * normal).epsilon(1e-6));
+  CHECK(simulation.state().force(1)[0] == Approx(0).margin(1e-3 * normal));
+  CHECK(simulation.state().force(1)[1] == Approx(2 * mu * normal).epsilon(1e-6));
 }
 
 TEST_CASE("springs follow patches that split and merge", "[friction]") {
@@ -196,7 +198,7 @@ TEST_CASE("springs follow patches that split and merge", "[friction]") {
     simulation.step();
     worst = std::max(worst, std::abs(simulation.energies().total_error));
   }
-  INFO(worst / before << " after " << simulation.state().position[3]);
+  INFO(worst / before << " after " << simulation.state().pose(1)[0]);
   CHECK(simulation.energies().friction_loss > 0);
   CHECK(worst < 3e-4 * before);
 }
@@ -213,8 +215,10 @@ TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
   model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, {.2, 1e9}});
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .2 * std::cos(.3))).epsilon(1e-6));
 
-  CHECK(!TangentialContact::needed(make_model(0).contact));
-  CHECK(TangentialContact::needed(make_model(.1).contact));
+  for (const double coefficient : {0., .1}) {
+    const ContactLaw law = make_model(coefficient).contact;
+    CHECK(FrictionTable(law, {0, 0}, 1).rough() == (coefficient > 0));
+  }
 }
 
 TEST_CASE("mass damping takes what it says", "[friction]") {
@@ -290,15 +294,15 @@ TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bod
       sum -= r.normal + r.tangential;
       sideways += r.tangential.x();
     }
-    const std::vector<double>& force = simulation.state().force;
-    CHECK(sum.x() == Approx(force[3]).margin(1e-12 * sum.norm()));
-    CHECK(sum.y() == Approx(force[4]).epsilon(1e-12));
+    const Eigen::Vector3d force = simulation.state().force(1);
+    CHECK(sum.x() == Approx(force.x()).margin(1e-12 * sum.norm()));
+    CHECK(sum.y() == Approx(force.y()).epsilon(1e-12));
     CHECK((sideways > 10) == (c.friction > 0));
     if (c.patches == 2)
       CHECK(std::abs(records[1].point.x() - records[0].point.x()) == Approx(.4).margin(.1));
     // The same after a pause.
     Simulation resumed(model, {.end = 1}, 1, 1);
-    resumed.restore(simulation.snapshot());
+    test::restore(resumed, test::saved(simulation));
     const std::vector<ContactRecord> again = resumed.contacts();
     REQUIRE(again.size() == records.size());
     for (size_t i = 0; i < again.size(); ++i) {
@@ -323,24 +327,24 @@ TEST_CASE("the damping ratio is that of the contact's own oscillation", "[fricti
     Simulation simulation(model, {.end = 1, .safety = .02}, 1, 1);
     const double period = 2 * M_PI / (omega * std::sqrt(1 - ratio * ratio));
     while (simulation.state().time < 3 * period) simulation.step();
-    const double left = first - depth - simulation.state().position[4];
+    const double left = first - depth - simulation.state().pose(1)[1];
     CHECK(left / (.5 * depth) ==
           Approx(std::exp(-ratio * omega * simulation.state().time)).epsilon(.01));
   }
 }
 
-TEST_CASE("a snapshot carries the springs", "[friction]") {
+TEST_CASE("a saved simulation carries the springs", "[friction]") {
   const Model model = collision(.4);
   const TimeSettings time{.end = 1};
   Simulation whole(model, time, 1, 1);
   Simulation first(model, time, 1, 1);
-  while (first.snapshot().tangential.pairs.empty() || first.state().step % 7 != 0) first.step();
+  while (test::springs(first).empty() || first.state().step % 7 != 0) first.step();
   for (int i = 0; i < 20; ++i) first.step();
   Simulation second(model, time, 1, 1);
-  second.restore(first.snapshot());
+  test::restore(second, test::saved(first));
   while (second.state().time < 1) second.step();
   while (whole.state().time < 1) whole.step();
-  CHECK(second.state().position == whole.state().position);
-  CHECK(second.state().velocity == whole.state().velocity);
+  CHECK(second.state().x == whole.state().x);
+  CHECK(second.state().v == whole.state().v);
   CHECK(second.energies().friction_loss == whole.energies().friction_loss);
 }

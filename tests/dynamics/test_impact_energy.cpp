@@ -121,7 +121,7 @@ TEST_CASE("a flat impact needs a shorter step", "[surface][impact_energy]") {
   Json json = shipped("block-on-foundation", "Q4");
   json["bodies"][1]["angle"] = 0;
   Scene scene = read(json);
-  scene.time.fixed_step = .2 * Simulation(scene.model, scene.time, 1, 1).stability_limit();
+  scene.time.fixed_step = .2 * Simulation(scene.model, scene.time, 1, 1).step_choice().stability;
   const double stride = 20 * *scene.time.fixed_step;
   for (const double theta : {.3, .5, .7}) {
     json["bodies"][1]["position"] = {.03, .5 + theta * stride};

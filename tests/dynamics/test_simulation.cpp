@@ -164,7 +164,7 @@ TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]
   model.bodies[1].position.y() -= rest * 1.001;
   Simulation simulation(model, {.end = 1, .fixed_step = .99 * limit}, 1, 1);
   for (int i = 0; i < 2000; ++i) simulation.step();
-  CHECK(std::abs(simulation.state().velocity[4]) < 1e-3);
+  CHECK(std::abs(simulation.state().pose_rate(1)[1]) < 1e-3);
 }
 
 TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
@@ -215,14 +215,14 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
   CHECK(std::abs(p.x_error) < 1e-6);
   CHECK(std::abs(p.y_error) < 1e-6);
   CHECK(std::abs(p.angular_error) < 1e-5);
-  CHECK(simulation.state().position[3 * 5] == model.bodies[5].position.x());
-  CHECK(simulation.state().velocity[3 * 8 + 2] == 0);
+  CHECK(simulation.state().pose(5)[0] == model.bodies[5].position.x());
+  CHECK(simulation.state().pose_rate(8)[2] == 0);
   // The prescribed path, integrated by hand: 0.5 s at -6, 0.7 s at -4 with x 0 -> 1, 0.8 s at (1,
   // 0).
-  const size_t ram = 3 * (model.bodies.size() - 1);
-  CHECK(simulation.state().position[ram] == Approx(3 + .35 + .8).epsilon(1e-12));
-  CHECK(simulation.state().position[ram + 1] == Approx(8.5 - 3 - 2.8).epsilon(1e-12));
-  CHECK(simulation.state().position[ram + 2] == Approx(1).epsilon(1e-12));
+  const Eigen::Vector3d ram = simulation.state().pose(static_cast<int>(model.bodies.size()) - 1);
+  CHECK(ram[0] == Approx(3 + .35 + .8).epsilon(1e-12));
+  CHECK(ram[1] == Approx(8.5 - 3 - 2.8).epsilon(1e-12));
+  CHECK(ram[2] == Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("the same bits for any number of threads", "[dynamics]") {
@@ -243,9 +243,9 @@ TEST_CASE("the same bits for any number of threads", "[dynamics]") {
     REQUIRE(simulation.counts().candidate_pairs / simulation.state().step > 2000);
   }
   for (const State& s : finals) {
-    CHECK(s.position == finals[0].position);
-    CHECK(s.velocity == finals[0].velocity);
-    CHECK(s.force == finals[0].force);
+    CHECK(s.x == finals[0].x);
+    CHECK(s.v == finals[0].v);
+    CHECK(s.f == finals[0].f);
   }
 }
 
@@ -259,7 +259,7 @@ TEST_CASE("a pair search with a skin changes nothing", "[dynamics]") {
   const int n = shapes.size();
   for (int step = 0; step < test::scaled(3000); ++step) {
     simulation.step();
-    const std::vector<double>& x = simulation.state().position;
+    const std::vector<double>& x = simulation.state().x;
     int touching = 0;
     for (int i = 0; i < n; ++i) shapes.place(i, x[3 * i], x[3 * i + 1], x[3 * i + 2]);
     for (int i = 0; i < n; ++i) {
@@ -287,7 +287,7 @@ TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
     model.bodies.push_back(make_body(model, "falling", falling));
     Simulation simulation(model, {.end = .3, .fixed_step = 1e-5}, 1, 1);
     for (int i = 0; i < 30000; ++i) simulation.step();
-    return simulation.state().position[4] + (model.origin - offset).y();
+    return simulation.state().pose(1)[1] + (model.origin - offset).y();
   };
   const double here = fall({0, 0});
   CHECK(std::abs(here - (.125 + 7.0 / 12)) < .01);  // it has bounced back

@@ -29,7 +29,7 @@ Model tilted(double angle, double coefficient, double speed, const Polygon& bloc
 
 // Along the slope, upwards.
 double speed_on(double angle, const State& state) {
-  return std::cos(angle) * state.velocity[3] + std::sin(angle) * state.velocity[4];
+  return std::cos(angle) * state.pose_rate(1)[0] + std::sin(angle) * state.pose_rate(1)[1];
 }
 
 // A floor that moves to and fro below a block that is held: at the end it is where it was.
@@ -120,7 +120,7 @@ TEST_CASE("blocks of any shape slip at atan(mu) on tilted slopes", "[friction]")
       if (slides) {
         CHECK(speed_on(angle, early) - speed_on(angle, late) == Approx(pull * .2).epsilon(.02));
       } else {
-        const Vec2 way(late.position[3] - early.position[3], late.position[4] - early.position[4]);
+        const Vec2 way(late.pose(1)[0] - early.pose(1)[0], late.pose(1)[1] - early.pose(1)[1]);
         CHECK(way.norm() < 1e-10);
       }
     }
@@ -138,7 +138,7 @@ TEST_CASE("a closed cycle of sticking gives back what it took", "[friction]") {
       double most = 0, work = 0;
       while (simulation.state().time < .05) {
         simulation.step();
-        most = std::max(most, simulation.friction()[1]);
+        most = std::max(most, simulation.contact_forces()[1].friction);
         work = std::max(work, std::abs(simulation.energies().external_work));
       }
       const Energies e = simulation.energies();
@@ -149,7 +149,7 @@ TEST_CASE("a closed cycle of sticking gives back what it took", "[friction]") {
       CHECK(e.friction_loss == 0);
       CHECK(std::abs(e.external_work) < 1e-6 * work);
       CHECK(std::abs(e.contact - before) < 1e-6 * work);
-      CHECK(simulation.friction()[1] < 1e-6 * limit);
+      CHECK(simulation.contact_forces()[1].friction < 1e-6 * limit);
     }
   }
 }
@@ -165,8 +165,8 @@ TEST_CASE("wheels of other numbers of sides roll", "[friction]") {
     const double theory = model.gravity.x() / (1 + inertia) * state.time;
     // Every side knocks on the slope, at an angle of 2 pi / sides.
     const double knocks = 2 * std::pow(2 * M_PI / sides, 2);
-    CHECK(state.velocity[3] == Approx(theory).epsilon(knocks));
-    CHECK(state.velocity[5] == Approx(-theory / .25).epsilon(knocks));
+    CHECK(state.pose_rate(1)[0] == Approx(theory).epsilon(knocks));
+    CHECK(state.pose_rate(1)[2] == Approx(-theory / .25).epsilon(knocks));
   }
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("an apex of any angle bounces by either law as its closed form says", 
       double top = 0;
       while (simulation.state().time < .35) {
         simulation.step();
-        if (simulation.state().time > .2) top = std::max(top, simulation.state().position[4]);
+        if (simulation.state().time > .2) top = std::max(top, simulation.state().pose(1)[1]);
       }
       top -= body.position.y() - height;
       INFO(half << ": " << top << " " << lower);

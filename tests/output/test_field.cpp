@@ -137,22 +137,22 @@ TEST_CASE("a frame is read back as it was written", "[field]") {
   const FiniteElements elements(std::vector<ElementSet>{{ElementKind::quad4, &mesh, 0,
                                                          model.materials[0].elastic, 2000, 1, 0}},
                                 1);
-  State state;
-  state.position = {model.bodies[0].position.x() + .5, model.bodies[0].position.y(), 0};
-  state.velocity = {7, 0, 0};
-  state.force = {0, 0, 0};
+  State state(Layout{1, model.node_count()});
+  state.pose(0) << model.bodies[0].position + Vec2(.5, 0), 0;
+  state.pose_rate(0) << 7, 0, 0;
   samples::Random random(5);
-  for (size_t i = 0; i < mesh.nodes.size(); ++i) {
-    for (int axis = 0; axis < 2; ++axis) {
-      state.displacement.push_back(random.uniform(-1e-3, 1e-3));
-      state.node_velocity.push_back(random.uniform(-1, 1));
-    }
+  for (size_t c = state.layout.node(0); c < state.layout.size(); ++c) {
+    state.x[c] = random.uniform(-1e-3, 1e-3);
+    state.v[c] = random.uniform(-1, 1);
   }
-  const std::vector<CauchyStress> stress = elements.stresses(state.displacement);
+  const std::vector<CauchyStress> stress = elements.stresses(state.layout.of_nodes(state.x));
   FrameWriter frames(folder.path(), model);
   for (const double time : {0., .25, .5}) {
     state.time = time;
-    frames.write(state, {}, stress, {});
+    frames.write({.state = state,
+                  .stresses = stress,
+                  .forces = std::vector<BodyForce>(2),
+                  .node_mass = elements.mass()});
   }
   const Frame frame = read_frame(folder.path(), .2, .3);
   CHECK(frame.time == .25);
@@ -166,11 +166,9 @@ TEST_CASE("a frame is read back as it was written", "[field]") {
   CHECK(frame.displacement[2] == Vec2(.5, 0));
   CHECK(frame.velocity[2] == Vec2(7, 0));
   CHECK(frame.mesh.nodes[0] == Vec2(62, 0));
-  for (size_t i = 0; i < mesh.nodes.size(); ++i) {
-    CHECK(frame.displacement[4 + i] ==
-          Vec2(state.displacement[2 * i], state.displacement[2 * i + 1]));
-    CHECK(frame.velocity[4 + i] ==
-          Vec2(state.node_velocity[2 * i], state.node_velocity[2 * i + 1]));
+  for (int i = 0; i < model.node_count(); ++i) {
+    CHECK(frame.displacement[4 + i] == state.node(i));
+    CHECK(frame.velocity[4 + i] == state.node_velocity(i));
     CHECK((frame.mesh.nodes[4 + i] - mesh.nodes[i] - model.origin).norm() < 1e-13);
   }
   const Field major = field_of(frame, quantity("s1"), 1);
@@ -185,7 +183,7 @@ TEST_CASE("a frame is read back as it was written", "[field]") {
       CHECK(frame.mesh.element(1 + e)[k] == 4 + mesh.element(e)[k]);
     }
   }
-  CHECK(sink.values[6] == state.displacement[5]);
+  CHECK(sink.values[6] == state.node(2).y());
   CHECK((major.mesh.nodes[6] - (mesh.nodes[2] + model.origin + frame.displacement[6])).norm() <
         1e-13);
 }

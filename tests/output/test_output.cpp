@@ -46,11 +46,10 @@ Model two_bodies() {
 }
 
 State state_of(const Model& model) {
-  State state;
-  for (const RigidBody& body : model.bodies) {
-    state.position.insert(state.position.end(), {body.position.x(), body.position.y(), body.angle});
-    state.velocity.insert(state.velocity.end(), {0, 0, 0});
-    state.force.insert(state.force.end(), {0, 0, 0});
+  State state(Layout{2, 0});
+  for (int i = 0; i < 2; ++i) {
+    const RigidBody& body = model.bodies[i];
+    state.pose(i) << body.position, body.angle;
   }
   return state;
 }
@@ -81,13 +80,15 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   const Model model = two_bodies();
   State state = state_of(model);
   FrameWriter frames(folder.path(), model);
-  frames.write(state, {}, {}, {});
+  frames.write({.state = state, .forces = std::vector<BodyForce>(2)});
   state.time = 0.1 + 0.2;  // not representable in few digits
-  state.position[3] += 0.25;
-  state.position[5] = M_PI / 2;
-  state.velocity = {1, 2, 0, 0, 0, 3};
-  state.force = {5, 6, 7, 0, 0, 0};
-  frames.write(state, {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}}, {}, {});
+  state.pose(1)[0] += 0.25;
+  state.pose(1)[2] = M_PI / 2;
+  state.v = {1, 2, 0, 0, 0, 3};
+  state.f = {5, 6, 7, 0, 0, 0};
+  frames.write({.state = state,
+                .contacts = {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}},
+                .forces = {{0, 0, 5}, {0, 0, 8}}});
 
   const auto list = entries(folder / "frames.pvd");
   REQUIRE(list.size() == 2);
@@ -107,6 +108,7 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   CHECK(grid->GetCellData()->GetArray("body")->GetTuple1(1) == 1);
   CHECK(grid->GetCellData()->GetArray("material")->GetTuple1(1) == 1);
   CHECK(grid->GetCellData()->GetArray("contact_force")->GetComponent(0, 1) == 6);
+  CHECK(grid->GetCellData()->GetArray("friction")->GetTuple1(1) == 8);
   CHECK(grid->GetPointData()->GetArray("velocity")->GetComponent(0, 1) == 2);
   // Body two: quarter turn about its centre, then 0.25 to the right; world coordinates.
   const Vec2 centre = model.bodies[1].position + model.origin + Vec2(.25, 0);
@@ -173,13 +175,18 @@ TEST_CASE("frames of a deformed body hold its stresses", "[output]") {
   FiniteElements elements(std::vector<ElementSet>{{body.element, &model.deformables[0].mesh, 0,
                                                    model.materials[0].elastic, 2000, 1, 0}},
                           1);
-  State state;
-  for (const Vec2& x : body.mesh.nodes) {
-    state.displacement.insert(state.displacement.end(), {1e-7 * x.x() + 2e-7 * x.y(), 0});
-    state.node_velocity.insert(state.node_velocity.end(), {x.y(), 7});
+  State state(Layout{0, model.node_count()});
+  for (int i = 0; i < model.node_count(); ++i) {
+    const Vec2& x = body.mesh.nodes[i];
+    state.node(i) = Vec2(1e-7 * x.x() + 2e-7 * x.y(), 0);
+    state.v[state.layout.node(i)] = x.y();
+    state.v[state.layout.node(i) + 1] = 7;
   }
   FrameWriter frames(folder.path(), model);
-  frames.write(state, {}, elements.stresses(state.displacement), {});
+  frames.write({.state = state,
+                .stresses = elements.stresses(state.x),
+                .forces = std::vector<BodyForce>(1),
+                .node_mass = elements.mass()});
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName((folder / entries(folder / "frames.pvd")[0].second).c_str());
   reader->Update();
@@ -222,14 +229,14 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
     for (int i = 0; i < 500; ++i) {
       const auto any = [&] { return std::ldexp(random.uniform(-1, 1), random.integer(-300, 300)); };
       state.time = i / 3.0;
-      for (double& v : state.velocity) v = any();
-      for (double& f : state.force) f = any();
+      for (double& v : state.v) v = any();
+      for (double& f : state.f) f = any();
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
-      const std::vector<double> friction{0, any()};
-      writer.add(state, e, p, {.friction = friction});
-      rows.push_back({state.time, state.velocity[3], state.force[4], e.contact, e.total_error,
-                      p.angular_error, friction[1]});
+      const std::vector<BodyForce> contact{{}, {0, 0, any()}};
+      writer.add(state, e, p, {.contact = contact});
+      rows.push_back({state.time, state.pose_rate(1)[0], state.force(1)[1], e.contact, e.total_error,
+                      p.angular_error, contact[1].friction});
     }
     writer.flush();
   }
@@ -261,8 +268,8 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   HistoryWriter writer(folder.path(), model, settings);
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
-    state.position[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {}, {.friction = {0, 0}});
+    state.pose(0)[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
+    writer.add(state, {}, {}, {.contact = std::vector<BodyForce>(2)});
   }
   writer.flush();
   const double top = 3 + model.origin.y();

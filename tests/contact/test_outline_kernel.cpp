@@ -1,0 +1,391 @@
+// Outlines of meshes and polygons in contact: candidates, limits, threads, energy in motion.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "contact/outline_pairs.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+// Edges and the faces that they touch.
+std::set<std::pair<int, int>> touching(const Contacts& contacts) {
+  std::set<std::pair<int, int>> pairs;
+  for (const Contact& c : contacts.contacts()) {
+    REQUIRE(c.kernel == outline_kernel);
+    pairs.emplace(c.a, c.b);
+  }
+  return pairs;
+}
+
+// Every edge against every face of other bodies.
+std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
+  std::set<std::pair<int, int>> pairs;
+  for (int e = 0; e < o.size(); ++e) {
+    for (int f = 0; f < o.size(); ++f) {
+      const bool rigid = o.bodies[o.body[e]].is_rigid() && o.bodies[o.body[f]].is_rigid();
+      if (o.body[e] == o.body[f] || rigid) continue;
+      CollarPiece<double> piece;
+      const int q = o.next[e];
+      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece) && piece.deepest > 0)
+        pairs.emplace(e, f);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("candidates miss no contact while bodies move and deform", "[outline_kernel][contact]") {
+  samples::Random random(21);
+  Bodies bodies(law_of(1));
+  bodies.add_rigid(about_centre(samples::block(-9, -.5, 9, .5)));
+  bodies.add_rigid(about_centre(samples::block(-9, -.5, 9, .5)));
+  std::vector<Vec2> velocity;
+  const int meshes = 12;
+  for (int i = 0; i < meshes; ++i) {
+    const std::vector<Vec2> ring =
+        samples::shifted(samples::random_star_shaped(random, 8, .6), {1.9 * (i % 4), 1.9 * (i / 4)})
+            .vertices();
+    bodies.add_ring(ring, .3);
+    velocity.emplace_back(random.uniform(-.002, .002), random.uniform(-.002, .002));
+  }
+  bodies.join();
+  int found = 0;
+  const int steps = scaled(300);
+  for (int step = 0; step < steps; ++step) {
+    for (int i = 0; i < bodies.nodes; ++i) {
+      bodies.displacement[2 * i] += velocity[i / 8].x() + random.uniform(-1e-4, 1e-4);
+      bodies.displacement[2 * i + 1] += velocity[i / 8].y() + random.uniform(-1e-4, 1e-4);
+    }
+    const double t = .002 * step;
+    bodies.pose = {2, -1.4 + t, .1 * t, 3, -1.2, -t};
+    bodies.evaluate();
+    const auto all = touching_of_all(bodies.contacts->surfaces().outlines());
+    CHECK(touching(*bodies.contacts) == all);
+    found += static_cast<int>(all.size());
+  }
+  CHECK(found > steps);
+  CHECK(bodies.contacts->searches() < std::max(2, steps / 2));
+}
+
+TEST_CASE("bodies that meet, part and meet again feel what they would at first sight",
+          "[outline_kernel][contact]") {
+  const std::vector<Vec2> ring = split(samples::block(0, 0, 1, 1).vertices(), 5);
+  const auto pair = [&] {
+    Bodies bodies(law_of(1), .05);
+    bodies.add_ring(ring, .3);
+    bodies.add_ring(ring, .3);
+    bodies.join();
+    return bodies;
+  };
+  Bodies bodies = pair();
+  std::vector<double>& u = bodies.displacement;
+  int touched = 0, apart = 0;
+  for (int step = 0; step < 2000; ++step) {
+    // The second body goes round the first one; its corners swing as well.
+    const double t = .003 * step;
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 x = samples::turned(ring[i], .3 * std::sin(3 * t));
+      const size_t c = 2 * (ring.size() + i);
+      u[c] = x.x() - ring[i].x() + (1.35 + .3 * std::cos(2.3 * t)) * std::cos(t);
+      u[c + 1] = x.y() - ring[i].y() + (1.35 + .3 * std::cos(2.3 * t)) * std::sin(t);
+    }
+    bodies.evaluate();
+    bodies.find_forces();
+    Bodies fresh = pair();
+    fresh.displacement = u;
+    fresh.evaluate();
+    fresh.find_forces();
+    // Where a collar ends is measured at a search.
+    if (std::max(deepest_share(*bodies.contacts), deepest_share(*fresh.contacts)) > .5) continue;
+    REQUIRE(touching(*bodies.contacts) == touching(*fresh.contacts));
+    REQUIRE(bodies.contacts->energy() == fresh.contacts->energy());
+    REQUIRE((bodies.node_force == fresh.node_force));
+    (fresh.contacts->contacts().empty() ? apart : touched)++;
+  }
+  CHECK(touched > 200);
+  CHECK(apart > 200);
+  CHECK(bodies.contacts->searches() < 1000);
+}
+
+TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact]") {
+  samples::Random random(22);
+  double worst = 0;
+  int pairs = 0;
+  const int wanted = scaled(300);
+  while (pairs < wanted) {
+    const Polygon a = samples::random_convex(random, random.integer(3, 9));
+    const Polygon b = samples::random_convex(random, random.integer(3, 9));
+    const Potential potential_b = make_potential(b);
+    const Vec2 offset(random.uniform(-2, 2), random.uniform(-2, 2));
+    const double angle = random.uniform(-3, 3);
+    const Polygon moved = samples::mapped(
+        a, [&](const Vec2& v) -> Vec2 { return samples::turned(v, angle) + offset; });
+    Bodies bodies(law_of(1));
+    const double r_a = inscribed_circle(a).radius, r_b = inscribed_circle(b).radius;
+    bodies.add_rigid(about_origin(a), {offset.x(), offset.y(), angle});
+    bodies.add_ring(b.vertices(), r_b);
+    bodies.join();
+    bodies.evaluate();
+    const double share = deepest_share(*bodies.contacts);
+    if (!(share > .02) || share > .98) continue;
+    ++pairs;
+    bodies.find_forces();
+    const PairResult edge = edge_method(moved, make_potential(moved), b, potential_b);
+    const Resultant on_a = bodies.on_rigid(0);
+    worst = std::max(worst, (on_a.force - edge.integral.force).norm() / edge.integral.weight);
+    const Vec2 arm = samples::world_centroid(moved) - offset;
+    const double moment = edge.integral.moment_a + cross(arm, edge.integral.force);
+    worst = std::max(worst, std::abs(on_a.moment - moment) / edge.integral.weight);
+    const double energy = bodies.contacts->energy();
+    worst = std::max(worst, std::abs(energy - edge.volume.energy) / edge.volume.energy);
+    const double stiffness = edge.integral.own_length_a / r_b + edge.integral.own_length_b / r_a;
+    double bound = 0;
+    for (const Contact& c : bodies.contacts->contacts()) bound += c.stiffness;
+    CHECK(bound == Approx(stiffness).epsilon(1e-10));
+    const std::vector<ContactRecord> record = bodies.contacts->records();
+    REQUIRE(record.size() == 1);
+    worst = std::max(worst, (record[0].normal - on_a.force).norm() / edge.integral.weight);
+  }
+  CAPTURE(worst);
+  CHECK(worst < 1e-12);
+}
+
+TEST_CASE("swapping two outlines changes round-off only", "[outline_kernel][contact]") {
+  samples::Random random(23);
+  for (int i = 0; i < scaled(300); ++i) {
+    const auto pair = random_pair(random, 8, .5);
+    if (!pair) continue;
+    const OutlinePair swapped(pair->b, pair->a, pair->reference_b, pair->reference_a);
+    const double size = pair->largest_force();
+    const size_t n = 2 * pair->a.size(), m = 2 * pair->b.size();
+    for (size_t k = 0; k < n; ++k)
+      CHECK(std::abs(pair->node_force[k] - swapped.node_force[m + k]) < 1e-14 * size);
+    CHECK(pair->contacts->energy() == Approx(swapped.contacts->energy()).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][contact]") {
+  const Mesh mesh = rectangle_mesh({2, 1}, {4, 4}, {0, 0}, ElementShape::quadrilateral);
+  CHECK(boundary_inradius(mesh, boundary(mesh)) == Approx(.125));
+  Bodies bodies(law_of(2), .01, .5);
+  // 1 mm into the top.
+  const Polygon tip({{0, 0}, {.2, 1}, {-.2, 1}});
+  bodies.add_rigid(about_origin(tip, length_choice(.15)), {1.1, .999, 0});
+  bodies.add_mesh(mesh, {}, 0, 3);
+  bodies.join();
+  bodies.evaluate();
+  bodies.find_forces();
+  const std::vector<double>& f = bodies.node_force;
+  CHECK(f[0] == 0);
+  double down = 0;
+  for (size_t i = 1; i < f.size(); i += 2) {
+    down += f[i];
+    if (f[i] != 0) CHECK(mesh.nodes[i / 2 - 3].y() == 1);
+  }
+  const Resultant on_tip = bodies.on_rigid(0);
+  CHECK(down == Approx(-on_tip.force.y()).epsilon(1e-12));
+  const double slope = .2, d = .001;  // apex on flat
+  const double expected = 2 * .5 * d * d * slope * (1 / .125 + std::sin(std::atan(slope)) / .15);
+  CHECK(on_tip.force.y() == Approx(expected).epsilon(1e-10));
+  const std::vector<Contact>& contacts = bodies.contacts->contacts();
+  const auto worst =
+      std::max_element(contacts.begin(), contacts.end(),
+                       [](const Contact& p, const Contact& q) { return p.share < q.share; });
+  const double limit = bodies.contacts->surfaces().outlines().depth[worst->b];
+  CHECK(worst->share == Approx(d / limit).epsilon(1e-9));
+
+  // A corner node carries half of two edges.
+  std::vector<double> mass(mesh.nodes.size() + 3, 1e9);
+  mass[3] = 7;
+  const NodeRate rate = bodies.contacts->node_rate(mass);
+  CHECK(rate.value == Approx(2 * 2 * .5 * (1 / .125 + 1 / .15) * .375 / 7));
+  CHECK(rate.body == 1);
+}
+
+TEST_CASE("the collar ends where fronts meet", "[outline_kernel][contact]") {
+  const auto depths = [](const std::vector<Vec2>& ring) {
+    Bodies bodies(law_of(1), .01);
+    bodies.add_ring(ring, 10);
+    bodies.join();
+    bodies.place();
+    return bodies.contacts->surfaces().outlines().depth;
+  };
+  // Half of a bar's thickness, however fine its edges; and its inradius where that is less.
+  for (const int parts : {1, 3}) {
+    for (const double h : depths(split(samples::block(0, 0, 4, .5).vertices(), parts))) {
+      CHECK(h <= .25 + 1e-15);
+      if (parts == 1) CHECK(h == Approx(.25));
+    }
+  }
+  // Where CGAL's skeleton has its first node over an edge, the collar has ended.
+  samples::Random random(24);
+  for (int i = 0; i < scaled(200); ++i) {
+    const Polygon polygon = samples::random_star_shaped(random, random.integer(4, 12), .5);
+    Skeleton skeleton;
+    try {
+      skeleton = straight_skeleton(polygon);
+    } catch (const SkeletonFailure&) {
+      continue;
+    }
+    const std::vector<double> depth = depths(polygon.vertices());
+    for (int e = 0; e < polygon.size(); ++e) {
+      double first = 10;
+      for (const int node : skeleton.faces[e]) {
+        if (node >= polygon.size()) first = std::min(first, skeleton.nodes[node].height);
+      }
+      CAPTURE(i, e);
+      CHECK(depth[e] <= first * (1 + 1e-9));
+    }
+  }
+}
+
+TEST_CASE("a body pushed through the collar is noticed", "[outline_kernel][contact]") {
+  const std::vector<Vec2> bar = split(samples::block(-2, -.5, 2, 0).vertices(), 8);
+  for (const double d : {.1, .24, .26, .4, .49, .51, .8}) {
+    const OutlinePair pair(bar, {{.05, -d}, {1.05, 1 - d}, {-.95, 1 - d}}, .25, .4);
+    CAPTURE(d);
+    const double share = deepest_share(*pair.contacts);
+    CHECK((share < 1) == (d < .25));
+    if (d < .25) CHECK(share == Approx(d / .25));
+    const ContactFault* fault = pair.contacts->fault();
+    CHECK((fault == nullptr) == (d < .25));
+    if (fault) CHECK(fault->kind == ContactFault::Kind::collar);
+  }
+}
+
+TEST_CASE("a body that has swallowed the end of a collar is noticed", "[outline_kernel][contact]") {
+  const std::vector<Vec2> block = samples::block(-2, -4, 2, 0).vertices();
+  // The top of the triangle's collar is at (0, y + 1).
+  for (const double y : {-.3, -.8, -.95, -1.05, -1.2, -1.4}) {
+    const OutlinePair pair(block, {{0, y}, {.866, y + 1.5}, {-.866, y + 1.5}}, 2, 1);
+    CAPTURE(y);
+    CHECK((deepest_share(*pair.contacts) < 1) == (y > -1));
+    CHECK((pair.contacts->fault() == nullptr) == (y > -1));
+  }
+}
+
+TEST_CASE("edges of one body that cross are noticed", "[outline_kernel][contact]") {
+  // A horseshoe whose right arm is bent into the left one.
+  const std::vector<Vec2> ring{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  Bodies bodies(law_of(1), .01);
+  bodies.add_ring(ring, .3);
+  bodies.join();
+  const Outlines& outlines = bodies.contacts->surfaces().outlines();
+  bodies.evaluate();
+  CHECK_FALSE(outlines.self_contact());
+  CHECK_FALSE(bodies.contacts->fault());
+  bodies.displacement[4] = bodies.displacement[6] = -1.2;  // both upper nodes of the right arm
+  bodies.evaluate();
+  REQUIRE(outlines.self_contact());
+  CHECK(outlines.self_contact()->body == 0);
+  CHECK(outlines.self_contact()->place.x() == Approx(1).margin(.2));
+  REQUIRE(bodies.contacts->fault());
+  CHECK(bodies.contacts->fault()->kind == ContactFault::Kind::self_contact);
+  CHECK(bodies.contacts->fault()->a == 0);
+  CHECK(bodies.contacts->fault()->place == outlines.self_contact()->place);
+}
+
+TEST_CASE("a vertex of an outline that is nowhere is an error", "[outline_kernel][contact]") {
+  Bodies bodies(law_of(1), .01);
+  bodies.add_ring(samples::block(0, 0, 1, 1).vertices(), .5);
+  bodies.join();
+  bodies.displacement[3] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(bodies.place(), std::domain_error);
+}
+
+TEST_CASE("contact of outlines has the same bits for any number of threads",
+          "[outline_kernel][contact]") {
+  const Mesh lower = rectangle_mesh({40, .1}, {4000, 10}, {0, 0}, ElementShape::quadrilateral);
+  const Mesh upper = rectangle_mesh({39, .1}, {3700, 10}, {.5, .097}, ElementShape::quadrilateral);
+  std::vector<double> before;
+  for (const int threads : {1, 2, 3}) {
+    Bodies bodies(law_of(1), .002, 1, threads);
+    bodies.add_mesh(lower);
+    bodies.add_mesh(upper);
+    bodies.join();
+    std::vector<double>& u = bodies.displacement;
+    for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
+    bodies.evaluate();
+    CHECK(bodies.contacts->candidates() > 10000);
+    bodies.find_forces();
+    if (threads > 1) CHECK((bodies.node_force == before));
+    before = bodies.node_force;
+  }
+}
+
+// Point masses on springs between all of a body, in a few Verlet steps.
+TEST_CASE("energy of a bounce of two soft bodies converges with the step squared",
+          "[outline_kernel][contact]") {
+  const std::vector<Vec2> a = split(samples::block(-.5, -.5, .5, .5).vertices(), 2);
+  std::vector<Vec2> b = a;
+  for (Vec2& v : b) v = samples::turned(v, .5) + Vec2(.2, 1.3);
+  const int n = static_cast<int>(a.size());
+  std::vector<Vec2> x0 = a;
+  x0.insert(x0.end(), b.begin(), b.end());
+  const double spring = 40, stiffness = 30;
+  const auto run = [&](double dt) {
+    OutlinePair pair(a, b, .25, .25, law_of(stiffness));
+    std::vector<double>& u = pair.displacement;
+    std::vector<double> v(u.size());
+    for (int i = 0; i < n; ++i) v[2 * i + 1] = .5, v[2 * (n + i) + 1] = -.5;
+    std::vector<double> f(u.size());
+    double springs = 0;
+    const auto forces = [&] {
+      pair.evaluate();
+      pair.find_forces();
+      f = pair.node_force;
+      springs = 0;
+      for (int i = 0; i < 2 * n; ++i) {
+        for (int j = i + 1; j < (i < n ? n : 2 * n); ++j) {
+          const Vec2 rest = x0[j] - x0[i];
+          const Vec2 now = rest + Vec2(u[2 * j] - u[2 * i], u[2 * j + 1] - u[2 * i + 1]);
+          const double stretch = now.norm() - rest.norm();
+          springs += spring / 2 * stretch * stretch;
+          const Vec2 pull = spring * stretch * now.normalized();
+          f[2 * i] += pull.x(), f[2 * i + 1] += pull.y();
+          f[2 * j] -= pull.x(), f[2 * j + 1] -= pull.y();
+        }
+      }
+    };
+    const auto kick = [&] {
+      for (size_t k = 0; k < u.size(); ++k) v[k] += dt / 2 * f[k];
+    };
+    forces();
+    double start = -1, worst = 0;
+    double deepest = 0, spin = 0;
+    for (int step = 0; step * dt < 3; ++step) {
+      kick();
+      for (size_t k = 0; k < u.size(); ++k) u[k] += dt * v[k];
+      forces();
+      kick();
+      double energy = springs + pair.contacts->energy();
+      for (const double w : v) energy += w * w / 2;
+      if (start < 0) start = energy;
+      worst = std::max(worst, std::abs(energy - start) / start);
+      deepest = std::max(deepest, deepest_share(*pair.contacts));
+    }
+    for (int i = 0; i < 2 * n; ++i) {
+      spin += cross(x0[i] + Vec2(u[2 * i], u[2 * i + 1]), Vec2(v[2 * i], v[2 * i + 1]));
+    }
+    double momentum = 0;
+    for (const double w : v) momentum += w;
+    CHECK(std::abs(momentum) < 1e-12);
+    // At the start: each mass of b moves down, each of a up.
+    double spin0 = 0;
+    for (int i = 0; i < n; ++i) spin0 += .5 * a[i].x() - .5 * b[i].x();
+    CHECK(spin == Approx(spin0).epsilon(1e-12));
+    CHECK(deepest > .1);
+    CHECK(deepest < 1);
+    return worst;
+  };
+  const double coarse = run(.004), fine = run(.002), finest = run(.001);
+  CAPTURE(coarse, fine, finest);
+  CHECK(coarse < 1e-3);
+  CHECK(coarse / fine == Approx(4).epsilon(.1));
+  CHECK(fine / finest == Approx(4).epsilon(.1));
+}

@@ -1,0 +1,307 @@
+// The broad phase: candidates against brute force, when they are renewed, who is left out.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "apothem/contact/search.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
+#include "contact/bodies.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+constexpr double kSkin = .02;  // m
+
+// Surfaces of bodies and their state, without any contact.
+struct Scene {
+  std::deque<Potential> potentials;
+  Surfaces surfaces;
+  std::vector<double> pose, displacement;
+  int nodes = 0;
+
+  explicit Scene(bool outlines = false) : surfaces(kSkin, kSkin, outlines) {}
+  void add_polygon(const Polygon& polygon, const std::array<double, 3>& place = {},
+                   const std::array<double, 3>& inverse_mass = {1, 1, 1}) {
+    potentials.push_back(about_centre(polygon));
+    surfaces.add_polygon(potentials.back(), {inverse_mass, 1 / potentials.back().steepest, true});
+    pose.insert(pose.end(), place.begin(), place.end());
+  }
+  void add_mesh(const Mesh& mesh, bool outline) {
+    if (outline) {
+      surfaces.add_outline(mesh, nodes, {});
+    } else {
+      surfaces.add_elements(mesh, nodes, {});
+    }
+    nodes += static_cast<int>(mesh.nodes.size());
+    displacement.resize(2 * static_cast<size_t>(nodes));
+  }
+  void place() { surfaces.place_all({pose, displacement, {}, {}}); }
+};
+
+bool immovable(const Surfaces& s, SurfaceIndex i) {
+  if (s.kind(i) != SurfaceKind::polygon) return false;
+  const std::array<double, 3>& w = s.rigid(i).inverse_mass;
+  return w[0] == 0 && w[1] == 0 && w[2] == 0;
+}
+bool may_touch(const Surfaces& s, SurfaceIndex i, SurfaceIndex j) {
+  return s.body(i) != s.body(j) && !(immovable(s, i) && immovable(s, j));
+}
+
+// An edge of one body meets a face of the other one's collar.
+bool outlines_touch(const Outlines& o, BodyIndex a, BodyIndex b) {
+  for (const auto& [p, q] : {std::pair(a, b), std::pair(b, a)}) {
+    for (int e = o.bodies[p].first; e < o.bodies[p].end; ++e) {
+      for (int f = o.bodies[q].first; f < o.bodies[q].end; ++f) {
+        CollarPiece<double> piece;
+        const Vec2 from = o.point(e), to = o.point(o.next[e]);
+        if (collar_piece(o.face(f), from.x(), from.y(), to.x(), to.y(), piece)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool touch(const Surfaces& s, SurfaceIndex i, SurfaceIndex j, EdgeWorkspace& workspace) {
+  if (s.kind(i) == SurfaceKind::outline || s.kind(j) == SurfaceKind::outline) {
+    return outlines_touch(s.outlines(), s.body(i), s.body(j));
+  }
+  const PlacedShapes& shapes = s.shapes();
+  return pair_integral(shapes.view(i), shapes.view(j), s.between(i, j), workspace).touching();
+}
+
+// Sizes from 1 to 100, the small ones being the most.
+double random_size(samples::Random& random) { return .02 * std::pow(10., random.uniform(0, 2)); }
+
+Mesh random_mesh(samples::Random& random) {
+  const double size = random_size(random);
+  const Vec2 at(random.uniform(0, 5), random.uniform(0, 5));
+  const std::array cells{random.integer(1, 4), random.integer(1, 4)};
+  const ElementShape shape =
+      random.integer(0, 1) ? ElementShape::triangle : ElementShape::quadrilateral;
+  return rectangle_mesh({size, size * random.uniform(.5, 1)}, cells, at, shape);
+}
+
+Scene random_scene(samples::Random& random, int polygons, int meshes, bool outlines) {
+  Scene scene(outlines && meshes > 0);
+  for (int i = 0; i < polygons; ++i) {
+    const double size = random_size(random);
+    const Polygon shape = random.integer(0, 3) ? samples::random_convex(random, 6)
+                                               : samples::random_star_shaped(random, 8, .5);
+    const std::array<double, 3> place{random.uniform(0, 5), random.uniform(0, 5),
+                                      random.uniform(-3, 3)};
+    const double mobility = random.integer(0, 3) ? 1 : 0;
+    scene.add_polygon(samples::scaled(shape, size), place, {mobility, mobility, mobility});
+  }
+  for (int i = 0; i < meshes; ++i) scene.add_mesh(random_mesh(random), outlines);
+  return scene;
+}
+
+// Every body drifts and turns; every node of a mesh drifts with its neighbours and deforms a
+// little, so little that the smallest elements stay convex.
+struct Motion {
+  std::vector<Vec2> drift;
+  std::vector<double> spin;
+};
+Motion random_motion(samples::Random& random, size_t bodies) {
+  Motion motion;
+  for (size_t i = 0; i < bodies; ++i) {
+    motion.drift.emplace_back(random.uniform(-.004, .004), random.uniform(-.004, .004));
+    motion.spin.push_back(random.uniform(-.01, .01));
+  }
+  return motion;
+}
+void move(Scene& scene, const Motion& motion, samples::Random& random) {
+  for (size_t i = 0; i < scene.pose.size() / 3; ++i) {
+    scene.pose[3 * i] += motion.drift[i].x();
+    scene.pose[3 * i + 1] += motion.drift[i].y();
+    scene.pose[3 * i + 2] += motion.spin[i];
+  }
+  const Surfaces& s = scene.surfaces;
+  const auto move_node = [&](NodeIndex n, BodyIndex body) {
+    scene.displacement[2 * n] += motion.drift[body].x() + random.uniform(-1e-5, 1e-5);
+    scene.displacement[2 * n + 1] += motion.drift[body].y() + random.uniform(-1e-5, 1e-5);
+  };
+  for (const auto& [node, body, length] : s.elements().shares()) move_node(node, body);
+  for (int i = 0; i < s.outlines().size(); ++i) {
+    if (s.outlines().node[i] >= 0) move_node(s.outlines().node[i], s.outlines().body[i]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the search misses no touching pair of moving surfaces, large or small",
+          "[search][contact]") {
+  samples::Random random(51);
+  struct Mix {
+    int polygons, meshes;
+    bool outlines;
+  };
+  for (const Mix& mix : {Mix{80, 0, false}, {30, 12, false}, {0, 15, false}, {30, 20, true},
+                         {0, 25, true}}) {
+    CAPTURE(mix.polygons, mix.meshes, mix.outlines);
+    int touching = 0, searches = 0, steps = 0;
+    for (int round = 0; round < scaled(6); ++round) {
+      Scene scene = random_scene(random, mix.polygons, mix.meshes, mix.outlines);
+      const Motion motion =
+          random_motion(random, static_cast<size_t>(scene.surfaces.body_count()));
+      Search search;
+      EdgeWorkspace workspace;
+      for (int step = 0; step < 40; ++step, ++steps) {
+        scene.place();
+        if (search.stale(scene.surfaces)) {
+          search.search(scene.surfaces);
+          CHECK_FALSE(search.stale(scene.surfaces));
+          ++searches;
+        }
+        const std::span<const BoxPair> pairs = search.pairs();
+        REQUIRE(std::is_sorted(pairs.begin(), pairs.end()));
+        for (const BoxPair& pair : pairs) {
+          REQUIRE(pair.first < pair.second);
+          REQUIRE(may_touch(scene.surfaces, pair.first, pair.second));
+        }
+        for (SurfaceIndex i = 0; i < scene.surfaces.size(); ++i) {
+          for (SurfaceIndex j = i + 1; j < scene.surfaces.size(); ++j) {
+            if (!may_touch(scene.surfaces, i, j)) continue;
+            if (!touch(scene.surfaces, i, j, workspace)) continue;
+            ++touching;
+            if (!std::binary_search(pairs.begin(), pairs.end(), BoxPair{i, j})) {
+              FAIL("surfaces " << i << " and " << j << " touch unseen in step " << step);
+            }
+          }
+        }
+        move(scene, motion, random);
+      }
+    }
+    CHECK(touching > steps);
+    CHECK(searches < steps * 2 / 3);
+  }
+}
+
+TEST_CASE("candidates are found once and for all where nothing comes near", "[search][contact]") {
+  Scene scene;
+  scene.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 0, 0});
+  scene.add_polygon(samples::block(-.5, -.5, .5, .5), {1 + .99 * kSkin, 0, 0});
+  scene.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 1 + 1.01 * kSkin, 0});
+  scene.place();
+  Search search;
+  search.search(scene.surfaces);
+  // Those within a skin of each other.
+  REQUIRE(search.pairs().size() == 1);
+  CHECK(search.pairs()[0] == BoxPair{0, 1});
+}
+
+TEST_CASE("candidates serve until a surface has left its box, grown by half the skin",
+          "[search][contact]") {
+  // Two polygons, then a mesh by its elements or its outline.
+  for (const bool outline : {false, true}) {
+    CAPTURE(outline);
+    const auto scene = [&] {
+      Scene made(outline);
+      made.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 0, 0});
+      made.add_polygon(samples::block(-.5, -.5, .5, .5), {3, 0, 0});
+      made.add_mesh(rectangle_mesh({1, 1}, {2, 2}, {0, 2}, ElementShape::quadrilateral), outline);
+      made.place();
+      return made;
+    };
+    const auto stale_after = [&](auto&& change) {
+      Scene moved = scene();
+      Search search;
+      CHECK(search.stale(moved.surfaces));
+      search.search(moved.surfaces);
+      CHECK_FALSE(search.stale(moved.surfaces));
+      change(moved);
+      moved.place();
+      return search.stale(moved.surfaces);
+    };
+    for (const double sign : {-1., 1.}) {
+      for (const int axis : {0, 1}) {
+        for (const double share : {.499, .501}) {
+          CAPTURE(sign, axis, share);
+          const double far = sign * share * kSkin;
+          CHECK(stale_after([&](Scene& s) { s.pose[3 + axis] += far; }) == (share > .5));
+          CHECK(stale_after([&](Scene& s) {
+                  for (size_t k = axis; k < s.displacement.size(); k += 2) s.displacement[k] = far;
+                }) == (share > .5));
+        }
+      }
+    }
+    // A corner of the mesh alone, and a turn that carries corners out of the box.
+    CHECK(stale_after([](Scene& s) { s.displacement[0] -= .6 * kSkin; }));
+    CHECK(stale_after([](Scene& s) { s.pose[2] += .1; }));
+    CHECK_FALSE(stale_after([](Scene& s) { s.pose[2] += .01; }));
+  }
+}
+
+TEST_CASE("a search that has been forgotten is stale", "[search][contact]") {
+  Scene scene;
+  scene.add_polygon(samples::block(0, 0, 1, 1));
+  scene.place();
+  Search search;
+  search.search(scene.surfaces);
+  CHECK_FALSE(search.stale(scene.surfaces));
+  search.forget();
+  CHECK(search.stale(scene.surfaces));
+
+  // Contacts forget all of their searches at once.
+  Bodies bodies(law_of(1));
+  bodies.add_rigid(about_centre(samples::block(0, 0, 1, 1)));
+  bodies.add_ring({{0, 2}, {1, 2}, {1, 3}, {0, 3}}, .5);
+  bodies.join();
+  bodies.place();
+  CHECK_FALSE(bodies.contacts->search_if_stale());
+  bodies.contacts->forget_search();
+  CHECK(bodies.contacts->search_if_stale());
+  CHECK_FALSE(bodies.contacts->search_if_stale());
+  CHECK(bodies.contacts->searches() == 2);
+}
+
+TEST_CASE("a surface that is nowhere is an error that names its body", "[search][contact]") {
+  for (const double nowhere : {std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity(),
+                               -std::numeric_limits<double>::infinity()}) {
+    for (const bool outline : {false, true}) {
+      const auto body_of = [&](auto&& change) -> BodyIndex {
+        Scene scene(outline);
+        scene.add_polygon(samples::block(0, 0, 1, 1), {0, 0, 0});
+        scene.add_polygon(samples::block(0, 0, 1, 1), {5, 0, 0});
+        scene.add_mesh(one_element({{0, 5}, {1, 5}, {1, 6}, {0, 6}}), outline);
+        scene.add_mesh(one_element({{5, 5}, {6, 5}, {6, 6}, {5, 6}}), outline);
+        scene.place();
+        change(scene);
+        try {
+          scene.place();
+        } catch (const NotFinite& error) {
+          return error.body();
+        }
+        return -1;
+      };
+      CAPTURE(nowhere, outline);
+      CHECK(body_of([](Scene&) {}) == -1);
+      for (const size_t k : {0, 1, 2}) {
+        CHECK(body_of([&](Scene& s) { s.pose[k] = nowhere; }) == 0);
+        CHECK(body_of([&](Scene& s) { s.pose[3 + k] = nowhere; }) == 1);
+      }
+      for (const size_t k : {0, 1, 6, 7}) {
+        CHECK(body_of([&](Scene& s) { s.displacement[k] = nowhere; }) == 2);
+        CHECK(body_of([&](Scene& s) { s.displacement[8 + k] = nowhere; }) == 3);
+      }
+    }
+  }
+}
+
+TEST_CASE("pairs that no force can move, and pairs of one body, are left out",
+          "[search][contact]") {
+  const Polygon unit = samples::block(-.5, -.5, .5, .5);
+  Scene scene;
+  scene.add_polygon(unit, {0, 0, 0}, {0, 0, 0});
+  scene.add_polygon(unit, {.1, 0, 0}, {0, 0, 0});
+  scene.add_polygon(unit, {.2, 0, 0}, {0, 0, 1});  // may turn only
+  scene.add_mesh(rectangle_mesh({1, 1}, {2, 1}, {-.5, -.5}, ElementShape::quadrilateral), false);
+  scene.place();
+  Search search;
+  search.search(scene.surfaces);
+  const std::vector<BoxPair> expected{{0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4}, {2, 3},
+                                      {2, 4}};
+  CHECK((std::vector(search.pairs().begin(), search.pairs().end()) == expected));
+}

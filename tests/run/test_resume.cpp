@@ -1,0 +1,326 @@
+// A run that was stopped continues bit for bit: in the middle of friction, between load steps, and
+// with a force of the user's own. A checkpoint that does not fit is refused.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apothem/output/files.hpp"
+#include "apothem/run/hash.hpp"
+#include "archive/saved.hpp"
+#include "dynamics/term_of.hpp"
+#include "scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+using Json = nlohmann::json;
+
+namespace {
+
+// All that a simulation remembers, without what counts the work of the pair search: after a resume
+// it begins anew, which changes no force.
+std::string remembered(Run& run) {
+  Json json = saved(run.simulation())["simulation"];
+  for (auto& [name, member] : json.items()) {
+    if (!name.starts_with("term_") || !member.contains("counts")) continue;
+    member["counts"].erase("searches");
+    member["counts"].erase("candidate_pairs");
+  }
+  return json.dump();
+}
+
+void check_same(Run& run, Run& other) {
+  CHECK(run.state().step == other.state().step);
+  CHECK(state_hash(run.state()) == state_hash(other.state()));
+  CHECK((remembered(run) == remembered(other)));
+}
+
+void check_same_files(const Folder& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    INFO(name);
+    const std::string whole = content(folder / ("whole/" + name));
+    CHECK(!whole.empty());
+    CHECK((whole == content(folder / ("parts/" + name))));
+  }
+}
+
+std::string checkpoint_of(const Folder& folder) { return folder / "parts/checkpoint.json"; }
+
+}  // namespace
+
+TEST_CASE("a run that was stopped while bodies rub continues bit for bit", "[resume]") {
+  for (const NamedScene& named : rubbing_scenes()) {
+    INFO(named.name);
+    const Folder folder;
+    const Scene scene = scene_of(folder, named.text);
+    Run whole(scene, {.folder = folder / "whole"});
+    REQUIRE(whole.run() == Run::Status::done);
+    Run first(scene, {.folder = folder / "parts"});
+    REQUIRE(first.run(named.stop) == Run::Status::done);
+    REQUIRE(first.state().time < .9 * scene.time.end);
+    REQUIRE(std::filesystem::exists(checkpoint_of(folder)));
+
+    // In the middle of friction: there are springs, and they hold something back.
+    double pull = 0;
+    for (const Spring& spring : springs(first.simulation())) {
+      pull = std::max(pull, std::abs(spring.force));
+    }
+    REQUIRE(pull > 1);
+    CHECK((first.simulation().energies().friction_loss == 0) == named.sticks);
+    for (const char* need : named.needs) {
+      const auto& terms = first.simulation().terms();
+      CHECK(std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
+        return term->describe().find(need) != std::string::npos;
+      }));
+    }
+
+    Run second(scene, {.folder = folder / "parts", .threads = 2, .resume = true});
+    CHECK(second.state().time == first.state().time);
+    CHECK(state_hash(second.state()) == state_hash(first.state()));
+    REQUIRE(second.run() == Run::Status::done);
+    CHECK(second.simulation().own_steps() == second.state().step - first.state().step);
+    check_same(second, whole);
+    check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd",
+                              "frames/bodies_000004.vtu", "frames/contacts_000004.vtu"});
+    CHECK_FALSE(std::filesystem::exists(checkpoint_of(folder)));
+  }
+}
+
+TEST_CASE("what is loaded is what was saved, to the last bit", "[resume]") {
+  for (const NamedScene& named : rubbing_scenes()) {
+    INFO(named.name);
+    const Folder folder;
+    const Scene scene = scene_of(folder, named.text);
+    Run run(scene, {});
+    REQUIRE(run.run(named.stop) == Run::Status::done);
+    const Json json = saved(run.simulation());
+    const std::unique_ptr<Simulation> other = make_simulation(scene, 1, Start::checkpoint);
+    restore(*other, Json::parse(json.dump()));
+    CHECK((saved(*other) == json));
+    // Contacts are found again, with the forces that they had.
+    const std::vector<ContactRecord> before = run.simulation().contacts(), now = other->contacts();
+    REQUIRE(before.size() == now.size());
+    CHECK(!now.empty());
+    for (size_t i = 0; i < now.size(); ++i) {
+      CHECK(now[i].a == before[i].a);
+      CHECK(now[i].b == before[i].b);
+      CHECK(now[i].normal == before[i].normal);
+      CHECK(now[i].tangential == before[i].tangential);
+      CHECK(now[i].penetration == before[i].penetration);
+    }
+    const std::vector<BodyForce> on = run.simulation().contact_forces(),
+                                 again = other->contact_forces();
+    REQUIRE(on.size() == again.size());
+    for (size_t i = 0; i < on.size(); ++i) {
+      CHECK(on[i].fx == again[i].fx);
+      CHECK(on[i].fy == again[i].fy);
+      CHECK(on[i].friction == again[i].friction);
+    }
+  }
+}
+
+TEST_CASE("a run that is stopped many times continues bit for bit", "[resume]") {
+  const Folder folder;
+  const NamedScene named = rubbing_scenes()[7];
+  const Scene scene = scene_of(folder, named.text);
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  std::unique_ptr<Run> part = std::make_unique<Run>(scene, RunSettings{.folder = folder / "parts"});
+  for (int i = 1; i < 7; ++i) {
+    REQUIRE(part->run(i * scene.time.end / 7) == Run::Status::done);
+    part = std::make_unique<Run>(scene, RunSettings{.folder = folder / "parts", .resume = true});
+  }
+  REQUIRE(part->run() == Run::Status::done);
+  check_same(*part, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd"});
+}
+
+TEST_CASE("a settled start is not repeated when a run is resumed", "[resume]") {
+  const Folder folder;
+  std::string text = rubbing_scenes()[1].text;
+  const std::string end = R"("end": 0.02)";
+  text.replace(text.find(end), end.size(), R"("end": 0.02, "start": "settled")");
+  const Scene scene = scene_of(folder, text);
+  REQUIRE(scene.time.settled);
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  Run first(scene, {.folder = folder / "parts"});
+  REQUIRE(first.run(.01) == Run::Status::done);
+  REQUIRE(!springs(first.simulation()).empty());
+  Run second(scene, {.folder = folder / "parts", .resume = true});
+  REQUIRE(second.run() == Run::Status::done);
+  check_same(second, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv"});
+}
+
+TEST_CASE("damping, loads and driven supports continue bit for bit", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2,
+                             "damping": { "model": "rayleigh", "mass": 3, "stiffness": 1e-6 } } },
+    "gravity": [0, -9.81],
+    "bodies": [ { "name": "beam", "material": "rock", "spin": 1,
+      "mesh": { "rectangle": { "size": [2, 0.5], "cells": [8, 2] } },
+      "supports": [ { "where": { "x": 0 }, "velocity": [[0, 0, 0], [0.01, 1, 0.5]] } ],
+      "loads": [ { "where": { "group": "top" }, "pressure": 1e6, "history": [[0, 0], [0.01, 1]] } ] } ],
+    "time": { "end": 0.01 },
+    "output": { "frames": 4, "history": { "interval": 1e-4, "track": [ { "body": "beam" } ] } } })");
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  Run first(scene, {.folder = folder / "parts"});
+  REQUIRE(first.run(.0043) == Run::Status::done);
+  Run second(scene, {.folder = folder / "parts", .threads = 2, .resume = true});
+  REQUIRE(second.run() == Run::Status::done);
+  CHECK(second.simulation().energies().damping_loss > 0);
+  CHECK(second.simulation().energies().external_work != 0);
+  check_same(second, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv"});
+}
+
+TEST_CASE("a static run continues between its load steps, bit for bit", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, pressed_blocks(5));
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  Run first(scene, {.folder = folder / "parts"});
+  REQUIRE(first.run(.4) == Run::Status::done);
+  REQUIRE(first.load_steps().size() == 2);
+  REQUIRE(first.simulation().energies().contact > 0);
+  Run second(scene, {.folder = folder / "parts", .threads = 2, .resume = true});
+  REQUIRE(second.load_steps().size() == 2);
+  REQUIRE(second.run() == Run::Status::done);
+  REQUIRE(second.load_steps().size() == 5);
+  for (size_t i = 0; i < 5; ++i) {
+    const LoadStep &one = second.load_steps()[i], &other = whole.load_steps()[i];
+    CHECK(one.time == other.time);
+    CHECK(one.iterations == other.iterations);
+    CHECK(one.residual == other.residual);
+    CHECK(one.imbalance == other.imbalance);
+    CHECK(one.off == other.off);
+  }
+  check_same(second, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd",
+                            "frames/surfaces_000005.vtu"});
+}
+
+TEST_CASE("a run that was asked to stop leaves a checkpoint", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, rubbing_scenes()[1].text);
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  Run first(scene, {.folder = folder / "parts"});
+  first.on_progress([&](const Run& now) {
+    if (now.state().time > .01) first.request_stop();
+  });
+  REQUIRE(first.run() == Run::Status::interrupted);
+  Run second(scene, {.folder = folder / "parts", .resume = true});
+  REQUIRE(second.run() == Run::Status::done);
+  check_same(second, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd"});
+}
+
+TEST_CASE("a force of the user's own goes on acting after a resume", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, rubbing_scenes()[1].text);
+  const auto push = [](const State& state, std::span<double> on) {
+    on[state.layout.rigid(1)] += 500 * std::sin(200 * state.time);
+  };
+  Run whole(scene, {.folder = folder / "whole"});
+  whole.add_force("a push", push);
+  REQUIRE(whole.run() == Run::Status::done);
+  Run first(scene, {.folder = folder / "parts"});
+  first.add_force("a push", push);
+  REQUIRE(first.run(.013) == Run::Status::done);
+  Run second(scene, {.folder = folder / "parts", .resume = true});
+  second.add_force("a push", push);
+  CHECK(state_hash(second.state()) == state_hash(first.state()));
+  REQUIRE(second.run() == Run::Status::done);
+  CHECK(second.simulation().energies().external_work != 0);
+  check_same(second, whole);
+  check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv"});
+}
+
+TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, rubbing_scenes()[1].text);
+  const RunSettings resume{.folder = folder / "parts", .resume = true};
+  const auto refused = [&](const char* why) {
+    INFO(why);
+    CHECK_THROWS_WITH(Run(scene, resume), Catch::Contains(why));
+    CHECK_THROWS_AS(Run(scene, resume), SceneError);
+  };
+  Run(scene, {.folder = folder / "parts"}).run(.01);
+  const std::string good = content(checkpoint_of(folder));
+  const Json json = Json::parse(good);
+  const auto write = [&](const Json& damaged) {
+    write_file(checkpoint_of(folder), damaged.dump());
+  };
+  const auto without = [&](const std::string& pointer) {
+    Json damaged = json;
+    const Json::json_pointer at(pointer);
+    REQUIRE(damaged.contains(at));
+    damaged[at.parent_pointer()].erase(at.back());
+    return damaged;
+  };
+  const auto with = [&](const std::string& pointer, const Json& value) {
+    Json damaged = json;
+    REQUIRE(damaged.contains(Json::json_pointer(pointer)));
+    damaged[Json::json_pointer(pointer)] = value;
+    return damaged;
+  };
+
+  for (const char* missing :
+       {"/scene_hash", "/progress", "/progress/next_row", "/simulation", "/simulation/state/x",
+        "/simulation/ledger", "/simulation/step_size", "/simulation/term_0",
+        "/simulation/term_0/contacts/friction/springs/0/force"}) {
+    INFO(missing);
+    write(without(missing));
+    refused("is not a checkpoint");
+  }
+  for (const char* list : {"x", "v", "f", "remainder"}) {
+    INFO(list);
+    write(with(std::string("/simulation/state/") + list, {1, 2, 3}));
+    refused("is damaged");
+  }
+  write(with("/simulation/state/x", "no list"));
+  refused("is damaged");
+  write(with("/simulation/step_size", 0));
+  refused("is damaged");
+  write(with("/progress/history_sizes", {0}));
+  refused("is damaged");
+  write(with("/scene_hash", "fnv1a64:0123456789abcdef"));
+  refused("belongs to another scene");
+  write_file(checkpoint_of(folder), good.substr(0, good.size() / 2));
+  refused("is not a checkpoint");
+  write_file(checkpoint_of(folder), "");
+  refused("is not a checkpoint");
+  std::filesystem::remove(checkpoint_of(folder));
+  refused("no checkpoint to resume from");
+
+  write_file(checkpoint_of(folder), good);
+  const std::string history = content(folder / "parts/history.csv");
+  write_file(folder / "parts/history.csv", history.substr(0, 40));
+  refused("shorter than the checkpoint says");
+  std::filesystem::remove(folder / "parts/history.csv");
+  refused("is missing");
+  write_file(folder / "parts/history.csv", history);
+  CHECK_NOTHROW(Run(scene, resume));
+}
+
+TEST_CASE("a checkpoint of a static run with another number of bodies is refused", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, pressed_blocks(4));
+  Run(scene, {.folder = folder / "parts"}).run(.25);
+  const Json json = Json::parse(content(checkpoint_of(folder)));
+  for (const auto& [pointer, value] : {std::pair<const char*, Json>{"/progress/load_steps/0/worst", 2},
+                                       {"/progress/load_steps/0/worst", -1},
+                                       {"/progress/load_steps/0/off", {1.}},
+                                       {"/simulation/equilibrium/outside", {1.}},
+                                       {"/simulation/equilibrium/body_loads", {1.}}}) {
+    INFO(pointer);
+    Json damaged = json;
+    REQUIRE(damaged.contains(Json::json_pointer(pointer)));
+    damaged[Json::json_pointer(pointer)] = value;
+    write_file(checkpoint_of(folder), damaged.dump());
+    CHECK_THROWS_WITH(Run(scene, {.folder = folder / "parts", .resume = true}),
+                      Catch::Contains("is damaged"));
+  }
+}
