@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-#include "apothem/contact/deformable_friction.hpp"
-#include "apothem/contact/element_contact.hpp"
+#include "apothem/contact/contacts.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "cases/samples.hpp"
 
@@ -14,22 +13,50 @@ namespace {
 
 using namespace apothem;
 
+ContactLaw law_of(const Friction& friction = {}) {
+  ContactLaw law;
+  law.normal_stiffness = 1;
+  law.friction = friction;
+  return law;
+}
+
 // Two bars on each other, cells that do not match, a little wavy.
 struct Interface {
-  explicit Interface(int cells)
+  Interface(int cells, const ContactLaw& law)
       : lower(rectangle_mesh({1. * cells, 4}, {cells, 4}, {0, 0}, ElementShape::quadrilateral)),
         upper(rectangle_mesh({.97 * cells, 4}, {cells, 4}, {.01 * cells, 3.95},
                              ElementShape::quadrilateral)),
         displacement(2 * (lower.nodes.size() + upper.nodes.size())),
-        contact(1, 1, .1, 1) {
+        now{{}, displacement, {}, displacement},
+        contacts(law, 1, surfaces(law.surface == ContactSurface::body),
+                 FrictionTable(law, {0, 0}, 1), 1) {
     for (size_t i = 0; i < displacement.size(); ++i)
       displacement[i] = .01 * std::sin(static_cast<double>(i));
-    contact.add_deformable(lower, boundary(lower), 0);
-    contact.add_deformable(upper, boundary(upper), static_cast<int>(lower.nodes.size()));
+    place();
+    contacts.evaluate();
+  }
+  void place() {
+    contacts.place(now);
+    contacts.search_if_stale();
   }
   Mesh lower, upper;
   std::vector<double> displacement;
-  DeformableContact contact;
+  Kinematics now;  // the velocities are as wavy as the displacements
+  Contacts contacts;
+
+ private:
+  [[nodiscard]] Surfaces surfaces(bool outlines) const {
+    Surfaces made(.1, .1, outlines);
+    const int second = static_cast<int>(lower.nodes.size());
+    for (const auto& [mesh, first] : {std::pair(&lower, 0), std::pair(&upper, second)}) {
+      if (outlines) {
+        made.add_outline(*mesh, first, {});
+      } else {
+        made.add_elements(*mesh, first, {});
+      }
+    }
+    return made;
+  }
 };
 
 void per(benchmark::State& state, const char* name, size_t count) {
@@ -65,59 +92,47 @@ void collar_edge_face(benchmark::State& state) {
   per(state, "ns_per_pair", pairs.size());
 }
 
-// All that a step needs: outlines moved, candidates checked, pairs, nodal forces.
-void deformable_interface(benchmark::State& state) {
-  Interface bars(static_cast<int>(state.range(0)));
-  DeformableContact& contact = bars.contact;
-  contact.update(bars.displacement, {});
+// All that a step needs: surfaces moved, candidates checked, pairs, nodal forces.
+void step(benchmark::State& state, Interface& bars) {
   std::vector<double> f(bars.displacement.size());
   for (auto _ : state) {
-    contact.update(bars.displacement, {});
-    contact.evaluate();
-    contact.add_forces(f);
+    bars.place();
+    bars.contacts.evaluate();
+    bars.contacts.add_forces({{}, f, {}});
     benchmark::DoNotOptimize(f.data());
   }
-  per(state, "ns_per_contact", contact.contacts().size());
-  per(state, "ns_per_candidate", contact.candidates().size());
+}
+
+void deformable_interface(benchmark::State& state) {
+  Interface bars(static_cast<int>(state.range(0)), law_of());
+  step(state, bars);
+  per(state, "ns_per_contact", bars.contacts.contacts().size());
+  per(state, "ns_per_candidate", bars.contacts.candidates());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 
 void deformable_evaluation(benchmark::State& state) {
-  Interface bars(static_cast<int>(state.range(0)));
-  DeformableContact& contact = bars.contact;
-  contact.update(bars.displacement, {});
-  for (auto _ : state) contact.evaluate();
-  per(state, "ns_per_contact", contact.contacts().size());
+  Interface bars(static_cast<int>(state.range(0)), law_of());
+  for (auto _ : state) bars.contacts.evaluate();
+  per(state, "ns_per_contact", bars.contacts.contacts().size());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 
 void deformable_friction(benchmark::State& state) {
-  Interface bars(static_cast<int>(state.range(0)));
-  bars.contact.update(bars.displacement, {});
-  bars.contact.evaluate();
-  DeformableFriction friction({{0, 0}, 1, {{.5, .6}}});
-  for (auto _ : state) friction.update(bars.contact, bars.displacement, {}, 1e-3);
-  per(state, "ns_per_contact", bars.contact.contacts().size());
+  Interface bars(static_cast<int>(state.range(0)), law_of({.5, .6}));
+  for (auto _ : state) bars.contacts.slide(bars.now, 1e-3);
+  per(state, "ns_per_contact", bars.contacts.contacts().size());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 
 // The same interface by potentials of the outermost elements: all that a step needs.
 void element_interface(benchmark::State& state, ForceDistribution distribution) {
-  const Interface bars(static_cast<int>(state.range(0)));
-  ElementContact contact(1, 1, .1, distribution, 1);
-  contact.add_deformable(bars.lower, boundary(bars.lower), 0);
-  contact.add_deformable(bars.upper, boundary(bars.upper),
-                         static_cast<int>(bars.lower.nodes.size()));
-  std::vector<double> f(bars.displacement.size());
-  contact.update(bars.displacement, {});
-  contact.evaluate();
-  for (auto _ : state) {
-    contact.update(bars.displacement, {});
-    contact.evaluate();
-    contact.add_forces(f);
-    benchmark::DoNotOptimize(f.data());
-  }
-  per(state, "ns_per_pair", contact.touching());
+  ContactLaw law = law_of();
+  law.surface = ContactSurface::element;
+  law.distribution = distribution;
+  Interface bars(static_cast<int>(state.range(0)), law);
+  step(state, bars);
+  per(state, "ns_per_pair", bars.contacts.contacts().size());
   per(state, "ns_per_cell", static_cast<size_t>(state.range(0)));
 }
 

@@ -1,10 +1,17 @@
 include(CMakePackageConfigHelpers)
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
 
 install(TARGETS apothem_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS apothem apothem_files apothem_mechanics apothem_geometry EXPORT apothem
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY geometry DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem FILES_MATCHING PATTERN "*.hpp")
+foreach(header ${APOTHEM_PUBLIC_HEADERS})
+  cmake_path(GET header PARENT_PATH room)
+  set(source lib/${header})
+  if(room MATCHES "^geometry")
+    set(source ${header})
+  endif()
+  install(FILES ${source} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem/${room})
+endforeach()
 install(DIRECTORY data/figures data/polygons data/reference data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 install(FILES docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 

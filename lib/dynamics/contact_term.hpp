@@ -5,30 +5,11 @@
 #include <vector>
 
 #include "apothem/contact/contacts.hpp"
+#include "apothem/dynamics/results.hpp"
 #include "apothem/dynamics/term.hpp"
 #include "apothem/model/model.hpp"
 
 namespace apothem {
-
-/// A largest value of a run: when, and of which two bodies.
-struct Peak {
-  double value = 0;
-  double time = 0;
-  BodyIndex a = -1, b = -1;
-  void fields(Archive& archive) { archive("value", value)("time", time)("a", a)("b", b); }
-};
-
-/// What contact counts, over all steps so far.
-struct ContactCounts {
-  std::int64_t searches = 0;
-  std::int64_t candidate_pairs = 0;  ///< summed over the steps; of meshes edges and faces
-  std::int64_t touching_pairs = 0;   ///< likewise
-  int touching_now = 0;
-  void fields(Archive& archive) {
-    archive("searches", searches)("candidate_pairs", candidate_pairs)(
-        "touching_pairs", touching_pairs)("touching_now", touching_now);
-  }
-};
 
 class ContactTerm final : public Term {
  public:

@@ -1,4 +1,6 @@
 // What a simulation tells of its present state.
+#include "apothem/dynamics/contact_term.hpp"
+#include "apothem/dynamics/elements.hpp"
 #include "apothem/dynamics/simulation.hpp"
 
 namespace apothem {

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/dynamics/contact_term.hpp"
+#include "apothem/dynamics/elements.hpp"
+#include "apothem/dynamics/equilibrium.hpp"
 #include "apothem/dynamics/fold_watch.hpp"
 #include "apothem/dynamics/loads.hpp"
 #include "apothem/dynamics/mass_damping.hpp"
 #include "apothem/dynamics/settle.hpp"
+#include "apothem/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {
@@ -69,6 +73,8 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   }
   ledger_.start(state_, energies_of_terms());
 }
+
+Simulation::~Simulation() = default;
 
 // The order of the list is that in which forces are summed.
 void Simulation::make_terms(int threads) {

@@ -13,13 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "apothem/dynamics/contact_term.hpp"
-#include "apothem/dynamics/elements.hpp"
-#include "apothem/dynamics/equilibrium.hpp"
-#include "apothem/dynamics/ledger.hpp"
+#include "apothem/dynamics/results.hpp"
 #include "apothem/dynamics/term.hpp"
 #include "apothem/dynamics/time_step.hpp"
-#include "apothem/dynamics/unstable.hpp"
 #include "apothem/execution/stopwatch.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
@@ -27,12 +23,9 @@
 
 namespace apothem {
 
-/// Largest values over all steps so far.
-struct Extremes {
-  Peak penetration;         ///< extent of the overlap of a pair along its force, m
-  Peak force;               ///< size of the contact force of a pair, N
-  double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
-};
+class ContactTerm;
+class Elements;
+class Equilibrium;
 
 class Simulation {
  public:
@@ -40,6 +33,7 @@ class Simulation {
   /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
   /// The model must outlive this object.
   Simulation(const Model& model, const TimeSettings& time, int frames, int threads);
+  ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

@@ -1,7 +1,7 @@
 // Elastic materials (docs/theory.md; T. Belytschko, W. K. Liu, B. Moran, K. Elkhodary, Nonlinear
 // Finite Elements for Continua and Structures, 2nd ed., 2014, Sec. 5.4). To add a law, write a
-// struct with the functions of StVenantKirchhoff and add its name to kElasticLaws and a line to
-// with_law.
+// struct with the functions of StVenantKirchhoff and add its name to kElasticLaws (kinds.hpp) and a
+// line to with_law.
 //
 // Throughout, h is the displacement gradient H = F - I in the plane, with h.xy = du_x/dY, and J is
 // the determinant of the deformation gradient F.
@@ -10,47 +10,10 @@
 #include <array>
 #include <utility>
 
+#include "apothem/fem/kinds.hpp"
 #include "apothem/fem/tensor.hpp"
 
 namespace apothem {
-
-/// The elastic laws.
-enum class ElasticLaw { st_venant_kirchhoff, neo_hookean };
-/// Names of the laws, in the order of ElasticLaw.
-inline constexpr std::array kElasticLaws{"st_venant_kirchhoff", "neo_hookean"};
-
-/// Plane stress or plane strain.
-enum class Plane { stress, strain };
-/// Names of the plane states, in the order of Plane.
-inline constexpr std::array kPlanes{"stress", "strain"};
-
-/// An isotropic elastic material. All moduli are in Pa.
-struct Elastic {
-  ElasticLaw law = ElasticLaw::st_venant_kirchhoff;
-  Plane plane = Plane::stress;
-  double young = 0;    ///< Young's modulus, Pa
-  double poisson = 0;  ///< Poisson's ratio
-
-  /// Shear modulus, Pa.
-  [[nodiscard]] double shear() const { return young / (2 * (1 + poisson)); }
-  /// Lame's first constant, Pa.
-  [[nodiscard]] double lame() const {
-    return young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  }
-  /// Stress per strain, Pa, if the stress in the plane acts in one direction only (for plane strain
-  /// the strain across the plane is zero).
-  [[nodiscard]] double uniaxial() const {
-    return plane == Plane::stress ? young : young / (1 - poisson * poisson);
-  }
-  /// Stress per strain in the same direction, Pa, if the other strain in the plane is zero.
-  [[nodiscard]] double constrained() const {
-    return plane == Plane::stress ? young / (1 - poisson * poisson) : lame() + 2 * shear();
-  }
-  /// Stress per strain in the perpendicular direction of the plane, Pa.
-  [[nodiscard]] double coupled() const {
-    return plane == Plane::stress ? young * poisson / (1 - poisson * poisson) : lame();
-  }
-};
 
 /// Hooke's law for plane stress or plane strain: maps any strain measure to its conjugate stress.
 struct Hooke {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/fem/element.hpp"
+#include "apothem/fem/kinds.hpp"
 #include "apothem/mesh/indices.hpp"
 #include "apothem/mesh/mesh.hpp"
 #include "apothem/model/history.hpp"

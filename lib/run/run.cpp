@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/run/folder.hpp"
 #include "apothem/run/hash.hpp"

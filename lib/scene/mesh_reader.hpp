@@ -1,7 +1,7 @@
 // Reads the mesh of a body.
 #pragma once
 
-#include "apothem/fem/element.hpp"
+#include "apothem/fem/kinds.hpp"
 #include "apothem/mesh/mesh.hpp"
 #include "apothem/scene/json.hpp"
 

@@ -156,8 +156,6 @@ struct Bodies {
 
 /// The largest share of the depth at which a potential ends; 1 is beyond its end.
 inline double deepest_share(const Contacts& contacts) {
-  const ContactFault* fault = contacts.fault();
-  if (fault && fault->kind == ContactFault::Kind::collar) return 1;
   double share = 0;
   for (const Contact& c : contacts.contacts()) share = std::max(share, c.share);
   return share;

@@ -189,8 +189,7 @@ TEST_CASE("an element that does not deform feels what a rigid polygon feels",
     CHECK(bodies.on_rigid(0).moment == Approx(pair.integral.moment_a).epsilon(1e-12));
     CHECK(bodies.contacts->energy() == Approx(pair.volume.energy).epsilon(1e-12));
     REQUIRE(bodies.contacts->contacts().size() == 1);
-    CHECK(bodies.contacts->contacts()[0].depth ==
-          Approx(pair.integral.penetration).epsilon(1e-12));
+    CHECK(bodies.contacts->contacts()[0].depth == Approx(pair.integral.penetration).epsilon(1e-12));
     const std::vector<ContactRecord> record = bodies.contacts->records();
     REQUIRE(record.size() == 1);
     const Vec2 place(bodies.pose[0], bodies.pose[1]);
@@ -239,8 +238,7 @@ TEST_CASE("an element bent or passed through is noticed", "[element_kernel][cont
   CHECK_THROWS_AS(bodies.place(), std::domain_error);
 }
 
-TEST_CASE("a tip dragged over a row of elements meets their borders",
-          "[element_kernel][contact]") {
+TEST_CASE("a tip dragged over a row of elements meets their borders", "[element_kernel][contact]") {
   for (const double depth : {.05, .2}) {
     const auto [tangential, loss] = drag(ContactSurface::element, depth);
     const auto [none, even] = drag(ContactSurface::body, depth);

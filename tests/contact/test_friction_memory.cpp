@@ -132,8 +132,7 @@ TEST_CASE("springs store half their force squared over their stiffness",
   CHECK(FrictionMemory().energy() == 0);
 }
 
-TEST_CASE("what bodies lose and springs do not store is dissipated",
-          "[friction_memory][contact]") {
+TEST_CASE("what bodies lose and springs do not store is dissipated", "[friction_memory][contact]") {
   FrictionMemory memory;
   // The bodies work on a spring, which stores all of it.
   memory.begin_step();

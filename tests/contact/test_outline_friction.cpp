@@ -27,8 +27,8 @@ TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_fr
   double worst = 0;
   int pairs = 0;
   for (int i = 0; i < scaled(1000); ++i) {
-    auto pair = random_pair(random, random.integer(3, 12), random.uniform(.3, 1.2),
-                            law_of(1, {.7, 2}));
+    auto pair =
+        random_pair(random, random.integer(3, 12), random.uniform(.3, 1.2), law_of(1, {.7, 2}));
     if (!pair) continue;
     ++pairs;
     const std::vector<double> normal = pair->node_force;
@@ -41,8 +41,7 @@ TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_fr
     double moment = 0, largest = 0;
     for (int k = 0; k < o.size(); ++k) {
       const size_t x = 2 * static_cast<size_t>(o.node[k]);
-      const Vec2 friction =
-          pair->on_node(o.node[k]) - Vec2(normal[x], normal[x + 1]);
+      const Vec2 friction = pair->on_node(o.node[k]) - Vec2(normal[x], normal[x + 1]);
       sum += friction;
       moment += cross(o.point(k), friction);
       largest = std::max(largest, friction.norm());

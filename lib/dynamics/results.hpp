@@ -1,0 +1,57 @@
+// What a simulation tells of its run besides the state.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apothem/archive/archive.hpp"
+#include "apothem/mesh/indices.hpp"
+
+namespace apothem {
+
+/// A largest value of a run: when, and of which two bodies.
+struct Peak {
+  double value = 0;
+  double time = 0;  ///< s
+  BodyIndex a = -1, b = -1;
+  void fields(Archive& archive) { archive("value", value)("time", time)("a", a)("b", b); }
+};
+
+/// Largest values over all steps so far.
+struct Extremes {
+  Peak penetration;         ///< extent of the overlap of a pair along its force, m
+  Peak force;               ///< size of the contact force of a pair, N
+  double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
+};
+
+/// What contact counts, over all steps so far.
+struct ContactCounts {
+  std::int64_t searches = 0;
+  std::int64_t candidate_pairs = 0;  ///< summed over the steps; of meshes edges and faces
+  std::int64_t touching_pairs = 0;   ///< likewise
+  int touching_now = 0;
+  void fields(Archive& archive) {
+    archive("searches", searches)("candidate_pairs", candidate_pairs)(
+        "touching_pairs", touching_pairs)("touching_now", touching_now);
+  }
+};
+
+/// How the equilibrium of a load step was found.
+struct LoadStep {
+  double time = 0;                  ///< s
+  std::int64_t iterations = 0;      ///< steps of dynamic relaxation
+  double residual = 0;              ///< norm of the nodal forces out of balance / norm of the loads
+  double imbalance = 0;             ///< largest sum of the forces on a body / sum of their sizes
+  DeformableIndex worst = -1;       ///< the body with that imbalance
+  DeformableIndex unbalanced = -1;  ///< the body with most of the residual
+  double load = 0;                  ///< sum of the sizes of all loads and reactions on nodes, N
+  std::vector<double> off{};        ///< size of the sum of all forces on each deformable body, N
+  bool complete = true;             ///< false: stopped on the way
+
+  void fields(Archive& archive) {
+    archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(
+        "worst", worst)("load", load)("off", off);
+  }
+};
+
+}  // namespace apothem
