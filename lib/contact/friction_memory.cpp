@@ -8,14 +8,20 @@ void FrictionMemory::begin_step() {
   std::swap(now_, before_);
   now_.clear();
   next_ = 0;
-  energy_before_ = energy_;
-  energy_ = 0;
+  balanced_before_ = balanced_;
+  energy_ = balanced_ = 0;
+}
+
+// A spring whose contact is over.
+void FrictionMemory::skip() {
+  const Spring& spring = before_[next_++];
+  if (spring.accounted) lose(spring.energy());
 }
 
 std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
   const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
   const std::tuple pair(law, a, b);
-  while (next_ < before_.size() && pair_of(before_[next_]) < pair) ++next_;
+  while (next_ < before_.size() && pair_of(before_[next_]) < pair) skip();
   const size_t first = next_;
   while (next_ < before_.size() && pair_of(before_[next_]) == pair) ++next_;
   return std::span<const Spring>(before_).subspan(first, next_ - first);
@@ -29,6 +35,9 @@ std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const 
   return {first, end};
 }
 
-void FrictionMemory::end_step(double work) { loss_ -= work + (energy_ - energy_before_); }
+void FrictionMemory::end_step(double work) {
+  while (next_ < before_.size()) skip();
+  loss_ -= work + (balanced_ - balanced_before_);
+}
 
 }  // namespace apothem

@@ -5,6 +5,11 @@
 // mesh's boundary, or a pair of elements. The mechanism is the same for all of them. The spring
 // follows the slip of a step and is clamped by Coulomb's law; the laws give stiffness, slip and
 // limit, and distribute the force.
+//
+// The law of rigid bodies says itself what its springs lose, so that a spring that only sticks
+// loses exactly nothing, and the energy error of a step shows what is wrong with friction. The laws
+// of meshes give the work of all their friction: what it takes from the bodies and the springs do
+// not store is dissipated.
 #pragma once
 
 #include <algorithm>
@@ -31,12 +36,14 @@ struct Spring {
   double force = 0;             ///< along the tangent of its contact, N
   double stiffness = 0;         ///< N/m
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
+  bool accounted = false;       ///< its law says itself what it loses, by lose()
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? force * force / (2 * stiffness) : 0;
   }
   void fields(Archive& archive) {
-    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent);
+    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent)("accounted",
+                                                                                    accounted);
   }
 };
 
@@ -56,9 +63,13 @@ class FrictionMemory {
   void keep(const Spring& spring) {
     now_.push_back(spring);
     energy_ += spring.energy();
+    if (!spring.accounted) balanced_ += spring.energy();
   }
-  /// Closes the step. `work`: what friction has done on the bodies since the step before, J. What
-  /// they have lost and the springs do not store is dissipated.
+  /// What an accounted spring has lost, J. Those of contacts that are over lose all they store, and
+  /// need not be told of.
+  void lose(double energy) { loss_ += energy; }
+  /// Closes the step. `work`: what friction has done on the bodies since the step before by springs
+  /// that are not accounted, J. What they have lost and the springs do not store is dissipated.
   void end_step(double work);
 
   [[nodiscard]] std::span<const Spring> springs() const { return now_; }
@@ -72,13 +83,18 @@ class FrictionMemory {
   void start_ledger() { loss_ = 0; }
 
   void fields(Archive& archive) {
-    archive("springs", now_)("energy", energy_)("friction_loss", loss_);
+    archive("springs", now_)("energy", energy_)("balanced_energy", balanced_)("friction_loss",
+                                                                              loss_);
   }
 
  private:
+  void skip();
+
   std::vector<Spring> now_, before_;
-  size_t next_ = 0;  // of the springs before
-  double energy_ = 0, energy_before_ = 0, loss_ = 0;
+  size_t next_ = 0;                            // of the springs before
+  double energy_ = 0;                          // of all springs, J
+  double balanced_ = 0, balanced_before_ = 0;  // of those that are not accounted, J
+  double loss_ = 0;                            // J
 };
 
 }  // namespace apothem

@@ -45,8 +45,8 @@ class Kernel {
   /// Where and why one of its contacts, with a share of 1 or more, is out of range.
   [[nodiscard]] virtual ContactFault fault(const Contact& contact) const = 0;
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =
-  /// 0 the springs keep their forces. Returns the work of friction on the bodies since the last
-  /// call, J.
+  /// 0 the springs keep their forces. Returns the work on the bodies since the last call, J, of
+  /// springs that are not accounted (friction_memory.hpp).
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
   /// Finds the forces of friction again after the memory has been restored, if `fields` does not
   /// hold them.

@@ -1,5 +1,6 @@
 #include "apothem/contact/patch_tangential.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,15 @@ namespace {
 // Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
+
+// The force of a spring after a slip in m: never beyond Coulomb's limit in N. What it loses is the
+// mean force times the slip that it does not follow.
+double follow(double force, double slip, double stiffness, double limit, FrictionMemory& memory) {
+  const double trial = force - stiffness * slip;
+  const double next = std::clamp(trial, -limit, limit);
+  memory.lose((force + next) * (trial - next) / (2 * stiffness));
+  return next;
+}
 
 }  // namespace
 
@@ -22,32 +32,18 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
                                  const FrictionTable& table, double thickness)
     : surfaces_(surfaces), law_(law), table_(table), thickness_(thickness) {}
 
-double PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
-                              const Kinematics& now, double dt, FrictionMemory& memory) {
-  double work = dt / 2 * power(now);
-  const double damped_before = damping_loss_;
+void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
+                            const Kinematics& now, double dt, FrictionMemory& memory) {
   std::swap(now_, before_);
   now_.clear();
   place_ = {};
   forces_.clear();
   for (const int pair : touching) step_pair(pairs, static_cast<size_t>(pair), now, dt, memory);
-  work += dt / 2 * power(now);
-  // Damping keeps a ledger of its own.
-  return table_.rough() ? work + (damping_loss_ - damped_before) : 0;
 }
 
 void PatchTangential::fields(Archive& archive) {
-  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers)("forces", forces_)(
-      "damping_loss", damping_loss_);
-}
-
-// Of all forces on the bodies, W.
-double PatchTangential::power(const Kinematics& now) const {
-  double sum = 0;
-  for (const TangentialForce& f : forces_) {
-    sum += PairMotion(surfaces_, now, f.a, f.b).power(f.force, f.moment_a, f.moment_b);
-  }
-  return sum;
+  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers)("damping_loss",
+                                                                           damping_loss_);
 }
 
 // Leaves place_ at the pair, if it was there before.
@@ -94,6 +90,7 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
               if (tangent == Vec2::Zero()) tangent = old.tangent;
               heir.force += share * old.force * tangent.dot(old.tangent);
             });
+    lose_by_inheritance(springs, friction.tangential_stiffness * thickness_, memory);
   }
   TangentialForce total{.a = a, .b = b};
   for (size_t j = 0; j < patches_.size(); ++j) {
@@ -156,6 +153,16 @@ void PatchTangential::inherit(std::span<const T> before, std::vector<T>& now, Ad
   }
 }
 
+// Elastic energy that a split or a merger of patches leaves over.
+void PatchTangential::lose_by_inheritance(std::span<const Spring> before, double stiffness,
+                                          FrictionMemory& memory) const {
+  if (before.empty() || (before.size() == 1 && springs_.size() == 1)) return;
+  double left = 0;
+  for (const Spring& spring : before) left += spring.force * spring.force;
+  for (const Spring& spring : springs_) left -= spring.force * spring.force;
+  memory.lose(left / (2 * stiffness));
+}
+
 // The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
 // number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 // slip against b: the sign of Eq. 12 is a misprint.
@@ -165,8 +172,10 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const Frict
                                 FrictionMemory& memory) const {
   spring.key = key;
   spring.stiffness = friction.tangential_stiffness * thickness_;
+  spring.accounted = true;
   const double size = patch.force.norm();
   if (!(size > kNoResultant * patch.weight)) {
+    memory.lose(spring.energy());
     spring.force = 0;
     memory.keep(spring);
     return;
@@ -179,8 +188,8 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const Frict
   double slip = velocity.dot(tangent);
   // The tangent is only as exact as the force: what it makes of an approach is no slip.
   if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
-  spring.force = apothem::slide(spring.force, slip * dt, spring.stiffness,
-                                friction.coefficient * normal.norm());
+  spring.force = follow(spring.force, slip * dt, spring.stiffness,
+                        friction.coefficient * normal.norm(), memory);
   spring.tangent = tangent;
   memory.keep(spring);
   const Vec2 force = spring.force * tangent;
@@ -198,22 +207,24 @@ void PatchTangential::per_edge(const PairMotion& motion, double dt, const Fricti
   const double stiffness = friction.tangential_stiffness * thickness_;
   const int edges_of_a = surfaces_.shapes().view(key.a).size;
   auto old = before.begin();
+  const auto lost = [&] { memory.lose((old++)->energy()); };  // of an edge that is free again
   for (const BoundaryRun& run : runs_) {
     key.part = run.of_a ? run.edge : edges_of_a + run.edge;
-    while (old != before.end() && old->key < key) ++old;
+    while (old != before.end() && old->key < key) lost();
     double spring = 0;
     if (old != before.end() && old->key == key) spring = (old++)->force;
     const Vec2 tangent = tangent_of(run.force);
-    spring = apothem::slide(
-        spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
-        friction.coefficient * law_.normal_stiffness * thickness_ * run.force.norm());
-    memory.keep({key, spring, stiffness, tangent});
+    spring = follow(spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
+                    friction.coefficient * law_.normal_stiffness * thickness_ * run.force.norm(),
+                    memory);
+    memory.keep({key, spring, stiffness, tangent, true});
     const Vec2 force = spring * tangent;
     total.add(force, cross(run.centre, force), -cross(run.centre + motion.between, force));
     total.stiffness += stiffness;
     total.arm = std::max({total.arm, std::abs(cross(run.centre, tangent)),
                           std::abs(cross(run.centre + motion.between, tangent))});
   }
+  while (old != before.end()) lost();
 }
 
 void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,

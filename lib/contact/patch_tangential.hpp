@@ -28,9 +28,6 @@ struct TangentialForce {
     moment_a += about_a;
     moment_b += about_b;
   }
-  void fields(Archive& archive) {
-    archive("a", a)("b", b)("force", force)("moment_a", moment_a)("moment_b", moment_b);
-  }
 };
 
 class PatchTangential {
@@ -39,9 +36,10 @@ class PatchTangential {
   PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
                   double thickness);
 
-  /// One step further: see Kernel::slide. `touching`: the pairs in contact.
-  double slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
-               double dt, FrictionMemory& memory);
+  /// One step further: see Kernel::slide. `touching`: the pairs in contact. Books what friction
+  /// loses.
+  void slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
+             double dt, FrictionMemory& memory);
 
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
@@ -83,12 +81,13 @@ class PatchTangential {
   void find_shares(const PairHistory* before);
   template <class T, class Add>
   void inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const;
+  void lose_by_inheritance(std::span<const Spring> before, double stiffness,
+                           FrictionMemory& memory) const;
   void resultant(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
                  const PairIntegral& patch, double force_error, Spring& spring,
                  TangentialForce& total, FrictionMemory& memory) const;
   void per_edge(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
                 std::span<const Spring> before, TangentialForce& total, FrictionMemory& memory);
-  [[nodiscard]] double power(const Kinematics& now) const;
 
   const Surfaces& surfaces_;
   const ContactLaw law_;

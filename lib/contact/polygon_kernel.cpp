@@ -40,7 +40,8 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
 }
 
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  return tangential_ ? tangential_->slide(pairs_, touching_, now, dt, memory) : 0;
+  if (tangential_) tangential_->slide(pairs_, touching_, now, dt, memory);
+  return 0;  // its springs are accounted
 }
 
 void PolygonKernel::add_forces(const ForceViews& forces) {

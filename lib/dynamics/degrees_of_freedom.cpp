@@ -16,10 +16,13 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> n
   for (size_t c = 0; c < weight_.size(); ++c) {
     if (can_move(c)) weight_[c] /= inverse_mass_[c];
   }
-  for (size_t c = 0; c < layout_.size(); ++c) {
-    if (!can_move(c)) immovable_.push_back(c);
-  }
   const size_t rigid = layout_.node(0);
+  for (size_t c = 0; c < layout_.size(); ++c) {
+    if (can_move(c)) continue;
+    const size_t axis = c < rigid ? c % 3 : (c - rigid) % 2;
+    const size_t across = axis == 0 ? c + 1 : c - 1;
+    held_[axis].push_back({c, across, c < rigid ? 0 : start_[across]});
+  }
   for (size_t c = 0; c < weight_.size(); ++c) {
     const size_t axis = c < rigid ? c % 3 : (c - rigid) % 2;
     if (axis == 0) weight_at_start_.x += weight_[c];
@@ -101,8 +104,8 @@ State DegreesOfFreedom::start() const {
 
 void DegreesOfFreedom::kick(State& state, double h) const {
   const size_t n = inverse_mass_.size();
-  double* v = state.v.data();
-  const double* f = state.f.data();
+  double* __restrict v = state.v.data();
+  const double* __restrict f = state.f.data();
   if (acceleration_.empty()) {
     for (size_t c = 0; c < n; ++c) v[c] += h * (inverse_mass_[c] * f[c]);
   } else {
@@ -120,9 +123,9 @@ void DegreesOfFreedom::steer(State& state, double dt) {
 
 void DegreesOfFreedom::drift(State& state, double dt) const {
   const size_t rigid = layout_.node(0), n = layout_.size();
-  double* x = state.x.data();
-  const double* v = state.v.data();
-  double* r = state.remainder.data();
+  double* __restrict x = state.x.data();
+  const double* __restrict v = state.v.data();
+  double* __restrict r = state.remainder.data();
   // Compensated sum (Kahan): at constant velocity every step rounds the same way, and the angular
   // momentum of a million steps would show it. Displacements of nodes are small: they need none.
   for (size_t c = 0; c < rigid; ++c) {
@@ -205,6 +208,22 @@ Impulse DegreesOfFreedom::impulse(const State& state, size_t c, double j) const 
   return {0, j, (start_[c - 1] + state.x[c - 1]) * j};
 }
 
+void DegreesOfFreedom::add_reactions(const State& state, double h, Impulse& sum) const {
+  const double* x = state.x.data();
+  const double* f = state.f.data();
+  double along_x = 0, along_y = 0, angular = 0;
+  for (const Held& held : held_[0]) {
+    along_x -= f[held.coordinate];
+    angular += (held.start + x[held.across]) * f[held.coordinate];
+  }
+  for (const Held& held : held_[1]) {
+    along_y -= f[held.coordinate];
+    angular -= (held.start + x[held.across]) * f[held.coordinate];
+  }
+  for (const Held& held : held_[2]) angular -= f[held.coordinate];
+  sum.add({h * along_x, h * along_y, h * angular});
+}
+
 Impulse DegreesOfFreedom::weight_sum(const State& state) const {
   Impulse sum = weight_at_start_;
   const size_t rigid = layout_.node(0), n = weight_.size();
@@ -213,6 +232,7 @@ Impulse DegreesOfFreedom::weight_sum(const State& state) const {
   for (size_t c = 0; c < rigid; c += 3) {
     sum.angular += x[c] * weight_[c + 1] - x[c + 1] * weight_[c];
   }
+  if (n == rigid) return sum;
   // What displacements add, in four sums, so that none waits for the one before.
   std::array<double, 4> part{};
   const size_t whole = n - (n - rigid) % 8;

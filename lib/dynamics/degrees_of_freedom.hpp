@@ -5,6 +5,7 @@
 // dt^2 and does not drift, and momenta are kept to round-off.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -62,8 +63,8 @@ class DegreesOfFreedom {
   [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
   /// The same as forces, N; empty without gravity.
   [[nodiscard]] const std::vector<double>& weight() const { return weight_; }
-  /// Coordinates that forces cannot move.
-  [[nodiscard]] const std::vector<size_t>& immovable() const { return immovable_; }
+  /// Adds the impulses that what holds a coordinate takes from the forces on it over h (s).
+  void add_reactions(const State& state, double h, Impulse& sum) const;
   /// Of each node, kg; 0 where both coordinates are held.
   [[nodiscard]] std::vector<double> free_node_mass() const;
 
@@ -86,7 +87,12 @@ class DegreesOfFreedom {
   Layout layout_;
   std::vector<double> inverse_mass_, mass_, acceleration_, weight_;
   std::vector<double> start_;  // x, y, angle of rigid bodies; places of nodes in the mesh as given
-  std::vector<size_t> immovable_;
+  /// A coordinate that forces cannot move.
+  struct Held {
+    size_t coordinate, across;  // itself, and the other one of its point
+    double start;               // of the other one, m; 0 for rigid bodies, whose x is the place
+  };
+  std::array<std::vector<Held>, 3> held_;  // along x, along y, angles
   std::vector<Driven> driven_;
   Impulse weight_at_start_;  // of gravity; its torque of nodes only, in the meshes as given
 };

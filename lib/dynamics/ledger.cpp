@@ -21,9 +21,7 @@ void Ledger::start(const State& state, const Energies& terms) {
 void Ledger::book(const State& state, double h) {
   outer_.add({h * weight_.x, h * weight_.y, h * weight_.angular});
   // What holds a coordinate takes the force on it.
-  for (const size_t c : dofs_.immovable()) {
-    outer_.add(dofs_.impulse(state, c, -h * state.f[c]));
-  }
+  dofs_.add_reactions(state, h, outer_);
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
     work_ -= state.f[d.coordinate] * d.move / 2;
   }

@@ -95,6 +95,10 @@ void Simulation::make_terms(int threads) {
 
 void Simulation::add(std::unique_ptr<Term> term) {
   terms_.push_back(std::move(term));
+  if (state_.step > 0) {  // of a checkpoint, whose forces and ledger know of the term
+    terms_.back()->refresh(state_);
+    return;
+  }
   find_forces(state_.v, 0);
   ledger_.start(state_, energies_of_terms());
 }

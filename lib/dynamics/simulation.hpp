@@ -37,7 +37,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Puts a term at the end of the list, before the first step.
+  /// Puts a term at the end of the list, before the first step; or after a checkpoint has been
+  /// loaded that was written with the same term, which must then follow from the state alone.
   void add(std::unique_ptr<Term> term);
 
   /// One step. Throws Unstable; the state is then not to be trusted.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/dispatch.hpp"
 #include "apothem/fem/mass.hpp"
 
 namespace apothem {
@@ -99,41 +100,13 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
   return sum;
 }
 
-template <class Element, class Law, bool damped, bool forces>
-[[gnu::target("avx512f")]] double with_avx512(const Blocks& blocks) {
-  return work_through<Element, Law, damped, forces>(blocks);
-}
-template <class Element, class Law, bool damped, bool forces>
-[[gnu::target("avx2")]] double with_avx2(const Blocks& blocks) {
-  return work_through<Element, Law, damped, forces>(blocks);
-}
-template <class Element, class Law, bool damped, bool forces>
-double with_sse2(const Blocks& blocks) {
-  return work_through<Element, Law, damped, forces>(blocks);
-}
-
-enum class Machine { sse2, avx2, avx512 };
-#ifdef __SANITIZE_ADDRESS__
-// One instruction set only: three would triple the minutes of compilation, for the same sums.
-constexpr bool kAllMachines = false;
-#else
-constexpr bool kAllMachines = true;
-#endif
-Machine machine() {
-  if (__builtin_cpu_supports("avx512f")) return Machine::avx512;
-  return __builtin_cpu_supports("avx2") ? Machine::avx2 : Machine::sse2;
-}
-
 template <bool damped, bool forces>
 double dispatch(const Blocks& blocks) {
-  [[maybe_unused]] static const Machine here = machine();
   return with_element(blocks.set.kind, [&]<class Element>(Element) {
     return with_law(blocks.set.material, [&]<class Law>(const Law&) {
-      if constexpr (kAllMachines) {
-        if (here == Machine::avx512) return with_avx512<Element, Law, damped, forces>(blocks);
-        if (here == Machine::avx2) return with_avx2<Element, Law, damped, forces>(blocks);
-      }
-      return with_sse2<Element, Law, damped, forces>(blocks);
+      return with_widest([&]() __attribute__((always_inline)) {
+        return work_through<Element, Law, damped, forces>(blocks);
+      });
     });
   });
 }

@@ -24,8 +24,13 @@ void AppliedForce::book(const State& state, double h, Ledger& ledger) {
   for (size_t c = 0; c < force_.size(); ++c) {
     if (force_[c] == 0) continue;
     ledger.add_impulse(dofs_.impulse(state, c, h * force_[c]));
-    if (dofs_.can_move(c)) ledger.add_work(h * force_[c] * state.v[c]);
+    ledger.add_work(h * force_[c] * state.v[c]);
   }
+}
+
+void AppliedForce::add_given_forces(std::span<double> of_nodes) const {
+  const size_t first = force_.size() - of_nodes.size();
+  for (size_t c = 0; c < of_nodes.size(); ++c) of_nodes[c] += force_[first + c];
 }
 
 }  // namespace apothem

@@ -21,6 +21,7 @@ class AppliedForce final : public Term {
   void add_forces(const Evaluation& evaluation) override;
   /// The ledger counts its work as external.
   void book(const State& state, double h, Ledger& ledger) override;
+  void add_given_forces(std::span<double> of_nodes) const override;
   void refresh(const State& state) override { find(state); }
 
  private:

@@ -167,7 +167,7 @@ void Run::close(double until) {
 }
 
 void Run::record(bool row, bool frame) {
-  if (!history_) return;
+  if (!history_ || !(row || frame)) return;
   const Clock::time_point before = Clock::now();
   if (row && last_row_ != state().step) write_row();
   if (frame && last_frame_ != state().step) write_frame();

@@ -29,9 +29,11 @@ inline Mesh one_element(const std::vector<Vec2>& ring) {
 inline Potential about_centre(const Polygon& polygon, const PotentialChoice& choice = {}) {
   return translated(make_potential(polygon, choice), area_moments(polygon).centroid);
 }
-/// The potential of a polygon about the origin of its coordinates.
+/// The potential of a polygon about the origin of its coordinates, with its very vertices.
 inline Potential about_origin(const Polygon& polygon, const PotentialChoice& choice = {}) {
-  return translated(make_potential(polygon, choice), -polygon.origin());
+  Potential potential = translated(make_potential(polygon, choice), -polygon.origin());
+  potential.vertices = polygon.vertices();
+  return potential;
 }
 
 /// A contact law with no more than a stiffness.

@@ -35,6 +35,17 @@ struct OutlinePair : Bodies {
     evaluate();
     slide(0);
   }
+  /// Force on a body and moment about the origin, by its nodes.
+  [[nodiscard]] Resultant on(BodyIndex body) const {
+    const Outlines& o = contacts->surfaces().outlines();
+    Resultant sum;
+    for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
+      const Vec2 force = on_node(o.node[i]);
+      sum.force += force;
+      sum.moment += cross(o.point(i), force);
+    }
+    return sum;
+  }
   [[nodiscard]] double largest_force() const {
     double largest = 0;
     for (const double f : node_force) largest = std::max(largest, std::abs(f));

@@ -171,6 +171,40 @@ TEST_CASE("springs of contact that has ended count as dissipated", "[friction_me
   CHECK(memory.loss() == 7.5);
 }
 
+TEST_CASE("what laws say that their springs lose is dissipated, and no balance counts it twice",
+          "[friction_memory][contact]") {
+  const auto accounted = [](const SpringKey& key, double force) {
+    Spring s = spring(key, force);
+    s.accounted = true;
+    return s;
+  };
+  FrictionMemory memory;
+  memory.begin_step();
+  memory.keep(accounted({polygon_kernel, 0, 1, 0}, 2));
+  memory.keep(accounted({polygon_kernel, 0, 2, 0}, 4));
+  memory.keep(spring({outline_kernel, 5, 6, 0}, 6));
+  memory.lose(.5);
+  memory.end_step(-9);  // of the last spring alone
+  CHECK(memory.energy() == 1 + 4 + 9);
+  CHECK(memory.loss() == .5);
+  // A pair that has parted loses what its spring stores; one that goes on tells of it.
+  memory.begin_step();
+  REQUIRE(memory.before(polygon_kernel, 0, 2).size() == 1);
+  CHECK(memory.loss() == 1.5);
+  memory.keep(accounted({polygon_kernel, 0, 2, 0}, 2));
+  memory.lose(3);
+  REQUIRE(memory.before(outline_kernel, 5, 6).size() == 1);
+  memory.keep(spring({outline_kernel, 5, 6, 0}, 6));
+  memory.end_step(0);
+  CHECK(memory.energy() == 1 + 9);
+  CHECK(memory.loss() == 4.5);
+  // All pairs part.
+  memory.begin_step();
+  memory.end_step(0);
+  CHECK(memory.energy() == 0);
+  CHECK(memory.loss() == 4.5 + 1 + 9);
+}
+
 TEST_CASE("a ledger that starts anew forgets losses and keeps springs",
           "[friction_memory][contact]") {
   FrictionMemory memory;

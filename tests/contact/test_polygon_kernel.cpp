@@ -24,8 +24,8 @@ Bodies random_heap(samples::Random& random, const ContactLaw& law, int across, i
     const Polygon shape = random.integer(0, 1)
                               ? samples::random_convex(random, random.integer(3, 8))
                               : samples::random_star_shaped(random, random.integer(4, 9), .5);
-    const double x = 1.2 * (i % across) + random.uniform(-.2, .2);
-    const double y = 1.2 * (i / across) + random.uniform(-.2, .2);
+    const double x = 1. * (i % across) + random.uniform(-.2, .2);
+    const double y = 1. * (i / across) + random.uniform(-.2, .2);
     bodies.add_rigid(about_centre(shape), {x, y, random.uniform(-3, 3)}, {1, 1, 2});
   }
   bodies.join();
@@ -102,7 +102,7 @@ TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
   CHECK(touching > scaled(300) / 4);
 }
 
-TEST_CASE("a heap of polygons keeps linear and angular momentum, with friction and damping",
+TEST_CASE("a heap of polygons keeps linear and angular momentum, also where it rubs",
           "[polygon_kernel][contact]") {
   samples::Random random(72);
   for (const FrictionLaw friction_law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
@@ -121,9 +121,12 @@ TEST_CASE("a heap of polygons keeps linear and angular momentum, with friction a
           moment += on.moment + cross(place_of(bodies, b), on.force);
           scale = std::max(scale, on.force.norm());
         }
-        worst = std::max({worst, sum.norm() / scale, std::abs(moment) / scale});
+        worst = std::max(worst, sum.norm() / scale);
+        // Damping follows the rates of force and moments. The moments are about centres that move
+        // past each other meanwhile: it keeps linear momentum only.
+        if (damping == 0) worst = std::max(worst, std::abs(moment) / scale);
       }
-      CAPTURE(worst);
+      CAPTURE(static_cast<int>(friction_law), damping, worst);
       CHECK(worst < 1e-12);
     }
   }
@@ -176,13 +179,13 @@ TEST_CASE("contact of rigid bodies has the same bits for any number of threads",
   double energy = 0, loss = 0, damping_loss = 0;
   for (const int threads : {1, 2, 3}) {
     samples::Random random(74);
-    Bodies bodies = random_heap(random, rough_law(FrictionLaw::resultant, .2), 36, threads);
+    Bodies bodies = random_heap(random, rough_law(FrictionLaw::resultant, .2), 26, threads);
     for (int n = 0; n < 3; ++n) step(bodies, .01);
     const Contacts& contacts = *bodies.contacts;
     REQUIRE(Threads(2).worth(static_cast<int>(contacts.candidates()), 200));
     std::vector<double> now;
     for (const Spring& s : contacts.friction().springs()) now.push_back(s.force);
-    REQUIRE(now.size() > 1000);
+    REQUIRE(now.size() > 500);
     if (threads > 1) {
       CHECK((bodies.rigid_force == forces));
       CHECK((bodies.lambda == lambda));
@@ -240,16 +243,20 @@ TEST_CASE("a body that stands on two feet has two patches, each with its own spr
     CHECK(contacts.friction_sizes()[1] == Approx(2 * .7e-3).epsilon(1e-10));
 
     // One foot is lifted: its spring is lost, that of the other foot stays what it is.
-    const double left_spring = springs[0].force;
-    const bool left_first = records[0].point.x() < 0;
+    const Spring kept = springs[0], lost = springs[1];
+    const double loss = contacts.friction_loss();
     bodies.pose_rate = {0, 0, 0, 0, 0, 0};
-    bodies.pose[5] = left_first ? .04 : -.04;
+    bodies.pose[5] = records[0].point.x() < 0 ? .12 : -.12;
     bodies.evaluate();
     bodies.slide(1);
-    REQUIRE(contacts.records().size() == 1);
+    const std::vector<ContactRecord> rest = contacts.records();
+    REQUIRE(rest.size() == 1);
+    CHECK(rest[0].point.x() * records[0].point.x() > 0);
     const std::span<const Spring> left = contacts.friction().springs_of(polygon_kernel, 0, 1);
     REQUIRE(left.size() == 1);
-    CHECK(left[0].force == Approx(left_spring).epsilon(1e-2));
+    CHECK(left[0].force == Approx(kept.force * left[0].tangent.dot(kept.tangent)).epsilon(1e-12));
+    CHECK(contacts.friction_loss() - loss ==
+          Approx(kept.energy() + lost.energy() - left[0].energy()).epsilon(1e-10));
   }
 }
 

@@ -1,6 +1,7 @@
 // Looking into the list of terms of a simulation.
 #pragma once
 
+#include "apothem/dynamics/contact_term.hpp"
 #include "apothem/dynamics/simulation.hpp"
 
 namespace apothem::test {

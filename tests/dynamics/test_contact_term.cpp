@@ -1,6 +1,7 @@
 // Deformable bodies that touch each other and rigid bodies, in the step loop.
 #include <catch2/catch.hpp>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "apothem/mesh/select.hpp"
 #include "dynamics/surface_models.hpp"

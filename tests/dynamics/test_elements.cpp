@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/fem/spectrum.hpp"
 #include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/reorder.hpp"

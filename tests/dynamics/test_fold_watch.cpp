@@ -1,6 +1,7 @@
 // Bodies that fold onto themselves are noticed by contact, or by a look of its own.
 #include <catch2/catch.hpp>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "dynamics/surface_models.hpp"
 

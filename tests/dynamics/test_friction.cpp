@@ -1,6 +1,7 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
+#include "apothem/contact/friction_table.hpp"
 #include "archive/saved.hpp"
 #include "friction_models.hpp"
 #include "term_of.hpp"

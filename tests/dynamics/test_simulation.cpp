@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "apothem/dynamics/simulation.hpp"
+#include "apothem/dynamics/unstable.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "support.hpp"
 
 using namespace apothem;

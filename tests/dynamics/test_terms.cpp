@@ -1,6 +1,7 @@
 // The terms of a step: a scene has those that it needs, and a term of one's own is one of them.
 #include <catch2/catch.hpp>
 
+#include "apothem/dynamics/elements.hpp"
 #include "apothem/dynamics/fold_watch.hpp"
 #include "apothem/dynamics/loads.hpp"
 #include "apothem/dynamics/mass_damping.hpp"

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
 #include "dynamics/surface_models.hpp"

@@ -66,8 +66,9 @@ TEST_CASE("every quantity of a rigid body comes from its entries in the state", 
   const std::map<std::string, double> found =
       quantities(motion_of(model, state, 1, {0, 0, 13}, masses(model)));
   const std::map<std::string, double> expected{
-      {"x", kOriginX + .5}, {"y", kOriginY - .25}, {"angle", .3}, {"vx", 7},       {"vy", -8},
-      {"spin", 9},          {"fx", 11},            {"fy", -12},   {"friction", 13}};
+      {"x", kOriginX + .5}, {"y", kOriginY - .25}, {"angle", .3}, {"vx", 7},
+      {"vy", -8},           {"spin", 9},           {"fx", 11},    {"fy", -12},
+      {"friction", 13}};
   CHECK(found == expected);
 }
 

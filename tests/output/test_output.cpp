@@ -235,8 +235,8 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       const Momenta p{any(), any(), any(), any(), any(), any()};
       const std::vector<BodyForce> contact{{}, {0, 0, any()}};
       writer.add(state, e, p, {.contact = contact});
-      rows.push_back({state.time, state.pose_rate(1)[0], state.force(1)[1], e.contact, e.total_error,
-                      p.angular_error, contact[1].friction});
+      rows.push_back({state.time, state.pose_rate(1)[0], state.force(1)[1], e.contact,
+                      e.total_error, p.angular_error, contact[1].friction});
     }
     writer.flush();
   }

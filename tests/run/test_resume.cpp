@@ -58,13 +58,16 @@ TEST_CASE("a run that was stopped while bodies rub continues bit for bit", "[res
     REQUIRE(first.state().time < .9 * scene.time.end);
     REQUIRE(std::filesystem::exists(checkpoint_of(folder)));
 
-    // In the middle of friction: there are springs, and they hold something back.
-    double pull = 0;
-    for (const Spring& spring : springs(first.simulation())) {
-      pull = std::max(pull, std::abs(spring.force));
-    }
+    // In the middle of friction: springs hold something back, below Coulomb's limit or at it.
+    double pull = 0, pressure = 0;
+    for (const Spring& spring : springs(first.simulation())) pull += std::abs(spring.force);
+    for (const ContactRecord& r : first.simulation().contacts()) pressure += r.normal.norm();
+    const double share = pull / (scene.model.contact.friction.coefficient * pressure);
+    CAPTURE(pull, share);
     REQUIRE(pull > 1);
-    CHECK((first.simulation().energies().friction_loss == 0) == named.sticks);
+    if (named.sticks) CHECK(share < .5);
+    if (!named.sticks && scene.model.deformables.empty()) CHECK(share == Approx(1).epsilon(.01));
+    if (!named.sticks) CHECK(first.simulation().energies().friction_loss > 0);
     for (const char* need : named.needs) {
       const auto& terms = first.simulation().terms();
       CHECK(std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
@@ -221,7 +224,7 @@ TEST_CASE("a force of the user's own goes on acting after a resume", "[resume]")
   const Folder folder;
   const Scene scene = scene_of(folder, rubbing_scenes()[1].text);
   const auto push = [](const State& state, std::span<double> on) {
-    on[state.layout.rigid(1)] += 500 * std::sin(200 * state.time);
+    on[state.layout.rigid(1)] += 100 * std::sin(200 * state.time);
   };
   Run whole(scene, {.folder = folder / "whole"});
   whole.add_force("a push", push);
@@ -310,11 +313,12 @@ TEST_CASE("a checkpoint of a static run with another number of bodies is refused
   const Scene scene = scene_of(folder, pressed_blocks(4));
   Run(scene, {.folder = folder / "parts"}).run(.25);
   const Json json = Json::parse(content(checkpoint_of(folder)));
-  for (const auto& [pointer, value] : {std::pair<const char*, Json>{"/progress/load_steps/0/worst", 2},
-                                       {"/progress/load_steps/0/worst", -1},
-                                       {"/progress/load_steps/0/off", {1.}},
-                                       {"/simulation/equilibrium/outside", {1.}},
-                                       {"/simulation/equilibrium/body_loads", {1.}}}) {
+  for (const auto& [pointer, value] :
+       {std::pair<const char*, Json>{"/progress/load_steps/0/worst", 2},
+        {"/progress/load_steps/0/worst", -1},
+        {"/progress/load_steps/0/off", {1.}},
+        {"/simulation/equilibrium/outside", {1.}},
+        {"/simulation/equilibrium/body_loads", {1.}}}) {
     INFO(pointer);
     Json damaged = json;
     REQUIRE(damaged.contains(Json::json_pointer(pointer)));
