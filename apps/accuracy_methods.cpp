@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/skeleton/child_process.hpp"
 #include "peers/peers.hpp"
 

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/scene/scene.hpp"
 #include "cases/samples.hpp"
 

@@ -1,5 +1,5 @@
 // The collar of an outline: its roof near the surface, as a function of the outline's vertices. One
-// edge of another outline against one face of the collar, in closed form (theory: Sec. 5.2).
+// edge of another outline against one face of the collar, in closed form (docs/theory.md, Contact).
 //
 // A face belongs to the edge a->b, with the inside on its left. In its coordinates tau along the
 // edge and h inwards it is {0 <= h <= depth} between the bisectors {v + h m} at its ends, and h is

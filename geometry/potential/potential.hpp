@@ -10,7 +10,9 @@
 // straight skeleton (roof.hpp), or is the distance to the boundary (distance_field.hpp).
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
@@ -77,5 +79,35 @@ Potential make_potential(const Polygon& polygon, const PotentialChoice& choice =
 
 /// The same potential in coordinates whose origin is moved by `shift`, m: all points minus `shift`.
 Potential translated(Potential potential, const Vec2& shift);
+
+/// The potentials by name. A new one is one line here and its edge list in geometry.
+struct NamedPotential {
+  std::string_view name;
+  PotentialChoice::Kind kind;
+};
+inline constexpr std::array kPotentials{
+    NamedPotential{"distance", PotentialChoice::Kind::distance},  // Eq. 6
+    NamedPotential{"area", PotentialChoice::Kind::area},          // Eq. 2, triangles only
+};
+
+/// What measures the depth in a polygon that is not convex; convex ones have one field only.
+struct NamedField {
+  std::string_view name;
+  PotentialChoice::Field field;
+};
+inline constexpr std::array kFields{
+    NamedField{"roof", PotentialChoice::Field::roof},
+    NamedField{"distance", PotentialChoice::Field::distance},
+};
+
+/// The reference lengths a scene can name (a number is a length in m).
+struct NamedReference {
+  std::string_view name;
+  PotentialChoice::Reference reference;
+};
+inline constexpr std::array kReferences{
+    NamedReference{"roof", PotentialChoice::Reference::roof},
+    NamedReference{"inscribed_circle", PotentialChoice::Reference::inscribed_circle},
+};
 
 }  // namespace apothem

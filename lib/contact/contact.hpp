@@ -16,7 +16,8 @@ struct Contact {
   int a, b;
   double depth;      ///< of the deepest point below a surface, or extent of the overlap, m
   double share;      ///< of the depth at which the potential ends; 1 or more: beyond
-  double stiffness;  ///< bound of the change of the force over the depth, N/m (theory: Sec. 2)
+  double stiffness;  ///< bound of the change of the force over the depth, N/m (docs/theory.md,
+                     ///< Normal contact)
 };
 
 /// What acts in one contact patch, a connected part of the overlap of two bodies. Forces act on a.

@@ -96,15 +96,6 @@ double Contacts::energy() const {
   return sum<double>([](const Kernel& k) { return k.energy(); }) + memory_.energy();
 }
 
-double Contacts::damping_loss() const {
-  return sum<double>([](const Kernel& k) { return k.damping_loss(); });
-}
-
-void Contacts::start_ledger() {
-  memory_.start_ledger();
-  each([](Kernel& kernel) { kernel.start_ledger(); });
-}
-
 size_t Contacts::candidates() const {
   return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }

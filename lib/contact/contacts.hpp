@@ -55,9 +55,9 @@ class Contacts {
   /// Elastic energy of contacts and springs, J. Not for every step.
   [[nodiscard]] double energy() const;
   [[nodiscard]] double friction_loss() const { return memory_.loss(); }
-  [[nodiscard]] double damping_loss() const;
+  [[nodiscard]] double damping_loss() const { return memory_.damping_loss(); }
   /// What has been dissipated so far does not count.
-  void start_ledger();
+  void start_ledger() { memory_.start_ledger(); }
 
   [[nodiscard]] std::int64_t searches() const { return searches_; }
   [[nodiscard]] size_t candidates() const;

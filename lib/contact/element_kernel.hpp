@@ -1,5 +1,5 @@
 // Contact of deformable bodies by the potentials of their outermost elements (the paper, Sec. 3;
-// theory: Sec. 5.2), for comparison with OutlineKernel.
+// docs/theory.md, Contact), for comparison with OutlineKernel.
 //
 // The pair kernel gives force and loading point of each pair of polygons, shape functions turn them
 // into nodal forces. Those are not the gradient of an energy, and the potentials vanish on borders

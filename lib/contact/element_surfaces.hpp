@@ -1,5 +1,5 @@
 // The elements at the boundaries of meshes as surfaces of their own, each a convex polygon that
-// follows its nodes (the paper, Sec. 3; theory: Sec. 5.2).
+// follows its nodes (the paper, Sec. 3; docs/theory.md, Contact).
 //
 // The edges of an element's potential follow its corners; its lengths r are those of the mesh as
 // given. An r that follows the deformation without the force of its derivative costs 1e-3 of the

@@ -79,12 +79,15 @@ class FrictionMemory {
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
   [[nodiscard]] double loss() const { return loss_; }
+  /// Energy that contact damping takes from the bodies, J, and its sum since the start.
+  void damp(double energy) { damping_loss_ += energy; }
+  [[nodiscard]] double damping_loss() const { return damping_loss_; }
   /// What has been dissipated so far does not count.
-  void start_ledger() { loss_ = 0; }
+  void start_ledger() { loss_ = damping_loss_ = 0; }
 
   void fields(Archive& archive) {
-    archive("springs", now_)("energy", energy_)("balanced_energy", balanced_)("friction_loss",
-                                                                              loss_);
+    archive("springs", now_)("energy", energy_)("balanced_energy", balanced_)(
+        "friction_loss", loss_)("damping_loss", damping_loss_);
   }
 
  private:
@@ -94,7 +97,7 @@ class FrictionMemory {
   size_t next_ = 0;                            // of the springs before
   double energy_ = 0;                          // of all springs, J
   double balanced_ = 0, balanced_before_ = 0;  // of those that are not accounted, J
-  double loss_ = 0;                            // J
+  double loss_ = 0, damping_loss_ = 0;         // J
 };
 
 }  // namespace apothem

@@ -48,8 +48,8 @@ class Kernel {
   /// 0 the springs keep their forces. Returns the work on the bodies since the last call, J, of
   /// springs that are not accounted (friction_memory.hpp).
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
-  /// Finds the forces of friction again after the memory has been restored, if `fields` does not
-  /// hold them.
+  /// After the memory has been restored: finds the forces of friction again that the next slide
+  /// needs.
   virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
   /// Adds all forces, normal ones first.
   virtual void add_forces(const ForceViews& forces) = 0;
@@ -58,9 +58,6 @@ class Kernel {
 
   /// Elastic energy of the normal contact, J. Not for every step.
   [[nodiscard]] virtual double energy() const = 0;
-  /// Energy dissipated by contact damping since the start, J.
-  [[nodiscard]] virtual double damping_loss() const { return 0; }
-  virtual void start_ledger() {}
   /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
   [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
   /// Adds to each node near another body the same bound as a stiffness, N/m.

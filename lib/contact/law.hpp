@@ -96,34 +96,4 @@ inline constexpr std::array kDampingModels{
     NamedDamping{"mass", "rate", "1/s", &ContactLaw::mass_damping},
 };
 
-/// The potentials a scene can name. A new one is one line here and its edge list in geometry.
-struct NamedPotential {
-  std::string_view name;
-  PotentialChoice::Kind kind;
-};
-inline constexpr std::array kPotentials{
-    NamedPotential{"distance", PotentialChoice::Kind::distance},  // Eq. 6
-    NamedPotential{"area", PotentialChoice::Kind::area},          // Eq. 2, triangles only
-};
-
-/// What measures the depth in a polygon that is not convex; convex ones have one field only.
-struct NamedField {
-  std::string_view name;
-  PotentialChoice::Field field;
-};
-inline constexpr std::array kFields{
-    NamedField{"roof", PotentialChoice::Field::roof},
-    NamedField{"distance", PotentialChoice::Field::distance},
-};
-
-/// The reference lengths a scene can name (a number is a length in m).
-struct NamedReference {
-  std::string_view name;
-  PotentialChoice::Reference reference;
-};
-inline constexpr std::array kReferences{
-    NamedReference{"roof", PotentialChoice::Reference::roof},
-    NamedReference{"inscribed_circle", PotentialChoice::Reference::inscribed_circle},
-};
-
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// Normal viscous damping of a contact patch of two rigid bodies (theory: Sec. 3).
+// Normal viscous damping of a contact patch of two rigid bodies (docs/theory.md, Friction).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Friction of deformable bodies: one elastic slip for each boundary edge in contact, both bodies in
-// turn being the one that slides on the other's faces (theory: Sec. 5.3).
+// turn being the one that slides on the other's faces (docs/theory.md, Friction).
 //
 // The slip rate of an edge c against a face a->b is objective,
 //   g' = t . (v_c - (1 - s) v_a - s v_b) + (h/L) n . (v_b - v_a),

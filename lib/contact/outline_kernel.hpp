@@ -1,5 +1,5 @@
 // Contact of deformable bodies with each other and with rigid ones: nodal forces that are the
-// gradient of an energy, from the collars of the deformed outlines (theory: Sec. 5.2).
+// gradient of an energy, from the collars of the deformed outlines (docs/theory.md, Contact).
 //
 //   E = k_n SUM over pairs of bodies  INT over the overlap  (h_a/r_a + h_b/r_b) dA
 //
@@ -29,7 +29,7 @@ class OutlineKernel final : public Kernel {
   void add_forces(const ForceViews& forces) override;
 
   [[nodiscard]] double energy() const override;
-  /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (theory: Sec. 5.4) for nodes of
+  /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (docs/theory.md, Step) for nodes of
   /// these masses in kg (0 where held). Needs placed outlines.
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
   void add_node_stiffness(std::span<double> stiffness) const override;

@@ -1,4 +1,4 @@
-// The outlines of bodies with the collars of their potentials (theory: Sec. 5.2).
+// The outlines of bodies with the collars of their potentials (docs/theory.md, Contact).
 //
 // An outline is the boundary of a body: the closed lines around a mesh, or the polygon of a rigid
 // body that may touch a mesh. The collar is the part of the outline's roof near the surface. Every

@@ -42,8 +42,7 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
 }
 
 void PatchTangential::fields(Archive& archive) {
-  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers)("damping_loss",
-                                                                           damping_loss_);
+  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers);
 }
 
 // Leaves place_ at the pair, if it was there before.
@@ -97,8 +96,8 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
     const PairIntegral& patch = patches_[j];
     if (damped) {
       PatchDamper& d = dampers_[j];
-      damping_loss_ += damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a,
-                            b, patch, motion, dt, d);
+      memory.damp(damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a, b,
+                       patch, motion, dt, d));
       total.add(d.damping, d.damping_a, d.damping_b);
     }
     if (!rough || edgewise()) continue;

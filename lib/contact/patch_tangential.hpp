@@ -1,5 +1,5 @@
 // Friction and normal damping between polygons of rigid bodies: the forces beside the normal ones,
-// by contact patches (theory: Sec. 3). Only scenes that ask for them have this.
+// by contact patches (docs/theory.md, Friction). Only scenes that ask for them have this.
 //
 //   resultant   one spring for each patch, at right angles to its normal force (Eqs. 10-14)
 //   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
@@ -43,8 +43,6 @@ class PatchTangential {
 
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
-  [[nodiscard]] double damping_loss() const { return damping_loss_; }
-  void start_ledger() { damping_loss_ = 0; }
 
   /// Where the next pair is looked for first: pairs must be asked for in ascending order.
   struct Cursor {
@@ -96,7 +94,6 @@ class PatchTangential {
   History now_, before_;
   Place place_;  // of the next pair of the step before
   std::vector<TangentialForce> forces_;
-  double damping_loss_ = 0;
   // Of the pair at hand; kept for their memory.
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;

@@ -49,12 +49,6 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
   if (tangential_) add_tangential(forces);
 }
 
-bool PolygonKernel::both_respond(RigidIndex a, RigidIndex b) const {
-  const std::array<double, 3>&u = surfaces_.rigid(a).inverse_mass,
-                           &w = surfaces_.rigid(b).inverse_mass;
-  return u[0] + u[2] > 0 && w[0] + w[2] > 0;
-}
-
 void PolygonKernel::add_normal(const ForceViews& forces) {
   largest_force_ = {};
   for (size_t i = 0; i < touching_.size(); ++i) {
@@ -78,7 +72,7 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
     const auto arm = [&](RigidIndex body, double moment) {
       return std::min(std::abs(stiffness_ * moment) / force, surfaces_.shapes().radius(body));
     };
-    const double k = (both_respond(a, b) ? 2 : 1) * contact_stiffness_[i];
+    const double k = movers(a, b) * contact_stiffness_[i];
     forces.lambda[a] +=
         k * strip_mobility(surfaces_.rigid(a).inverse_mass, arm(a, pair.moment_a), pair.breadth);
     forces.lambda[b] +=
@@ -96,7 +90,7 @@ void PolygonKernel::add_tangential(const ForceViews& forces) const {
     fb[0] -= t.force.x();
     fb[1] -= t.force.y();
     fb[2] += t.moment_b;
-    const double k = (both_respond(t.a, t.b) ? 2 : 1) * t.stiffness;
+    const double k = movers(t.a, t.b) * t.stiffness;
     for (const RigidIndex i : {t.a, t.b}) {
       forces.lambda[i] += k * strip_mobility(surfaces_.rigid(i).inverse_mass, t.arm, 0);
     }

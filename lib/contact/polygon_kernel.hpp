@@ -25,12 +25,6 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
 
   [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
-  [[nodiscard]] double damping_loss() const override {
-    return tangential_ ? tangential_->damping_loss() : 0;
-  }
-  void start_ledger() override {
-    if (tangential_) tangential_->start_ledger();
-  }
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
@@ -41,7 +35,10 @@ class PolygonKernel final : public Kernel {
  private:
   void add_normal(const ForceViews& forces);
   void add_tangential(const ForceViews& forces) const;
-  [[nodiscard]] bool both_respond(RigidIndex a, RigidIndex b) const;
+  /// 2 if forces can move both bodies, else 1.
+  [[nodiscard]] double movers(RigidIndex a, RigidIndex b) const {
+    return surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
+  }
 
   const Surfaces& surfaces_;
   double stiffness_;  // k_n times the thickness, N/m

@@ -1,9 +1,9 @@
 // Bounds of the stiffness of contacts, for the stable time step.
 //
 // Velocity Verlet is stable below 2/sqrt(lambda). A contact of two bodies has the stiffness
-// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (theory: Sec. 2), spread
-// over a strip across the line of action. On a body with inverse masses 1/m, 1/I the strip of
-// breadth w at the lever arm e has
+// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (docs/theory.md, Normal
+// contact), spread over a strip across the line of action. On a body with inverse masses 1/m, 1/I
+// the strip of breadth w at the lever arm e has
 //   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
 #pragma once
 
@@ -23,7 +23,7 @@ inline double strip_mobility(const std::array<double, 3>& inverse_mass, double a
 }
 
 /// Bound of w^2, 1/s^2, for a boundary node of the mass `mass` (kg) with half of the edges at it as
-/// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (theory: Sec. 5.4).
+/// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (docs/theory.md, Step).
 /// `stiffness`: k_n times the thickness, N/m. With a mass of 1 it is a stiffness in N/m.
 inline double node_rate(double stiffness, double slopes, double share, double mass = 1) {
   return 2 * stiffness * slopes * share / mass;

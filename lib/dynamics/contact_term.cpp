@@ -198,34 +198,38 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   using Kind = ContactFault::Kind;
   if (fault.kind == Kind::self_contact) refuse_fold(model_, state, fault.a, fault.place);
   const Vec2 world = fault.place + model_.origin;
-  const std::string where = fmt::format("at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {})", world.x(),
-                                        world.y(), state.time, state.step);
-  if (fault.kind == Kind::not_convex) {
-    throw Unstable(fmt::format(
-        "an element in the contact of \"{}\" and \"{}\" is no longer convex {}: it cannot keep its "
-        "potential; reduce the load or time.safety, or use \"surface\": \"body\"",
-        name(fault.a), name(fault.b), where));
-  }
-  const char* advice = "the contact is too soft for this load; raise contact.normal_stiffness";
-  if (fault.kind == Kind::collar) {
-    advice =
-        "the contact is too soft for this load or the part too thin; raise "
-        "contact.normal_stiffness";
+  const std::string& a = name(fault.a);
+  const std::string& b = name(fault.b);
+  std::string what = fmt::format("bodies \"{}\" and \"{}\" overlap ", a, b);
+  std::string limit, advice =
+                         "the contact is too soft for this load; raise "
+                         "contact.normal_stiffness";
+  switch (fault.kind) {
+    case Kind::singular_area:
+      what += "up to the singular area of one of them (phi = 1)";
+      break;
+    case Kind::centre:
+      what += "as deep as the centre of one of them";
+      break;
+    case Kind::element:
+      what += "as deep as the potential of an element or body reaches";
+      break;
+    case Kind::not_convex:
+      what += "at an element that is no longer convex and cannot keep its potential";
+      advice = "reduce the load or time.safety, or use \"surface\": \"body\"";
+      break;
+    default:
+      what = fmt::format("\"{}\" is {:.3g} m deep in \"{}\"", a, fault.depth, b);
+      limit = fmt::format(", where its potential near the surface ends at {:.3g} m", fault.limit);
+      advice =
+          "the contact is too soft for this load or the part too thin; raise "
+          "contact.normal_stiffness";
   }
   if (state.step == 0) advice = "move them apart";
-  if (fault.kind == Kind::collar) {
-    throw Unstable(fmt::format(
-        "\"{}\" is {:.3g} m deep in \"{}\" {}, where its potential near the surface ends at {:.3g} "
-        "m: {}",
-        name(fault.a), fault.depth, name(fault.b), where, fault.limit, advice));
-  }
-  const char* how =
-      fault.kind == Kind::singular_area ? "up to the singular area of one of them (phi = 1)"
-      : fault.kind == Kind::centre      ? "as deep as the centre of one of them"
-                                        : "as deep as the potential of an element or body reaches";
-  throw Unstable(fmt::format("bodies \"{}\" and \"{}\" overlap {} {}: {}", name(fault.a),
-                             name(fault.b), how, where, advice),
-                 fault.kind == Kind::element ? -1 : std::max(fault.a, fault.b));
+  const BodyIndex last = std::max(fault.a, fault.b);
+  throw Unstable(fmt::format("{} at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}){}: {}", what,
+                             world.x(), world.y(), state.time, state.step, limit, advice),
+                 last < static_cast<BodyIndex>(model_.bodies.size()) ? last : -1);
 }
 
 void ContactTerm::add_energies(const State& state, double /*dt*/, Energies& e) {

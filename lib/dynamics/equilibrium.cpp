@@ -1,6 +1,6 @@
-// Dynamic relaxation with kinetic damping (theory: Sec. 5.4): explicit steps of length kStep, and
-// all nodes stop whenever the kinetic energy has passed a maximum (Barnes 1988). The masses are not
-// the bodies' own but m_i = 1.1/4 (SUM_j |K_ij| + contacts), with a unit of time that makes the
+// Dynamic relaxation with kinetic damping (docs/theory.md, Step): explicit steps of length kStep,
+// and all nodes stop whenever the kinetic energy has passed a maximum (Barnes 1988). The masses are
+// not the bodies' own but m_i = 1.1/4 (SUM_j |K_ij| + contacts), with a unit of time that makes the
 // stability limit 1 or more: every node then moves as fast as its own stiffness allows. Loads,
 // supports and prescribed bodies move to their new places over the first steps. A little damping in
 // proportion to the stiffness is needed besides: stopped every two steps, a mode whose period is

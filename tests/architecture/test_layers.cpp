@@ -185,3 +185,13 @@ TEST_CASE("each library has its only places", "[architecture]") {
     }
   }
 }
+
+TEST_CASE("the user guide shows the example that is built and run", "[architecture]") {
+  const auto text = [](const char* file) {
+    std::ifstream stream(fs::path(apothem::test::kSource) / file);
+    std::ostringstream content;
+    content << stream.rdbuf();
+    return content.str();
+  };
+  CHECK(text("docs/user-guide.md").find(text("tests/package/wind.cpp")) != std::string::npos);
+}

@@ -13,8 +13,8 @@
 namespace apothem::test {
 
 /// Error of the edge kernel against the exact overlap, in units of the round-off that it may have:
-/// eps (size/r) own length for forces, times the size for moments (theory: Sec. 2). Numbers of
-/// order 1 are a sane kernel's.
+/// eps (size/r) own length for forces, times the size for moments (docs/theory.md, Normal contact).
+/// Numbers of order 1 are a sane kernel's.
 struct PairErrors {
   double force = 0, moment = 0, energy = 0, area = 0;
   [[nodiscard]] double worst() const { return std::max({force, moment, energy, area}); }

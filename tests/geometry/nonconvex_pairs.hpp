@@ -4,8 +4,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "support.hpp"
 
 namespace apothem::test {

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   int most = 0;
   while (run.step()) {
     most = std::max(most, run.simulation().counts().touching_now);
-    if (run.state().step % 2000 != 0) continue;
+    if (run.state().step % 50000 != 0) continue;
     std::printf("t = %.3f s:", run.state().time);
     for (RigidIndex i = 0; i < run.state().layout.rigid_bodies; ++i) {
       const auto pose = run.state().pose(i);  // x, y in m, angle in rad

@@ -52,7 +52,7 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, const double* depths)
 // Largest |f + dE/dx| over largest |f|.
 double gradient_error(const OutlinePair& pair) {
   ComplexRing a = complex_ring(pair.a), b = complex_ring(pair.b);
-  const double* depths = pair.contact.outlines().depth.data();
+  const double* depths = pair.contacts->surfaces().outlines().depth.data();
   const auto slope = [&] {
     const double h = 1e-40;
     return -(volume(b, a, depths) / pair.reference_a +
@@ -66,7 +66,7 @@ double gradient_error(const OutlinePair& pair) {
     for (size_t i = 0; i < ring->x.size(); ++i) {
       for (Complex* z : {&ring->x[i], &ring->y[i]}) {
         z->imag(1e-40);
-        worst = std::max(worst, std::abs(slope() - pair.force[k++]));
+        worst = std::max(worst, std::abs(slope() - pair.node_force[k++]));
         z->imag(0);
       }
     }
@@ -110,9 +110,9 @@ TEST_CASE("the energy is that of CGAL's overlap under CGAL's roof", "[collar]") 
       continue;
     }
     ++pairs;
-    worst = std::max(worst,
-                     std::abs(pair->contact.energy() - exact.volume.energy) / exact.volume.energy);
-    const Vec2 force = pair->contact.resultant(0).force;
+    worst = std::max(
+        worst, std::abs(pair->contacts->energy() - exact.volume.energy) / exact.volume.energy);
+    const Vec2 force = pair->on(0).force;
     worst_force =
         std::max(worst_force, (force - exact.integral.force).norm() / exact.integral.weight);
   }
@@ -127,7 +127,7 @@ TEST_CASE("contact keeps linear and angular momentum", "[collar]") {
   for (int i = 0; i < scaled(2000); ++i) {
     const auto pair = random_pair(random, random.integer(3, 12), random.uniform(.3, 1.2));
     if (!pair) continue;
-    const auto a = pair->contact.resultant(0), b = pair->contact.resultant(1);
+    const Resultant a = pair->on(0), b = pair->on(1);
     const double size = pair->largest_force();
     worst = std::max(worst, (a.force + b.force).norm() / size);
     worst_moment = std::max(worst_moment, std::abs(a.moment + b.moment) / size);
@@ -149,9 +149,9 @@ TEST_CASE("an edge on a bisector belongs to one face", "[collar]") {
     const Polygon a(square), b(triangle);
     const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
                                             make_potential(b, length_choice(.5)));
-    CHECK(pair.contact.energy() == Approx(exact.volume.energy).epsilon(1e-14));
-    CHECK(pair.contact.energy() > own);
-    const Vec2 force = pair.contact.resultant(0).force;
+    CHECK(pair.contacts->energy() == Approx(exact.volume.energy).epsilon(1e-14));
+    CHECK(pair.contacts->energy() > own);
+    const Vec2 force = pair.on(0).force;
     CHECK((force - exact.integral.force).norm() < 1e-15);
   }
 }
@@ -163,17 +163,17 @@ TEST_CASE("flat on flat: the closed form for any splitting of the edges", "[coll
   for (const int parts : {1, 2, 3, 7}) {
     for (const int other : {1, 2, 4}) {
       const OutlinePair pair(split(samples::block(-.5, -d, .5, 1 - d).vertices(), parts),
-                             split(samples::block(-1, -1, 1, 0).vertices(), other), r_c, r_t, k);
-      const auto on_c = pair.contact.resultant(0);
+                             split(samples::block(-1, -1, 1, 0).vertices(), other), r_c, r_t,
+                             law_of(k));
+      const Resultant on_c = pair.on(0);
       CAPTURE(parts, other);
       CHECK(on_c.force.y() == Approx(force).epsilon(1e-13));
       CHECK(std::abs(on_c.force.x()) < 1e-14);
-      CHECK(pair.contact.energy() == Approx(energy).epsilon(1e-13));
-      CHECK(pair.contact.depth().largest == Approx(d).epsilon(1e-14));
+      CHECK(pair.contacts->energy() == Approx(energy).epsilon(1e-13));
+      CHECK(pair.contacts->largest_penetration().value == Approx(d).epsilon(1e-14));
       // Away from the corners p = k d (1/r_c + 1/r_t).
-      std::vector<double> pressure;
-      pair.contact.pressures(pressure);
-      if (parts == 7) CHECK(pressure[3] == Approx(k * d * (1 / r_t + 1 / r_c)).epsilon(1e-13));
+      const double pressure = pair.contacts->surface_records()[3].pressure;
+      if (parts == 7) CHECK(pressure == Approx(k * d * (1 / r_t + 1 / r_c)).epsilon(1e-13));
     }
   }
 }
@@ -187,9 +187,9 @@ TEST_CASE("a tip dragged over a flat row of edges meets no tangential force", "[
       const double d = random.uniform(.001, .012);
       const std::vector<Vec2> tip{{x, -d}, {x + .5, .5 - d}, {x - .5, .5 - d}};
       const OutlinePair pair(split(samples::block(-1, -.5, 1, 0).vertices(), parts), tip, .02, .02);
-      const Vec2 force = pair.contact.resultant(1).force;
+      const Vec2 force = pair.on(1).force;
       REQUIRE(force.y() > 0);
-      REQUIRE(pair.contact.depth().ratio < 1);
+      REQUIRE(deepest_share(*pair.contacts) < 1);
       worst = std::max(worst, std::abs(force.x() / force.y()));
       // Apex on flat.
       CHECK(force.y() == Approx(d * d * (1 + std::sqrt(.5)) / .02).epsilon(1e-11));
@@ -213,13 +213,13 @@ TEST_CASE("convex and reflex corners of many angles", "[collar]") {
                                 {.01 - std::sin(1.1 * tilt), -.06 + std::cos(1.1 * tilt)}};
     const OutlinePair pair(notch, tip, .5, .3);
     CAPTURE(opening);
-    REQUIRE(pair.contact.depth().ratio > 0);
-    REQUIRE(pair.contact.depth().ratio < 1);
+    REQUIRE(deepest_share(*pair.contacts) > 0);
+    REQUIRE(deepest_share(*pair.contacts) < 1);
     CHECK(gradient_error(pair) < 1e-12);
     const Polygon a(notch), b(tip);
     const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
                                             make_potential(b, length_choice(.3)));
-    CHECK(pair.contact.energy() == Approx(exact.volume.energy).epsilon(1e-12));
+    CHECK(pair.contacts->energy() == Approx(exact.volume.energy).epsilon(1e-12));
   }
 }
 
@@ -250,11 +250,12 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
       std::vector<Vec2> moved = b;
       for (Vec2& v : moved) v += k * grid * step;
       pair.emplace(a, moved, .3, .4);
-      if (pair->contact.depth().ratio > 1e-6) break;
+      if (deepest_share(*pair->contacts) > 1e-6) break;
     }
-    if (!pair || pair->contact.depth().ratio < 1e-6 || pair->contact.depth().ratio == 1) continue;
+    if (!pair || deepest_share(*pair->contacts) < 1e-6 || deepest_share(*pair->contacts) >= 1)
+      continue;
     ++pairs;
-    const auto on_a = pair->contact.resultant(0), on_b = pair->contact.resultant(1);
+    const Resultant on_a = pair->on(0), on_b = pair->on(1);
     const double size = pair->largest_force();
     worst = std::max({worst, (on_a.force + on_b.force).norm() / size,
                       std::abs(on_a.moment + on_b.moment) / size});
@@ -263,8 +264,9 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
       const Polygon first(pair->a), second(pair->b);
       const PairResult exact = overlap_method(first, make_potential(first, length_choice(.3)),
                                               second, make_potential(second, length_choice(.4)));
-      worst_energy = std::max(worst_energy, std::abs(pair->contact.energy() - exact.volume.energy) /
-                                                exact.volume.energy);
+      worst_energy =
+          std::max(worst_energy,
+                   std::abs(pair->contacts->energy() - exact.volume.energy) / exact.volume.energy);
     } catch (const SkeletonFailure&) {
     }
   }

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <set>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "fuzz/hard_pairs.hpp"
 #include "fuzz/pair_check.hpp"
 #include "shapes.hpp"

@@ -57,8 +57,8 @@ TEST_CASE("benchmark poses P1 and P5", "[edge]") {
 }
 
 TEST_CASE("closed forms", "[edge]") {
-  // Shallow depths lose eps/depth of their digits by nature (theory: Sec. 2); 1e-12 holds for
-  // these.
+  // Shallow depths lose eps/depth of their digits by nature (docs/theory.md, Normal contact); 1e-12
+  // holds for these.
   for (const double d : {.2, .05, .01, .002}) {
     INFO("depth " << d);
     {

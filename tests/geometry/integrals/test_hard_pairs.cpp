@@ -64,7 +64,7 @@ ExpectedContact oracle(const Polygon& a, const Polygon& b) {
           std::max(1e-12, kEpsilon * size * steepest)};
 }
 
-// Largest error figures over many pairs (theory: Sec. 2).
+// Largest error figures over many pairs (docs/theory.md, Normal contact).
 struct Figures {
   std::vector<double> of_length, of_force, scaled;
   int above_goal = 0;

@@ -2,8 +2,8 @@
 // the overlap polygon, the oracle and the energy.
 #include <functional>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/exact/exact_integral.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/skeleton/skeleton.hpp"
 #include "nonconvex_pairs.hpp"
 
