@@ -5,7 +5,7 @@
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/skeleton/skeleton.hpp"
-#include "nonconvex_pairs.hpp"
+#include "geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
 

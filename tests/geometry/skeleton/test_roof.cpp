@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "apothem/geometry/exact/exact_integral.hpp"
-#include "nonconvex_pairs.hpp"
+#include "geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;
