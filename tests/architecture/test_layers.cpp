@@ -135,7 +135,7 @@ TEST_CASE("public headers include only public headers", "[architecture]") {
 }
 
 TEST_CASE("threads and instruction sets are a matter of lib/execution", "[architecture]") {
-  for (const char* folder : {"geometry", "lib", "apps"}) {
+  for (const char* folder : {"geometry", "lib"}) {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(apothem::test::kSource) / folder)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
