@@ -37,9 +37,11 @@ class Threads {
     Task<Function> task{&f, items};
     run(
         [](void* data, int worker, int workers) {
-          const auto& [function, n] = *static_cast<Task<Function>*>(data);
-          const auto edge = [&](int w) { return static_cast<int>(std::int64_t{n} * w / workers); };
-          (*function)(edge(worker), edge(worker + 1), worker);
+          const auto& work = *static_cast<Task<Function>*>(data);
+          const auto edge = [&](int w) {
+            return static_cast<int>(std::int64_t{work.items} * w / workers);
+          };
+          (*work.function)(edge(worker), edge(worker + 1), worker);
         },
         &task);
   }
