@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apothem/run/run.hpp"
+#include "apothem/scene/plausibility.hpp"
 #include "commands.hpp"
 
 namespace apothem {
@@ -53,6 +54,61 @@ void say_step(const Scene& scene, const Simulation& simulation) {
                                how, choice.limit.reason, choice.stability));
 }
 
+constexpr double kTrial = 0.3;  // s
+
+std::string duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.2g} min", seconds / 60);
+  return seconds < 360000 ? fmt::format("{:.2g} h", seconds / 3600)
+                          : fmt::format("{:.2g} days", seconds / 86400);
+}
+
+// A trial sees the contacts of the start only, and no output.
+void say_run_time(const Scene& scene, const Simulation& simulation) {
+  if (scene.time.statics) return;
+  const Trial trial = try_steps(scene, 1, kTrial);
+  if (!trial.message.empty()) {
+    say("run time", "none: after a few steps, " + trial.message);
+  } else {
+    const double steps = std::ceil(scene.time.end / simulation.step_choice().step);
+    const double each = trial.seconds / static_cast<double>(trial.steps);
+    say("run time", fmt::format("about {} on one thread, from {} steps of {:.2g} s of wall clock",
+                                duration(each * steps), trial.steps, each));
+  }
+}
+
+void say_damping(const Model& model) {
+  const bool damped =
+      model.contact.normal_damping > 0 || model.contact.mass_damping > 0 ||
+      std::any_of(model.materials.begin(), model.materials.end(),
+                  [](const Material& m) { return m.mass_damping > 0 || m.stiffness_damping > 0; });
+  say("damping",
+      damped ? "present, see the terms below" : "none: only friction ends a motion");
+}
+
+void say_output(const Scene& scene) {
+  const OutputSettings& output = scene.output;
+  const size_t bodies = output.track.size() + output.track_deformables.size();
+  say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
+                            output.frames + 1, bodies, output.points.size(),
+                            output.history_interval.value_or(scene.time.end / 1000)));
+  if (bodies + output.points.size() + output.track_surfaces.size() == 0) {
+    say("",
+        "history.csv will hold the time alone: name up to a few bodies in output.history.track "
+        "(a scene of more than 20 bodies has none by default)");
+  }
+  say("checkpoint", output.checkpoint_interval
+                        ? fmt::format("every {:g} s of wall clock", *output.checkpoint_interval)
+                        : "only when the run is stopped; output.checkpoint.wall_clock writes more");
+}
+
+void say_contact_at_start(const Simulation& simulation) {
+  const std::string overlaps = describe_overlaps(simulation);
+  say("at t = 0", fmt::format("{} contacts", simulation.counts().touching_now));
+  if (!overlaps.empty()) say("overlaps", overlaps);
+  for (const std::string& depth : describe_forecast(simulation)) say("penetration", depth);
+}
+
 }  // namespace
 
 int check_command(const CheckOptions& options) {
@@ -66,15 +122,14 @@ int check_command(const CheckOptions& options) {
     say("gravity", fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));
   }
   say_step(scene, *simulation);
-  say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
-                            scene.output.frames + 1,
-                            scene.output.track.size() + scene.output.track_deformables.size(),
-                            scene.output.points.size(),
-                            scene.output.history_interval.value_or(scene.time.end / 1000)));
+  say_run_time(scene, *simulation);
+  say_output(scene);
   say("expects", fmt::format("{} results", scene.expectations.size()));
-  say("at t = 0", fmt::format("{} contacts", simulation->counts().touching_now));
+  say_damping(model);
+  say_contact_at_start(*simulation);
   fmt::print("terms of the step: {}\n", simulation->terms().empty() ? "none" : "");
   for (const auto& term : simulation->terms()) fmt::print("  + {}\n", term->describe());
+  for (const std::string& unlikely : unlikely_values(scene)) fmt::print("warning: {}\n", unlikely);
   return exit_code::done;
 }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "apothem/run/summary.hpp"
+#include "apothem/scene/plausibility.hpp"
 #include "commands.hpp"
 
 namespace apothem {
@@ -104,6 +105,16 @@ void print_summary(const Run& run) {
   }
 }
 
+// What the user should know before a long run.
+void print_warnings(const Run& run) {
+  for (const std::string& unlikely : unlikely_values(run.scene())) {
+    fmt::print(stderr, "warning: {}\n", unlikely);
+  }
+  if (run.settings().resume) return;
+  const std::string overlaps = describe_overlaps(run.simulation());
+  if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
+}
+
 int exit_code_of(const Run& run, bool verify) {
   switch (run.status()) {
     case Run::Status::unstable:
@@ -136,6 +147,7 @@ int run_command(const RunOptions& options) {
       }
     });
   }
+  if (!options.quiet) print_warnings(run);
   running = &run;
   run.run(options.until);
   running = nullptr;

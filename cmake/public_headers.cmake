@@ -6,6 +6,8 @@ set(APOTHEM_PUBLIC_HEADERS
   contact/kinematics.hpp
   contact/law.hpp
   dynamics/degrees_of_freedom.hpp
+  dynamics/energy_guard.hpp
+  dynamics/forecast.hpp
   dynamics/ledger.hpp
   dynamics/results.hpp
   dynamics/simulation.hpp
@@ -61,6 +63,7 @@ set(APOTHEM_PUBLIC_HEADERS
   run/applied_force.hpp
   run/checkpoint.hpp
   run/run.hpp
+  run/start.hpp
   scene/error.hpp
   scene/json.hpp
   scene/scene.hpp)

@@ -46,6 +46,7 @@ struct ContactLaw {
   std::vector<ContactRule> rules = {};  ///< instead of `friction`; later ones win
   double normal_damping = 0;            ///< ratio of critical, of the normal force; 0: none
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
+  bool accepts_overlaps = false;        ///< bodies may overlap deeply at the start
 };
 
 /// Between two bodies, given with their materials: the last rule that fits, or that of the scene.

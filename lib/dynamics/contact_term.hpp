@@ -42,6 +42,8 @@ class ContactTerm final : public Term {
   void refresh(const State& state) override { contacts_.refresh(state.kinematics(state.v)); }
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+  /// The largest slope of the potential of each body, rigid ones first, 1/m.
+  [[nodiscard]] std::vector<double> slopes() const;
   [[nodiscard]] const Peak& penetration() const { return penetration_; }
   [[nodiscard]] const Peak& force() const { return force_; }
   [[nodiscard]] const ContactCounts& counts() const { return counts_; }

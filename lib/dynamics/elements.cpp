@@ -10,6 +10,10 @@
 namespace apothem {
 namespace {
 
+// A uniaxially compressed St. Venant-Kirchhoff bar bears most at 1/sqrt(3) of its length; elements
+// grow across the load, so that their area is a little more.
+constexpr double kSoftened = 0.65;
+
 std::vector<ElementSet> element_sets(const Model& model) {
   std::vector<ElementSet> sets;
   for (const DeformableBody& body : model.deformables) {
@@ -80,19 +84,39 @@ void Elements::add_forces(const Evaluation& now) {
   now.clock.lap(Phase::elements);
 }
 
+Vec2 Elements::centre_of(const FiniteElements::Collapse& where) const {
+  const Mesh& mesh = model_.deformables[where.set].mesh;
+  Vec2 centre = Vec2::Zero();
+  const std::span<const int> nodes = mesh.element(where.element);
+  for (const int node : nodes) centre += mesh.nodes[node] / static_cast<double>(nodes.size());
+  return centre + model_.origin;
+}
+
 void Elements::watch(const State& state) {
   const FiniteElements::Collapse worst = elements_.smallest_ratio(state.layout.of_nodes(state.x));
   if (worst.ratio > 0) return;
-  const DeformableBody& body = model_.deformables[worst.set];
-  Vec2 centre = Vec2::Zero();
-  const std::span<const int> nodes = body.mesh.element(worst.element);
-  for (const int node : nodes) centre += body.mesh.nodes[node] / static_cast<double>(nodes.size());
-  centre += model_.origin;
+  const Vec2 centre = centre_of(worst);
   throw Unstable(fmt::format(
       "the element at ({:.6g}, {:.6g}) m of \"{}\" has turned inside out {}: the load is "
       "more than the material can bear, or the step is too long; reduce the load or "
       "time.safety, or raise time.load_steps",
-      centre.x(), centre.y(), body.name, at_time(state)));
+      centre.x(), centre.y(), model_.deformables[worst.set].name, at_time(state)));
+}
+
+std::string Elements::collapse(const State& state) const {
+  const FiniteElements::Collapse worst = elements_.smallest_ratio(state.layout.of_nodes(state.x));
+  const DeformableBody& body = model_.deformables[worst.set];
+  const Material& material = model_.materials[body.material];
+  if (material.elastic.law != ElasticLaw::st_venant_kirchhoff || worst.ratio > kSoftened) return {};
+  const Vec2 centre = centre_of(worst);
+  const std::string size = worst.ratio > 0
+                               ? fmt::format("is compressed to {:.2g} of its area", worst.ratio)
+                               : std::string("has collapsed");
+  return fmt::format(
+      "the element at ({:.6g}, {:.6g}) m of \"{}\" {} {}: St. Venant-Kirchhoff material resists "
+      "less and less below 0.58 of its length, and then not at all; give the material \"{}\" "
+      "\"law\": \"neo_hookean\", or reduce the load",
+      centre.x(), centre.y(), body.name, size, at_time(state), material.name);
 }
 
 void Elements::add_energies(const State& state, double dt, Energies& e) {

@@ -31,7 +31,12 @@ class Elements final : public Term {
 
   [[nodiscard]] const FiniteElements& elements() const { return elements_; }
 
+  /// Why elements alone would end a run here: St. Venant-Kirchhoff material that is compressed so
+  /// far that it no longer resists. Empty if that has not happened.
+  [[nodiscard]] std::string collapse(const State& state) const;
+
  private:
+  [[nodiscard]] Vec2 centre_of(const FiniteElements::Collapse& where) const;
   void find_limit(const DegreesOfFreedom& dofs, const State& state);
 
   const Model& model_;

@@ -107,10 +107,18 @@ std::int64_t Equilibrium::revision() const {
   return sum;
 }
 
+void Equilibrium::refuse_diverged(const State& state, const std::string& body) const {
+  throw Unstable(
+      fmt::format("the relaxation of \"{}\" diverges at t = {:.9g} s (load step {}): the load of "
+                  "one step is too much for it; raise time.load_steps or reduce the load",
+                  body, state.time, state.step));
+}
+
 void Equilibrium::check_shapes(const State& state) const {
   for (const DeformableBody& body : model_.deformables) {
     for (NodeIndex i = 0; i < static_cast<NodeIndex>(body.mesh.nodes.size()); ++i) {
       const Vec2 u = state.node(body.first_node + i);
+      if (!is_finite(u)) refuse_diverged(state, body.name);
       if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) continue;
       throw Unstable(
           fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
@@ -257,7 +265,10 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
     if (share == 1 && step % kCheckedEvery == 0) {
       result.iterations = step;
       if (reached(state, result)) break;
-      if (!std::isfinite(result.residual) || step >= kMostSteps) refuse(state, result);
+      if (!std::isfinite(result.residual)) {
+        refuse_diverged(state, model_.deformables[std::max(result.unbalanced, 0)].name);
+      }
+      if (step >= kMostSteps) refuse(state, result);
     }
     move(state, step == 0);
     if (stop && stop()) {

@@ -41,6 +41,7 @@ class Equilibrium {
   [[nodiscard]] bool reached(const State& state, LoadStep& result);
   [[nodiscard]] bool body_balanced(const State& state, DeformableIndex body,
                                    const std::vector<double>& outside, LoadStep& result);
+  [[noreturn]] void refuse_diverged(const State& state, const std::string& body) const;
   [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
   /// Of a node's coordinate among the vectors of this object.

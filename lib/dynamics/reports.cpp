@@ -1,7 +1,10 @@
 // What a simulation tells of its present state.
+#include <algorithm>
+
 #include "apothem/dynamics/contact_term.hpp"
 #include "apothem/dynamics/elements.hpp"
 #include "apothem/dynamics/simulation.hpp"
+#include "apothem/model/inradius.hpp"
 
 namespace apothem {
 
@@ -47,10 +50,36 @@ const std::vector<double>& Simulation::node_mass() const {
 
 Extremes Simulation::extremes() const {
   return {contact_ ? contact_->penetration() : Peak{}, contact_ ? contact_->force() : Peak{},
-          energy_error_};
+          guard_.largest_error()};
 }
 
 ContactCounts Simulation::counts() const { return contact_ ? contact_->counts() : ContactCounts{}; }
+
+std::vector<PairDepth> Simulation::overlaps() const {
+  std::vector<PairDepth> pairs;
+  for (const ContactRecord& patch : contacts()) {
+    if (!(patch.penetration > 0)) continue;
+    if (pairs.empty() || pairs.back().a != patch.a || pairs.back().b != patch.b) {
+      pairs.push_back({patch.a, patch.b, 0, 0});
+    }
+    pairs.back().depth = std::max(pairs.back().depth, patch.penetration);
+  }
+  std::vector<double> inradius(model_.bodies.size() + model_.deformables.size());
+  const auto inradius_once = [&](BodyIndex body) {
+    if (inradius[body] == 0) inradius[body] = inradius_of(model_, body);
+    return inradius[body];
+  };
+  for (PairDepth& pair : pairs) {
+    pair.share = pair.depth / std::min(inradius_once(pair.a), inradius_once(pair.b));
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const PairDepth& p, const PairDepth& q) { return p.share > q.share; });
+  return pairs;
+}
+
+Forecast Simulation::forecast() const {
+  return contact_ ? apothem::forecast(model_, contact_->slopes()) : Forecast{};
+}
 
 PhaseSeconds Simulation::phase_seconds() const {
   PhaseSeconds seconds = clock_.seconds();

@@ -21,7 +21,14 @@ struct Peak {
 struct Extremes {
   Peak penetration;         ///< extent of the overlap of a pair along its force, m
   Peak force;               ///< size of the contact force of a pair, N
-  double energy_error = 0;  ///< largest |total_error| of the energies asked for, J
+  double energy_error = 0;  ///< largest |total_error| of the looks of the energy guard, J
+};
+
+/// Two bodies that overlap.
+struct PairDepth {
+  BodyIndex a, b;
+  double depth;  ///< of the deepest of their contact patches, m
+  double share;  ///< of the smaller inradius of the two
 };
 
 /// What contact counts, over all steps so far.

@@ -13,9 +13,12 @@
 #include <span>
 #include <vector>
 
+#include "apothem/dynamics/energy_guard.hpp"
+#include "apothem/dynamics/forecast.hpp"
 #include "apothem/dynamics/results.hpp"
 #include "apothem/dynamics/term.hpp"
 #include "apothem/dynamics/time_step.hpp"
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/execution/stopwatch.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
@@ -63,8 +66,11 @@ class Simulation {
   /// How the step was chosen; its limit changes if contacts turn out stiffer.
   [[nodiscard]] const StepChoice& step_choice() const { return choice_; }
 
-  /// Energies now. Throws Unstable if more than a tenth of the energy in play is unaccounted for.
-  Energies energies();
+  /// Throws Unstable if more than a tenth of the energy in play is unaccounted for. Dynamic steps
+  /// ask this at regular intervals by themselves; the end of a run asks it once more.
+  void check_energy();
+
+  [[nodiscard]] Energies energies() const;
   [[nodiscard]] Momenta momenta() const { return ledger_.momenta(state_); }
   [[nodiscard]] std::vector<ContactRecord> contacts() const;
   /// What acts on each body from contacts; rigid bodies first. Without forces on rigid ones, which
@@ -79,6 +85,10 @@ class Simulation {
   [[nodiscard]] const std::vector<double>& node_mass() const;
   [[nodiscard]] Extremes extremes() const;
   [[nodiscard]] ContactCounts counts() const;
+  /// The pairs of bodies that overlap now, the largest share first.
+  [[nodiscard]] std::vector<PairDepth> overlaps() const;
+  /// How deep bodies will probably press into each other; nothing if none can touch another one.
+  [[nodiscard]] Forecast forecast() const;
   /// The terms of the scene, in their order.
   [[nodiscard]] const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
 
@@ -89,13 +99,15 @@ class Simulation {
 
  private:
   void make_terms(int threads);
+  void take_step();
+  [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
   void advance_time();
   void find_forces(std::span<const double> velocity, double dt);
   void settle();
   void watch();
   void shorten_step();
-  [[nodiscard]] Energies energies_of_terms();
+  [[nodiscard]] Energies energies_of_terms() const;
 
   const Model& model_;
   std::unique_ptr<Elements> own_elements_;  // until it joins the terms
@@ -113,10 +125,9 @@ class Simulation {
   double base_time_ = 0;  // time = base_time + (step - base_step) step size
   std::int64_t base_step_ = 0;
   std::vector<double> lambda_;  // of each rigid body's contacts: bound of stiffness/inertia, 1/s^2
-  double energy_in_play_ = 0;   // J
-  double energy_noise_ = 0;     // J
-  double energy_error_ = 0;     // J
-  std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
+  EnergyGuard guard_;
+  std::int64_t touching_before_ = 0;  // touching pairs, summed over the steps, at the last look
+  std::int64_t steps_before_ = 0;     // of earlier legs of a resumed run
   Stopwatch clock_;
   std::int64_t timed_steps_ = 0;
 };

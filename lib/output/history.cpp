@@ -3,6 +3,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -147,15 +148,18 @@ HistoryTable read_history(const std::string& file) {
   }
   table.columns.resize(table.names.size());
   for (int number = 2; std::getline(stream, line); ++number) {
-    std::istringstream row(line);
-    std::string cell;
+    const char* at = line.data();
+    const char* const end = at + line.size();
     for (std::vector<double>& column : table.columns) {
-      char* end = nullptr;
-      if (std::getline(row, cell, ',')) column.push_back(std::strtod(cell.c_str(), &end));
-      if (end == nullptr || *end != '\0' || cell.empty()) {
+      double value = 0;
+      const auto [next, error] = std::from_chars(at, end, value);
+      const bool last = &column == &table.columns.back();
+      if (error != std::errc() || (last ? next != end : next == end || *next != ',')) {
         throw std::runtime_error(
             fmt::format("{}:{}: is not a row of {} numbers", file, number, table.columns.size()));
       }
+      column.push_back(value);
+      at = next + 1;
     }
   }
   return table;

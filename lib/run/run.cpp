@@ -22,18 +22,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start) {
-  TimeSettings time = scene.time;
-  if (start == Start::checkpoint) time.settled = false;
-  try {
-    return std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads);
-  } catch (const Unrunnable& error) {
-    const std::string index =
-        error.body() >= 0 ? "/" + std::to_string(scene.rigid_places[error.body()]) : "";
-    throw scene.error_at("/" + error.key() + index, error.what());
-  }
-}
-
 bool Schedule::due(double time, double step) {
   if (!(time >= static_cast<double>(next_) * interval_ - 1e-6 * step)) return false;
   next_ = static_cast<std::int64_t>(std::floor(time / interval_ + 1e-6)) + 1;
@@ -127,6 +115,7 @@ Run::Status Run::run(std::optional<double> until) {
   try {
     try {
       loop(end);
+      if (status_ == Status::done) simulation_->check_energy();
       close(end);
     } catch (const Unstable& error) {
       flush();

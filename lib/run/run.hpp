@@ -19,6 +19,7 @@
 #include "apothem/output/history.hpp"
 #include "apothem/run/applied_force.hpp"
 #include "apothem/run/checkpoint.hpp"
+#include "apothem/run/start.hpp"
 #include "apothem/scene/scene.hpp"
 
 namespace apothem {
@@ -29,15 +30,6 @@ struct RunSettings {
   bool resume = false;     ///< continue from the checkpoint of the folder
   bool overwrite = false;  ///< results of an earlier run in the folder may be replaced
 };
-
-/// Where a simulation begins: as its scene says, or from a checkpoint that follows (it need not
-/// settle).
-enum class Start { scene, checkpoint };
-
-/// Throws SceneError, with the place in the scene, instead of Unrunnable. The scene must outlive
-/// the simulation.
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads,
-                                            Start start = Start::scene);
 
 /// Says when the next record is due; a record falls on the first step at or after its time.
 class Schedule {

@@ -48,6 +48,9 @@ void ContactReader::read(const JsonValue& value) {
   if (pairs_) features_.add(Feature::friction_of_pairs, pairs_);
   const JsonValue* surface_value = object.optional("surface");
   surface(surface_value, object.optional("distribution"));
+  if (const JsonValue* v = object.optional("overlaps")) {
+    law.accepts_overlaps = in_.choice(*v, {"refuse", "accept"}) == 1;
+  }
   object.finish();
 }
 

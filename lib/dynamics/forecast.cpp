@@ -1,0 +1,155 @@
+#include "apothem/dynamics/forecast.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apothem/mesh/measure.hpp"
+#include "apothem/model/inradius.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr size_t kFew = 10000;  // bodies; among more, falls end on those that are not free
+
+// A body as the formulas see it.
+struct Block {
+  double mass, density;
+  double breadth;             // of the side on which it lands, m
+  double wave = HUGE_VAL;     // pressure of its elastic wave per speed, Pa s/m
+  double tangent = HUGE_VAL;  // of half the sharpest angle; infinite if not known
+  double speed;               // of its fastest point, without a fall, m/s
+  bool free;
+  double top = 0, bottom = 0;  // along gravity, m
+  double left = 0, right = 0;  // across it
+};
+
+class Blocks {
+ public:
+  explicit Blocks(const Model& model) : model_(model), g_(model.gravity.norm()) {
+    if (g_ > 0) down_ = model.gravity / g_;
+    for (const RigidBody& body : model.bodies) add(body);
+    for (const DeformableBody& body : model.deformables) add(body);
+  }
+
+  Forecast forecast(std::span<const double> slopes) const {
+    Forecast result;
+    double top = HUGE_VAL, bottom = -HUGE_VAL;
+    for (const Block& b : blocks_) {
+      if (b.free) top = std::min(top, b.top), bottom = std::max(bottom, b.bottom);
+    }
+    std::array<double, 2> flattest{HUGE_VAL, HUGE_VAL};  // the two smallest slopes
+    for (const double slope : slopes) {
+      if (slope < flattest[1]) flattest[1] = std::max(slope, flattest[0]);
+      flattest[0] = std::min(slope, flattest[0]);
+    }
+    const auto note = [&](double depth, double corner, BodyIndex body, ExpectedDepth& worst) {
+      if (!(depth > 0)) return;
+      const double share = std::max(depth, corner) / inradius_of(model_, body);
+      if (share > worst.share) worst = {depth, corner, share, body};
+    };
+    for (BodyIndex i = 0; i < static_cast<BodyIndex>(blocks_.size()); ++i) {
+      const Block& b = blocks_[i];
+      if (!b.free) continue;
+      const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
+      const double stiffness = model_.contact.normal_stiffness * (slopes[i] + partner);  // Pa/m
+      note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
+      const double v = std::hypot(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
+      const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
+      note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
+           std::cbrt(3 * energy / (stiffness * b.tangent)), i, result.by_speed);
+    }
+    return result;
+  }
+
+ private:
+  void add(const RigidBody& body) {
+    Block b{.mass = body.mass,
+            .density = model_.materials[body.material].density,
+            .breadth = 0,
+            .speed = body.velocity.norm(),
+            .free = body.motion == Motion::free};
+    double radius = 0;
+    const std::vector<Vec2>& v = body.potential.vertices;
+    const double c = std::cos(body.angle), s = std::sin(body.angle);
+    std::vector<Vec2> points;
+    for (size_t i = 0; i < v.size(); ++i) {
+      radius = std::max(radius, v[i].norm());
+      const Vec2 next = v[(i + 1) % v.size()] - v[i];
+      const Vec2 last = v[(i + v.size() - 1) % v.size()] - v[i];
+      b.breadth = std::max(b.breadth, next.norm());
+      const double sine = cross(next, last), whole = next.norm() * last.norm();
+      if (sine > 0) b.tangent = std::min(b.tangent, sine / (whole + next.dot(last)));
+      points.emplace_back(body.position.x() + c * v[i].x() - s * v[i].y(),
+                          body.position.y() + s * v[i].x() + c * v[i].y());
+    }
+    b.speed += std::abs(body.spin) * radius;
+    for (const auto& point : body.history.velocity) {
+      fastest_ = std::max(fastest_, point.velocity.norm());
+    }
+    for (const auto& point : body.history.spin) {
+      fastest_ = std::max(fastest_, std::abs(point.spin) * radius);
+    }
+    measure(points, b);
+  }
+
+  void add(const DeformableBody& body) {
+    const Material& m = model_.materials[body.material];
+    const double area = mesh_quality(body.mesh).area;
+    Block b{.mass = m.density * area * model_.thickness,
+            .density = m.density,
+            .breadth = 0,
+            .wave = std::sqrt(m.density * m.elastic.young),
+            .speed = body.velocity.norm(),
+            .free = body.supports.empty()};
+    double radius = 0;
+    for (const Vec2& x : body.mesh.nodes) {
+      radius = std::max(radius, (x - body.mesh.nodes[0]).norm());
+    }
+    b.speed += std::abs(body.spin) * radius;
+    for (const Support& support : body.supports) {
+      for (const auto& point : support.motion.velocity) {
+        fastest_ = std::max(fastest_, point.velocity.norm());
+      }
+    }
+    measure(body.mesh.nodes, b);
+    blocks_.back().breadth = blocks_.back().right - blocks_.back().left;
+  }
+
+  void measure(const std::vector<Vec2>& points, Block& b) {
+    b.top = b.left = HUGE_VAL;
+    b.bottom = b.right = -HUGE_VAL;
+    for (const Vec2& p : points) {
+      const double along = p.dot(down_), across = cross(down_, p);
+      b.top = std::min(b.top, along), b.bottom = std::max(b.bottom, along);
+      b.left = std::min(b.left, across), b.right = std::max(b.right, across);
+    }
+    blocks_.push_back(b);
+  }
+
+  // Free fall onto the next body below, 0 if there is none, m.
+  [[nodiscard]] double fall(const Block& b) const {
+    double gap = HUGE_VAL;
+    const bool few = blocks_.size() <= kFew;
+    for (const Block& other : blocks_) {
+      if (&other == &b || (!few && other.free) || other.right <= b.left || b.right <= other.left)
+        continue;
+      if (other.bottom > b.bottom) gap = std::min(gap, std::max(0., other.top - b.bottom));
+    }
+    return g_ > 0 && std::isfinite(gap) ? gap : 0;
+  }
+
+  const Model& model_;
+  double g_;
+  Vec2 down_{0, -1};
+  double fastest_ = 0;  // of bodies with prescribed motion, m/s
+  std::vector<Block> blocks_;
+};
+
+}  // namespace
+
+Forecast forecast(const Model& model, std::span<const double> slopes) {
+  return Blocks(model).forecast(slopes);
+}
+
+}  // namespace apothem

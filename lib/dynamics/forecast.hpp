@@ -1,0 +1,32 @@
+// What a run will probably see, from closed formulas: how deep bodies press into each other.
+#pragma once
+
+#include <span>
+
+#include "apothem/model/model.hpp"
+
+namespace apothem {
+
+/// A depth of contact and the body with the largest share of its inradius.
+struct ExpectedDepth {
+  double depth = 0;   ///< flat on the other body, m
+  double corner = 0;  ///< by the body's sharpest corner, m; 0 if not known
+  double share = 0;   ///< the larger of the two, of the body's inradius
+  BodyIndex body = -1;
+};
+
+/// Bodies flat on each other press with p = s depth, s = k_n (1/r_a + 1/r_b); a corner of the angle
+/// 2 alpha, with the depth h at its tip, holds the energy s tan(alpha) h^3 / 3 per thickness.
+struct Forecast {
+  /// Under the weight of a pile as high as all free bodies together: p = density g height.
+  ExpectedDepth by_weight;
+  /// Of the first impact on something fixed, at the speeds of the start and after the free fall
+  /// onto what lies below: the energy of contact is m v^2 / 2. A body with a mesh presses with no
+  /// more than the pressure of its elastic wave, density c v.
+  ExpectedDepth by_speed;
+};
+
+/// `slopes`: 1/r of the potential of each body, rigid ones first, 1/m.
+Forecast forecast(const Model& model, std::span<const double> slopes);
+
+}  // namespace apothem

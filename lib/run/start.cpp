@@ -1,0 +1,105 @@
+#include "apothem/run/start.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "apothem/dynamics/unstable.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr size_t kNamedPairs = 3;
+constexpr double kRounding = 1e-9;  // of the inradius; less is touching
+
+std::string pair_text(const Model& model, const PairDepth& pair) {
+  return fmt::format("\"{}\" and \"{}\" by {:.3g} m ({:.2g} % of the smaller inradius)",
+                     model.name_of(pair.a), model.name_of(pair.b), pair.depth, 100 * pair.share);
+}
+
+std::string place_of(const Scene& scene, BodyIndex body) {
+  const auto rigid = static_cast<BodyIndex>(scene.rigid_places.size());
+  return body < rigid ? fmt::format("/bodies/{}", scene.rigid_places[body]) : "/bodies";
+}
+
+// A resting body may press into its support a little; what is deeper would be shot out.
+void refuse_overlaps(const Scene& scene, const Simulation& simulation) {
+  const std::vector<PairDepth> pairs = simulation.overlaps();
+  if (pairs.empty() || !(pairs.front().share > kSmallOverlap)) return;
+  throw scene.error_at(
+      place_of(scene, pairs.front().b),
+      fmt::format("bodies overlap at the start: {}. This would drive them apart. Move them apart, "
+                  "or say \"overlaps\": \"accept\" in \"contact\"",
+                  describe_overlaps(simulation)));
+}
+
+std::string depth_text(const Model& model, const ExpectedDepth& e, const char* cause) {
+  const std::string corner =
+      e.corner > 0 ? fmt::format(" flat, {:.2g} m by its sharpest corner", e.corner) : "";
+  return fmt::format("about {:.2g} m{} by {}: {:.2g} % of the inradius of \"{}\"", e.depth, corner,
+                     cause, 100 * e.share, model.name_of(e.body));
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start) {
+  TimeSettings time = scene.time;
+  if (start == Start::checkpoint) time.settled = false;
+  std::unique_ptr<Simulation> simulation;
+  try {
+    simulation = std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads);
+  } catch (const Unrunnable& error) {
+    const std::string index =
+        error.body() >= 0 ? "/" + std::to_string(scene.rigid_places[error.body()]) : "";
+    throw scene.error_at("/" + error.key() + index, error.what());
+  }
+  if (start == Start::scene && !time.settled && !scene.model.contact.accepts_overlaps) {
+    refuse_overlaps(scene, *simulation);
+  }
+  return simulation;
+}
+
+std::string describe_overlaps(const Simulation& simulation) {
+  std::vector<PairDepth> pairs = simulation.overlaps();
+  std::erase_if(pairs, [](const PairDepth& pair) { return pair.share < kRounding; });
+  if (pairs.empty()) return {};
+  std::string text;
+  for (size_t i = 0; i < std::min(pairs.size(), kNamedPairs); ++i) {
+    text += (i > 0 ? ", " : "") + pair_text(simulation.model(), pairs[i]);
+  }
+  if (pairs.size() > kNamedPairs) {
+    text += fmt::format(", and {} more pairs", pairs.size() - kNamedPairs);
+  }
+  return text + fmt::format("; elastic energy {:.3g} J", simulation.energies().contact);
+}
+
+std::vector<std::string> describe_forecast(const Simulation& simulation) {
+  const Forecast forecast = simulation.forecast();
+  std::vector<std::string> lines;
+  for (const auto& [depth, cause] :
+       {std::pair(forecast.by_weight, "weight"),
+        std::pair(forecast.by_speed, "impact at the speeds present")}) {
+    if (depth.body >= 0) lines.push_back(depth_text(simulation.model(), depth, cause));
+  }
+  return lines;
+}
+
+Trial try_steps(const Scene& scene, int threads, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const std::unique_ptr<Simulation> simulation = make_simulation(scene, threads);
+  Trial trial;
+  const Clock::time_point start = Clock::now();
+  try {
+    while (trial.seconds < seconds && simulation->state().time < scene.time.end) {
+      simulation->step();
+      ++trial.steps;
+      trial.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    }
+  } catch (const Unstable& error) {
+    trial.message = error.what();
+  }
+  return trial;
+}
+
+}  // namespace apothem

@@ -1,0 +1,43 @@
+// The start of a run: a simulation from a scene, and what the user should know before it begins.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/scene/scene.hpp"
+
+namespace apothem {
+
+/// Where a simulation begins: as its scene says, or from a checkpoint that follows (it need not
+/// settle).
+enum class Start { scene, checkpoint };
+
+/// Throws SceneError, with the place in the scene, instead of Unrunnable; also if bodies overlap by
+/// more than kSmallOverlap at the start, unless the scene accepts that or starts settled. The scene
+/// must outlive the simulation.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads,
+                                            Start start = Start::scene);
+
+/// Overlaps of bodies at the start that pass for touching, of the smaller inradius of the two.
+inline constexpr double kSmallOverlap = 1e-3;
+
+/// The pairs that overlap now, with depth and energy, in one line; empty if no bodies overlap.
+std::string describe_overlaps(const Simulation& simulation);
+
+/// The probable depths of contact, one line each: see Forecast.
+std::vector<std::string> describe_forecast(const Simulation& simulation);
+
+/// The steps of a trial and what they took.
+struct Trial {
+  std::int64_t steps = 0;
+  double seconds = 0;        ///< of all steps
+  std::string message = {};  ///< why the trial became unstable, else empty
+};
+
+/// Steps through a scene without files for about `seconds` of wall-clock time, or to its end. Not
+/// for static scenes.
+Trial try_steps(const Scene& scene, int threads, double seconds);
+
+}  // namespace apothem
