@@ -26,6 +26,7 @@ double round_off(const Model& model) {
   for (const DeformableBody& body : model.deformables) {
     for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
   }
+  if (!(scene.extent() > 0)) return 0;
   const double shift = 1e-12 * scene.extent();
   return weight * shift + model.stiffness() * shift * shift;
 }

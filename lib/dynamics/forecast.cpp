@@ -53,11 +53,13 @@ class Blocks {
       if (!b.free) continue;
       const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
       const double stiffness = model_.contact.normal_stiffness * (slopes[i] + partner);  // Pa/m
+      const double sine = std::isfinite(b.tangent) ? b.tangent / std::hypot(1, b.tangent) : 1;
+      const double at_corner = model_.contact.normal_stiffness * (partner + sine * slopes[i]);
       note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
       const double v = std::hypot(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
       const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
       note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
-           std::cbrt(3 * energy / (stiffness * b.tangent)), i, result.by_speed);
+           std::cbrt(3 * energy / (b.tangent * at_corner)), i, result.by_speed);
     }
     return result;
   }

@@ -15,8 +15,9 @@ struct ExpectedDepth {
   BodyIndex body = -1;
 };
 
-/// Bodies flat on each other press with p = s depth, s = k_n (1/r_a + 1/r_b); a corner of the angle
-/// 2 alpha, with the depth h at its tip, holds the energy s tan(alpha) h^3 / 3 per thickness.
+/// Bodies flat on each other press with p = k_n (1/r_a + 1/r_b) depth. A corner of the angle 2
+/// alpha of body b, with the depth h at its tip, holds the energy k_n (1/r_a + sin(alpha)/r_b)
+/// tan(alpha) h^3 / 3 per thickness.
 struct Forecast {
   /// Under the weight of a pile as high as all free bodies together: p = density g height.
   ExpectedDepth by_weight;

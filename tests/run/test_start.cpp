@@ -1,6 +1,7 @@
 // The start of a run: overlaps, and what can be said before.
 #include "apothem/run/start.hpp"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "scenes.hpp"
