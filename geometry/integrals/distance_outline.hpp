@@ -51,15 +51,15 @@ class DistanceOutline {
     Real origin, start, rise, from, to;
   };
 
-  /// Takes the vertices of a field. Vertices that are nearer to each other than a few units in the
-  /// last place of the coordinates become one: the edge between them has no direction.
+  /// Takes the vertices of a field, whose coordinates are finite. Vertices that are nearer to each
+  /// other than a few units in the last place of the polygon's size become one: the edge between
+  /// them has no direction.
   void load(const PlacedDistance<Real>& field) {
-    Real largest = 0;
     using std::abs;
-    for (int i = 0; i < field.size; ++i) {
-      largest = std::max(largest, std::max(Real(abs(field.x[i])), Real(abs(field.y[i]))));
-    }
-    const Real same = 8 * std::numeric_limits<Real>::epsilon() * largest;
+    const auto [x0, x1] = std::minmax_element(field.x, field.x + field.size);
+    const auto [y0, y1] = std::minmax_element(field.y, field.y + field.size);
+    const Real size = std::max(Real(*x1 - *x0), Real(*y1 - *y0));
+    const Real same = 8 * std::numeric_limits<Real>::epsilon() * size;
     const auto near = [&](const Point& p, const Point& q) {
       return abs(p.x - q.x) <= same && abs(p.y - q.y) <= same;
     };

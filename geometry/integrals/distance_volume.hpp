@@ -29,9 +29,12 @@ template <class Real>
 class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
-  /// in the frame of the field.
+  /// in the frame of the field. If a coordinate of the field is not finite, the result is NaN.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
+    Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
+    for (int i = 0; i < field.size; ++i) finite += 0 * field.x[i] + 0 * field.y[i];
+    if (!(finite == 0)) return finite;
     outline_.load(field);
     capped_ = field.capped;
     top_ = 1 / field.slope;
