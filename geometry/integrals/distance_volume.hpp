@@ -19,7 +19,8 @@
 #include <limits>
 #include <vector>
 
-#include "apothem/geometry/potential/distance_field.hpp"
+#include "apothem/geometry/integrals/distance_outline.hpp"
+#include "apothem/geometry/potential/piecewise_minimum.hpp"
 
 namespace apothem {
 
@@ -28,27 +29,26 @@ template <class Real>
 class DistanceVolume {
  public:
   /// Returns the integral of phi dA, m^2, over the counter-clockwise ring with the coordinates x, y
-  /// in the frame of the field.
+  /// in the frame of the field. If a coordinate of the field is not finite, the result is NaN.
   Real over(const PlacedDistance<Real>& field, const std::vector<Real>& x,
             const std::vector<Real>& y) {
-    load(field, x, y);
+    Real finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
+    for (int i = 0; i < field.size; ++i) finite += 0 * field.x[i] + 0 * field.y[i];
+    if (!(finite == 0)) return finite;
+    outline_.load(field);
+    capped_ = field.capped;
+    top_ = 1 / field.slope;
+    ring_.clear();
+    for (size_t i = 0; i < x.size(); ++i) ring_.push_back({x[i], y[i]});
     Real volume = 0;
-    for (int i = 0; i < n_; ++i) volume += edge_cell(i);
-    for (int i = 0; i < n_; ++i) {
-      if (cross(normal_[before(i)], normal_[i]) < 0) volume += vertex_cell(i);
-    }
-    return volume / (field.slope * field.slope);
+    if (outline_.size() < 3) return volume;
+    for (int i = 0; i < outline_.size(); ++i) volume += edge_cell(i);
+    for (const int v : outline_.reflex()) volume += vertex_cell(v);
+    return volume * field.slope;
   }
 
  private:
-  struct Point {
-    Real x, y;
-    Point operator-(const Point& p) const { return {x - p.x, y - p.y}; }
-    Point operator+(const Point& p) const { return {x + p.x, y + p.y}; }
-    Point operator*(const Real& f) const { return {x * f, y * f}; }
-  };
-  static Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
-  static Real cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
+  using Point = PlanePoint<Real>;
 
   // The function c[0] + c[1] z + c[2] z^2 with z = s - origin. The origin is chosen so that the
   // values near it are small. `id` names the feature that the function belongs to.
@@ -82,28 +82,6 @@ class DistanceVolume {
    private:
     [[nodiscard]] Real slope(const Real& s) const { return c[1] + 2 * c[2] * (s - origin); }
   };
-
-  // Stores the polygons with all lengths divided by the reference length r.
-  void load(const PlacedDistance<Real>& field, const std::vector<Real>& x,
-            const std::vector<Real>& y) {
-    n_ = field.size;
-    capped_ = field.capped;
-    corners_ = field.corners;
-    vertex_.resize(n_);
-    normal_.resize(n_);
-    for (int i = 0; i < n_; ++i) {
-      vertex_[i] = {field.x[i] * field.slope, field.y[i] * field.slope};
-      normal_[i] = {field.gx[i] / field.slope, field.gy[i] / field.slope};
-    }
-    length_.resize(n_);
-    for (int i = 0; i < n_; ++i) length_[i] = dot(tangent(i), vertex_[after(i)] - vertex_[i]);
-    ring_.clear();
-    for (size_t i = 0; i < x.size(); ++i) ring_.push_back({x[i] * field.slope, y[i] * field.slope});
-  }
-
-  [[nodiscard]] int after(int i) const { return i + 1 == n_ ? 0 : i + 1; }
-  [[nodiscard]] int before(int i) const { return i == 0 ? n_ - 1 : i - 1; }
-  [[nodiscard]] Point tangent(int i) const { return {normal_[i].y, -normal_[i].x}; }
 
   // The volume of one cell, summed from its foot (low) and from its ceiling (high), and the sums of
   // the absolute values of the terms. Both sums are equal up to round-off, but if the ring passes
@@ -150,70 +128,37 @@ class DistanceVolume {
 
   // Volume over the cell of edge i.
   Real edge_cell(int i) {
-    const Point t = tangent(i);
-    const Point& n = normal_[i];
-    ceiling_.reset(0, length_[i]);
-    for (int j = 0; j < n_; ++j) {
-      if (j != i) ceiling_by_edge(i, j);
+    const Point t = outline_.tangent(i);
+    const Point& n = outline_.normal(i);
+    const Point& start = outline_.vertex(i);
+    const Real& length = outline_.length(i);
+    ceiling_.reset(0, length);
+    for (int j = 0; j < outline_.size(); ++j) {
+      typename DistanceOutline<Real>::Bisector line;
+      if (j == i || !outline_.bisector(i, j, line)) continue;
+      ceiling_.insert({line.origin, {line.start, line.rise, 0}, j}, line.from, line.to);
     }
-    for (const int v : *corners_) {
-      if (v == i || v == after(i)) continue;
-      const Point p = vertex_[v] - vertex_[i];
-      const Real h = dot(n, p);
-      const Real tau = dot(t, p);
+    for (const int v : outline_.reflex()) {
+      if (v == i || v == outline_.after(i)) continue;
+      const Real h = outline_.height(i, v);
       const Real curvature = 1 / (2 * h);
       if (h > 0 && curvature < std::numeric_limits<Real>::infinity()) {
-        ceiling_.insert({tau, {h / 2, 0, curvature}, n_ + v}, 0, length_[i]);
+        const Real tau = dot(t, outline_.vertex(v) - start);
+        ceiling_.insert({tau, {h / 2, 0, curvature}, outline_.size() + v}, 0, length);
       }
     }
     Sums sums;
     for (size_t k = 0; k < ring_.size(); ++k) {
-      const Point p = ring_[k] - vertex_[i];
-      const Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - vertex_[i];
-      under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length_[i], sums);
+      const Point p = ring_[k] - start;
+      const Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - start;
+      under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length, sums);
     }
     return sums.low_size <= sums.high_size ? sums.low : sums.high;
   }
 
-  // Adds to the ceiling of the cell of edge i the bisector of the lines i and j, where the circle
-  // touches line j within edge j. The bisector is written so that the cells of i and j share it to
-  // the last bit. A common error only moves points between two cells in which they have the same
-  // depth; a difference would count an area twice.
-  void ceiling_by_edge(int i, int j) {
-    const Point m = normal_[j] - normal_[i];
-    const Real slope = dot(m, m) / 2;  // equal to -m . n_i
-    if (!(slope > 0)) return;
-    const bool next = j == after(i);
-    const bool previous = j == before(i);
-    const Real rise = dot(m, tangent(i)) / slope;
-    const Real start = next       ? Real(-rise * length_[i])
-                       : previous ? Real(0)
-                                  : Real((dot(m, vertex_[i]) - (dot(normal_[j], vertex_[j]) -
-                                                                dot(normal_[i], vertex_[i]))) /
-                                         slope);
-    // The two touching points are equally far from the point where the lines meet. As one moves
-    // away from the start of its edge, the other one moves towards the start of its own.
-    const Real foot =
-        next ? length_[i]
-        : previous
-            ? length_[j]
-            : Real(dot(tangent(j), vertex_[i] - vertex_[j]) + start * dot(tangent(j), normal_[i]));
-    Real from = std::max(Real(0), Real(foot - length_[j]));
-    Real to = std::min(length_[i], foot);
-    const Real zero = -start / rise;
-    if (rise > 0) {
-      from = std::max(from, zero);
-    } else if (rise < 0) {
-      to = std::min(to, zero);
-    } else if (!(start >= 0)) {
-      return;
-    }
-    if (from < to) ceiling_.insert({0, {start, rise, 0}, j}, from, to);
-  }
-
-  // INT_0^h min(1, h') dh', or without the minimum if phi is not limited to 1.
+  // INT_0^h min(r, h') dh', or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real column(const Real& h) const {
-    return capped_ && h > 1 ? Real(h - Real(1) / 2) : Real(h * h / 2);
+    return capped_ && h > top_ ? Real(top_ * (h - top_ / 2)) : Real(h * h / 2);
   }
 
   // Adds the volume between the foot of an edge's cell, of the given length, and a segment.
@@ -235,8 +180,8 @@ class DistanceVolume {
       add_cut(tau1 - h1 / rate);
       add_cuts(ceiling, line);
       if (capped_) {
-        add_cut(tau1 + (1 - h1) / rate);
-        add_cuts(ceiling, {0, {1, 0, 0}, 0});
+        add_cut(tau1 + (top_ - h1) / rate);
+        add_cuts(ceiling, {0, {top_, 0, 0}, 0});
       }
       between_cuts([&](const Real& a, const Real& b) {
         const Real middle = (a + b) / 2;
@@ -255,22 +200,25 @@ class DistanceVolume {
   // Volume over the cell of the reflex vertex v. Directions are given by t = tan(theta/2), where
   // theta is the angle from the middle direction of the cell.
   Real vertex_cell(int v) {
-    const Point& left = normal_[before(v)];
-    const Point& right = normal_[v];
-    const Point middle = dot(left, right) >= 0 ? left + right : tangent(before(v)) - tangent(v);
+    const Point& corner = outline_.vertex(v);
+    const int before = outline_.before(v);
+    const Point& left = outline_.normal(before);
+    const Point& right = outline_.normal(v);
+    const Point middle =
+        dot(left, right) >= 0 ? left + right : outline_.tangent(before) - outline_.tangent(v);
     using std::sqrt;
     axis_ = middle * (1 / sqrt(dot(middle, middle)));
     const Real t0 = half_tangent(in_frame(right));
     const Real t1 = half_tangent(in_frame(left));
     ceiling_.reset(t0, t1);
     reaches_.clear();
-    for (int j = 0; j < n_; ++j) {
-      if (j != v && j != before(v)) reach_to_edge(v, j, t0, t1);
+    for (int j = 0; j < outline_.size(); ++j) {
+      if (j != v && j != before) reach_to_edge(v, j, t0, t1);
     }
-    for (const int w : *corners_) {
+    for (const int w : outline_.reflex()) {
       if (w == v) continue;
       // The cell ends on the perpendicular bisector u . p = |p|^2 / (2 rho), u the unit direction.
-      const Point p = in_frame(vertex_[w] - vertex_[v]);
+      const Point p = in_frame(outline_.vertex(w) - corner);
       const Real d2 = dot(p, p) / 2;
       reaches_.push_back({false, p, d2, 0, 0});
       insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1);
@@ -278,8 +226,8 @@ class DistanceVolume {
     Sums sums;
     Real coverage = 0;  // winding number of the ring about the vertex, in the middle direction
     for (size_t k = 0; k < ring_.size(); ++k) {
-      Point p = ring_[k] - vertex_[v];
-      Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - vertex_[v];
+      Point p = ring_[k] - corner;
+      Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - corner;
       if (!clip(p, q, cross(right, p), cross(right, q))) continue;
       if (!clip(p, q, cross(p, left), cross(q, left))) continue;
       beyond_segment(in_frame(p), in_frame(q), sums, coverage);
@@ -334,10 +282,9 @@ class DistanceVolume {
   // Adds the parabola between the vertex v and edge j, where the circle touches j within the edge.
   void reach_to_edge(int v, int j, const Real& t0, const Real& t1) {
     using std::sqrt;
-    const Point p = vertex_[v] - vertex_[j];
-    const Real d = dot(normal_[j], p);
+    const Real d = outline_.height(j, v);
     if (!(d > 0)) return;
-    const Point m = in_frame(normal_[j]) * Real(-1);
+    const Point m = in_frame(outline_.normal(j)) * Real(-1);
     Real ec, es;
     if (m.x >= 0) {
       ec = sqrt((1 + m.x) / 2);
@@ -349,9 +296,9 @@ class DistanceVolume {
     // On the parabola rho = d / (1 + u . m) = d (1 + y^2) / 2, where y is the tangent of half the
     // angle from m. The circle touches edge j at the distance d y from the foot of the
     // perpendicular from the vertex.
-    const Real foot = dot(tangent(j), p);
-    const Real y0 = -foot / d;
-    const Real y1 = (length_[j] - foot) / d;
+    const Point t = outline_.tangent(j);
+    const Real y0 = dot(t, outline_.vertex(j) - outline_.vertex(v)) / d;
+    const Real y1 = dot(t, outline_.vertex(outline_.after(j)) - outline_.vertex(v)) / d;
     // t = (es + ec y) / (ec - es y) increases with y, and may pass through infinity once.
     const Real infinite = std::numeric_limits<Real>::infinity();
     if (!(y0 > -infinite && y0 < infinite && y1 > -infinite && y1 < infinite)) return;
@@ -373,13 +320,14 @@ class DistanceVolume {
     }
   }
 
-  // The volume between the directions t1 and t2 up to the border: the integral of min(1, rho) rho
+  // The volume between the directions t1 and t2 up to the border: the integral of min(r, rho) rho
   // over rho and theta, or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
     using std::atan2;
     using std::sqrt;
     const Real middle = (t1 + t2) / 2;
     const Real half_angle = atan2(Real(t2 - t1), Real(1 + t1 * t2));
+    const Real cone = top_ * top_ * top_ / 3;
     const Real& d = reach.d;
     if (reach.parabola) {
       const auto denominator = [&](const Real& t) { return Real(reach.ec + reach.es * t); };
@@ -388,9 +336,9 @@ class DistanceVolume {
       };
       if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // narrower than round-off
       const Real y1 = y(t1), y2 = y(t2), ym = y(middle);
-      if (capped_ && d * (1 + ym * ym) > 2) {
-        return d * d / 4 * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
-               half_angle / 3;
+      if (capped_ && d * (1 + ym * ym) > 2 * top_) {
+        return d * d / 4 * top_ * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
+               cone * half_angle;
       }
       return d * d * d / 12 *
              gauss(y1, y2, [](const Real& s) { return Real((1 + s * s) * (1 + s * s)); });
@@ -405,15 +353,16 @@ class DistanceVolume {
     if (!(c1 > 0 && c2 > 0)) return 0;
     const Real w = D * (n.x * 2 * t1 - n.y * (1 - t1 * t1)) / c1;
     const Real step = 2 * D * (t2 - t1) * (1 + t1 * t2) / (c1 * c2);
-    if (capped_ && D * (1 + middle * middle) > across(middle)) {
-      return D * step / 2 - half_angle / 3;
+    if (capped_ && D * (1 + middle * middle) > top_ * across(middle)) {
+      return D * step / 2 * top_ - cone * half_angle;
     }
     return D / 3 * root_moments<Real>(D * D, w, step)[0];
   }
 
-  // Adds the cuts at rho = 1, where phi reaches its limit.
+  // Adds the cuts at rho = r, where phi reaches its limit.
   void add_cap_cuts(const Quadratic& inverse, const Real& factor) {
-    if (capped_) add_cuts(inverse, {0, {-factor, 0, -factor}, 0});
+    const Real limit = -factor / top_;
+    if (capped_) add_cuts(inverse, {0, {limit, 0, limit}, 0});
   }
 
   // Adds the volume between the vertex and a segment of the ring inside the cell's directions.
@@ -447,11 +396,11 @@ class DistanceVolume {
     }
   }
 
-  int n_ = 0;
   bool capped_ = false;
-  const std::vector<int>* corners_ = nullptr;
-  std::vector<Point> vertex_, normal_, ring_;
-  std::vector<Real> length_, cuts_;
+  Real top_{};  // the reference length r
+  DistanceOutline<Real> outline_;
+  std::vector<Point> ring_;
+  std::vector<Real> cuts_;
   PiecewiseMinimum<Real, Quadratic> ceiling_;  // far end of the present cell
   std::vector<Reach> reaches_;                 // borders of the present vertex's cell
   Point axis_{};                               // middle direction of the present vertex's cell

@@ -5,6 +5,7 @@
 #include "apothem/geometry/integrals/distance_volume.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
 #include "apothem/geometry/integrals/placement.hpp"
+#include "apothem/geometry/polygon/boundary_inside.hpp"
 #include "apothem/geometry/potential/lower_envelope.hpp"
 
 namespace apothem {
@@ -73,6 +74,7 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
     SegmentMoments<double> moments;
     walk_envelope(row, s0, s1,
                   [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
+    if (moments.sum == 0 && touches_from_outside(row, y, edge.ex, edge.ey)) continue;
     accumulate(edge, moments, s1 - s0, half);
     pieces.add(edge, s0, s1);
   }
@@ -329,6 +331,8 @@ PairResult edge_method(const Polygon& a, const Potential& potential_a, const Pol
              ? needle_integral(placed.a.view, placed.b.view, workspace)
              : pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
   placed.about_centroids(pair);
+  pair.own_length_a = boundary_inside(a, b);
+  pair.own_length_b = boundary_inside(b, a);
   result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
   return result;
 }

@@ -47,13 +47,20 @@ struct PlacedPotential {
 /// The integrals of a pair for unit stiffness. Multiplied by the stiffness k_n (Pa), force and
 /// weight are in N/m, moments in N, and the energy of PairVolume in J/m. Moments are about the
 /// reference points of the two polygons; positions are relative to the reference point of a.
+///
+/// The own length of a polygon is the length of the parts of its boundary that have points of the
+/// other polygon immediately on their inner side. It is the polygon's share of the boundary of the
+/// overlap. Where edges of both polygons lie on each other, they count for both if the polygons lie
+/// on the same side, and for neither if they lie on opposite sides and only touch. All methods
+/// agree about it, but at a depth of round-off the length changes suddenly from nothing to that of
+/// a whole edge: there pair_integral and contact_patches, which round all heights, may take either.
 struct PairIntegral {
   Vec2 force = Vec2::Zero();   ///< force on a, m
   double moment_a = 0;         ///< moment on a about its reference point, m^2
   double moment_b = 0;         ///< moment on b about its reference point, m^2
   double weight = 0;           ///< W = SUM INT phi ds, the scale of round-off errors, m
   Vec2 centre = Vec2::Zero();  ///< weighted centre p0 = SUM INT phi x ds / W, m
-  double own_length_a = 0;     ///< length of the boundary of a inside b, m
+  double own_length_a = 0;     ///< length of the boundary of a inside b, m (see below)
   double own_length_b = 0;     ///< length of the boundary of b inside a, m
   double largest_phi = 0;      ///< largest phi found along the edges
   double penetration = 0;      ///< extent of the overlap along the force, m
@@ -101,7 +108,8 @@ struct PairResult {
 /// Computes all integrals of two polygons at their given positions, with potentials made by
 /// make_potential. Moments are about the polygons' centroids and positions are relative to the
 /// centroid of a. It is meant for single evaluations: vertices are used exactly as given, so the
-/// round-off is as small as the kernel allows.
+/// round-off is as small as the kernel allows, and the own
+/// lengths are decided exactly.
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b);
 

@@ -199,8 +199,10 @@ class DistanceTrace {
     const Real h1 = a + b * s1;
     if ((h0 >= bound_ && h1 >= bound_) || (h0 <= -bound_ && h1 <= -bound_)) return;
     const int j = i + 1 == field.size ? 0 : i + 1;
-    const Real tx = field.x[j] - field.x[i];
-    const Real ty = field.y[j] - field.y[i];
+    // Along the edge, at right angles to the gradient to the last bit. The difference of the ends
+    // would not do: if they are a few units in the last place apart, its direction is round-off.
+    const Real& tx = field.gy[i];
+    const Real ty = -field.gx[i];
     const Real rate = tx * ex_ + ty * ey_;
     const Real start = tx * rx + ty * ry;  // foot at s = 0, from start and end
     const Real end = tx * (px_ - field.x[j]) + ty * (py_ - field.y[j]);

@@ -1,0 +1,194 @@
+// The outline of a polygon with a distance field, for any number type, and the curves of points
+// that are equally far from two of its features, which are edges and reflex vertices. They bound
+// the cells of distance_volume.hpp.
+//
+// Everything follows from the vertices where they are now, also the directions of the edges. A
+// position that is rounded after a rotation or a shift turns an edge whose length is near the
+// spacing of the coordinates. With the direction from before, the perpendiculars at its two ends
+// would no longer separate the cells of its neighbours.
+//
+// Which side of a line a vertex is on is decided exactly. All lengths that may be tiny are
+// differences of positions that are near each other.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/potential/distance_field.hpp"
+
+namespace apothem {
+
+/// A point or a vector of the plane.
+template <class Real>
+struct PlanePoint {
+  Real x, y;
+  PlanePoint operator-(const PlanePoint& p) const { return {x - p.x, y - p.y}; }
+  PlanePoint operator+(const PlanePoint& p) const { return {x + p.x, y + p.y}; }
+  PlanePoint operator*(const Real& f) const { return {x * f, y * f}; }
+};
+template <class Real>
+Real dot(const PlanePoint<Real>& a, const PlanePoint<Real>& b) {
+  return a.x * b.x + a.y * b.y;
+}
+template <class Real>
+Real cross(const PlanePoint<Real>& a, const PlanePoint<Real>& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+template <class Real>
+class DistanceOutline {
+ public:
+  using Point = PlanePoint<Real>;
+
+  /// The points that are equally far from edge i and from another edge: their height over edge i is
+  /// start + rise (tau - origin) for tau between `from` and `to`, where tau is the coordinate along
+  /// edge i. There the foot on the other edge lies within it, and the height is positive.
+  struct Bisector {
+    Real origin, start, rise, from, to;
+  };
+
+  /// Takes the vertices of a field, whose coordinates are finite. Vertices that are nearer to each
+  /// other than a few units in the last place of the polygon's size become one: the edge between
+  /// them has no direction.
+  void load(const PlacedDistance<Real>& field) {
+    using std::abs;
+    const auto [x0, x1] = std::minmax_element(field.x, field.x + field.size);
+    const auto [y0, y1] = std::minmax_element(field.y, field.y + field.size);
+    const Real size = std::max(Real(*x1 - *x0), Real(*y1 - *y0));
+    const Real same = 8 * std::numeric_limits<Real>::epsilon() * size;
+    const auto near = [&](const Point& p, const Point& q) {
+      return abs(p.x - q.x) <= same && abs(p.y - q.y) <= same;
+    };
+    vertex_.clear();
+    for (int i = 0; i < field.size; ++i) {
+      const Point p{field.x[i], field.y[i]};
+      if (vertex_.empty() || !near(p, vertex_.back())) vertex_.push_back(p);
+    }
+    while (vertex_.size() > 1 && near(vertex_.back(), vertex_.front())) vertex_.pop_back();
+    n_ = static_cast<int>(vertex_.size());
+    normal_.resize(n_);
+    length_.resize(n_);
+    turn_.resize(n_);
+    reflex_.clear();
+    for (int i = 0; i < n_; ++i) {
+      using std::sqrt;
+      const Point d = vertex_[after(i)] - vertex_[i];
+      length_[i] = sqrt(dot(d, d));
+      normal_[i] = {-d.y / length_[i], d.x / length_[i]};
+    }
+    for (int i = 0; i < n_; ++i) {
+      turn_[i] = side(before(i), after(i));
+      if (turn_[i] < 0) reflex_.push_back(i);
+    }
+  }
+
+  [[nodiscard]] int size() const { return n_; }
+  [[nodiscard]] int after(int i) const { return i + 1 == n_ ? 0 : i + 1; }
+  [[nodiscard]] int before(int i) const { return i == 0 ? n_ - 1 : i - 1; }
+  [[nodiscard]] const Point& vertex(int i) const { return vertex_[i]; }
+  /// The inward unit normal of edge i.
+  [[nodiscard]] const Point& normal(int i) const { return normal_[i]; }
+  /// The direction of edge i.
+  [[nodiscard]] Point tangent(int i) const { return {normal_[i].y, -normal_[i].x}; }
+  [[nodiscard]] const Real& length(int i) const { return length_[i]; }
+  /// The vertices at which the outline turns right.
+  [[nodiscard]] const std::vector<int>& reflex() const { return reflex_; }
+
+  /// The height of vertex v over the line of edge i, or 0 if the vertex is not in front of it.
+  /// Both cells that the parabola between the two separates use this number.
+  [[nodiscard]] Real height(int i, int v) const {
+    const Point& p = vertex_[v];
+    const Point from_start = p - vertex_[i];
+    const Point from_end = p - vertex_[after(i)];
+    const bool start_nearer = dot(from_start, from_start) <= dot(from_end, from_end);
+    const Point& arm = start_nearer ? from_start : from_end;
+    using std::abs;
+    const Real reach = abs(arm.x) + abs(arm.y);
+    const Real h = dot(normal_[i], arm);
+    if (abs(h) > kSure * reach) return h > 0 ? h : Real(0);
+    const Real least = std::numeric_limits<Real>::epsilon() * std::numeric_limits<Real>::epsilon();
+    return side(i, v) > 0 ? std::max(h, Real(least * reach)) : Real(0);
+  }
+
+  /// Finds the bisector of the edges i and j, seen from edge i. Returns false if it is empty. Both
+  /// edges compute the same one: a common error only moves points between two cells in which they
+  /// have the same depth, but a difference would count an area twice.
+  bool bisector(int i, int j, Bisector& result) const {
+    const int a = std::min(i, j), b = std::max(i, j);
+    const bool next = after(a) == b;
+    const bool previous = after(b) == a;
+    if (next || previous) {
+      if (turn_[next ? b : a] <= 0) return false;
+    } else if (!in_front(a, b) || !in_front(b, a)) {
+      return false;
+    }
+    // The ends of the two edges that are nearer to each other.
+    const Point at_end = vertex_[after(a)] - vertex_[b];
+    const Point at_start = vertex_[a] - vertex_[after(b)];
+    const bool end_of_a = next || (!previous && dot(at_end, at_end) <= dot(at_start, at_start));
+    const Point& gap = end_of_a ? at_end : at_start;
+    // With the coordinate u along edge a, from that end, the height is
+    // (n_b . gap - u sin) / (1 - cos), and the coordinate along edge b is sum - u.
+    const Real sine = cross(normal_[a], normal_[b]);
+    const Real cosine = dot(normal_[a], normal_[b]);
+    if (cosine > 0 && sine == 0) return false;
+    const Real ratio = cosine > 0 ? Real((1 + cosine) / sine) : Real(sine / (1 - cosine));
+    const Real over = dot(normal_[b], gap);
+    const Real start = cosine > 0 ? Real(over / sine * ratio) : Real(over / (1 - cosine));
+    const Real sum = dot(tangent(b), gap) + start * sine;
+    const Real of_a = end_of_a ? length_[a] : Real(0);
+    const Real of_b = end_of_a ? Real(0) : length_[b];
+    if (i == a) {
+      result = {of_a, start, Real(-ratio), of_a + sum + of_b - length_[b], of_a + sum + of_b};
+    } else {
+      result = {of_b, Real(start - ratio * sum), ratio, of_b + sum + of_a - length_[a],
+                of_b + sum + of_a};
+    }
+    return clip(result, length_[i]);
+  }
+
+ private:
+  // A sine above this value has the right sign whatever the round-off.
+  static constexpr double kSure = 0x1p-40;
+
+  // The side of the line of edge i that vertex v is on: 1 in front, 0 on the line, -1 behind.
+  [[nodiscard]] int side(int i, int v) const {
+    const Point &p = vertex_[i], &q = vertex_[after(i)], &r = vertex_[v];
+    if constexpr (std::is_same_v<Real, double>) {
+      return orientation({p.x, p.y}, {q.x, q.y}, {r.x, r.y});
+    } else {
+      const Real area = cross(q - p, r - p);
+      return (area > 0) - (area < 0);
+    }
+  }
+  // Whether a part of edge j is in front of the line of edge i.
+  [[nodiscard]] bool in_front(int i, int j) const {
+    return height(i, j) > 0 || height(i, after(j)) > 0;
+  }
+  // Reduces a bisector to the edge, of the given length, and to positive heights.
+  static bool clip(Bisector& bisector, const Real& length) {
+    bisector.from = std::max(bisector.from, Real(0));
+    bisector.to = std::min(bisector.to, length);
+    const Real zero = bisector.origin - bisector.start / bisector.rise;
+    if (bisector.rise > 0) {
+      bisector.from = std::max(bisector.from, zero);
+    } else if (bisector.rise < 0) {
+      bisector.to = std::min(bisector.to, zero);
+    } else if (!(bisector.start >= 0)) {
+      return false;
+    }
+    return bisector.from < bisector.to;
+  }
+
+  int n_ = 0;
+  std::vector<Point> vertex_, normal_;
+  std::vector<Real> length_;
+  std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
+  std::vector<int> reflex_;  // vertices with a right turn
+};
+
+}  // namespace apothem
