@@ -43,6 +43,7 @@ class ContactTerm final : public Term {
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   [[nodiscard]] const Peak& penetration() const { return penetration_; }
+  [[nodiscard]] const Peak& relative_penetration() const { return relative_penetration_; }
   [[nodiscard]] const Peak& force() const { return force_; }
   [[nodiscard]] const ContactCounts& counts() const { return counts_; }
 
@@ -56,10 +57,14 @@ class ContactTerm final : public Term {
   const Model& model_;
   const DegreesOfFreedom& dofs_;
   Contacts contacts_;
-  double largest_stride_ = 0;  // m
-  Peak penetration_, force_;
+  double largest_stride_ = 0;     // m
+  std::vector<double> inradius_;  // of each body, m
+  Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
 };
+
+/// The inradius of a body, m: of a rigid one RigidBody::inradius, of a mesh mesh_inradius.
+double inradius_of(const Model& model, BodyIndex body);
 
 /// The smallest inradius of elements at the boundaries of all meshes, m.
 double shortest_inradius(const Model& model);
