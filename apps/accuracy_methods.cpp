@@ -81,7 +81,7 @@ void with_method(std::string_view method, const std::vector<PreparedPair>& pairs
 // The result for one pair, as a child process sends it.
 struct Record {
   double threw, seconds;
-  double force_x, force_y, moment_a, moment_b, weight, own_length_a, own_length_b, penetration;
+  double force_x, force_y, moment_a, moment_b, weight, own_length_a, own_length_b;
   double energy, overlap_area;
 };
 constexpr size_t kRecord = sizeof(Record) / sizeof(double);
@@ -103,7 +103,6 @@ void evaluate_from(size_t first, std::string_view method, const std::vector<Prep
              pair.weight,
              pair.own_length_a,
              pair.own_length_b,
-             pair.penetration,
              volume.energy,
              volume.overlap_area};
       } catch (const std::exception&) {
@@ -190,7 +189,6 @@ AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>&
       pair.weight = r.weight;
       pair.own_length_a = r.own_length_a;
       pair.own_length_b = r.own_length_b;
-      pair.penetration = r.penetration;
       outcome.volume = {r.energy, r.overlap_area};
       const size_t i = run.outcomes.size() - 1;
       // The moments of this method refer to the first vertices; the others refer to the centroids.

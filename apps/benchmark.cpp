@@ -41,7 +41,7 @@ std::vector<Pair> make_pairs(double distance, double offset = 0) {
     const Polygon far_b =
         samples::shifted(samples::shifted(samples::random_quad(random), apart), far);
     const PairResult exact = exact_method(far_a, far_b, {});
-    if (exact.integral.penetration < 1e-2) continue;
+    if (exact.integral.depth < 1e-2) continue;
     pairs.push_back({far_a, far_b, make_potential(far_a), make_potential(far_b), exact});
   }
   return pairs;

@@ -6,6 +6,7 @@
 #include "apothem/contact/law.hpp"
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/penetration.hpp"
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/pair_file.hpp"
 #include "apothem/scene/polygon_file.hpp"
@@ -51,6 +52,7 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
   const std::vector<std::string> methods =
       options.method == "all" ? std::vector<std::string>{"edge", "overlap", "exact"}
                               : std::vector<std::string>{options.method};
+  const double deepest = penetration(a, b);
   Json list = Json::array();
   for (const std::string& method : methods) {
     const auto start = std::chrono::steady_clock::now();
@@ -68,7 +70,7 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
                     {"own_length_a", pair.own_length_a},
                     {"own_length_b", pair.own_length_b},
                     {"weight", k * pair.weight},
-                    {"penetration", pair.penetration},
+                    {"penetration", deepest},
                     {"largest_phi", pair.largest_phi},
                     {"seconds", seconds.count()}});
   }

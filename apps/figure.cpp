@@ -41,12 +41,8 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 // The columns that a scene records in history.csv, energy.csv and momentum.csv.
 std::vector<std::vector<std::string>> recorded_columns(const Scene& scene) {
-  std::vector<std::vector<std::string>> files{{},
-                                              {kEnergyColumns.begin(), kEnergyColumns.end()},
-                                              {kMomentumColumns.begin(), kMomentumColumns.end()}};
-  for (HistoryColumn& c : history_columns(scene.model, scene.output)) {
-    files[0].push_back(std::move(c.name));
-  }
+  std::vector<std::vector<std::string>> files{names_of(history_columns(scene.model, scene.output)),
+                                              names_of(kEnergyColumns), names_of(kMomentumColumns)};
   for (std::vector<std::string>& columns : files) columns.emplace_back("time");
   return files;
 }

@@ -86,8 +86,11 @@ void print_summary(const Run& run) {
   fmt::print("{}: {} {} of {:.6g} s, t = {:.6g} s, results in {}\n", scene.model.name, state.step,
              scene.time.statics ? "load steps" : "steps", run.simulation().step_size(), state.time,
              run.settings().folder);
-  fmt::print("largest penetration {:.9g} m, contact force {:.9g} N, energy error {:.3g} J\n",
-             extremes.penetration.value, extremes.force.value, extremes.energy_error);
+  fmt::print(
+      "largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N, energy "
+      "error {:.3g} J\n",
+      extremes.penetration.value, 100 * extremes.relative_penetration.value, extremes.force.value,
+      extremes.energy_error);
   if (!run.load_steps().empty()) {
     const LoadStep& last = run.load_steps().back();
     const auto worst =
@@ -156,6 +159,10 @@ int run_command(const RunOptions& options) {
     fmt::print(stderr, "apothem: {}: {}\n", run.scene().file, run.message());
   }
   if (!options.quiet) print_summary(run);
+  std::fflush(stdout);
+  for (const std::string& warning : run.warnings()) {
+    fmt::print(stderr, "apothem: {}: warning: {}\n", run.scene().file, warning);
+  }
   return exit_code_of(run, options.verify);
 }
 

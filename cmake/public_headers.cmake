@@ -22,6 +22,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/edge_trace.hpp
+  geometry/integrals/penetration.hpp
   geometry/meshing/delaunay_mesh.hpp
   geometry/meshing/polygon_mesh.hpp
   geometry/meshing/voronoi.hpp

@@ -43,6 +43,15 @@ struct Envelope {
   Real slope = 0;                           ///< inverse of the distance field's reference length
   std::vector<Real> gx{}, gy{};             ///< gradients of `lines`, for a distance field
 
+  /// The largest slope of `lines`.
+  [[nodiscard]] Real steepest() const {
+    using std::sqrt;
+    Real most = 0;
+    for (const Line<Real>& line : lines) {
+      most = std::max(most, Real(sqrt(Real(line.gradient.squaredNorm()))));
+    }
+    return most;
+  }
   /// Makes phi a distance field with the inverse reference length `inverse_reference`.
   void set_distance(const DistanceField& field, const std::vector<Vec<Real>>& vertices,
                     const Real& inverse_reference) {
@@ -171,7 +180,8 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
   if (overlap.empty()) return {};
   const Line<Real> one{Vec<Real>(0, 0), 1};
   Vec<Real> force(0, 0), centre(0, 0);
-  Real moment = 0, weight = 0, own_a = 0, own_b = 0, largest = 0, area = 0, energy = 0;
+  Real moment = 0, weight = 0, own_a = 0, own_b = 0, area = 0, energy = 0;
+  Real largest_a = 0, largest_b = 0;  // phi of a and of b
   EdgeTrace<Real> trace;
   for (const Region<Real>& region : overlap) {
     const std::vector<Vec<Real>>& v = region.vertices;
@@ -194,7 +204,8 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       const Real sum = phi_a.sum + phi_b.sum;
       weight += length * sum;
       centre += length * (p * sum + d * (phi_a.first + phi_b.first));
-      largest = std::max(largest, std::max(phi_a.largest, phi_b.largest));
+      largest_a = std::max(largest_a, phi_a.largest);
+      largest_b = std::max(largest_b, phi_b.largest);
     }
     area += area_integral(v, one);
     if (with_energy) energy += a.volume(v) + b.volume(v);
@@ -211,24 +222,20 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
   if (weight != 0) pair.centre = rounded_vec(centre / weight - a.reference);
   pair.own_length_a = rounded(own_a);
   pair.own_length_b = rounded(own_b);
-  pair.largest_phi = rounded(largest);
+  pair.largest_phi = rounded(std::max(largest_a, largest_b));
+  pair.depth = rounded(std::max<Real>(largest_a / a.steepest(), largest_b / b.steepest()));
   if (const Real size = sqrt(force.squaredNorm()); size > 0) {
-    const Vec<Real> along = force / size;
-    const Vec<Real> across(-along.y(), along.x());
-    const auto extent = [&](const Vec<Real>& direction) {
-      Real low = direction.dot(overlap[0].vertices[0]);
-      Real high = low;
-      for (const Region<Real>& region : overlap) {
-        for (const Vec<Real>& v : region.vertices) {
-          const Real x = direction.dot(v);
-          low = std::min(low, x);
-          high = std::max(high, x);
-        }
+    const Vec<Real> across(-force.y() / size, force.x() / size);
+    Real low = across.dot(overlap[0].vertices[0]);
+    Real high = low;
+    for (const Region<Real>& region : overlap) {
+      for (const Vec<Real>& v : region.vertices) {
+        const Real x = across.dot(v);
+        low = std::min(low, x);
+        high = std::max(high, x);
       }
-      return rounded(high - low);
-    };
-    pair.penetration = extent(along);
-    pair.breadth = extent(across);
+    }
+    pair.breadth = rounded(high - low);
   }
   result.volume = {rounded(energy), rounded(area)};
   return result;

@@ -66,7 +66,10 @@ class Splitter {
       (runs_[r].of_a ? work_.of_a : work_.of_b)[runs_[r].patch].add(work_.halves[r]);
     }
     patches.resize(count);
-    for (int p = 0; p < count; ++p) patches[p] = combine(work_.of_a[p], work_.of_b[p], arm_);
+    for (int p = 0; p < count; ++p) {
+      patches[p] = combine(work_.of_a[p], work_.of_b[p], arm_);
+      patches[p].depth = depth(a_, b_, work_.of_a[p], work_.of_b[p]);
+    }
     add_extents(patches);
   }
 
@@ -288,7 +291,7 @@ class Splitter {
   [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
   [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
 
-  // Sets the penetration and the breadth of every patch.
+  // Sets the breadth of every patch.
   void add_extents(std::vector<PairIntegral>& patches) {
     auto& extents = work_.extents;
     extents.assign(patches.size(), {});
@@ -297,13 +300,12 @@ class Splitter {
       const double size = force.norm();
       if (!(size > 0)) continue;
       for (const Vec2& p : {run.start, run.end}) {
-        extents[run.patch].include(force.dot(p) / size, cross(force, p) / size);
+        extents[run.patch].include(cross(force, p) / size);
       }
     }
     for (size_t i = 0; i < patches.size(); ++i) {
-      if (!(extents[i].n1 >= extents[i].n0)) continue;  // no resultant force
-      patches[i].penetration = extents[i].n1 - extents[i].n0;
-      patches[i].breadth = extents[i].t1 - extents[i].t0;
+      if (!(extents[i].high >= extents[i].low)) continue;  // no resultant force
+      patches[i].breadth = extents[i].high - extents[i].low;
     }
   }
 

@@ -36,26 +36,26 @@ class Pieces {
   size_t used_ = 0;
 };
 
-// Combines the integrals along the edges of a and of b, and adds the extent of the clipped edges.
-// The first `middle` numbers of `pieces` belong to edges of a. `r` is a's reference point relative
-// to b's.
-PairIntegral join(const Half& of_a, const Half& of_b, const Vec2& r, const Pieces& pieces,
-                  size_t middle) {
+// Combines the integrals along the edges of a and of b, and adds the breadth of the clipped edges.
+// The first `middle` numbers of `pieces` belong to edges of a. `offset` is that of pair_integral.
+PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                  const Half& of_a, const Half& of_b, const Pieces& pieces, size_t middle) {
+  const Vec2 r = arm(a, b, offset);
   PairIntegral pair = combine(of_a, of_b, r);
+  pair.depth = depth(a, b, of_a, of_b);
   const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
   if (size > 0) {
     const double nx = pair.force.x() / size;
     const double ny = pair.force.y() / size;
     Extent extent;
-    const auto project = [&](size_t from, size_t to, double shift_n, double shift_t) {
+    const auto project = [&](size_t from, size_t to, double shift) {
       for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
-        extent.include(nx * p[0] + ny * p[1] + shift_n, nx * p[1] - ny * p[0] + shift_t);
+        extent.include(nx * p[1] - ny * p[0] + shift);
       }
     };
-    project(0, middle, 0, 0);
-    project(middle, pieces.used(), nx * r.x() + ny * r.y(), nx * r.y() - ny * r.x());
-    pair.penetration = extent.n1 - extent.n0;
-    pair.breadth = extent.t1 - extent.t0;
+    project(0, middle, 0);
+    project(middle, pieces.used(), nx * r.y() - ny * r.x());
+    pair.breadth = extent.high - extent.low;
   }
   return pair;
 }
@@ -145,7 +145,7 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   const size_t middle = pieces.used();
   const Half of_b = half(b, a, -dx, -dy, height.of_b);  // in the frame of a
 
-  return join(of_a, of_b, arm(a, b, offset), pieces, middle);
+  return join(a, b, offset, of_a, of_b, pieces, middle);
 }
 
 namespace {
@@ -316,7 +316,7 @@ PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
   const Half of_a = integrate_needle(a, b, pieces);
   const size_t middle = pieces.used();
   const Half of_b = integrate_needle(b, a, pieces);
-  return join(of_a, of_b, arm(a, b, Vec2::Zero()), pieces, middle);
+  return join(a, b, Vec2::Zero(), of_a, of_b, pieces, middle);
 }
 
 }  // namespace

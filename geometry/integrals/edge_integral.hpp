@@ -38,7 +38,8 @@ struct PlacedPotential {
   const double* node_y = nullptr;           ///< y coordinates of the roof's nodes, m
   const DistanceField* distance = nullptr;  ///< distance field, or null
   Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
-  double radius = 0;  ///< largest distance of a vertex from `reference`, m, or 0
+  double radius = 0;    ///< largest distance of a vertex from `reference`, m, or 0
+  double steepest = 0;  ///< largest |g_i|, 1/m, or 0 if it is not known
 
   /// True if phi is the lower envelope of the linear functions of the edges.
   [[nodiscard]] bool convex() const { return !roof && !distance; }
@@ -63,8 +64,11 @@ struct PairIntegral {
   double own_length_a = 0;     ///< length of the boundary of a inside b, m (see below)
   double own_length_b = 0;     ///< length of the boundary of b inside a, m
   double largest_phi = 0;      ///< largest phi found along the edges
-  double penetration = 0;      ///< extent of the overlap along the force, m
-  double breadth = 0;          ///< extent of the overlap across the force, m
+  /// Largest depth of an edge in the other polygon as its potential measures it, which is phi over
+  /// the steepest slope, m; 0 if the slopes are not known. It is the distance from the boundary for
+  /// the distance potential of convex polygons, and never more (see penetration.hpp).
+  double depth = 0;
+  double breadth = 0;  ///< extent of the overlap across the force, m
 
   /// True if the polygons touch, and also if the weight is NaN.
   [[nodiscard]] bool touching() const { return !(weight <= 0); }

@@ -312,8 +312,8 @@ inline Vec2 arm(const PlacedPotential& a, const PlacedPotential& b, const Vec2& 
           (a.reference.y() - b.reference.y()) + offset.y()};
 }
 
-/// Combines the integrals along the edges of a and of b to those of the pair, except for
-/// penetration and breadth. `arm` is a's reference point relative to b's.
+/// Combines the integrals along the edges of a and of b to those of the pair, except for depth and
+/// breadth. `arm` is a's reference point relative to b's.
 inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
   PairIntegral pair;
   pair.force = {of_b.fx - of_a.fx, of_b.fy - of_a.fy};
@@ -334,13 +334,17 @@ inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm)
   return pair;
 }
 
-/// The extent of a set of points along a force (n) and across it (t), m.
+/// PairIntegral::depth.
+inline double depth(const PlacedPotential& a, const PlacedPotential& b, const Half& of_a,
+                    const Half& of_b) {
+  if (!(a.steepest > 0 && b.steepest > 0)) return 0;
+  return std::max(of_a.largest / b.steepest, of_b.largest / a.steepest);
+}
+
+/// The extent of a set of points across a force, m.
 struct Extent {
-  double n0 = HUGE_VAL, n1 = -HUGE_VAL, t0 = HUGE_VAL, t1 = -HUGE_VAL;
-  void include(double n, double t) {
-    n0 = std::min(n0, n), n1 = std::max(n1, n);
-    t0 = std::min(t0, t), t1 = std::max(t1, t);
-  }
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  void include(double t) { low = std::min(low, t), high = std::max(high, t); }
 };
 
 }  // namespace apothem::edge_detail

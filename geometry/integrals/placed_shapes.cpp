@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "apothem/geometry/integrals/penetration.hpp"
+
 namespace apothem {
 
 int PlacedShapes::add(const Potential& potential) {
@@ -11,6 +13,7 @@ int PlacedShapes::add(const Potential& potential) {
               potential.capped(),
               0,
               potential.steepest,
+              apothem::depth_ratio(potential),
               potential.top_points.front(),
               potential.roof ? &*potential.roof : nullptr,
               node_x_.size(),

@@ -38,7 +38,8 @@ class PlacedShapes {
             node_y_.data() + s.nodes,
             s.distance,
             Vec2::Zero(),
-            s.radius};
+            s.radius,
+            s.slope};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's, `angle` that of i.
@@ -49,6 +50,8 @@ class PlacedShapes {
   [[nodiscard]] double radius(int i) const { return shapes_[i].radius; }
   /// Steepest slope of its potential, 1/m.
   [[nodiscard]] double slope(int i) const { return shapes_[i].slope; }
+  /// The bound depth_ratio of its potential (penetration.hpp).
+  [[nodiscard]] double depth_ratio(int i) const { return shapes_[i].depth_ratio; }
 
  private:
   struct Shape {
@@ -58,6 +61,7 @@ class PlacedShapes {
     bool capped;
     double radius;
     double slope;
+    double depth_ratio;
     Vec2 top;          // of the potential, body frame; of a deforming shape the mean vertex
     const Roof* roof;  // if not convex, or
     size_t nodes;      // (first of its placed nodes)

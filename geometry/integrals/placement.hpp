@@ -1,5 +1,5 @@
 // Potentials of polygons at their given positions, for single evaluations of a contact. This header
-// is private to edge_integral.cpp and contact_patches.cpp.
+// is private to edge_integral.cpp, contact_patches.cpp and penetration.cpp.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,8 @@ struct Placement {
             node_y.data(),
             potential.distance ? &*potential.distance : nullptr,
             Vec2(x[0], y[0]),
-            radius};
+            radius,
+            potential.steepest};
   }
   std::vector<double> x, y, gx, gy, node_x, node_y;
   PlacedPotential view;

@@ -14,7 +14,8 @@ enum KernelKind { polygon_kernel, element_kernel, outline_kernel, kernel_kinds }
 struct Contact {
   KernelKind kernel;
   int a, b;
-  double depth;      ///< of the deepest point below a surface, or extent of the overlap, m
+  double depth;      ///< the penetration is at least this, m, and
+  double at_most;    ///< at most this, m; where both are equal it is known
   double share;      ///< of the depth at which the potential ends; 1 or more: beyond
   double stiffness;  ///< bound of the change of the force over the depth, N/m (docs/theory.md,
                      ///< Normal contact)
@@ -25,9 +26,10 @@ struct ContactRecord {
   BodyIndex a, b;                  ///< a < b
   Vec2 point = Vec2::Zero();       ///< loading point relative to the origin of the model, m
   Vec2 normal = Vec2::Zero();      ///< elastic normal force, N
-  Vec2 tangential = Vec2::Zero();  ///< friction and damping, N
-  double penetration = 0;          ///< extent of the overlap along the force, or depth, m
+  Vec2 tangential = Vec2::Zero();  ///< friction, N
+  double penetration = 0;          ///< how deep the bodies are in each other, m: see Kernel
   double phi = 0;                  ///< largest potential met
+  Vec2 damping = Vec2::Zero();     ///< damping of the normal force, N
 };
 
 /// A resultant on a body: force and moment about the mass centre of a rigid body.

@@ -55,7 +55,7 @@ std::optional<ContactFault> Contacts::fault() const {
   for (const Contact& contact : contacts_) {
     if (contact.share < 1) continue;
     ContactFault fault = kernels_[contact.kernel]->fault(contact);
-    fault.depth = largest_penetration().value;
+    fault.depth = kernels_[contact.kernel]->penetration(contact, 0);
     return fault;
   }
   if (const auto& self = surfaces_.outlines().self_contact()) {
@@ -100,14 +100,30 @@ size_t Contacts::candidates() const {
   return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }
 
-PairPeak Contacts::largest_penetration() const {
+// First by what is known of all contacts; then exactly of the few that may be deeper than that.
+PairPeak Contacts::largest_penetration(double floor, std::span<const double> lengths) const {
+  constexpr double kKnown = 1 + 1e-6;
+  const auto length = [&](const Contact& c) {
+    if (lengths.empty()) return 1.;
+    const auto [a, b] = bodies(c);
+    return std::min(lengths[a], lengths[b]);
+  };
   const Contact* deepest = nullptr;
+  double largest = floor;
   for (const Contact& c : contacts_) {
-    if (!deepest || c.depth > deepest->depth) deepest = &c;
+    const double value = c.depth / length(c);
+    if (value > largest) largest = value, deepest = &c;
+  }
+  for (const Contact& c : contacts_) {
+    if (c.at_most <= kKnown * c.depth) continue;
+    const double known = largest * length(c);
+    if (!(c.at_most > known)) continue;
+    const double found = kernels_[c.kernel]->penetration(c, known);
+    if (found > known) largest = found / length(c), deepest = &c;
   }
   if (!deepest) return {};
   const auto [a, b] = bodies(*deepest);
-  return {deepest->depth, a, b};
+  return {largest, a, b};
 }
 
 PairPeak Contacts::largest_force() const {

@@ -61,9 +61,13 @@ class Contacts {
 
   [[nodiscard]] std::int64_t searches() const { return searches_; }
   [[nodiscard]] size_t candidates() const;
-  /// Of the last step: the largest penetration (m) and normal force (N) of a pair of bodies. The
-  /// force is not known for pairs with a mesh.
-  [[nodiscard]] PairPeak largest_penetration() const;
+  /// Of the last step: the largest penetration of a pair of bodies, m, to one part in a million;
+  /// or, with a length in m for every body, its ratio to the smaller length of the two. None if it
+  /// is not above `floor`, which is soon found out.
+  [[nodiscard]] PairPeak largest_penetration(double floor = 0,
+                                             std::span<const double> lengths = {}) const;
+  /// Of the last step: the largest normal force of a pair of bodies, N. It is not known for pairs
+  /// with a mesh.
   [[nodiscard]] PairPeak largest_force() const;
 
   /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.

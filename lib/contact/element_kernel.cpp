@@ -39,12 +39,67 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
     if (!pairs_[p].touching()) continue;
     const auto [a, b] = pairs_.pairs()[p];
     contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness_));
+    // The potential measures the depth below borders that are not part of the body's boundary.
+    contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(p)) {
       contacts.back().share = 1;  // nothing beyond is to be trusted
       return;
     }
     add_touch(p);
   }
+}
+
+double ElementKernel::penetration(const Contact& c, double floor) {
+  return convex(c.a) && convex(c.b) ? find_penetration(c.a, c.b, floor, depths_) : floor;
+}
+
+// True if an edge of a polygon is on the boundary of the body.
+bool ElementKernel::outer(SurfaceIndex i, int edge) const {
+  return surfaces_.is_rigid(i) || surfaces_.elements().outer(i - surfaces_.rigid_count(), edge);
+}
+
+void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const {
+  const PlacedPotential view = surfaces_.shapes().view(i);
+  const Vec2 place = surfaces_.reference(i);
+  for (int k = 0; k < view.size; ++k) {
+    if (!outer(i, k)) continue;
+    boundary.add(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[k + 1], view.y[k + 1]));
+  }
+}
+
+// Edges of the two bodies' boundaries in the other polygon, and their distance from the whole
+// boundary of the other body. The polygon's own edges in that boundary mostly say enough.
+double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double floor,
+                                       Depths& work) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  contact_patches(shapes.view(a), shapes.view(b), surfaces_.between(a, b), work.workspace,
+                  work.runs, work.patches);
+  const Vec2 place = surfaces_.reference(a);
+  const auto deepest = [&](bool of_a) {
+    double most = floor;
+    for (const BoundaryRun& run : work.runs) {
+      if (run.of_a != of_a || !outer(of_a ? a : b, run.edge)) continue;
+      most = work.boundary.largest(place + run.start, place + run.end, most);
+    }
+    return most;
+  };
+  double most = floor;
+  for (const bool of_a : {true, false}) {
+    const SurfaceIndex other = of_a ? b : a;
+    work.boundary.clear();
+    add_boundary(other, work.boundary);
+    if (surfaces_.is_rigid(other)) {
+      most = std::max(most, deepest(of_a));
+      continue;
+    }
+    if (!work.boundary.empty() && !(deepest(of_a) > floor)) continue;
+    work.boundary.clear();
+    for (SurfaceIndex i = surfaces_.rigid_count(); i < surfaces_.size(); ++i) {
+      if (surfaces_.body(i) == surfaces_.body(other)) add_boundary(i, work.boundary);
+    }
+    most = std::max(most, deepest(of_a));
+  }
+  return most;
 }
 
 ContactFault ElementKernel::fault(const Contact& c) const {
@@ -270,6 +325,7 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<ContactRecord> found(static_cast<size_t>(count));
   std::vector<double> weights(found.size());
+  Depths depths;
   for (size_t i = 0; i < touches_.size(); ++i) {
     const Touch& t = touches_[i];
     const PairIntegral& pair = pairs_[static_cast<size_t>(t.pair)];
@@ -278,7 +334,7 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
     sum.normal += t.force;
     sum.tangential += t.friction;
     sum.point += pair.weight * (surfaces_.reference(t.a) + t.point);
-    sum.penetration = std::max(sum.penetration, pair.penetration);
+    sum.penetration = find_penetration(t.a, t.b, sum.penetration, depths);
     sum.phi = std::max(sum.phi, pair.largest_phi);
     weights[static_cast<size_t>(patch[i])] += pair.weight;
   }

@@ -19,6 +19,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
+#include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
 
@@ -31,6 +32,7 @@ class ElementKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
   void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
@@ -82,6 +84,16 @@ class ElementKernel final : public Kernel {
                                  const Kinematics& now) const;
   static void distribute(const Corners& corners, const Vec2& force, Forces& to);
   void add_touch(size_t pair);
+  /// What looking for a penetration works in.
+  struct Depths {
+    PatchWorkspace workspace;
+    std::vector<BoundaryRun> runs;
+    std::vector<PairIntegral> patches;
+    BoundaryDistance boundary;
+  };
+  [[nodiscard]] bool outer(SurfaceIndex i, int edge) const;
+  void add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const;
+  double find_penetration(SurfaceIndex a, SurfaceIndex b, double floor, Depths& work) const;
   [[nodiscard]] double power(const Kinematics& now) const;
   [[nodiscard]] std::vector<int> patches() const;
 
@@ -95,6 +107,7 @@ class ElementKernel final : public Kernel {
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;
+  Depths depths_;
   Corners of_a_, of_b_;
 };
 

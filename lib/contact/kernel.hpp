@@ -42,6 +42,10 @@ class Kernel {
   /// ascending order. The same bits for any number of threads. No allocation unless there are more
   /// contacts than ever before.
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
+  /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
+  /// largest distance from the boundary of one body of a point on the boundary of the other one
+  /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.
+  [[nodiscard]] virtual double penetration(const Contact& contact, double floor) = 0;
   /// Where and why one of its contacts, with a share of 1 or more, is out of range.
   [[nodiscard]] virtual ContactFault fault(const Contact& contact) const = 0;
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =

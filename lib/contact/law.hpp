@@ -47,6 +47,8 @@ struct ContactLaw {
   double normal_damping = 0;            ///< ratio of critical, of the normal force; 0: none
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
   bool accepts_overlaps = false;        ///< bodies may overlap deeply at the start
+  /// Penetration over the inradius of a body above which the run warns.
+  double penetration_warning = 0.01;
 };
 
 /// Between two bodies, given with their materials: the last rule that fits, or that of the scene.

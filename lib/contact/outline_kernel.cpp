@@ -12,6 +12,13 @@ namespace {
 constexpr double kCandidateTime = 40;  // ns
 constexpr double kRound = 1e-9;        // more than the round-off of an area, relative
 
+// A bound of the distance from the boundary over the height in a face, which reaches beyond the end
+// of its edge at a reflex vertex.
+double depth_ratio(const CollarFace<double>& face) {
+  const double beyond = std::max(-face.alpha(), face.beta());
+  return beyond > 0 ? std::sqrt(1 + beyond * beyond) : 1;
+}
+
 }  // namespace
 
 OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
@@ -124,7 +131,8 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   const double share = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
   if (!(p.deepest <= 0)) {
     contacts_.emplace_back(e, f, p);
-    contacts.push_back({outline_kernel, e, f, p.deepest, share, on_edge * (p.to - p.from)});
+    contacts.push_back({outline_kernel, e, f, p.deepest, p.deepest * depth_ratio(o.face(f)), share,
+                        on_edge * (p.to - p.from)});
   }
 }
 
@@ -137,12 +145,37 @@ void OutlineKernel::find_complements(std::span<Contact> contacts) const {
   }
 }
 
+const EdgeFaceContact& OutlineKernel::edge_face(const Contact& c) const {
+  return *std::lower_bound(contacts_.begin(), contacts_.end(), std::pair(c.a, c.b),
+                           [](const EdgeFaceContact& k, const std::pair<int, int>& key) {
+                             return std::pair(k.edge, k.face) < key;
+                           });
+}
+
+void OutlineKernel::add_boundary(BodyIndex b, BoundaryDistance& boundary) const {
+  const Outlines& o = outlines_;
+  for (int i = o.bodies[b].first; i < o.bodies[b].end; ++i) {
+    boundary.add(o.point(i), o.point(o.next[i]));
+  }
+}
+
+double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
+                                 BoundaryDistance& boundary) const {
+  const Vec2 start = outlines_.point(c.edge);
+  const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
+  return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
+}
+
+double OutlineKernel::penetration(const Contact& c, double floor) {
+  boundary_.clear();
+  add_boundary(outlines_.body[c.b], boundary_);
+  return deepest_in(edge_face(c), floor, boundary_);
+}
+
 ContactFault OutlineKernel::fault(const Contact& c) const {
   const Outlines& o = outlines_;
-  const auto found =
-      std::find_if(contacts_.begin(), contacts_.end(),
-                   [&](const EdgeFaceContact& k) { return k.edge == c.a && k.face == c.b; });
-  const double u = (found->piece.from + found->piece.to) / 2;
+  const CollarPiece<double>& piece = edge_face(c).piece;
+  const double u = (piece.from + piece.to) / 2;
   return {ContactFault::Kind::collar,
           o.body[c.a],
           o.body[c.b],
@@ -302,11 +335,15 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
   const std::vector<int> patch = patches();
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<ContactRecord> found(static_cast<size_t>(count));
-  std::vector<double> weights(found.size());
+  std::vector<double> weights(found.size()), deepest(found.size());
+  std::vector<BoundaryDistance> boundaries(o.bodies.size());
   for (size_t i = 0; i < contacts_.size(); ++i) {
     const auto& [edge, face, p] = contacts_[i];
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     const BodyIndex own = o.body[edge];
+    BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
+    if (boundary.empty()) add_boundary(o.body[face], boundary);
+    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
     std::tie(sum.a, sum.b) = std::minmax(own, o.body[face]);
     const double force = slope_[face] * p.sum * o.length[edge];
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
@@ -317,7 +354,8 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     const double u = p.sum > 0 ? p.first / p.sum : 0;
     sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
     weights[static_cast<size_t>(patch[i])] += force;
-    sum.penetration = std::max(sum.penetration, p.deepest);
+    double& deep = deepest[static_cast<size_t>(patch[i])];
+    deep = std::max(deep, p.deepest);
     if (friction_) {
       const double along = friction_->shares()[i];
       sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
@@ -326,7 +364,7 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
   for (size_t i = 0; i < found.size(); ++i) {
     ContactRecord& sum = found[i];
     if (weights[i] > 0) sum.point /= weights[i];
-    sum.phi = sum.penetration * std::max(o.bodies[sum.a].slope(), o.bodies[sum.b].slope());
+    sum.phi = deepest[i] * std::max(o.bodies[sum.a].slope(), o.bodies[sum.b].slope());
   }
   records.insert(records.end(), found.begin(), found.end());
 }

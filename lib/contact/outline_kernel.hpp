@@ -13,6 +13,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/outline_friction.hpp"
 #include "apothem/execution/parallel.hpp"
+#include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
 
@@ -24,6 +25,7 @@ class OutlineKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
@@ -40,6 +42,10 @@ class OutlineKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
+  [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
+  void add_boundary(BodyIndex body, BoundaryDistance& boundary) const;
+  [[nodiscard]] double deepest_in(const EdgeFaceContact& contact, double floor,
+                                  BoundaryDistance& boundary) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
@@ -63,6 +69,7 @@ class OutlineKernel final : public Kernel {
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
   std::vector<double> areas_;    // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
+  BoundaryDistance boundary_;    // memory for penetrations
 };
 
 }  // namespace apothem

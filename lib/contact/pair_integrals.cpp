@@ -1,6 +1,7 @@
 #include "apothem/contact/pair_integrals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace apothem {
 namespace {
@@ -42,10 +43,12 @@ Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
   const auto [a, b] = pairs_[p];
   const PairIntegral& pair = integrals_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
+  const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
   return {kernel,
           a,
           b,
-          pair.penetration,
+          pair.depth,
+          pair.largest_phi < 1 ? ratio * pair.depth : HUGE_VAL,  // phi may be limited to 1
           pair.largest_phi,
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }

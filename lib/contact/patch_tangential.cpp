@@ -238,7 +238,7 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
   }
   if (cursor.pair == now_.pairs.size() || order() != pair) return;
   for (size_t j = 0; law_.normal_damping > 0 && j < patches.size(); ++j) {
-    patches[j].tangential += now_.dampers[cursor.damper + j].damping;
+    patches[j].damping += now_.dampers[cursor.damper + j].damping;
   }
   for (size_t i = 0; i < springs.size(); ++i) {
     const int patch = edgewise() ? runs[i].patch : springs[i].key.part;

@@ -48,7 +48,7 @@ class PatchTangential {
   struct Cursor {
     size_t pair = 0, damper = 0;
   };
-  /// Adds the tangential forces to the records of a pair, one for each patch. `runs`: of the pair,
+  /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
   /// needed by the law per_edge.
   void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
               std::span<const Spring> springs, Cursor& cursor) const;

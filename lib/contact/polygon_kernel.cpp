@@ -29,6 +29,16 @@ void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
   }
 }
 
+double PolygonKernel::penetration(const Contact& c, double floor) {
+  const PlacedPotential view_a = surfaces_.shapes().view(c.a);
+  const PlacedPotential view_b = surfaces_.shapes().view(c.b);
+  const Vec2 between = surfaces_.between(c.a, c.b);
+  contact_patches(view_a, view_b, between, patch_workspace_, runs_, patches_);
+  deepest_.assign(patches_.size(), floor);
+  find_penetrations(view_a, view_b, between, runs_, penetration_workspace_, deepest_);
+  return deepest_.empty() ? floor : *std::max_element(deepest_.begin(), deepest_.end());
+}
+
 ContactFault PolygonKernel::fault(const Contact& c) const {
   const auto touching = std::find_if(touching_.begin(), touching_.end(), [&](int p) {
     return pairs_.pairs()[static_cast<size_t>(p)] == BoxPair{c.a, c.b};
@@ -101,25 +111,25 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
                                 std::vector<ContactRecord>& records) const {
   PatchTangential::Cursor cursor;
   PatchWorkspace workspace;
+  PenetrationWorkspace penetration_workspace;
   std::vector<BoundaryRun> runs;
   std::vector<PairIntegral> patches;
+  std::vector<double> deepest;
   for (const int touching : touching_) {
     const auto p = static_cast<size_t>(touching);
     const auto [a, b] = pairs_.pairs()[p];
     const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
     const PlacedPotential view_a = surfaces_.shapes().view(a);
     const PlacedPotential view_b = surfaces_.shapes().view(b);
-    const bool by_edges = tangential_ && tangential_->edgewise() && !springs.empty();
-    if (view_a.convex() && view_b.convex() && !by_edges) {
-      patches.assign(1, pairs_[p]);
-    } else {
-      contact_patches(view_a, view_b, surfaces_.between(a, b), workspace, runs, patches);
-    }
+    const Vec2 between = surfaces_.between(a, b);
+    contact_patches(view_a, view_b, between, workspace, runs, patches);
+    deepest.assign(patches.size(), 0);
+    find_penetrations(view_a, view_b, between, runs, penetration_workspace, deepest);
     const size_t first = records.size();
-    for (const PairIntegral& patch : patches) {
+    for (size_t i = 0; i < patches.size(); ++i) {
+      const PairIntegral& patch = patches[i];
       records.push_back({a, b, surfaces_.reference(a) + loading_point(patch),
-                         stiffness_ * patch.force, Vec2::Zero(), patch.penetration,
-                         patch.largest_phi});
+                         stiffness_ * patch.force, Vec2::Zero(), deepest[i], patch.largest_phi});
     }
     if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs, cursor);
   }

@@ -7,6 +7,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/patch_tangential.hpp"
+#include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
 
@@ -18,6 +19,7 @@ class PolygonKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
   void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
@@ -47,6 +49,12 @@ class PolygonKernel final : public Kernel {
   std::vector<int> touching_;                  // pairs
   std::vector<double> contact_stiffness_;      // of these, N/m
   PairPeak largest_force_;
+  // Memory for penetrations.
+  PatchWorkspace patch_workspace_;
+  PenetrationWorkspace penetration_workspace_;
+  std::vector<BoundaryRun> runs_;
+  std::vector<PairIntegral> patches_;
+  std::vector<double> deepest_;  // of each patch, m
 };
 
 }  // namespace apothem

@@ -7,6 +7,7 @@
 
 #include "apothem/dynamics/fold_watch.hpp"
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/model/inradius.hpp"
 
 namespace apothem {
 namespace {
@@ -87,6 +88,8 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
   double inradius = HUGE_VAL;
   for (const RigidBody& body : model.bodies) inradius = std::min(inradius, body.inradius);
   largest_stride_ = kLargestStride * inradius;
+  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
+  for (BodyIndex i = 0; i < bodies; ++i) inradius_.push_back(inradius_of(model, i));
   try {
     contacts_.place_all(state.kinematics(state.v));
   } catch (const NotFinite& error) {
@@ -190,7 +193,9 @@ void ContactTerm::note_peaks(const State& state) {
   const auto note = [&](const PairPeak& found, Peak& peak) {
     if (found.value > peak.value) peak = {found.value, state.time, found.a, found.b};
   };
-  note(contacts_.largest_penetration(), penetration_);
+  note(contacts_.largest_penetration(penetration_.value), penetration_);
+  note(contacts_.largest_penetration(relative_penetration_.value, inradius_),
+       relative_penetration_);
   note(contacts_.largest_force(), force_);
 }
 
@@ -251,7 +256,7 @@ void ContactTerm::add_energies(const State& state, double /*dt*/, Energies& e) {
 
 void ContactTerm::start_ledger() {
   contacts_.start_ledger();
-  penetration_ = force_ = {};
+  penetration_ = relative_penetration_ = force_ = {};
   counts_ = {};
 }
 
@@ -284,7 +289,8 @@ void ContactTerm::bound_step(StepBounds& bounds) {
 }
 
 void ContactTerm::fields(Archive& archive) {
-  archive("contacts", contacts_)("penetration", penetration_)("force", force_)("counts", counts_);
+  archive("contacts", contacts_)("penetration", penetration_)(
+      "relative_penetration", relative_penetration_)("force", force_)("counts", counts_);
 }
 
 }  // namespace apothem

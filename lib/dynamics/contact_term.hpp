@@ -45,6 +45,7 @@ class ContactTerm final : public Term {
   /// The largest slope of the potential of each body, rigid ones first, 1/m.
   [[nodiscard]] std::vector<double> slopes() const;
   [[nodiscard]] const Peak& penetration() const { return penetration_; }
+  [[nodiscard]] const Peak& relative_penetration() const { return relative_penetration_; }
   [[nodiscard]] const Peak& force() const { return force_; }
   [[nodiscard]] const ContactCounts& counts() const { return counts_; }
 
@@ -58,8 +59,9 @@ class ContactTerm final : public Term {
   const Model& model_;
   const DegreesOfFreedom& dofs_;
   Contacts contacts_;
-  double largest_stride_ = 0;  // m
-  Peak penetration_, force_;
+  double largest_stride_ = 0;     // m
+  std::vector<double> inradius_;  // of each body, m
+  Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
 };
 

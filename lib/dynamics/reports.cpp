@@ -49,7 +49,8 @@ const std::vector<double>& Simulation::node_mass() const {
 }
 
 Extremes Simulation::extremes() const {
-  return {contact_ ? contact_->penetration() : Peak{}, contact_ ? contact_->force() : Peak{},
+  if (!contact_) return {{}, {}, {}, guard_.largest_error()};
+  return {contact_->penetration(), contact_->relative_penetration(), contact_->force(),
           guard_.largest_error()};
 }
 

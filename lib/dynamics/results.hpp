@@ -19,7 +19,9 @@ struct Peak {
 
 /// Largest values over all steps so far.
 struct Extremes {
-  Peak penetration;         ///< extent of the overlap of a pair along its force, m
+  Peak penetration;  ///< of a pair, m (geometry/integrals/penetration.hpp)
+  /// Penetration of a pair over the inradius of the body where that is smaller.
+  Peak relative_penetration;
   Peak force;               ///< size of the contact force of a pair, N
   double energy_error = 0;  ///< largest |total_error| of the looks of the energy guard, J
 };

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "apothem/geometry/integrals/penetration.hpp"
 #include "apothem/geometry/potential/inscribed_circle.hpp"
 #include "apothem/mesh/invalid_mesh.hpp"
 #include "apothem/mesh/measure.hpp"
@@ -86,6 +87,36 @@ double boundary_inradius(const Mesh& mesh, const Boundary& boundary) {
     for (const double r : inradii(mesh, loop)) smallest = std::min(smallest, r);
   }
   return smallest;
+}
+
+double mesh_inradius(const Mesh& mesh, const Boundary& boundary) {
+  BoundaryDistance distance;
+  for (const BoundaryLoop& loop : boundary.loops) {
+    for (size_t i = 0; i < loop.nodes.size(); ++i) {
+      distance.add(mesh.nodes[loop.nodes[i]], mesh.nodes[after(loop.nodes, i)]);
+    }
+  }
+  double largest = 0;
+  Vec2 last = mesh.nodes.front();
+  double of_last = std::numeric_limits<double>::infinity();
+  const auto look = [&](const Vec2& p) {
+    // No point is farther from the boundary than one beside it by more than their distance.
+    if (of_last + (p - last).norm() <= largest) return;
+    last = p, of_last = distance.at(p);
+    largest = std::max(largest, of_last);
+  };
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const std::span<const int> corners = mesh.element(e);
+    Vec2 middle = Vec2::Zero();
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const Vec2& corner = mesh.nodes[corners[i]];
+      middle += corner / static_cast<double>(corners.size());
+      look(corner);
+      look((corner + mesh.nodes[after(corners, i)]) / 2);
+    }
+    look(middle);
+  }
+  return largest;
 }
 
 }  // namespace apothem

@@ -34,5 +34,8 @@ int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges);
 std::vector<double> inradii(const Mesh& mesh, const BoundaryLoop& loop);
 /// The smallest inradius of the elements at the boundary, m.
 double boundary_inradius(const Mesh& mesh, const Boundary& boundary);
+/// The inradius of the whole body to the fineness of its mesh and never more, m: the largest
+/// distance from the boundary of a node or of the middle of an edge or element.
+double mesh_inradius(const Mesh& mesh, const Boundary& boundary);
 
 }  // namespace apothem

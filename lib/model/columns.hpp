@@ -58,11 +58,23 @@ inline constexpr std::array kPointColumns{
     Column{"sxy", "Pa"}, Column{"s1", "Pa"},  Column{"s2", "Pa"}};
 /// Columns of the contact of a deformable body.
 inline constexpr std::array kSurfaceColumns{Column{"pressure", "Pa"}, Column{"half_width", "m"}};
-inline constexpr std::array kEnergyColumns{"kinetic",       "strain",        "contact",
-                                           "gravity",       "friction_loss", "damping_loss",
-                                           "external_work", "total_error"};
-inline constexpr std::array kMomentumColumns{"px",       "py",       "angular",
-                                             "px_error", "py_error", "angular_error"};
+/// Columns of the ledgers, energy.csv and momentum.csv, after the time.
+inline constexpr std::array kEnergyColumns{
+    Column{"kinetic", "J"},       Column{"strain", "J"},        Column{"contact", "J"},
+    Column{"gravity", "J"},       Column{"friction_loss", "J"}, Column{"damping_loss", "J"},
+    Column{"external_work", "J"}, Column{"total_error", "J"}};
+inline constexpr std::array kMomentumColumns{
+    Column{"px", "kg m/s"},        Column{"py", "kg m/s"},
+    Column{"angular", "kg m^2/s"}, Column{"px_error", "kg m/s"},
+    Column{"py_error", "kg m/s"},  Column{"angular_error", "kg m^2/s"}};
+
+/// The names of a table of columns.
+template <class Columns>
+std::vector<std::string> names_of(const Columns& columns) {
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.emplace_back(column.name);
+  return names;
+}
 
 /// A column of history.csv.
 struct HistoryColumn {

@@ -5,9 +5,8 @@
 
 namespace apothem {
 
-/// Radius of the largest circle inside a body as the scene gives it, m. Of a body with a mesh: the
-/// largest distance of a node or of an element's centre from the boundary, which is smaller by up
-/// to the size of an element. The time grows with the nodes times the edges of the boundary.
+/// The inradius of a body as the scene gives it, m: of a rigid one RigidBody::inradius, of a mesh
+/// mesh_inradius.
 double inradius_of(const Model& model, BodyIndex body);
 
 }  // namespace apothem

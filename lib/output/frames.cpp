@@ -20,8 +20,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/measure.hpp"
 #include "apothem/model/columns.hpp"
+#include "apothem/output/convex_cells.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
 
@@ -88,10 +90,21 @@ std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchySt
   return mean;
 }
 
-// The bodies of a frame: a rigid one is a cell, and so is an element.
+using Cells = std::vector<std::vector<int>>;
+
+// The place of a vertex of a rigid body relative to the mass centre.
+Vec2 turned(const Vec2& p, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+}
+
+// The bodies of a frame: a rigid one is a cell, and so is an element, or several if it is not
+// convex. `rigid_cells` are those of the rigid bodies.
 class BodyGrid {
  public:
-  BodyGrid(const Model& model, const FrameContents& frame) : model_(model), frame_(frame) {
+  BodyGrid(const Model& model, const FrameContents& frame, const std::vector<Cells>& rigid_cells)
+      : model_(model), frame_(frame), rigid_cells_(rigid_cells) {
     points_->SetDataTypeToDouble();
     for (const BodyQuantity& quantity : kBodyQuantities) {
       if (quantity.in_frames) quantities_.push_back({&quantity, doubles(quantity.name, 1)});
@@ -115,7 +128,7 @@ class BodyGrid {
     grid->GetPointData()->AddArray(displacement_);
     grid->GetPointData()->AddArray(velocity_);
     for (vtkDataArray* array :
-         std::initializer_list<vtkDataArray*>{body_, material_, rotation_, spin_, force_}) {
+         std::initializer_list<vtkDataArray*>{body_, part_, material_, rotation_, spin_, force_}) {
       grid->GetCellData()->AddArray(array);
     }
     for (const auto& [quantity, array] : quantities_) grid->GetCellData()->AddArray(array);
@@ -135,20 +148,19 @@ class BodyGrid {
     const RigidBody& body = model_.bodies[i];
     const auto x = frame_.state.pose(i), v = frame_.state.pose_rate(i);
     const Vec2 centre = x.head<2>();
-    const auto turned = [](const Vec2& p, double angle) -> Vec2 {
-      const double c = std::cos(angle);
-      const double s = std::sin(angle);
-      return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-    };
-    cells_->InsertNextCell(body.potential.size());
+    const vtkIdType first = points_->GetNumberOfPoints();
     for (const Vec2& vertex : body.potential.vertices) {
       const Vec2 arm = turned(vertex, x[2]);
       const Vec2 u = (centre - body.position) + (arm - turned(vertex, body.angle));
-      cells_->InsertCellPoint(add_point(centre + arm, u, v.head<2>() + cross(v[2], arm)));
+      add_point(centre + arm, u, v.head<2>() + cross(v[2], arm));
       of_points_.add({});
     }
     const auto f = frame_.state.force(i);
-    add_cell(i, x[2] - body.angle, v[2], f.head<2>(), {}, motion(i));
+    const BodyMotion of_body = motion(i);
+    for (size_t part = 0; part < rigid_cells_[i].size(); ++part) {
+      add_corners(rigid_cells_[i][part], [&](int corner) { return first + corner; });
+      add_cell(i, part, x[2] - body.angle, v[2], f.head<2>(), {}, of_body);
+    }
   }
 
   void add_deformable(DeformableIndex i, const CauchyStress* stress) {
@@ -161,27 +173,42 @@ class BodyGrid {
     for (const CauchyStress& s : nodal_means(body, stress)) of_points_.add(s);
     const BodyIndex b = static_cast<BodyIndex>(model_.bodies.size()) + i;
     const BodyMotion of_body = motion(b);
+    std::vector<Vec2> ring;
     for (ElementIndex e = 0; e < body.mesh.element_count(); ++e) {
-      cells_->InsertNextCell(static_cast<int>(body.mesh.element(e).size()));
-      for (const int node : body.mesh.element(e)) cells_->InsertCellPoint(first + node);
-      add_cell(b, 0, 0, Vec2::Zero(), stress[e], of_body);
+      const std::span<const int> nodes = body.mesh.element(e);
+      ring.clear();
+      for (const int n : nodes) {
+        ring.emplace_back(body.mesh.nodes[n] + frame_.state.node(body.first_node + n));
+      }
+      const Cells cells = convex_cells(ring);
+      for (size_t part = 0; part < cells.size(); ++part) {
+        add_corners(cells[part], [&](int corner) { return first + nodes[corner]; });
+        add_cell(b, part, 0, 0, Vec2::Zero(), stress[e], of_body);
+      }
     }
+  }
+
+  template <class PointOf>
+  void add_corners(const std::vector<int>& corners, const PointOf& point_of) {
+    cells_->InsertNextCell(static_cast<int>(corners.size()));
+    for (const int corner : corners) cells_->InsertCellPoint(point_of(corner));
   }
 
   [[nodiscard]] BodyMotion motion(BodyIndex body) const {
     return motion_of(model_, frame_.state, body, frame_.forces[body], frame_.node_mass);
   }
 
-  vtkIdType add_point(const Vec2& place, const Vec2& u, const Vec2& v) {
+  void add_point(const Vec2& place, const Vec2& u, const Vec2& v) {
     displacement_->InsertNextTuple3(u.x(), u.y(), 0);
     velocity_->InsertNextTuple3(v.x(), v.y(), 0);
     const Vec2 p = place + model_.origin;
-    return points_->InsertNextPoint(p.x(), p.y(), 0);
+    points_->InsertNextPoint(p.x(), p.y(), 0);
   }
 
-  void add_cell(BodyIndex body, double rotation, double spin, const Vec2& force,
+  void add_cell(BodyIndex body, size_t part, double rotation, double spin, const Vec2& force,
                 const CauchyStress& stress, const BodyMotion& of_body) {
     body_->InsertNextValue(body);
+    part_->InsertNextValue(static_cast<int>(part));
     material_->InsertNextValue(model_.material_of(body));
     rotation_->InsertNextValue(rotation);
     spin_->InsertNextValue(spin);
@@ -194,9 +221,11 @@ class BodyGrid {
 
   const Model& model_;
   const FrameContents& frame_;
+  const std::vector<Cells>& rigid_cells_;
   vtkNew<vtkPoints> points_;
   vtkNew<vtkCellArray> cells_;
   vtkNew<vtkIntArray> body_ = integers("body");
+  vtkNew<vtkIntArray> part_ = integers("part");
   vtkNew<vtkIntArray> material_ = integers("material");
   vtkNew<vtkDoubleArray> displacement_ = doubles("displacement", 3);
   vtkNew<vtkDoubleArray> velocity_ = doubles("velocity", 3);
@@ -206,6 +235,48 @@ class BodyGrid {
   std::vector<std::pair<const BodyQuantity*, vtkSmartPointer<vtkDoubleArray>>> quantities_;
   StressArrays of_cells_, of_points_;
 };
+
+// The lines around all bodies: a closed line for the polygon of a rigid one, and for each of the
+// `loops` around a mesh.
+vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
+                                     const std::vector<Cells>& loops) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> of_cells = integers("body");
+  const auto add = [&](BodyIndex body, size_t corners, const auto& place_of) {
+    const vtkIdType first = points->GetNumberOfPoints();
+    cells->InsertNextCell(static_cast<int>(corners) + 1);
+    for (size_t i = 0; i < corners; ++i) {
+      const Vec2 p = place_of(i) + model.origin;
+      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+    }
+    cells->InsertCellPoint(first);
+    of_cells->InsertNextValue(body);
+  };
+  const auto rigid = static_cast<RigidIndex>(model.bodies.size());
+  for (RigidIndex i = 0; i < rigid; ++i) {
+    const std::vector<Vec2>& vertices = model.bodies[i].potential.vertices;
+    const auto pose = state.pose(i);
+    const Vec2 centre = pose.head<2>();
+    const double angle = pose[2];
+    add(i, vertices.size(), [&](size_t k) { return Vec2(centre + turned(vertices[k], angle)); });
+  }
+  for (DeformableIndex i = 0; i < static_cast<DeformableIndex>(model.deformables.size()); ++i) {
+    const DeformableBody& body = model.deformables[i];
+    for (const std::vector<int>& loop : loops[i]) {
+      add(rigid + i, loop.size(), [&](size_t k) {
+        return Vec2(body.mesh.nodes[loop[k]] + state.node(body.first_node + loop[k]));
+      });
+    }
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLY_LINE, cells);
+  grid->GetCellData()->AddArray(of_cells);
+  add_time(grid, state.time);
+  return grid;
+}
 
 vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
                                     const std::vector<ContactRecord>& contacts) {
@@ -217,6 +288,7 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   vtkNew<vtkIntArray> b = integers("body_b");
   vtkNew<vtkDoubleArray> force = doubles("force_on_a", 3);
   vtkNew<vtkDoubleArray> normal = doubles("normal_force_on_a", 3);
+  vtkNew<vtkDoubleArray> damping = doubles("damping_force_on_a", 3);
   vtkNew<vtkDoubleArray> tangential = doubles("tangential_force_on_a", 3);
   vtkNew<vtkDoubleArray> penetration = doubles("penetration", 1);
   vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
@@ -226,9 +298,11 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
     cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
     a->InsertNextValue(contact.a);
     b->InsertNextValue(contact.b);
+    const Vec2 along_normal = contact.normal + contact.damping;
     for (const auto& [array, value] :
-         {std::pair<vtkDoubleArray*, Vec2>(force, contact.normal + contact.tangential),
-          {normal, contact.normal},
+         {std::pair<vtkDoubleArray*, Vec2>(force, along_normal + contact.tangential),
+          {normal, along_normal},
+          {damping, contact.damping},
           {tangential, contact.tangential}}) {
       array->InsertNextTuple3(value.x(), value.y(), 0);
     }
@@ -237,8 +311,8 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   }
   grid->SetPoints(points);
   grid->SetCells(VTK_VERTEX, cells);
-  for (vtkDataArray* array :
-       std::initializer_list<vtkDataArray*>{a, b, force, normal, tangential, penetration, phi}) {
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, force, normal, damping,
+                                                                  tangential, penetration, phi}) {
     grid->GetPointData()->AddArray(array);
   }
   add_time(grid, time);
@@ -292,12 +366,22 @@ std::string collection(const char* series, const std::vector<double>& times) {
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
     : folder_(std::move(folder)), model_(model), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
+  for (const RigidBody& body : model_.bodies) {
+    cells_.push_back(convex_cells(body.potential.vertices));
+  }
+  for (const DeformableBody& body : model_.deformables) {
+    Cells& loops = loops_.emplace_back();
+    for (BoundaryLoop& loop : boundary(body.mesh).loops) loops.push_back(std::move(loop.nodes));
+  }
 }
 
 void FrameWriter::write(const FrameContents& frame) {
   const size_t number = times_.size();
   const double time = frame.state.time;
-  write_file(folder_ + "/" + file_name("bodies", number), xml(BodyGrid(model_, frame).grid()));
+  write_file(folder_ + "/" + file_name("bodies", number),
+             xml(BodyGrid(model_, frame, cells_).grid()));
+  write_file(folder_ + "/" + file_name("outlines", number),
+             xml(outlines(model_, frame.state, loops_)));
   write_file(folder_ + "/" + file_name("contacts", number),
              xml(patches(model_, time, frame.contacts)));
   if (!frame.surfaces.empty()) {
@@ -309,6 +393,7 @@ void FrameWriter::write(const FrameContents& frame) {
     write_file(folder_ + "/surfaces.pvd", collection("surfaces", times_));
   }
   write_file(folder_ + "/frames.pvd", collection("bodies", times_));
+  write_file(folder_ + "/outlines.pvd", collection("outlines", times_));
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
 }
 
@@ -319,16 +404,24 @@ void write_mesh(const std::string& file, const PolygonMesh& mesh) {
   for (const Vec2& p : mesh.points) points->InsertNextPoint(p.x(), p.y(), 0);
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> index = integers("cell");
+  vtkNew<vtkIntArray> part = integers("part");
   vtkNew<vtkDoubleArray> area = doubles("area", 1);
-  for (const std::vector<int>& cell : mesh.cells) {
-    index->InsertNextValue(static_cast<int>(cells->GetNumberOfCells()));
-    area->InsertNextValue(area_moments(Polygon(cell_ring(mesh, cell))).area);
-    cells->InsertNextCell(static_cast<int>(cell.size()));
-    for (const int node : cell) cells->InsertCellPoint(node);
+  for (size_t i = 0; i < mesh.cells.size(); ++i) {
+    const std::vector<Vec2> ring = cell_ring(mesh, mesh.cells[i]);
+    const double of_cell = area_moments(Polygon(ring)).area;
+    const Cells parts = convex_cells(ring);
+    for (size_t k = 0; k < parts.size(); ++k) {
+      index->InsertNextValue(static_cast<int>(i));
+      part->InsertNextValue(static_cast<int>(k));
+      area->InsertNextValue(of_cell);
+      cells->InsertNextCell(static_cast<int>(parts[k].size()));
+      for (const int corner : parts[k]) cells->InsertCellPoint(mesh.cells[i][corner]);
+    }
   }
   grid->SetPoints(points);
   grid->SetCells(VTK_POLYGON, cells);
   grid->GetCellData()->AddArray(index);
+  grid->GetCellData()->AddArray(part);
   grid->GetCellData()->AddArray(area);
   write_file(file, xml(grid));
 }

@@ -1,6 +1,10 @@
 // Writes and reads the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
-// frame for the bodies, contacts.pvd for the contact patches, and surfaces.pvd for the boundaries
-// of bodies that are in contact with meshes. Also writes a mesh as a .vtu file.
+// frame for the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact
+// patches, and surfaces.pvd for the boundaries of bodies that are in contact with meshes. Also
+// writes a mesh as a .vtu file.
+//
+// Cells are convex, because many viewers fill a polygon as if it were. A body or an element that is
+// not convex is several cells with the same values, numbered by the cell data `part`.
 #pragma once
 
 #include <string>
@@ -41,6 +45,8 @@ class FrameWriter {
  private:
   std::string folder_;
   const Model& model_;
+  std::vector<std::vector<std::vector<int>>> cells_;  // of each rigid body, as lists of its corners
+  std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes
   std::vector<double> times_;
 };
 
@@ -64,8 +70,9 @@ Frame read_frame(const std::string& folder, double time, double latest);
 /// read_frame would read. Throws as read_frame does.
 std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest);
 
-/// Writes a tiling as a .vtu file of polygons with shared points, with the cell data `cell` (index)
-/// and `area` (m^2). Throws SystemFailure.
+/// Writes a tiling as a .vtu file of convex polygons with shared points, with the cell data `cell`
+/// (index), `part` (of a cell that is not convex) and `area` (of the whole cell, m^2). Throws
+/// SystemFailure.
 void write_mesh(const std::string& file, const PolygonMesh& mesh);
 
 }  // namespace apothem

@@ -53,10 +53,10 @@ Pressed pressed(const std::vector<SurfaceRecord>& surfaces, int body) {
   return result;
 }
 
-template <class Names>
-std::string header(const Names& names) {
-  std::string row = "time";
-  for (const char* name : names) row += std::string(",") + name;
+template <class Columns>
+std::string header(const Columns& columns) {
+  std::string row = "time [s]";
+  for (const auto& column : columns) row += fmt::format(",{} [{}]", column.name, column.unit);
   return row + '\n';
 }
 
@@ -72,11 +72,7 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   if (sizes[0] > 0) return;
   energy_.rows = header(kEnergyColumns);
   momentum_.rows = header(kMomentumColumns);
-  history_.rows = "time [s]";
-  for (const auto& [name, unit] : history_columns(model, settings)) {
-    history_.rows += fmt::format(",{} [{}]", name, unit);
-  }
-  history_.rows += '\n';
+  history_.rows = header(history_columns(model, settings));
   flush();
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "apothem/output/convex_cells.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
 
@@ -35,10 +36,15 @@ std::string faces(const Polygon& polygon, const Skeleton& skeleton, double refer
   vtkNew<vtkIntArray> edge = integers("edge");
   vtkNew<vtkIntArray> plateau = integers("plateau");
   for (const CutFaces::Part& part : cut.parts) {
-    const std::vector<vtkIdType> nodes(part.nodes.begin(), part.nodes.end());
-    grid->InsertNextCell(VTK_POLYGON, static_cast<vtkIdType>(nodes.size()), nodes.data());
-    edge->InsertNextValue(polygon.input_edge(part.edge));
-    plateau->InsertNextValue(part.above ? 1 : 0);
+    std::vector<Vec2> ring;
+    for (const int i : part.nodes) ring.push_back(cut.nodes[i].point);
+    for (const std::vector<int>& cell : convex_cells(ring)) {
+      std::vector<vtkIdType> nodes;
+      for (const int corner : cell) nodes.push_back(part.nodes[corner]);
+      grid->InsertNextCell(VTK_POLYGON, static_cast<vtkIdType>(nodes.size()), nodes.data());
+      edge->InsertNextValue(polygon.input_edge(part.edge));
+      plateau->InsertNextValue(part.above ? 1 : 0);
+    }
   }
   grid->GetPointData()->AddArray(height);
   grid->GetPointData()->AddArray(phi);
@@ -51,17 +57,22 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points = double_points();
   grid->SetPoints(points);
-  const auto add = [&](int type, const auto& corners) {
-    std::vector<vtkIdType> nodes;
+  const auto add = [&](int type, const auto& corners, const std::vector<std::vector<int>>& cells) {
+    const vtkIdType first = points->GetNumberOfPoints();
     for (const Vec2& corner : corners) {
       const Vec2 p = polygon.origin() + corner;
-      nodes.push_back(points->InsertNextPoint(p.x(), p.y(), 0));
+      points->InsertNextPoint(p.x(), p.y(), 0);
     }
-    grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+    for (const std::vector<int>& cell : cells) {
+      std::vector<vtkIdType> nodes;
+      for (const int corner : cell) nodes.push_back(first + corner);
+      grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+    }
   };
-  for (const std::vector<Vec2>& ring : singular.polygons) add(VTK_POLYGON, ring);
-  for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends);
-  for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point});
+  for (const std::vector<Vec2>& ring : singular.polygons)
+    add(VTK_POLYGON, ring, convex_cells(ring));
+  for (const std::array<Vec2, 2>& ends : singular.segments) add(VTK_LINE, ends, {{0, 1}});
+  for (const Vec2& point : singular.points) add(VTK_VERTEX, std::array{point}, {{0}});
   return xml(grid);
 }
 

@@ -21,6 +21,7 @@
 #include <stdexcept>
 
 #include "apothem/mesh/measure.hpp"
+#include "apothem/output/convex_cells.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
 
@@ -91,10 +92,15 @@ Frame read_frame(const std::string& folder, double time, double latest) {
   vtkDataArray* body = array(grid->GetCellData(), "body");
   vtkDataArray* stress = array(grid->GetCellData(), "stress");
   vtkDataArray* across = array(grid->GetCellData(), "stress_zz");
+  vtkDataArray* part = array(grid->GetCellData(), "part");
   vtkNew<vtkIdList> corners;
+  std::vector<std::vector<int>> parts;  // of the body or element at hand
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     grid->GetCellPoints(c, corners);
-    frame.mesh.add_element(std::vector<int>(corners->begin(), corners->end()));
+    parts.emplace_back(corners->begin(), corners->end());
+    if (c + 1 < grid->GetNumberOfCells() && part->GetTuple1(c + 1) > 0) continue;
+    frame.mesh.add_element(joined(parts));
+    parts.clear();
     frame.body.push_back(static_cast<int>(body->GetTuple1(c)));
     frame.stress.push_back({stress->GetComponent(c, 0), stress->GetComponent(c, 1),
                             stress->GetComponent(c, 2), across->GetTuple1(c)});

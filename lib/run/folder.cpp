@@ -13,8 +13,9 @@ namespace apothem {
 
 void prepare_folder(const std::string& folder, bool overwrite) {
   namespace fs = std::filesystem;
-  constexpr std::array ours{"run.json",    "frames.pvd", "contacts.pvd", "surfaces.pvd",
-                            "history.csv", "energy.csv", "momentum.csv", "checkpoint.json"};
+  constexpr std::array ours{"run.json",     "frames.pvd",   "outlines.pvd",
+                            "contacts.pvd", "surfaces.pvd", "history.csv",
+                            "energy.csv",   "momentum.csv", "checkpoint.json"};
   std::vector<fs::path> old;
   std::error_code error;
   for (const char* name : ours) {
@@ -28,8 +29,9 @@ void prepare_folder(const std::string& folder, bool overwrite) {
   }
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "frames", error)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".vtu") && (name.starts_with("bodies_") || name.starts_with("contacts_") ||
-                                   name.starts_with("surfaces_"))) {
+    if (name.ends_with(".vtu") &&
+        (name.starts_with("bodies_") || name.starts_with("outlines_") ||
+         name.starts_with("contacts_") || name.starts_with("surfaces_"))) {
       old.push_back(entry.path());
     }
   }

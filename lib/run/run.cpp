@@ -10,6 +10,7 @@
 #include "apothem/run/folder.hpp"
 #include "apothem/run/hash.hpp"
 #include "apothem/run/summary.hpp"
+#include "apothem/run/warnings.hpp"
 
 namespace apothem {
 namespace {
@@ -131,6 +132,9 @@ Run::Status Run::run(std::optional<double> until) {
       // The one that is thrown below came first.
     }
     throw;
+  }
+  for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
+    warn(std::move(sentence));
   }
   if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
   return status_;

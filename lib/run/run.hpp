@@ -80,6 +80,10 @@ class Run {
   [[nodiscard]] Status status() const { return status_; }
   /// Why the run has stopped; empty if it is done.
   [[nodiscard]] const std::string& message() const { return message_; }
+  /// Reasons to doubt the results, as whole sentences: those of warn(), and at the end of run()
+  /// what the run itself has found (warnings.hpp). They stand in run.json.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
   /// One for each expectation of the scene, after a run to its end.
   [[nodiscard]] const std::vector<Outcome>& outcomes() const { return outcomes_; }
@@ -112,6 +116,7 @@ class Run {
   std::function<void(const Run&)> on_progress_;
   Status status_ = Status::running;
   std::string message_;
+  std::vector<std::string> warnings_;
   std::vector<Outcome> outcomes_;
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_, last_checkpoint_;

@@ -47,6 +47,9 @@ void add_peaks(Json& json, const Run& run) {
   const Extremes extremes = run.simulation().extremes();
   json["largest_penetration"] = extremes.penetration.value;
   json["largest_penetration_at"] = where(extremes.penetration);
+  const Peak& relative = extremes.relative_penetration;
+  json["largest_relative_penetration"] = relative.value;
+  json["largest_relative_penetration_at"] = where(relative);
   json["largest_contact_force"] = extremes.force.value;
   json["largest_contact_force_at"] = where(extremes.force);
   json["largest_energy_error"] = extremes.energy_error;
@@ -124,6 +127,7 @@ void write_summary(const Run& run, const std::string& scene_hash) {
   json["final_state_hash"] = state_hash(state);
   if (scene.time.statics) add_load_steps(json, run);
   if (!run.message().empty()) json["message"] = run.message();
+  json["warnings"] = run.warnings();
   json["expectations"] = expectations(run);
   // JSON knows no infinity: where nothing limits the step, the limit is null.
   write_file(run.settings().folder + "/run.json",

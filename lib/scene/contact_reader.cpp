@@ -44,6 +44,9 @@ void ContactReader::read(const JsonValue& value) {
     law.friction = friction(*v, true);
   }
   if (const JsonValue* v = object.optional("damping")) damping(*v);
+  if (const JsonValue* v = object.optional("penetration_warning")) {
+    law.penetration_warning = in_.positive(*v, "");
+  }
   pairs_ = object.optional("pairs");
   if (pairs_) features_.add(Feature::friction_of_pairs, pairs_);
   const JsonValue* surface_value = object.optional("surface");

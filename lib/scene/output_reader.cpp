@@ -133,12 +133,11 @@ void OutputReader::history(const JsonValue& value) {
 }
 
 std::vector<Expectation> OutputReader::expectations(const JsonValue& value, double end) const {
-  std::vector<std::string> columns;
-  for (HistoryColumn& c : history_columns(model_, output_)) {
-    columns.push_back(std::move(c.name));
+  std::vector<std::string> columns = names_of(history_columns(model_, output_));
+  for (const std::vector<std::string>& ledger :
+       {names_of(kEnergyColumns), names_of(kMomentumColumns)}) {
+    columns.insert(columns.end(), ledger.begin(), ledger.end());
   }
-  columns.insert(columns.end(), kEnergyColumns.begin(), kEnergyColumns.end());
-  columns.insert(columns.end(), kMomentumColumns.begin(), kMomentumColumns.end());
   std::vector<Expectation> expectations;
   for (const JsonValue& item : in_.array(value)) {
     expectations.push_back(expectation(item, columns, end));

@@ -30,7 +30,7 @@ inline bool is_finite(const PairResult& r) {
   const PairIntegral& p = r.integral;
   return apothem::is_finite(p.force) && apothem::is_finite(p.centre) &&
          std::isfinite(p.moment_a + p.moment_b + p.weight + p.own_length_a + p.own_length_b) &&
-         std::isfinite(p.largest_phi + p.penetration + p.breadth) &&
+         std::isfinite(p.largest_phi + p.depth + p.breadth) &&
          std::isfinite(r.volume.energy + r.volume.overlap_area);
 }
 

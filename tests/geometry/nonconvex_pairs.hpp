@@ -45,8 +45,8 @@ inline PairResult overlap(const Polygon& a, const Polygon& b, const PotentialCho
 }
 
 inline void check_against(const PairResult& r, const PairResult& x) {
-  const double tolerance = std::max(1e-13, 1e-15 / std::max(x.integral.penetration, 1e-6)) *
-                           std::max(x.integral.weight, 1e-3);
+  const double tolerance =
+      std::max(1e-13, 1e-15 / std::max(x.integral.depth, 1e-6)) * std::max(x.integral.weight, 1e-3);
   REQUIRE((r.integral.force - x.integral.force).norm() <= tolerance);
   REQUIRE(std::abs(r.integral.moment_a - x.integral.moment_a) <= 3 * tolerance);
   REQUIRE(std::abs(r.integral.moment_b - x.integral.moment_b) <= 3 * tolerance);

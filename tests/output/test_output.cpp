@@ -87,7 +87,7 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   state.v = {1, 2, 0, 0, 0, 3};
   state.f = {5, 6, 7, 0, 0, 0};
   frames.write({.state = state,
-                .contacts = {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01}},
+                .contacts = {{0, 1, {0.5, 0.25}, {10, 20}, {3, -4}, 1e-3, 0.01, {-2, -1}}},
                 .forces = {{0, 0, 5}, {0, 0, 8}}});
 
   const auto list = entries(folder / "frames.pvd");
@@ -131,8 +131,8 @@ TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   REQUIRE(grid->GetNumberOfPoints() == 1);
   CHECK(grid->GetPoint(0)[0] == 1024.5);
   for (const auto& [name, x, y] :
-       {std::tuple("force_on_a", 13, 16), std::tuple("normal_force_on_a", 10, 20),
-        std::tuple("tangential_force_on_a", 3, -4)}) {
+       {std::tuple("force_on_a", 11, 15), std::tuple("normal_force_on_a", 8, 19),
+        std::tuple("damping_force_on_a", -2, -1), std::tuple("tangential_force_on_a", 3, -4)}) {
     CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 0) == x);
     CHECK(grid->GetPointData()->GetArray(name)->GetComponent(0, 1) == y);
   }
@@ -245,9 +245,13 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
   const HistoryTable momentum = read_history(folder / "momentum.csv");
   CHECK(content(folder / "history.csv")
             .starts_with("time [s],two.x [m],two.y [m],two.angle [rad],two.vx [m/s],"));
-  CHECK(content(folder / "energy.csv")
-            .starts_with("time,kinetic,strain,contact,gravity,friction_loss,damping_loss,external_"
-                         "work,total_error\n"));
+  CHECK(
+      content(folder / "energy.csv")
+          .starts_with("time [s],kinetic [J],strain [J],contact [J],gravity [J],friction_loss [J],"
+                       "damping_loss [J],external_work [J],total_error [J]\n"));
+  CHECK(content(folder / "momentum.csv")
+            .starts_with("time [s],px [kg m/s],py [kg m/s],angular [kg m^2/s],px_error [kg m/s],"
+                         "py_error [kg m/s],angular_error [kg m^2/s]\n"));
   REQUIRE(history.columns[0].size() == rows.size());
   for (size_t i = 0; i < rows.size(); ++i) {
     REQUIRE(history.columns[0][i] == rows[i][0]);

@@ -65,7 +65,7 @@ double worst_sum(const PatchResult& split, const PairIntegral& pair, double size
   for (size_t i = 0; i < split.patches.size(); ++i) {
     const PairIntegral& p = split.patches[i];
     REQUIRE(is_finite(p.force + p.centre));
-    REQUIRE(std::isfinite(p.moment_a + p.moment_b + p.weight + p.penetration + p.breadth));
+    REQUIRE(std::isfinite(p.moment_a + p.moment_b + p.weight + p.depth + p.breadth));
     Sum alone;
     alone.add(p);
     all.add(p);
@@ -103,7 +103,7 @@ TEST_CASE("a cross in a notch touches left and right", "[patches]") {
     // Flat on flat: both potentials rise with slope 1/r from the sides in contact.
     const PairIntegral& p = s.patches[0];
     const PairIntegral& q = s.patches[1];
-    CHECK(p.penetration == Approx(d).epsilon(1e-12));
+    CHECK(p.depth == Approx(d).epsilon(1e-12));
     CHECK(p.breadth == Approx(2 * a).epsilon(1e-12));
     CHECK((p.force + q.force).norm() < 1e-15);
     CHECK(std::abs(p.force.y()) < 1e-15);
@@ -209,10 +209,10 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
                         std::abs(p.moment_a - x.moment_a) / pair.weight,
                         std::abs(p.moment_b - x.moment_b) / pair.weight,
                         std::abs(p.weight - x.weight) / pair.weight});
+      REQUIRE(p.depth == Approx(x.depth).margin(1e-10));
       REQUIRE(std::abs(p.own_length_a - x.own_length_a) < 1e-10);
       REQUIRE(std::abs(p.own_length_b - x.own_length_b) < 1e-10);
       if (x.force.norm() > 1e-2 * x.weight && x.weight > 1e-6) {
-        REQUIRE(p.penetration == Approx(x.penetration).margin(1e-8));
         REQUIRE(p.breadth == Approx(x.breadth).margin(1e-8));
         REQUIRE((loading_point(p) - loading_point(x)).norm() < 1e-6);
       }
@@ -250,7 +250,7 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     REQUIRE(p.moment_a == whole.moment_a);
     REQUIRE(p.moment_b == whole.moment_b);
     REQUIRE(p.centre == whole.centre);
-    REQUIRE(p.penetration == whole.penetration);
+    REQUIRE(p.depth == whole.depth);
     REQUIRE(p.breadth == whole.breadth);
     REQUIRE(worst_sum(s, whole, extent(a, b),
                       std::max(potential_a.steepest, potential_b.steepest)) < 50);

@@ -19,7 +19,7 @@ void check_bits(const PairIntegral& a, const PairIntegral& b) {
   CHECK(a.moment_a == b.moment_a);
   CHECK(a.moment_b == b.moment_b);
   CHECK(a.weight == b.weight);
-  CHECK(a.penetration == b.penetration);
+  CHECK(a.depth == b.depth);
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ TEST_CASE("closed forms", "[edge]") {
       CHECK(r.volume.overlap_area == Approx(w * d).epsilon(1e-12));
       CHECK(r.integral.own_length_a == Approx(w + 2 * d).epsilon(1e-12));
       CHECK(r.integral.own_length_b == Approx(w).epsilon(1e-12));
-      CHECK(r.integral.penetration == Approx(d).epsilon(1e-12));
+      CHECK(r.integral.depth == Approx(d).epsilon(1e-12));
       CHECK(r.integral.breadth == Approx(w).epsilon(1e-12));
     }
     for (const double a : {M_PI / 6, M_PI / 3, .2}) {
@@ -86,7 +86,7 @@ TEST_CASE("closed forms", "[edge]") {
           d * d * std::sin(a) * std::tan(a) * (1 / inradius(c) + 1 / inradius(t)) / 2;
       CHECK(apex.integral.force.y() == Approx(force).epsilon(1e-12));
       CHECK(apex.volume.energy == Approx(force * d / 3).epsilon(1e-12));
-      CHECK(apex.integral.penetration == Approx(d).epsilon(1e-12));
+      CHECK(apex.integral.depth == Approx(d * std::sin(a)).epsilon(1e-12));
       const Polygon flat = samples::block(-3, -2, 3, 0);
       const PairResult on_flat = test::edge(c, flat);
       CHECK(on_flat.integral.force.y() ==

@@ -114,7 +114,7 @@ Potential scaled(Potential potential, double factor) {
 bool same_bits(const PairIntegral& x, const PairIntegral& y) {
   return x.force == y.force && x.moment_a == y.moment_a && x.moment_b == y.moment_b &&
          x.weight == y.weight && x.own_length_a == y.own_length_a &&
-         x.own_length_b == y.own_length_b && x.penetration == y.penetration;
+         x.own_length_b == y.own_length_b && x.depth == y.depth;
 }
 
 }  // namespace

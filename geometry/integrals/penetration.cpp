@@ -1,0 +1,136 @@
+#include "apothem/geometry/integrals/penetration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apothem/geometry/integrals/placement.hpp"
+
+namespace apothem {
+
+namespace {
+
+constexpr double kAccuracy = 1e-12;  // of a largest distance, relative
+constexpr double kShortest = 1e-14;  // interval that is not divided, share of the segment
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void BoundaryDistance::add(const Vec2& from, const Vec2& to) {
+  segments_.push_back({from, to - from, 1 / (to - from).norm()});
+}
+
+double BoundaryDistance::Segment::distance(const Vec2& point) const {
+  const Vec2 arm = point - from;
+  const double share = arm.dot(along) * inverse_length * inverse_length;
+  if (share > 0 && share < 1) return std::abs(cross(along, arm)) * inverse_length;
+  return std::sqrt(std::min(arm.squaredNorm(), (arm - along).squaredNorm()));
+}
+
+double BoundaryDistance::at(const Vec2& point) const {
+  double nearest = kInfinity;
+  for (const Segment& segment : segments_) nearest = std::min(nearest, segment.distance(point));
+  return nearest;
+}
+
+// Branch and bound. Along a line the distance from one segment is a convex function. On an interval
+// it is therefore at most the larger of its values at the two ends, and the smallest of these over
+// all segments bounds the distance from the boundary. An interval is divided where the chords of
+// the two segments meet that are nearest to its ends. That is the largest distance if both
+// functions are linear; every third division is in the middle, so that curved ones converge as
+// well.
+double BoundaryDistance::largest(const Vec2& p, const Vec2& q, double floor) {
+  double best = floor;
+  open_.assign(1, {0, 1, 0});
+  while (!open_.empty()) {
+    const Interval i = open_.back();
+    open_.pop_back();
+    const Vec2 start = p + i.from * (q - p);
+    const Vec2 end = p + i.to * (q - p);
+    struct Nearest {
+      double here = kInfinity, there = kInfinity;  // distances at this end and at the other one
+    } first, last;
+    double bound = kInfinity;
+    for (const Segment& segment : segments_) {
+      const double d0 = segment.distance(start);
+      const double d1 = segment.distance(end);
+      if (d0 < first.here) first = {d0, d1};
+      if (d1 < last.here) last = {d1, d0};
+      bound = std::min(bound, std::max(d0, d1));
+    }
+    if (!(bound < kInfinity)) return best;  // no boundary, or a coordinate that is not finite
+    best = std::max({best, first.here, last.here});
+    if (bound <= best * (1 + kAccuracy) || i.to - i.from < kShortest) continue;
+    const double rise = last.there - first.here;
+    const double fall = first.there - last.here;
+    const double share = rise / (rise + fall);
+    const bool chords = i.level % 3 < 2 && share > 0 && share < 1;
+    const double middle = i.from + (chords ? share : .5) * (i.to - i.from);
+    open_.push_back({i.from, middle, i.level + 1});
+    open_.push_back({middle, i.to, i.level + 1});
+  }
+  return best;
+}
+
+void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                       std::span<const BoundaryRun> runs, PenetrationWorkspace& workspace,
+                       std::span<double> deepest) {
+  const auto place = [](const PlacedPotential& p, const Vec2& origin, BoundaryDistance& boundary) {
+    boundary.clear();
+    for (int i = 0; i < p.size; ++i) {
+      boundary.add(Vec2(p.x[i], p.y[i]) - origin, Vec2(p.x[i + 1], p.y[i + 1]) - origin);
+    }
+  };
+  // The points of runs are relative to the reference point of a.
+  place(a, a.reference, workspace.a);
+  place(b, edge_detail::arm(a, b, offset) + b.reference, workspace.b);
+  for (const BoundaryRun& run : runs) {
+    double& deep = deepest[static_cast<size_t>(run.patch)];
+    deep = (run.of_a ? workspace.b : workspace.a).largest(run.start, run.end, deep);
+  }
+}
+
+double penetration(const Polygon& a, const Polygon& b) {
+  // Any potential finds the patches. This one needs no skeleton.
+  const PotentialChoice any{PotentialChoice::Kind::distance, PotentialChoice::Field::distance,
+                            PotentialChoice::Reference::length, 1};
+  const Potential potential_a = make_potential(a, any);
+  const Potential potential_b = make_potential(b, any);
+  const PlacedPair placed(a, potential_a, b, potential_b);
+  PatchWorkspace patch_workspace;
+  std::vector<BoundaryRun> runs;
+  std::vector<PairIntegral> patches;
+  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), patch_workspace, runs, patches);
+  std::vector<double> deepest(patches.size());
+  PenetrationWorkspace workspace;
+  find_penetrations(placed.a.view, placed.b.view, Vec2::Zero(), runs, workspace, deepest);
+  return deepest.empty() ? 0 : *std::max_element(deepest.begin(), deepest.end());
+}
+
+double depth_ratio(const Potential& potential) {
+  double ratio = 1;
+  for (const Vec2& g : potential.gradients) {  // they differ in the area potential
+    const double steeper = potential.steepest / g.norm();
+    if (steeper > 1 + 1e-9) ratio = std::max(ratio, steeper);
+  }
+  if (!potential.roof) return ratio;
+  // A point of the face of an edge is at the height h above the edge's line, and no farther from
+  // the boundary than the hypotenuse of h and of the distance o by which its foot misses the edge.
+  // o/h is largest at a corner of the face.
+  const int n = potential.size();
+  for (int e = 0; e < n; ++e) {
+    const Vec2& from = potential.vertices[e];
+    const Vec2 along = potential.vertices[e + 1 == n ? 0 : e + 1] - from;
+    const double length = along.norm();
+    for (const int node : potential.roof->faces[e]) {
+      if (node < n) continue;  // on the boundary
+      const Vec2 arm = potential.roof->points[node] - from;
+      const double foot = arm.dot(along) / length;
+      const double height = cross(along, arm) / length;
+      ratio = std::max(ratio, std::hypot(1, std::max({0., -foot, foot - length}) / height));
+    }
+  }
+  return ratio;
+}
+
+}  // namespace apothem

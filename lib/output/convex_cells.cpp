@@ -1,0 +1,73 @@
+#include "apothem/output/convex_cells.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "apothem/geometry/polygon/convex_parts.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kStraight = -1e-9;  // sine of the largest turn to the right
+
+bool is_convex(std::span<const Vec2> ring) {
+  const size_t n = ring.size();
+  Vec2 in = ring[0] - ring[n - 1];
+  for (size_t i = 0; i < n; ++i) {
+    const Vec2 out = ring[i + 1 == n ? 0 : i + 1] - ring[i];
+    if (cross(in, out) < kStraight * in.norm() * out.norm()) return false;
+    in = out;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring) {
+  std::vector<int> corners(ring.size());
+  std::iota(corners.begin(), corners.end(), 0);
+  if (is_convex(ring)) return {corners};
+  const auto same = [&](int i, int j) { return ring[i] == ring[j]; };
+  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
+  if (corners.size() > 1 && same(corners.front(), corners.back())) corners.pop_back();
+  std::vector<Vec2> places;
+  for (const int i : corners) places.push_back(ring[i]);
+  try {
+    std::vector<std::vector<int>> cells = convex_parts(Polygon(places));
+    for (std::vector<int>& cell : cells) {
+      for (int& corner : cell) corner = corners[corner];
+    }
+    return cells;
+  } catch (const InvalidPolygon&) {
+    return {corners};
+  }
+}
+
+std::vector<int> joined(const std::vector<std::vector<int>>& cells) {
+  if (cells.size() == 1) return cells[0];
+  std::set<std::pair<int, int>> edges;
+  for (const std::vector<int>& cell : cells) {
+    for (size_t i = 0; i < cell.size(); ++i) {
+      const int from = cell[i];
+      const int to = cell[i + 1 == cell.size() ? 0 : i + 1];
+      if (edges.erase({to, from}) == 0) edges.emplace(from, to);
+    }
+  }
+  std::map<int, int> next(edges.begin(), edges.end());
+  std::vector<int> longest;
+  while (!next.empty()) {
+    std::vector<int> ring;
+    for (auto at = next.begin(); at != next.end(); at = next.find(ring.back())) {
+      if (ring.empty()) ring.push_back(at->first);
+      ring.push_back(at->second);
+      next.erase(at);
+    }
+    if (ring.front() == ring.back()) ring.pop_back();
+    if (ring.size() > longest.size()) longest = std::move(ring);
+  }
+  return longest;
+}
+
+}  // namespace apothem

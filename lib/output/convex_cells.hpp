@@ -1,0 +1,20 @@
+// Private header of the VTK writers: polygons as cells that every viewer fills rightly. Many fill a
+// VTK_POLYGON as a fan of triangles around its first corner, which is right for convex ones only.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// The cells that fill a counter-clockwise ring, as lists of its corners: the ring itself if it is
+/// convex to a billionth, otherwise convex parts of it. A ring that is no simple polygon, like that
+/// of an element turned inside out, stays whole.
+std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring);
+
+/// The ring that cells like these were made of, as numbers of points, or the longest of several.
+std::vector<int> joined(const std::vector<std::vector<int>>& cells);
+
+}  // namespace apothem

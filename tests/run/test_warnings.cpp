@@ -1,0 +1,82 @@
+// What a run says at its end about its own results.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "folder.hpp"
+#include "run/scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+// A block of 1 m x 1 m falls flat on a floor of 4 m x 1 m: both have an inradius of 0.5 m.
+std::string falling_block(double stiffness, const std::string& more = "") {
+  return R"({ "gravity": [0, -10], "materials": { "rock": { "density": 2000 } },
+    "contact": { "normal_stiffness": )" +
+         std::to_string(stiffness) + more + R"( },
+    "bodies": [
+      { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-2, -1], [2, -1], [2, 0], [-2, 0]] },
+      { "name": "block", "material": "rock", "velocity": [0, -1], "polygon": [[-0.5, 0.01], [0.5, 0.01], [0.5, 1.01], [-0.5, 1.01]] } ],
+    "time": { "end": 0.1 }, "output": { "frames": 2 } })";
+}
+
+nlohmann::json summary(const std::string& folder) {
+  return nlohmann::json::parse(content(folder + "/run.json"));
+}
+
+}  // namespace
+
+TEST_CASE("a run warns of bodies that were deep in each other", "[run][warnings]") {
+  const Folder folder;
+  Run soft(scene_of(folder, falling_block(1e6)), {.folder = folder / "soft"});
+  CHECK(soft.run() == Run::Status::done);
+  REQUIRE(soft.warnings().size() == 1);
+  const Extremes extremes = soft.simulation().extremes();
+  // m (v^2 / 2 + g (h + d)) = k d^2 / 2 (1/r + 1/r), but for the corners of the block.
+  const double depth = extremes.penetration.value;
+  CHECK(depth == Approx(.0302).epsilon(.01));
+  CHECK(extremes.relative_penetration.value == Approx(depth / .5).epsilon(1e-12));
+  CHECK(extremes.relative_penetration.time == extremes.penetration.time);
+  const std::string& warning = soft.warnings()[0];
+  for (const char* part :
+       {"\"floor\"", "\"block\"", "0.0302 m", "6.0", "% of the inradius of", "(0.5 m)",
+        "at t = 0.0", "contact.penetration_warning (1 %)", "raise contact.normal_stiffness"}) {
+    CHECK_THAT(warning, Catch::Contains(part));
+  }
+  const nlohmann::json json = summary(folder / "soft");
+  CHECK(json["warnings"] == nlohmann::json::array({warning}));
+  CHECK(json["largest_penetration"] == depth);
+  CHECK(json["largest_relative_penetration"] == extremes.relative_penetration.value);
+  CHECK(json["largest_relative_penetration_at"]["bodies"] == nlohmann::json({"floor", "block"}));
+
+  Run stiff(scene_of(folder, falling_block(1e8)), {.folder = folder / "stiff"});
+  CHECK(stiff.run() == Run::Status::done);
+  CHECK(stiff.warnings().empty());
+  CHECK(summary(folder / "stiff")["warnings"] == nlohmann::json::array());
+}
+
+TEST_CASE("contact.penetration_warning sets how deep is too deep", "[run][warnings]") {
+  const Folder folder;
+  const auto warnings = [&](double stiffness, const char* limit) {
+    const Scene scene = scene_of(
+        folder, falling_block(stiffness, std::string(R"(, "penetration_warning": )") + limit));
+    Run run(scene, {.folder = ""});
+    run.run();
+    return run.warnings();
+  };
+  CHECK(warnings(1e6, "0.1").empty());
+  CHECK(warnings(1e8, "0.001").size() == 1);
+  CHECK_THAT(warnings(1e8, "0.001").at(0), Catch::Contains("(0.1 %)"));
+  CHECK_THROWS_WITH(warnings(1e8, "0"), Catch::Contains("/contact/penetration_warning"));
+}
+
+TEST_CASE("others add warnings of their own to a run", "[run][warnings]") {
+  const Folder folder;
+  Run run(scene_of(folder, flying_block()), {.folder = folder / "out"});
+  run.warn("the moon is full: wait for a day");
+  CHECK(run.run() == Run::Status::done);
+  CHECK(summary(folder / "out")["warnings"] ==
+        nlohmann::json::array({"the moon is full: wait for a day"}));
+}
