@@ -4,6 +4,7 @@
 
 #include "apothem/run/run.hpp"
 #include "commands.hpp"
+#include "plan_json.hpp"
 
 namespace apothem {
 namespace {
@@ -56,8 +57,12 @@ void say_step(const Scene& scene, const Simulation& simulation) {
 }  // namespace
 
 int check_command(const CheckOptions& options) {
-  const Scene scene = read_scene(options.scene);
+  const Scene scene = read_scene(options.scene, settings_of(options.set, options.scene));
   const std::unique_ptr<Simulation> simulation = make_simulation(scene, 1);
+  if (options.json) {
+    fmt::print("{}\n", plan_json(scene, *simulation));
+    return exit_code::done;
+  }
   const Model& model = scene.model;
   fmt::print("{}: a valid scene\n", scene.file);
   say("name", model.name);

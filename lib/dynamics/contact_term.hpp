@@ -41,6 +41,9 @@ class ContactTerm final : public Term {
   void fields(Archive& archive) override;
   void refresh(const State& state) override { contacts_.refresh(state.kinematics(state.v)); }
 
+  /// See Simulation::inherit.
+  void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
+
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   [[nodiscard]] const Peak& penetration() const { return penetration_; }
   [[nodiscard]] const Peak& force() const { return force_; }

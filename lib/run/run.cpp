@@ -9,6 +9,7 @@
 #include "apothem/output/files.hpp"
 #include "apothem/run/folder.hpp"
 #include "apothem/run/hash.hpp"
+#include "apothem/run/other_run.hpp"
 #include "apothem/run/summary.hpp"
 
 namespace apothem {
@@ -41,17 +42,9 @@ bool Schedule::due(double time, double step) {
 }
 
 Run::Run(Scene scene, const RunSettings& settings)
-    : scene_(std::move(scene)),
-      settings_(settings),
-      simulation_(make_simulation(scene_, settings.threads,
-                                  settings.resume ? Start::checkpoint : Start::scene)),
-      scene_hash_(scene_hash(scene_)) {
+    : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
+  start();
   const std::string& folder = settings_.folder;
-  if (settings_.resume) {
-    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
-  } else if (!folder.empty()) {
-    prepare_folder(folder, settings_.overwrite);
-  }
   rows_ =
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
@@ -61,6 +54,25 @@ Run::Run(Scene scene, const RunSettings& settings)
   std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
   history_.emplace(folder, scene_.model, scene_.output, sizes);
   frames_.emplace(folder, scene_.model, progress_.frame_times);
+}
+
+// The simulation where it begins, or where it goes on.
+void Run::start() {
+  const std::string& folder = settings_.folder;
+  if (settings_.resume) {
+    begin_at(scene_.model, read_progress(folder).beginning.bodies);
+    simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
+    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
+    return;
+  }
+  std::optional<OtherRun> other;
+  if (!settings_.from.empty()) {
+    other.emplace(settings_.from, settings_.from_time);
+    progress_.beginning = other->move_into(scene_);
+  }
+  simulation_ = make_simulation(scene_, settings_.threads);
+  if (other) other->hand_contacts_to(*simulation_);
+  if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
 }
 
 double Run::seconds() const { return seconds_since(start_); }
@@ -115,7 +127,7 @@ void Run::loop(double until) {
     if (on_progress_) on_progress_(*this);
     const std::optional<double>& interval = scene_.output.checkpoint_interval;
     if (interval && seconds_since(last_checkpoint_) > *interval) {
-      save();
+      save(StateFile::checkpoint);
       last_checkpoint_ = Clock::now();
     }
   }
@@ -137,22 +149,23 @@ Run::Status Run::run(std::optional<double> until) {
     status_ = Status::failed;
     message_ = error.what();
     try {
-      if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+      if (!settings_.folder.empty()) write_summary(*this);
     } catch (const SystemFailure&) {
       // The one that is thrown below came first.
     }
     throw;
   }
-  if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+  if (!settings_.folder.empty()) write_summary(*this);
   return status_;
 }
 
 void Run::close(double until) {
   flush();
   if (reached(scene_.time.end)) {
+    save(StateFile::final);
     if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
   } else {
-    save();
+    save(StateFile::checkpoint);
     if (!scene_.time.statics) {
       record(true, true);  // shows where the run stopped; a resumed run takes it back
       flush();
@@ -195,7 +208,7 @@ void Run::flush() {
   if (history_) history_->flush();
 }
 
-void Run::save() {
+void Run::save(StateFile kind) {
   if (!history_) return;
   history_->flush();
   const HistoryWriter::Sizes sizes = history_->sizes();
@@ -203,7 +216,7 @@ void Run::save() {
   progress_.frame_times = frames_->times();
   progress_.next_row = rows_.next();
   progress_.next_frame = pictures_.next();
-  write_checkpoint(settings_.folder, scene_hash_, *simulation_, progress_);
+  write_state(settings_.folder, kind, scene_, scene_hash_, *simulation_, progress_);
 }
 
 void Run::judge() {
