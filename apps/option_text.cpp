@@ -15,7 +15,7 @@ void read_type(const std::string& type, OptionText& text) {
     std::istringstream list(type.substr(open + 1, close - open - 1));
     for (std::string choice; std::getline(list, choice, ',');) text.choices.push_back(choice);
   }
-  text.takes_file = text.choices.empty() && (text.value == "TEXT" || text.value.starts_with("DIR"));
+  text.takes_file = text.value == "FILE" || text.value.starts_with("DIR");
 }
 
 OptionText text_of(const CLI::Option& option) {

@@ -61,8 +61,8 @@ void add_settings(CLI::App* sub, std::vector<std::string>& settings) {
 
 void add_run(CLI::App& app, RunOptions& o) {
   CLI::App* sub = app.add_subcommand("run", "Run a scene");
-  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
-  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)")->type_name("DIR");
   add_threads(sub, o.threads);
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
       ->check(kPositive);
@@ -85,7 +85,7 @@ void add_run(CLI::App& app, RunOptions& o) {
 
 void add_check(CLI::App& app, CheckOptions& o) {
   CLI::App* sub = app.add_subcommand("check", "Validate a scene and print what a run would do");
-  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required();
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
   add_settings(sub, o.set);
   sub->add_flag("--json", o.json, "Print JSON");
 }
@@ -93,10 +93,12 @@ void add_check(CLI::App& app, CheckOptions& o) {
 void add_contact(CLI::App& app, ContactOptions& o) {
   CLI::App* sub = app.add_subcommand("contact", "Contact force of two polygons");
   CLI::Option* a =
-      sub->add_option("A", o.a, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}");
-  CLI::Option* b = sub->add_option("B", o.b, "The other polygon");
+      sub->add_option("A", o.a, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
+          ->type_name("FILE");
+  CLI::Option* b = sub->add_option("B", o.b, "The other polygon")->type_name("FILE");
   a->needs(b);
   sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
+      ->type_name("FILE")
       ->excludes(a)
       ->excludes(b);
   sub->add_option("--potential", o.potential, "Contact potential")
@@ -104,7 +106,8 @@ void add_contact(CLI::App& app, ContactOptions& o) {
       ->capture_default_str();
   sub->add_option("--field", o.field, "Depth in polygons that are not convex (default: roof)")
       ->check(CLI::IsMember({"roof", "distance"}));
-  sub->add_option("--reference", o.reference, "roof (default), inscribed_circle or a length in m");
+  sub->add_option("--reference", o.reference, "roof (default), inscribed_circle or a length in m")
+      ->type_name("REFERENCE");
   sub->add_option("--method", o.method, "Way to the numbers")
       ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
       ->capture_default_str();
@@ -119,6 +122,7 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
       "mesh", "Mesh a region with polygonal cells, or describe a mesh of gmsh's");
   sub->add_option("FILE", o.file,
                   "Region: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}; or a mesh: NAME.msh")
+      ->type_name("FILE")
       ->required();
   CLI::Option* cells =
       sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->transform(kWhole);
@@ -137,33 +141,45 @@ void add_mesh(CLI::App& app, MeshOptions& o) {
       ->capture_default_str();
   sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
   sub->add_option("-o,--output", o.output,
-                  "JSON file (default: standard output for Voronoi cells, none for a mesh)");
-  sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at");
+                  "JSON file (default: standard output for Voronoi cells, none for a mesh)")
+      ->type_name("FILE");
+  sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at")->type_name("FILE");
   sub->final_callback([&o, cells] { o.make = cells->count() > 0; });
 }
 
 void add_polygon(CLI::App& app, PolygonOptions& o) {
   CLI::App* sub = app.add_subcommand("polygon", "A polygon's roof, singular area and circles");
   CLI::Option* file =
-      sub->add_option("FILE", o.file, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}");
+      sub->add_option("FILE", o.file, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
+          ->type_name("FILE");
   CLI::Option* batch =
       sub->add_option("--batch", o.batch, "File with one ring per line: name n x y ...")
+          ->type_name("FILE")
           ->excludes(file);
   sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
+      ->type_name("REFERENCE")
       ->capture_default_str();
-  sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")->excludes(batch);
+  sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")
+      ->type_name("DIR")
+      ->excludes(batch);
   sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+      ->type_name("FILE")
       ->excludes(batch);
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
 void add_accuracy(CLI::App& app, AccuracyOptions& o) {
   CLI::App* sub = app.add_subcommand("accuracy", "Speed against error of the contact methods");
-  CLI::Option* cases = sub->add_option(
-      "--cases", o.cases, "Files of pairs (JSON, or lines as of contact --batch) instead of ours");
-  sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
+  CLI::Option* cases =
+      sub->add_option("--cases", o.cases,
+                      "Files of pairs (JSON, or lines as of contact --batch) instead of ours")
+          ->type_name("FILE");
+  sub->add_option("-o,--output", o.folder, "Output folder")
+      ->type_name("DIR")
+      ->capture_default_str();
   sub->add_option("--write-cases", o.write_cases,
                   "Write our hard pairs with expected values to this file, and end")
+      ->type_name("FILE")
       ->excludes(cases);
 }
 
@@ -171,8 +187,11 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
   sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
       ->delimiter(',');
-  sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
-  sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)");
+  sub->add_option("-o,--output", o.folder, "Output folder")
+      ->type_name("DIR")
+      ->capture_default_str();
+  sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)")
+      ->type_name("DIR");
   add_threads(sub, o.threads);
   sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
 }
