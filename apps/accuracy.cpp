@@ -177,7 +177,7 @@ class Accuracy {
     const Cases cases = cases_of(options_);
     if (std::all_of(cases.all().begin(), cases.all().end(),
                     [](const Case& c) { return c.pairs.empty(); })) {
-      throw SceneError("accuracy", 0, "", "no pair is left to evaluate");
+      throw UsageError("accuracy", "no pair is left to evaluate");
     }
     create_folder(options_.folder);
     fmt::print("Errors of the force: of W, and of stiffness x own boundary length.\n");

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apothem/run/run.hpp"
-#include "apothem/scene/plausibility.hpp"
 #include "commands.hpp"
+#include "plan_json.hpp"
 
 namespace apothem {
 namespace {
@@ -54,8 +54,6 @@ void say_step(const Scene& scene, const Simulation& simulation) {
                                how, choice.limit.reason, choice.stability));
 }
 
-constexpr double kTrial = 0.3;  // s
-
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.2g} s", seconds);
   if (seconds < 6000) return fmt::format("{:.2g} min", seconds / 60);
@@ -64,42 +62,30 @@ std::string duration(double seconds) {
 }
 
 // A trial sees the contacts of the start only, and no output.
-void say_run_time(const Scene& scene, const Simulation& simulation) {
-  if (scene.time.statics) return;
-  const Trial trial = try_steps(scene, 1, kTrial);
+void say_run_time(const Scene& scene, const Simulation& simulation, const Trial& trial) {
   if (!trial.message.empty()) {
     say("run time", "none: after a few steps, " + trial.message);
-  } else {
-    const double steps = std::ceil(scene.time.end / simulation.step_choice().step);
-    const double each = trial.seconds / static_cast<double>(trial.steps);
-    say("run time", fmt::format("about {} on one thread, from {} steps of {:.2g} s of wall clock",
-                                duration(each * steps), trial.steps, each));
+    return;
   }
+  say("run time", fmt::format("about {} on one thread, from {} steps of {:.2g} s of wall clock",
+                              duration(run_seconds(scene, simulation, trial)), trial.steps,
+                              trial.seconds / static_cast<double>(trial.steps)));
 }
 
-void say_damping(const Model& model) {
-  const bool damped =
-      model.contact.normal_damping > 0 || model.contact.mass_damping > 0 ||
-      std::any_of(model.materials.begin(), model.materials.end(),
-                  [](const Material& m) { return m.mass_damping > 0 || m.stiffness_damping > 0; });
-  say("damping",
-      damped ? "present, see the terms below" : "none: only friction ends a motion");
-}
-
-void say_output(const Scene& scene) {
+void say_output(const Scene& scene, bool empty_history) {
   const OutputSettings& output = scene.output;
   const size_t bodies = output.track.size() + output.track_deformables.size();
   say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
                             output.frames + 1, bodies, output.points.size(),
                             output.history_interval.value_or(scene.time.end / 1000)));
-  if (bodies + output.points.size() + output.track_surfaces.size() == 0) {
+  if (empty_history) {
     say("",
         "history.csv will hold the time alone: name up to a few bodies in output.history.track "
         "(a scene of more than 20 bodies has none by default)");
   }
   say("checkpoint", output.checkpoint_interval
                         ? fmt::format("every {:g} s of wall clock", *output.checkpoint_interval)
-                        : "only when the run is stopped; output.checkpoint.wall_clock writes more");
+                        : "off; one is written when the run is stopped");
 }
 
 void say_contact_at_start(const Simulation& simulation) {
@@ -112,8 +98,13 @@ void say_contact_at_start(const Simulation& simulation) {
 }  // namespace
 
 int check_command(const CheckOptions& options) {
-  const Scene scene = read_scene(options.scene);
+  const Scene scene = read_scene(options.scene, settings_of(options.set, options.scene));
   const std::unique_ptr<Simulation> simulation = make_simulation(scene, 1);
+  const PlanEstimates estimates = estimates_of(scene);
+  if (options.json) {
+    fmt::print("{}\n", plan_json(scene, *simulation, estimates));
+    return exit_code::done;
+  }
   const Model& model = scene.model;
   fmt::print("{}: a valid scene\n", scene.file);
   say("name", model.name);
@@ -122,14 +113,15 @@ int check_command(const CheckOptions& options) {
     say("gravity", fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));
   }
   say_step(scene, *simulation);
-  say_run_time(scene, *simulation);
-  say_output(scene);
+  if (estimates.trial) say_run_time(scene, *simulation, *estimates.trial);
+  say_output(scene, estimates.empty_history);
   say("expects", fmt::format("{} results", scene.expectations.size()));
-  say_damping(model);
+  say("damping",
+      estimates.damped ? "present, see the terms below" : "none: only friction ends a motion");
   say_contact_at_start(*simulation);
   fmt::print("terms of the step: {}\n", simulation->terms().empty() ? "none" : "");
   for (const auto& term : simulation->terms()) fmt::print("  + {}\n", term->describe());
-  for (const std::string& unlikely : unlikely_values(scene)) fmt::print("warning: {}\n", unlikely);
+  for (const std::string& warning : estimates.warnings) fmt::print("warning: {}\n", warning);
   return exit_code::done;
 }
 

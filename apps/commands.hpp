@@ -4,10 +4,12 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/scene/setting.hpp"
 
 namespace apothem {
 
@@ -23,6 +25,15 @@ inline constexpr int system_failed = 4;
 inline constexpr int interrupted = 130;  ///< stopped by a signal; 128 + SIGINT
 }  // namespace exit_code
 
+/// The error for a command line that asks for something impossible.
+class UsageError : public std::runtime_error {
+ public:
+  explicit UsageError(const std::string& what) : std::runtime_error(what) {}
+  /// `where`: the option, or the sub-command.
+  UsageError(const std::string& where, const std::string& what)
+      : std::runtime_error(where + ": " + what) {}
+};
+
 /// Options of `apothem run`.
 struct RunOptions {
   std::string scene;   ///< scene file
@@ -33,13 +44,21 @@ struct RunOptions {
   bool overwrite = false;       ///< replace the results in the folder
   bool quiet = false;
   bool verify = false;
+  bool json = false;             ///< print JSON instead of a summary
+  std::vector<std::string> set;  ///< PATH=VALUE, in place of values of the scene
+  std::string from;              ///< DIR or DIR@TIME of another run to begin with
 };
 /// Runs a scene and writes its results.
 int run_command(const RunOptions& options);
 
+/// The settings of --set. Throws SceneError, at the scene.
+std::vector<Setting> settings_of(const std::vector<std::string>& texts, const std::string& scene);
+
 /// Options of `apothem check`.
 struct CheckOptions {
-  std::string scene;  ///< scene file
+  std::string scene;             ///< scene file
+  bool json = false;             ///< print JSON instead of a table
+  std::vector<std::string> set;  ///< PATH=VALUE, in place of values of the scene
 };
 /// Validates a scene and prints what a run would do.
 int check_command(const CheckOptions& options);
@@ -103,5 +122,10 @@ struct ReproduceOptions {
 };
 /// Runs the scenes of figures and writes their curves, pictures and a report.
 int reproduce_command(const ReproduceOptions& options);
+
+/// Options of `apothem completion`.
+struct CompletionOptions {
+  std::string shell;  ///< bash or zsh
+};
 
 }  // namespace apothem

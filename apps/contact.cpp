@@ -10,6 +10,7 @@
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/pair_file.hpp"
 #include "apothem/scene/polygon_file.hpp"
+#include "apothem/scene/ring_line.hpp"
 #include "commands.hpp"
 #include "polygon_input.hpp"
 
@@ -24,11 +25,10 @@ PotentialChoice potential_choice(const ContactOptions& options) {
     if (options.potential == p.name) choice.kind = p.kind;
   }
   if (options.reference && choice.kind == PotentialChoice::Kind::area) {
-    throw SceneError("--reference", 0, "",
-                     "the area potential has no reference length; leave it out");
+    throw UsageError("--reference", "the area potential has no reference length; leave it out");
   }
   if (options.field && choice.kind == PotentialChoice::Kind::area) {
-    throw SceneError("--field", 0, "", "the area potential has one field only; leave it out");
+    throw UsageError("--field", "the area potential has one field only; leave it out");
   }
   for (const NamedField& f : kFields) {
     if (options.field == f.name) choice.field = f.field;
@@ -86,26 +86,22 @@ void print_table(const Json& list) {
   }
 }
 
-Polygon read_polygon(const std::string& file, const char* which) {
-  try {
-    return Polygon(read_polygon_file(file));
-  } catch (const InvalidPolygon& error) {
-    throw SceneError(file, 0, "", fmt::format("polygon {} is not usable: {}", which, error.what()));
-  }
-}
-
 int batch(const ContactOptions& options) {
   potential_choice(options);  // a wrong option is reported once, not for each line
   int code = exit_code::done;
-  for_each_line(options.batch, [&](const std::string& name, const std::string& text) {
-    Json object{{"name", name}};
+  for_each_line(options.batch, kPairForm, [&](const BatchLine& line) {
+    Json object{{"name", line.name}};
     const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
-      object = {{"name", name}, {"error", reason}, {"polygon", which}, {"vertex", vertex}};
+      object = {{"name", line.name},
+                {"error", reason},
+                {"polygon", which},
+                {"vertex", vertex},
+                {"line", line.number}};
       code = exit_code::bad_input;
     };
     const char* which = "a";
     try {
-      const PolygonPair pair = parse_pair(text);
+      const PolygonPair pair = parse_pair(line.text);
       const Polygon a(pair.a);
       which = "b";
       const Polygon b(pair.b);
@@ -126,10 +122,9 @@ int batch(const ContactOptions& options) {
 
 int contact_command(const ContactOptions& options) {
   if (!options.batch.empty()) return batch(options);
-  if (options.b.empty())
-    throw SceneError("contact", 0, "", "give two polygon files, or --batch FILE");
-  const Polygon a = read_polygon(options.a, "A");
-  const Polygon b = read_polygon(options.b, "B");
+  if (options.b.empty()) throw UsageError("contact", "give two polygon files, or --batch FILE");
+  const Polygon a = polygon_of_file(options.a);
+  const Polygon b = polygon_of_file(options.b);
   Json list;
   try {
     list = results(a, b, options);

@@ -126,7 +126,7 @@ std::string groups_json(const Mesh& mesh) {
 
 void make_cells(const MeshOptions& options) {
   try {
-    const Polygon region(read_polygon_file(options.file));
+    const Polygon region = polygon_of_file(options.file);
     const VoronoiMesh voronoi = voronoi_mesh(region, options.voronoi);
     const PolygonMesh mesh = in_world(region, voronoi.mesh);
     const std::string json =
@@ -139,7 +139,7 @@ void make_cells(const MeshOptions& options) {
   } catch (const InvalidPolygon& error) {
     throw SceneError(options.file, 0, "", fmt::format("the region {}", error.what()));
   } catch (const std::invalid_argument& error) {
-    throw SceneError("mesh", 0, "", error.what());
+    throw UsageError("mesh", error.what());
   }
 }
 

@@ -10,6 +10,7 @@
 #include "apothem/output/polygon_vtk.hpp"
 #include "apothem/scene/error.hpp"
 #include "apothem/scene/polygon_file.hpp"
+#include "apothem/scene/ring_line.hpp"
 #include "commands.hpp"
 #include "polygon_input.hpp"
 
@@ -28,8 +29,7 @@ struct Analysis {
 };
 
 // All properties of a polygon. Throws InvalidPolygon.
-Analysis analyse(std::vector<Vec2> ring, const PotentialChoice& choice) {
-  Polygon polygon(std::move(ring));
+Analysis analyse(Polygon polygon, const PotentialChoice& choice) {
   InscribedCircle circle = largest_inscribed_circle(polygon);
   Skeleton skeleton = [&] {
     try {
@@ -43,8 +43,9 @@ Analysis analyse(std::vector<Vec2> ring, const PotentialChoice& choice) {
                            : choice.reference == Reference::inscribed_circle ? circle.radius
                                                                              : skeleton.roof_height;
   SingularArea singular = singular_area(skeleton, reference);
-  return {polygon,   area_moments(polygon), std::move(circle), std::move(skeleton),
-          reference, std::move(singular)};
+  const AreaMoments moments = area_moments(polygon);
+  return {std::move(polygon),  moments,   std::move(circle),
+          std::move(skeleton), reference, std::move(singular)};
 }
 
 const char* reference_name(const PotentialChoice& choice) {
@@ -113,10 +114,6 @@ Json to_json(const Analysis& a) {
           {"attempts", a.skeleton.attempts}};
 }
 
-Json to_json(const InvalidPolygon& error) {
-  return {{"error", error.what()}, {"vertex", error.vertex()}};
-}
-
 std::string text(const Json& object, int indent) {
   return object.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -168,22 +165,35 @@ void print_table(const Analysis& a, const std::string& reference_name) {
                                 a.skeleton.attempts == 1 ? "" : "s"));
 }
 
+constexpr const char* kRingForm = "name n x y ...";
+
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {
   int code = exit_code::done;
-  for_each_line(options.batch, [&](const std::string& name, const std::string& line) {
-    Json object{{"name", name}};
+  for_each_line(options.batch, kRingForm, [&](const BatchLine& line) {
+    Json object{{"name", line.name}};
     try {
-      std::istringstream words(line.substr(line.find(name) + name.size()));
+      std::istringstream words(line.text.substr(line.text.find(line.name) + line.name.size()));
       std::vector<Vec2> ring = read_ring(words);
       require_end(words);
-      object.update(to_json(analyse(std::move(ring), choice)));
+      object.update(to_json(analyse(Polygon(std::move(ring)), choice)));
     } catch (const InvalidPolygon& error) {
-      object.update(to_json(error));
+      object.update({{"error", error.what()}, {"vertex", error.vertex()}, {"line", line.number}});
       code = exit_code::bad_input;
     }
     fmt::print("{}\n", text(object, -1));
   });
   return code;
+}
+
+// The properties of the polygon of a file. Throws PolygonError, so that each refusal has its place.
+Analysis analyse_file(const std::string& file, const PotentialChoice& choice) {
+  const Polygon polygon = polygon_of_file(file);
+  try {
+    return analyse(polygon, choice);
+  } catch (const InvalidPolygon& error) {
+    throw PolygonError(file, 0, std::string("the polygon is not usable: ") + error.what(),
+                       error.vertex());
+  }
 }
 
 }  // namespace
@@ -193,36 +203,27 @@ int polygon_command(const PolygonOptions& options) {
   set_reference(choice, options.reference);
   if (!options.batch.empty()) return batch(options, choice);
   if (options.file.empty()) {
-    throw SceneError("polygon", 0, "", "give a polygon file, or --batch FILE");
+    throw UsageError("polygon", "give a polygon file, or --batch FILE");
   }
   const std::optional<PictureFormat> format = picture_format(options.picture);
   if (!options.picture.empty() && !format) {
-    throw SceneError("--picture", 0, "",
+    throw UsageError("--picture",
                      fmt::format("must end in .png or .svg, not \"{}\"", options.picture));
   }
-  try {
-    const Analysis a = analyse(read_polygon_file(options.file), choice);
-    const std::string name = reference_name(choice);
-    if (!options.picture.empty()) {
-      write_file(options.picture,
-                 draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, name},
-                                *format));
-    }
-    if (!options.vtk.empty()) {
-      write_polygon_vtk(options.vtk, a.polygon, a.skeleton, a.singular, a.reference);
-    }
-    if (options.json) {
-      fmt::print("{}\n", text(to_json(a), 2));
-    } else {
-      print_table(a, name);
-    }
-  } catch (const InvalidPolygon& error) {
-    if (!options.json) {
-      throw SceneError(options.file, 0, "",
-                       fmt::format("the polygon is not usable: {}", error.what()));
-    }
-    fmt::print("{}\n", text(to_json(error), 2));
-    return exit_code::bad_input;
+  const Analysis a = analyse_file(options.file, choice);
+  const std::string name = reference_name(choice);
+  if (!options.picture.empty()) {
+    write_file(
+        options.picture,
+        draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, name}, *format));
+  }
+  if (!options.vtk.empty()) {
+    write_polygon_vtk(options.vtk, a.polygon, a.skeleton, a.singular, a.reference);
+  }
+  if (options.json) {
+    fmt::print("{}\n", text(to_json(a), 2));
+  } else {
+    print_table(a, name);
   }
   return exit_code::done;
 }

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <sstream>
-
 #include "apothem/contact/law.hpp"
-#include "apothem/scene/json.hpp"
+#include "apothem/scene/decimal.hpp"
+#include "commands.hpp"
 
 namespace apothem {
 
@@ -18,21 +16,15 @@ void set_reference(PotentialChoice& choice, const std::string& text) {
     }
   }
   choice.reference = PotentialChoice::Reference::length;
-  char* end = nullptr;
-  choice.length = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(choice.length > 0) || !std::isfinite(choice.length)) {
-    throw SceneError(
-        "--reference", 0, "",
-        fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"", text));
+  try {
+    choice.length = parse_decimal(text);
+  } catch (const BadNumber&) {
+    choice.length = 0;
   }
-}
-
-void for_each_line(const std::string& file,
-                   const std::function<void(const std::string&, const std::string&)>& evaluate) {
-  std::istringstream lines(read_text(file));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    if (std::string name; words >> name) evaluate(name, line);
+  if (!(choice.length > 0)) {
+    throw UsageError(
+        "--reference",
+        fmt::format("must be roof, inscribed_circle or a positive length in m, not \"{}\"", text));
   }
 }
 

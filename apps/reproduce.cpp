@@ -38,9 +38,8 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
   std::vector<std::string> names;
   for (const std::string& name : options.figures) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw SceneError("reproduce", 0, "",
-                       fmt::format("there is no figure {} (known: all, {})", suggest(name, known),
-                                   fmt::join(known, ", ")));
+      throw UsageError("reproduce", fmt::format("there is no figure {} (known: all, {})",
+                                                suggest(name, known), fmt::join(known, ", ")));
     }
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }

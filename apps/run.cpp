@@ -3,13 +3,17 @@
 #include "apothem/run/run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "apothem/run/other_run.hpp"
 #include "apothem/run/summary.hpp"
-#include "apothem/scene/plausibility.hpp"
+#include "apothem/scene/decimal.hpp"
 #include "commands.hpp"
 
 namespace apothem {
@@ -86,6 +90,12 @@ void print_summary(const Run& run) {
   fmt::print("{}: {} {} of {:.6g} s, t = {:.6g} s, results in {}\n", scene.model.name, state.step,
              scene.time.statics ? "load steps" : "steps", run.simulation().step_size(), state.time,
              run.settings().folder);
+  if (!run.beginning().folder.empty()) {
+    const std::vector<std::string> others = not_moved(scene.model, run.beginning());
+    fmt::print("began with {} bodies of {} at t = {:.6g} s{}\n", run.beginning().bodies.size(),
+               run.beginning().folder, run.beginning().time,
+               others.empty() ? "" : fmt::format("; as in the scene: {}", fmt::join(others, ", ")));
+  }
   fmt::print(
       "largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N, energy "
       "error {:.3g} J\n",
@@ -108,14 +118,12 @@ void print_summary(const Run& run) {
   }
 }
 
-// What the user should know before a long run.
-void print_warnings(const Run& run) {
-  for (const std::string& unlikely : unlikely_values(run.scene())) {
-    fmt::print(stderr, "warning: {}\n", unlikely);
+// Those from number `first` on. Returns how many there are.
+size_t print_warnings(const Run& run, size_t first) {
+  for (size_t i = first; i < run.warnings().size(); ++i) {
+    fmt::print(stderr, "apothem: warning: {}\n", run.warnings()[i]);
   }
-  if (run.settings().resume) return;
-  const std::string overlaps = describe_overlaps(run.simulation());
-  if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
+  return run.warnings().size();
 }
 
 int exit_code_of(const Run& run, bool verify) {
@@ -133,13 +141,55 @@ int exit_code_of(const Run& run, bool verify) {
              : exit_code::done;
 }
 
+// What run.json holds, and where it is.
+void print_json(const Run& run) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(summary_text(run));
+  json["message"] = run.message();
+  json["folder"] = run.settings().folder;
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+std::string folder_of(const RunOptions& options, const Scene& scene) {
+  return options.folder.empty() ? "out/" + scene.model.name : options.folder;
+}
+
+// A run that goes on keeps the settings it was started with, unless they are given again.
+Scene scene_of(const RunOptions& options) {
+  Scene scene = read_scene(options.scene, settings_of(options.set, options.scene));
+  if (!options.resume || !options.set.empty()) return scene;
+  const std::vector<Setting> before = settings_of_checkpoint(folder_of(options, scene));
+  return before.empty() ? scene : read_scene(options.scene, before);
+}
+
+// --from DIR, or DIR@TIME if there is no folder of that name.
+void read_from(const std::string& text, RunSettings& settings) {
+  settings.from = text;
+  const size_t at = text.rfind('@');
+  std::error_code error;
+  if (at == std::string::npos || std::filesystem::is_directory(text, error)) return;
+  try {
+    settings.from_time = parse_decimal(text.substr(at + 1));
+  } catch (const BadNumber& bad) {
+    throw UsageError("--from", fmt::format("the time behind @: {}", bad.what()));
+  }
+  settings.from.resize(at);
+}
+
 }  // namespace
+
+std::vector<Setting> settings_of(const std::vector<std::string>& texts, const std::string& scene) {
+  std::vector<Setting> settings;
+  for (const std::string& text : texts) settings.push_back(parse_setting(text, scene));
+  return settings;
+}
 
 int run_command(const RunOptions& options) {
   install_signal_handlers();
-  Scene scene = read_scene(options.scene);
-  const std::string folder = options.folder.empty() ? "out/" + scene.model.name : options.folder;
-  Run run(std::move(scene), {folder, options.threads, options.resume, options.overwrite});
+  Scene scene = scene_of(options);
+  RunSettings settings{folder_of(options, scene), options.threads, options.resume,
+                       options.overwrite};
+  if (!options.from.empty()) read_from(options.from, settings);
+  Run run(std::move(scene), settings);
   ProgressLine line(std::min(options.until.value_or(run.scene().time.end), run.scene().time.end));
   if (!options.quiet) {
     run.on_progress([&](const Run& now) {
@@ -150,7 +200,11 @@ int run_command(const RunOptions& options) {
       }
     });
   }
-  if (!options.quiet) print_warnings(run);
+  if (!options.quiet && !options.json && !options.resume) {
+    const std::string overlaps = describe_overlaps(run.simulation());
+    if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
+  }
+  const size_t known = options.json ? 0 : print_warnings(run, 0);
   running = &run;
   run.run(options.until);
   running = nullptr;
@@ -158,11 +212,13 @@ int run_command(const RunOptions& options) {
   if (!run.message().empty()) {
     fmt::print(stderr, "apothem: {}: {}\n", run.scene().file, run.message());
   }
-  if (!options.quiet) print_summary(run);
-  std::fflush(stdout);
-  for (const std::string& warning : run.warnings()) {
-    fmt::print(stderr, "apothem: {}: warning: {}\n", run.scene().file, warning);
+  if (options.json) {
+    print_json(run);
+  } else if (!options.quiet) {
+    print_summary(run);
   }
+  std::fflush(stdout);
+  if (!options.json) print_warnings(run, known);
   return exit_code_of(run, options.verify);
 }
 

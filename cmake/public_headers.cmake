@@ -5,6 +5,7 @@ set(APOTHEM_PUBLIC_HEADERS
   contact/contact.hpp
   contact/kinematics.hpp
   contact/law.hpp
+  dynamics/body_start.hpp
   dynamics/degrees_of_freedom.hpp
   dynamics/energy_guard.hpp
   dynamics/forecast.hpp
@@ -67,4 +68,5 @@ set(APOTHEM_PUBLIC_HEADERS
   run/start.hpp
   scene/error.hpp
   scene/json.hpp
-  scene/scene.hpp)
+  scene/scene.hpp
+  scene/setting.hpp)

@@ -27,6 +27,7 @@ struct Result {
 struct Limits {
   rlim_t file_size = RLIM_INFINITY;
   double interrupt_after = 0;  // s
+  int signal = SIGINT;         // that interrupts
   std::string once_exists{};   // the interrupt waits for this file
 };
 
@@ -54,7 +55,7 @@ inline Result run(std::vector<std::string> arguments, const Folder& folder,
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     std::this_thread::sleep_for(std::chrono::duration<double>(limits.interrupt_after));
-    kill(child, SIGINT);
+    kill(child, limits.signal);
   }
   int status = 0;
   waitpid(child, &status, 0);

@@ -5,10 +5,11 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include "apothem/scene/polygon_file.hpp"
+#include "apothem/scene/ring_line.hpp"
 
 namespace apothem::test {
 

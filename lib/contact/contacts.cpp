@@ -13,6 +13,7 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, F
                    int threads)
     : surfaces_(std::move(surfaces)),
       table_(std::move(table)),
+      friction_law_(law.friction_law),
       tangential_(table_.rough() || law.normal_damping > 0) {
   std::array<bool, kernel_kinds> needed{};
   needed[polygon_kernel] = surfaces_.rigid_count() > 0;
@@ -182,6 +183,33 @@ void Contacts::refresh(const Kinematics& now) {
   FrictionMemory memory = memory_;
   memory.begin_step();
   each([&](Kernel& kernel) { kernel.refresh(now, memory); });
+}
+
+ContactNumbers Contacts::numbers() const {
+  ContactNumbers numbers{friction_law_, {}};
+  numbers.bodies.resize(static_cast<size_t>(surfaces_.body_count()));
+  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
+    ContactNumbers::Body& body = numbers.bodies[static_cast<size_t>(surfaces_.body(i))];
+    if (body.surfaces++ == 0) body.first_surface = i;
+    if (!surfaces_.is_rigid(i)) continue;
+    body.rigid = true;
+    body.edges = surfaces_.shapes().view(i).size;
+  }
+  const std::vector<Outlines::Body>& outlines = surfaces_.outlines().bodies;
+  for (size_t i = 0; i < outlines.size(); ++i) {
+    numbers.bodies[i].first_vertex = outlines[i].first;
+    numbers.bodies[i].vertices = outlines[i].end - outlines[i].first;
+  }
+  return numbers;
+}
+
+void Contacts::inherit(const ContactMemory& memory) {
+  if (!tangential_) return;
+  memory_ = memory.friction;
+  // The table of kernels has a PolygonKernel in this place, or none.
+  if (auto* kernel = static_cast<PolygonKernel*>(kernels_[polygon_kernel].get())) {
+    kernel->inherit(memory.patches);
+  }
 }
 
 void Contacts::fields(Archive& archive) {

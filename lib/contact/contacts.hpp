@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "apothem/contact/contact_memory.hpp"
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/friction_table.hpp"
 #include "apothem/contact/kernel.hpp"
@@ -88,6 +89,11 @@ class Contacts {
   void refresh(const Kinematics& now);
   void fields(Archive& archive);
 
+  /// The numbers that the memory of contacts goes by.
+  [[nodiscard]] ContactNumbers numbers() const;
+  /// Takes over the memory of other contacts, by the numbers of these.
+  void inherit(const ContactMemory& memory);
+
  private:
   template <class F>
   void each(F&& f) const {
@@ -104,6 +110,7 @@ class Contacts {
 
   Surfaces surfaces_;
   FrictionTable table_;
+  FrictionLaw friction_law_;
   Search search_;
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_;

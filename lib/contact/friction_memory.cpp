@@ -1,6 +1,7 @@
 #include "apothem/contact/friction_memory.hpp"
 
 #include <tuple>
+#include <utility>
 
 namespace apothem {
 
@@ -33,6 +34,15 @@ std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const 
       std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, a, b, 0}},
                        [&](const Spring& s, const Spring& t) { return pair_of(s) < pair_of(t); });
   return {first, end};
+}
+
+void FrictionMemory::inherit(std::vector<Spring> springs) {
+  now_ = std::move(springs);
+  energy_ = balanced_ = 0;
+  for (const Spring& spring : now_) {
+    energy_ += spring.energy();
+    if (!spring.accounted) balanced_ += spring.energy();
+  }
 }
 
 void FrictionMemory::end_step(double work) {

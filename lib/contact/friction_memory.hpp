@@ -82,6 +82,8 @@ class FrictionMemory {
   /// Energy that contact damping takes from the bodies, J, and its sum since the start.
   void damp(double energy) { damping_loss_ += energy; }
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
+  /// Takes over the springs of another simulation, in ascending order of their keys.
+  void inherit(std::vector<Spring> springs);
   /// What has been dissipated so far does not count.
   void start_ledger() { loss_ = damping_loss_ = 0; }
 

@@ -41,8 +41,8 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
   for (const int pair : touching) step_pair(pairs, static_cast<size_t>(pair), now, dt, memory);
 }
 
-void PatchTangential::fields(Archive& archive) {
-  archive("pairs", now_.pairs)("runs", now_.runs)("dampers", now_.dampers);
+void PatchTangential::History::fields(Archive& archive) {
+  archive("pairs", pairs)("runs", runs)("dampers", dampers);
 }
 
 // Leaves place_ at the pair, if it was there before.

@@ -54,9 +54,6 @@ class PatchTangential {
               std::span<const Spring> springs, Cursor& cursor) const;
   [[nodiscard]] bool edgewise() const { return law_.friction_law == FrictionLaw::per_edge; }
 
-  void fields(Archive& archive);
-
- private:
   /// What a pair had in the step before; the lists of runs and dampers follow in this order.
   struct PairHistory {
     RigidIndex a, b;
@@ -64,11 +61,17 @@ class PatchTangential {
     void fields(Archive& archive) { archive("a", a)("b", b)("patches", patches)("runs", runs); }
   };
   struct History {
-    std::vector<PairHistory> pairs;  // ascending
-    std::vector<BoundaryRun> runs;   // of pairs that are not both convex, or of per_edge
-    std::vector<PatchDamper> dampers;
+    std::vector<PairHistory> pairs;    ///< ascending
+    std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
+    std::vector<PatchDamper> dampers;  ///< where there is damping
     void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
+    void fields(Archive& archive);
   };
+  /// Takes over what the patches of another simulation remember.
+  void inherit(History history) { now_ = std::move(history); }
+  void fields(Archive& archive) { now_.fields(archive); }
+
+ private:
   struct Place {  // in a History
     size_t pair = 0, run = 0, damper = 0;
   };

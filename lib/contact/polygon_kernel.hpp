@@ -30,6 +30,10 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
+  /// Takes over what the patches of another simulation remember.
+  void inherit(const PatchTangential::History& patches) {
+    if (tangential_) tangential_->inherit(patches);
+  }
   void fields(Archive& archive) override {
     if (tangential_) archive("tangential", *tangential_);
   }

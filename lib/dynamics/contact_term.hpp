@@ -41,6 +41,9 @@ class ContactTerm final : public Term {
   void fields(Archive& archive) override;
   void refresh(const State& state) override { contacts_.refresh(state.kinematics(state.v)); }
 
+  /// See Simulation::inherit.
+  void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
+
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// The largest slope of the potential of each body, rigid ones first, 1/m.
   [[nodiscard]] std::vector<double> slopes() const;

@@ -1,5 +1,6 @@
 #include "apothem/dynamics/degrees_of_freedom.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace apothem {
@@ -57,6 +58,11 @@ void DegreesOfFreedom::add_nodes(const DeformableBody& body, std::span<const dou
       start_.push_back(body.mesh.nodes[i][axis]);
     }
   }
+  if (!body.displacement.empty()) {
+    displaced_.resize(layout_.size());
+    std::copy(body.displacement.begin(), body.displacement.end(),
+              &displaced_[layout_.node(body.first_node)]);
+  }
   add_supports(body);
 }
 
@@ -67,7 +73,8 @@ void DegreesOfFreedom::add_supports(const DeformableBody& body) {
         if (!support.held[axis]) continue;
         const size_t c = layout_.node(body.first_node + node) + static_cast<size_t>(axis);
         inverse_mass_[c] = acceleration_[c] = 0;
-        if (!support.motion.velocity.empty()) driven_.push_back({c, axis, &support.motion, 0});
+        if (support.motion.velocity.empty()) continue;
+        driven_.push_back({c, axis, &support.motion, displaced_.empty() ? 0 : displaced_[c]});
       }
     }
   }
@@ -90,13 +97,20 @@ State DegreesOfFreedom::start() const {
       centre += m * body.mesh.nodes[i];
     }
     centre /= whole;
+    const std::vector<double>& given = body.node_velocity;
     for (int i = 0; i < n; ++i) {
-      const Vec2 v = body.velocity + cross(body.spin, Vec2(body.mesh.nodes[i] - centre));
+      Vec2 v = body.velocity + cross(body.spin, Vec2(body.mesh.nodes[i] - centre));
+      if (!given.empty())
+        v = {given[2 * static_cast<size_t>(i)], given[2 * static_cast<size_t>(i) + 1]};
       for (int axis = 0; axis < 2; ++axis) {
         const size_t c = layout_.node(body.first_node + i) + static_cast<size_t>(axis);
         if (can_move(c)) state.v[c] = v[axis];
       }
     }
+  }
+  if (!displaced_.empty()) {
+    std::copy(displaced_.begin() + static_cast<std::ptrdiff_t>(layout_.node(0)), displaced_.end(),
+              state.x.begin() + static_cast<std::ptrdiff_t>(layout_.node(0)));
   }
   follow(state);
   return state;
@@ -183,7 +197,8 @@ double DegreesOfFreedom::gravity_energy(const State& state) const {
   const size_t rigid = layout_.node(0);
   for (size_t c = 0; c < weight_.size(); ++c) {
     // What rounding keeps out of the position counts: the fall may be far smaller than the height.
-    sum -= weight_[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : state.x[c]);
+    const double moved = displaced_.empty() ? state.x[c] : state.x[c] - displaced_[c];
+    sum -= weight_[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : moved);
   }
   return sum;
 }

@@ -87,6 +87,7 @@ class DegreesOfFreedom {
   Layout layout_;
   std::vector<double> inverse_mass_, mass_, acceleration_, weight_;
   std::vector<double> start_;  // x, y, angle of rigid bodies; places of nodes in the mesh as given
+  std::vector<double> displaced_;  // displacements of nodes at time 0, in their places; or empty
   /// A coordinate that forces cannot move.
   struct Held {
     size_t coordinate, across;  // itself, and the other one of its point

@@ -12,6 +12,10 @@ std::vector<ContactRecord> Simulation::contacts() const {
   return contact_ ? contact_->contacts().records() : std::vector<ContactRecord>{};
 }
 
+ContactNumbers Simulation::contact_numbers() const {
+  return contact_ ? contact_->contacts().numbers() : ContactNumbers{};
+}
+
 std::vector<BodyForce> Simulation::contact_forces() const {
   std::vector<BodyForce> forces(model_.bodies.size() + model_.deformables.size());
   if (!contact_) return forces;

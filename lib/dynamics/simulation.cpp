@@ -155,6 +155,14 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
   return result;
 }
 
+void Simulation::inherit(const ContactMemory& memory) {
+  if (!contact_) return;
+  contact_->inherit(memory);
+  contact_->start_ledger();
+  find_forces(state_.v, 0);
+  ledger_.start(state_, energies_of_terms());
+}
+
 void Simulation::settle() {
   apothem::settle({model_, dofs_, state_, lambda_, choice_.stability},
                   [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); });

@@ -26,6 +26,8 @@
 
 namespace apothem {
 
+struct ContactMemory;
+struct ContactNumbers;
 class ContactTerm;
 class Elements;
 class Equilibrium;
@@ -52,6 +54,11 @@ class Simulation {
   /// nothing has changed then. Throws Unstable if it finds no equilibrium; the state is then not to
   /// be trusted.
   LoadStep balance(double time, const std::function<bool()>& stop = {});
+
+  /// Takes over what contacts of another simulation remember, by the numbers of this one's
+  /// contacts, before the first step.
+  void inherit(const ContactMemory& memory);
+  [[nodiscard]] ContactNumbers contact_numbers() const;
 
   /// All that changes while a simulation runs: enough to continue it bit for bit. What is loaded
   /// must belong to the same model and settings; throws ArchiveMismatch if it cannot.

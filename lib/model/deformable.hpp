@@ -44,6 +44,8 @@ struct DeformableBody {
   std::vector<PressureLoad> pressures;
   Vec2 velocity = Vec2::Zero();  ///< m/s, at time 0
   double spin = 0;               ///< rad/s, about the mass centre
+  /// Of the nodes at time 0, x and y, m and m/s; empty: as the mesh, `velocity` and `spin` say.
+  std::vector<double> displacement = {}, node_velocity = {};
 };
 
 /// A point of a deformable body: the weighted mean of nodes; its stress is that of an element.

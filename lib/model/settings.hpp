@@ -30,7 +30,8 @@ struct OutputSettings {
   std::vector<DeformableIndex> track_deformables;  ///< deformable bodies as a whole
   std::vector<DeformableIndex> track_surfaces;  ///< deformable bodies whose contact pressure counts
   std::vector<TrackedPoint> points;
-  std::optional<double> checkpoint_interval;  ///< wall-clock s; empty: only when stopped
+  /// Wall-clock s; empty: only when stopped.
+  std::optional<double> checkpoint_interval = 600;
 };
 
 /// Ways to reduce a column to one number, by the names in scenes; in the order of

@@ -13,9 +13,9 @@ namespace apothem {
 
 void prepare_folder(const std::string& folder, bool overwrite) {
   namespace fs = std::filesystem;
-  constexpr std::array ours{"run.json",     "frames.pvd",   "outlines.pvd",
-                            "contacts.pvd", "surfaces.pvd", "history.csv",
-                            "energy.csv",   "momentum.csv", "checkpoint.json"};
+  constexpr std::array ours{"run.json",        "frames.pvd",  "outlines.pvd", "contacts.pvd",
+                            "surfaces.pvd",    "history.csv", "energy.csv",   "momentum.csv",
+                            "checkpoint.json", "final.json"};
   std::vector<fs::path> old;
   std::error_code error;
   for (const char* name : ours) {

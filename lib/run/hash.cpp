@@ -27,6 +27,10 @@ class Hash {
 std::string scene_hash(const Scene& scene) {
   Hash hash;
   hash.add(scene.text.data(), scene.text.size());
+  for (const Setting& setting : scene.settings) {
+    const std::string text = '\n' + setting.text();
+    hash.add(text.data(), text.size());
+  }
   for (const RigidBody& body : scene.model.bodies) {
     for (const Vec2& v : body.potential.vertices) hash.add(v);
   }

@@ -9,8 +9,10 @@
 #include "apothem/output/files.hpp"
 #include "apothem/run/folder.hpp"
 #include "apothem/run/hash.hpp"
+#include "apothem/run/other_run.hpp"
 #include "apothem/run/summary.hpp"
 #include "apothem/run/warnings.hpp"
+#include "apothem/scene/plausibility.hpp"
 
 namespace apothem {
 namespace {
@@ -30,17 +32,10 @@ bool Schedule::due(double time, double step) {
 }
 
 Run::Run(Scene scene, const RunSettings& settings)
-    : scene_(std::move(scene)),
-      settings_(settings),
-      simulation_(make_simulation(scene_, settings.threads,
-                                  settings.resume ? Start::checkpoint : Start::scene)),
-      scene_hash_(scene_hash(scene_)) {
+    : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
+  for (std::string& unlikely : unlikely_values(scene_)) warn(std::move(unlikely));
+  start();
   const std::string& folder = settings_.folder;
-  if (settings_.resume) {
-    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
-  } else if (!folder.empty()) {
-    prepare_folder(folder, settings_.overwrite);
-  }
   rows_ =
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
@@ -50,6 +45,29 @@ Run::Run(Scene scene, const RunSettings& settings)
   std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
   history_.emplace(folder, scene_.model, scene_.output, sizes);
   frames_.emplace(folder, scene_.model, progress_.frame_times);
+}
+
+// The simulation where it begins, or where it goes on.
+void Run::start() {
+  const std::string& folder = settings_.folder;
+  if (settings_.resume) {
+    begin_at(scene_.model, read_progress(folder).beginning.bodies);
+    simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
+    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
+    return;
+  }
+  std::optional<OtherRun> other;
+  if (!settings_.from.empty()) {
+    other.emplace(settings_.from, settings_.from_time);
+    progress_.beginning = other->move_into(scene_);
+  }
+  simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene);
+  if (other) other->hand_contacts_to(*simulation_);
+  const std::vector<PairDepth> overlaps = simulation_->overlaps();
+  if (!other && !overlaps.empty() && overlaps.front().share > kSmallOverlap) {
+    warn("bodies overlap at the start: " + describe_overlaps(*simulation_));
+  }
+  if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
 }
 
 double Run::seconds() const { return seconds_since(start_); }
@@ -104,7 +122,7 @@ void Run::loop(double until) {
     if (on_progress_) on_progress_(*this);
     const std::optional<double>& interval = scene_.output.checkpoint_interval;
     if (interval && seconds_since(last_checkpoint_) > *interval) {
-      save();
+      save(StateFile::checkpoint);
       last_checkpoint_ = Clock::now();
     }
   }
@@ -127,7 +145,7 @@ Run::Status Run::run(std::optional<double> until) {
     status_ = Status::failed;
     message_ = error.what();
     try {
-      if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+      if (!settings_.folder.empty()) write_summary(*this);
     } catch (const SystemFailure&) {
       // The one that is thrown below came first.
     }
@@ -136,16 +154,17 @@ Run::Status Run::run(std::optional<double> until) {
   for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
     warn(std::move(sentence));
   }
-  if (!settings_.folder.empty()) write_summary(*this, scene_hash_);
+  if (!settings_.folder.empty()) write_summary(*this);
   return status_;
 }
 
 void Run::close(double until) {
   flush();
   if (reached(scene_.time.end)) {
+    save(StateFile::final);
     if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
   } else {
-    save();
+    save(StateFile::checkpoint);
     if (!scene_.time.statics) {
       record(true, true);  // shows where the run stopped; a resumed run takes it back
       flush();
@@ -188,7 +207,7 @@ void Run::flush() {
   if (history_) history_->flush();
 }
 
-void Run::save() {
+void Run::save(StateFile kind) {
   if (!history_) return;
   history_->flush();
   const HistoryWriter::Sizes sizes = history_->sizes();
@@ -196,7 +215,7 @@ void Run::save() {
   progress_.frame_times = frames_->times();
   progress_.next_row = rows_.next();
   progress_.next_frame = pictures_.next();
-  write_checkpoint(settings_.folder, scene_hash_, *simulation_, progress_);
+  write_state(settings_.folder, kind, scene_, scene_hash_, *simulation_, progress_);
 }
 
 void Run::judge() {

@@ -29,6 +29,10 @@ struct RunSettings {
   int threads = 1;
   bool resume = false;     ///< continue from the checkpoint of the folder
   bool overwrite = false;  ///< results of an earlier run in the folder may be replaced
+  /// Folder of another run whose last state bodies of the same name and shape begin with; empty:
+  /// none. It goes without `resume`.
+  std::string from = {};
+  std::optional<double> from_time = {};  ///< s; the time that this state must have
 };
 
 /// Says when the next record is due; a record falls on the first step at or after its time.
@@ -49,8 +53,9 @@ class Run {
  public:
   enum class Status { running, done, interrupted, unstable, failed };
 
-  /// Throws SceneError if the scene cannot be run, or if the folder holds results or no checkpoint
-  /// against the settings; SystemFailure if files cannot be written.
+  /// Throws SceneError if the scene cannot be run, if the folder holds results or no checkpoint
+  /// against the settings, or if there is no other run to begin with; SystemFailure if files cannot
+  /// be written.
   Run(Scene scene, const RunSettings& settings);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -74,6 +79,9 @@ class Run {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const RunSettings& settings() const { return settings_; }
+  /// Where the bodies have begun.
+  [[nodiscard]] const Beginning& beginning() const { return progress_.beginning; }
+  [[nodiscard]] const std::string& hash_of_scene() const { return scene_hash_; }
   [[nodiscard]] Simulation& simulation() { return *simulation_; }
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] const State& state() const { return simulation_->state(); }
@@ -92,6 +100,7 @@ class Run {
   [[nodiscard]] double output_seconds() const { return output_seconds_; }
 
  private:
+  void start();
   [[nodiscard]] bool reached(double time) const;
   void loop(double until);
   bool load_step();
@@ -99,7 +108,7 @@ class Run {
   void write_row();
   void write_frame();
   void flush();
-  void save();
+  void save(StateFile kind);
   void close(double until);
   void judge();
 

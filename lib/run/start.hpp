@@ -10,9 +10,9 @@
 
 namespace apothem {
 
-/// Where a simulation begins: as its scene says, or from a checkpoint that follows (it need not
-/// settle).
-enum class Start { scene, checkpoint };
+/// Where a simulation begins: as its scene says, with bodies of another run, whose overlaps are
+/// those of their contacts, or from a checkpoint that follows (it need not settle).
+enum class Start { scene, other_run, checkpoint };
 
 /// Throws SceneError, with the place in the scene, instead of Unrunnable; also if bodies overlap by
 /// more than kSmallOverlap at the start, unless the scene accepts that or starts settled. The scene

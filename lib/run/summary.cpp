@@ -4,6 +4,7 @@
 
 #include "apothem/output/files.hpp"
 #include "apothem/run/hash.hpp"
+#include "apothem/run/other_run.hpp"
 #include "apothem/run/run.hpp"
 #include "version.hpp"
 
@@ -77,6 +78,20 @@ void add_load_steps(Json& json, const Run& run) {
   }
 }
 
+Json settings(const Scene& scene) {
+  Json json = Json::object();
+  for (const Setting& s : scene.settings) json[s.path] = Json::parse(s.value);
+  return json;
+}
+
+Json beginning(const Run& run) {
+  const Beginning& start = run.beginning();
+  return {{"folder", start.folder},
+          {"time", start.time},
+          {"bodies", start.bodies.size()},
+          {"others", not_moved(run.scene().model, start)}};
+}
+
 Json expectations(const Run& run) {
   Json list = Json::array();
   for (size_t i = 0; i < run.outcomes().size(); ++i) {
@@ -98,7 +113,7 @@ double imbalance_of_load(const LoadStep& step, size_t body) {
   return step.load > 0 ? step.off[body] / step.load : 0;
 }
 
-void write_summary(const Run& run, const std::string& scene_hash) {
+std::string summary_text(const Run& run) {
   const Scene& scene = run.scene();
   const Simulation& simulation = run.simulation();
   const State& state = run.state();
@@ -107,7 +122,8 @@ void write_summary(const Run& run, const std::string& scene_hash) {
   const double wall = run.seconds();
   Json json{{"name", scene.model.name},
             {"scene", scene.file},
-            {"scene_hash", scene_hash},
+            {"scene_hash", run.hash_of_scene()},
+            {"set", settings(scene)},
             {"version", kVersion},
             {"status", name_of(run.status())},
             {"threads", run.settings().threads},
@@ -123,6 +139,7 @@ void write_summary(const Run& run, const std::string& scene_hash) {
              {{"candidates", static_cast<double>(counts.candidate_pairs) / steps},
               {"touching", static_cast<double>(counts.touching_pairs) / steps}}},
             {"searches", counts.searches}};
+  if (!run.beginning().folder.empty()) json["from"] = beginning(run);
   add_peaks(json, run);
   json["final_state_hash"] = state_hash(state);
   if (scene.time.statics) add_load_steps(json, run);
@@ -130,8 +147,11 @@ void write_summary(const Run& run, const std::string& scene_hash) {
   json["warnings"] = run.warnings();
   json["expectations"] = expectations(run);
   // JSON knows no infinity: where nothing limits the step, the limit is null.
-  write_file(run.settings().folder + "/run.json",
-             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_summary(const Run& run) {
+  write_file(run.settings().folder + "/run.json", summary_text(run));
 }
 
 }  // namespace apothem

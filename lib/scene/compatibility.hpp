@@ -57,7 +57,6 @@ enum class Feature {
   // Output.
   frames,
   history_interval,
-  checkpoint,
   tracked_point,
   tracked_surface,
 };
@@ -112,7 +111,6 @@ inline constexpr std::array kFeatureTexts{
                 "where bodies have a mesh, fewer than two are rigid, and \"surface\" is \"body\""},
     FeatureText{Feature::frames, "`output.frames`", ""},
     FeatureText{Feature::history_interval, "`output.history.interval`", ""},
-    FeatureText{Feature::checkpoint, "`output.checkpoint`", ""},
     FeatureText{Feature::tracked_point, "`point` of a tracked body", ""},
     FeatureText{Feature::tracked_surface, "`surface` of a tracked body", ""},
 };
@@ -223,8 +221,6 @@ inline constexpr std::array kIncompatible{
     Incompatibility{Feature::history_interval, Feature::static_run, Verdict::has_no_meaning,
                     "a static run writes a row and a frame per load step",
                     "leave it out, and choose \"load_steps\""},
-    Incompatibility{Feature::checkpoint, Feature::static_run, Verdict::not_supported_yet,
-                    "a static run writes a checkpoint only when it is stopped", "leave it out"},
     // Bodies with a mesh.
     Incompatibility{Feature::per_edge_friction, Feature::mesh_in_every_contact,
                     Verdict::not_supported_yet, "\"per_edge\" acts between rigid bodies only",

@@ -12,7 +12,19 @@ class SceneError : public std::runtime_error {
   /// The message leaves out a `line` of 0 and an empty `pointer`.
   SceneError(const std::string& file, int line, const std::string& pointer, const std::string& what)
       : std::runtime_error(one_line(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                                    (pointer.empty() ? "" : pointer + ": ") + what)) {}
+                                    (pointer.empty() ? "" : pointer + ": ") + what)),
+        file_(file),
+        pointer_(pointer),
+        reason_(one_line(what)),
+        line_(line) {}
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+  /// Counted from 1; 0 if it is not known.
+  [[nodiscard]] int line() const { return line_; }
+  /// Empty if the error has no place in a JSON document.
+  [[nodiscard]] const std::string& pointer() const { return pointer_; }
+  /// What is wrong and what would be right, without the place.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
   /// Messages quote input, whose line breaks must not make them longer than one line.
@@ -22,6 +34,21 @@ class SceneError : public std::runtime_error {
     }
     return text;
   }
+
+  std::string file_, pointer_, reason_;
+  int line_;
+};
+
+/// The error for a ring of vertices that is no polygon. It also knows the vertex.
+class PolygonError : public SceneError {
+ public:
+  /// `vertex`: counted from 0, or -1 if no vertex is meant.
+  PolygonError(const std::string& file, int line, const std::string& what, int vertex)
+      : SceneError(file, line, "", what), vertex_(vertex) {}
+  [[nodiscard]] int vertex() const { return vertex_; }
+
+ private:
+  int vertex_;
 };
 
 }  // namespace apothem

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <system_error>
+
+#include "apothem/scene/ring_text.hpp"
 
 namespace apothem {
 namespace {
@@ -36,21 +39,6 @@ struct CountingIterator {
 // The deepest nesting that is read. Scenes need far less, and the stack could hold far more.
 constexpr size_t kDeepest = 100;
 
-// A key as it stands in a JSON pointer (RFC 6901).
-std::string escaped(const std::string& key) {
-  std::string result;
-  for (const char c : key) {
-    if (c == '~') {
-      result += "~0";
-    } else if (c == '/') {
-      result += "~1";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
 // Builds a JsonValue from the events of nlohmann-json's SAX parser. Its public functions are those
 // that the parser calls.
 class Builder {
@@ -74,7 +62,7 @@ class Builder {
   bool key(std::string& name) {
     const JsonValue& object = *stack_.back();
     if (const JsonValue* first = object.find(name)) {
-      throw SceneError(file_, line(1), object.pointer + "/" + escaped(name),
+      throw SceneError(file_, line(1), object.pointer + "/" + escaped_key(name),
                        fmt::format("duplicate key, first given in line {}; keep one", first->line));
     }
     stack_.back()->keys.push_back(name);
@@ -121,7 +109,7 @@ class Builder {
     JsonValue& parent = *stack_.back();
     value.pointer = parent.pointer + "/" +
                     (parent.type == JsonValue::Type::array ? std::to_string(parent.items.size())
-                                                           : escaped(parent.keys.back()));
+                                                           : escaped_key(parent.keys.back()));
     return parent.items.emplace_back(std::move(value));
   }
 
@@ -184,6 +172,20 @@ const char* type_name(JsonValue::Type type) {
 
 }  // namespace
 
+std::string escaped_key(const std::string& key) {
+  std::string result;
+  for (const char c : key) {
+    if (c == '~') {
+      result += "~0";
+    } else if (c == '/') {
+      result += "~1";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
 const JsonValue* JsonValue::find(std::string_view key) const {
   // While the document is being parsed, the last key may not have its value yet.
   for (size_t i = 0; i < items.size() && type == Type::object; ++i) {
@@ -208,15 +210,41 @@ JsonValue parse_json(const std::string& text, const std::string& file) {
   return std::move(builder.root);
 }
 
-std::string read_text(const std::string& file) {
+std::ifstream open_text(const std::string& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) {
     throw SceneError(file, 0, "", "is a directory; give a file");
   }
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw SceneError(file, 0, "", "cannot be opened; check the name");
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) {
+    throw SceneError(file, 0, "",
+                     fmt::format("cannot be opened: {}; check the name",
+                                 std::generic_category().message(errno)));
+  }
+  return stream;
+}
+
+void strip_byte_order_mark(std::string& text, const std::string& file) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw SceneError(file, 0, "", "is UTF-16 text; save it as UTF-8");
+  }
+}
+
+std::string read_text(const std::string& file, size_t limit) {
+  std::ifstream stream = open_text(file);
+  std::string text;
+  std::vector<char> block(1 << 16);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())),
+         stream.gcount() > 0) {
+    text.append(block.data(), static_cast<size_t>(stream.gcount()));
+    if (text.size() > limit) {
+      throw SceneError(file, 0, "", fmt::format("is larger than {} MiB", limit >> 20));
+    }
+  }
   if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
+  strip_byte_order_mark(text, file);
   return text;
 }
 
@@ -282,7 +310,16 @@ Vec2 JsonReader::vec2(const JsonValue& value, const std::string& unit) const {
 
 std::vector<Vec2> JsonReader::ring(const JsonValue& value) const {
   std::vector<Vec2> ring;
-  for (const JsonValue& point : array(value)) ring.push_back(vec2(point, "m"));
+  for (const JsonValue& point : array(value)) {
+    if (point.type == JsonValue::Type::array && point.items.size() > 2 &&
+        point.items[0].type == JsonValue::Type::number) {
+      fail(point,
+           fmt::format("has {} coordinates, and bodies are two-dimensional: give [x, y] in m",
+                       point.items.size()));
+    }
+    ring.push_back(vec2(point, "m"));
+  }
+  leave_out_closing_vertex(ring);
   return ring;
 }
 

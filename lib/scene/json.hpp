@@ -3,6 +3,8 @@
 // duplicate keys, so both are added here.
 #pragma once
 
+#include <cstddef>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,8 +33,23 @@ struct JsonValue {
 /// Parses JSON in which // and /* */ comments are allowed. Throws SceneError.
 JsonValue parse_json(const std::string& text, const std::string& file);
 
-/// The contents of a file. Throws SceneError if it cannot be read.
-std::string read_text(const std::string& file);
+/// Bytes of the largest files that are read: as text, and as JSON, whose values take about fifty
+/// times as much memory.
+inline constexpr size_t kLargestText = size_t{1} << 30, kLargestJson = size_t{1} << 27;
+
+/// The contents of a file, without a byte order mark. Throws SceneError if it cannot be read or is
+/// larger than `limit` (bytes).
+std::string read_text(const std::string& file, size_t limit = kLargestText);
+
+/// Opens a file to read it as text. Throws SceneError if it is a directory or cannot be opened.
+std::ifstream open_text(const std::string& file);
+
+/// Takes the byte order mark of UTF-8 from the start of a text. Throws SceneError if the text is
+/// UTF-16.
+void strip_byte_order_mark(std::string& text, const std::string& file);
+
+/// A key as it stands in a JSON pointer (RFC 6901).
+std::string escaped_key(const std::string& key);
 
 /// `word` in quotes, followed by "did you mean ...?" if a candidate looks like it.
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
@@ -58,7 +75,7 @@ class JsonReader {
   [[nodiscard]] std::vector<double> numbers(const JsonValue& value, size_t size,
                                             const std::string& meaning) const;
   [[nodiscard]] Vec2 vec2(const JsonValue& value, const std::string& unit) const;
-  /// Points [[x, y], ...] in m.
+  /// Points [[x, y], ...] in m of a ring, without a closing vertex.
   [[nodiscard]] std::vector<Vec2> ring(const JsonValue& value) const;
   /// The index of a string in `names`, which must contain it.
   int choice(const JsonValue& value, const std::vector<std::string>& names) const;

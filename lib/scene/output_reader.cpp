@@ -108,13 +108,19 @@ void OutputReader::read(const JsonValue& value) {
     output_.frames = in_.count(*v);
   }
   if (const JsonValue* v = object.optional("history")) history(*v);
-  if (const JsonValue* v = object.optional("checkpoint")) {
-    features_.add(Feature::checkpoint, v);
-    JsonObject checkpoint(in_, *v);
-    output_.checkpoint_interval =
-        in_.positive(checkpoint.required("wall_clock", "s of real time between checkpoints"), "s");
-    checkpoint.finish();
+  if (const JsonValue* v = object.optional("checkpoint")) checkpoint(*v);
+  object.finish();
+}
+
+void OutputReader::checkpoint(const JsonValue& value) {
+  if (value.type == JsonValue::Type::boolean) {
+    if (value.boolean) in_.fail(value, "must be {\"wall_clock\": ...} or false; leave it out");
+    output_.checkpoint_interval.reset();
+    return;
   }
+  JsonObject object(in_, value);
+  output_.checkpoint_interval =
+      in_.positive(object.required("wall_clock", "s of real time between checkpoints"), "s");
   object.finish();
 }
 

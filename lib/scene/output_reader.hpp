@@ -31,6 +31,7 @@ class OutputReader {
 
  private:
   void history(const JsonValue& value);
+  void checkpoint(const JsonValue& value);
   void tracked(const JsonValue& item);
   void track_once(std::vector<int>& list, int body, const JsonValue& value) const;
   void tracked_point(int deformable, const JsonValue& point, const JsonValue* label);

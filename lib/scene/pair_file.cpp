@@ -6,7 +6,7 @@
 
 #include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/scene/json.hpp"
-#include "apothem/scene/polygon_file.hpp"
+#include "apothem/scene/ring_line.hpp"
 
 namespace apothem {
 namespace {
@@ -59,17 +59,11 @@ std::vector<PolygonPair> read_json(const std::string& text, const std::string& f
     object.finish();
   }
   root.finish();
+  if (pairs.empty()) reader.fail(document, "has no pair; give {\"name\", \"a\", \"b\"}");
   return pairs;
 }
 
 }  // namespace
-
-std::string pair_name(const std::string& line) {
-  std::istringstream words(line);
-  std::string name;
-  words >> name;
-  return name;
-}
 
 PolygonPair parse_pair(const std::string& line) {
   std::istringstream words(line);
@@ -82,28 +76,24 @@ PolygonPair parse_pair(const std::string& line) {
 }
 
 std::vector<PolygonPair> read_pair_file(const std::string& file) {
-  const std::string text = read_text(file);
+  const std::string text = read_text(file, kLargestJson);
   const size_t start = text.find_first_not_of(" \t\r\n");
   if (start != std::string::npos && text[start] == '{') return read_json(text, file);
   std::vector<PolygonPair> pairs;
   std::istringstream lines(text);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (pair_name(line).empty()) continue;
+  for_each_line(lines, file, kPairForm, [&](const BatchLine& line) {
     try {
-      pairs.push_back(parse_pair(line));
+      pairs.push_back(parse_pair(line.text));
     } catch (const BadPairLine& error) {
       const std::string place =
           error.polygon().empty()
               ? ""
               : fmt::format(", polygon {}, vertex {}", error.polygon(), error.vertex());
-      throw SceneError(file, number, "",
-                       fmt::format("{}{}: {}; write name n x y ... m x y ...", pair_name(line),
-                                   place, error.what()));
+      throw SceneError(
+          file, line.number, "",
+          fmt::format("{}{}: {}; write {}", line.name, place, error.what(), kPairForm));
     }
-  }
-  if (pairs.empty()) throw SceneError(file, 0, "", "has no pair; write name n x y ... m x y ...");
+  });
   return pairs;
 }
 

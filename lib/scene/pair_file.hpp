@@ -45,8 +45,8 @@ class BadPairLine : public std::invalid_argument {
   int vertex_;
 };
 
-/// The first word of a line. It is empty for a blank line.
-std::string pair_name(const std::string& line);
+/// What a line of a pair must hold.
+inline constexpr const char* kPairForm = "name n x y ... m x y ...";
 
 /// Reads the line "name n x y ... m x y ...", where n and m are the numbers of vertices. Throws
 /// BadPairLine.

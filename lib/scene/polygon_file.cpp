@@ -1,69 +1,45 @@
 #include "apothem/scene/polygon_file.hpp"
 
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
-#include <cstdlib>
-#include <istream>
+#include <utility>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/scene/geojson.hpp"
 #include "apothem/scene/json.hpp"
+#include "apothem/scene/wkt.hpp"
 
 namespace apothem {
 namespace {
 
-std::vector<Vec2> parse_wkt(const std::string& text, const std::string& file) {
-  using Point = boost::geometry::model::d2::point_xy<double>;
-  boost::geometry::model::polygon<Point> polygon;
-  try {
-    boost::geometry::read_wkt(text, polygon);
-  } catch (const std::exception& error) {  // Boost throws read_wkt_exception or bad_lexical_cast
-    throw SceneError(file, 0, "", std::string("not a WKT polygon: ") + error.what());
-  }
-  if (!polygon.inners().empty()) {
-    throw SceneError(file, 0, "", "the polygon has a hole; give a simple polygon");
-  }
-  std::vector<Vec2> ring;
-  for (const Point& p : polygon.outer()) ring.emplace_back(p.x(), p.y());
-  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // rings of WKT repeat it
-  return ring;
+RingText parse_polygon(const std::string& text, const std::string& file) {
+  const size_t start = text.find_first_not_of(" \t\r\n\f\v");
+  if (start == std::string::npos) throw SceneError(file, 0, "", "is empty; give a polygon");
+  // Of the notations, only JSON begins with a bracket, or with a comment.
+  if (std::string("[{/").find(text[start]) == std::string::npos) return parse_wkt(text, file);
+  const JsonReader reader(file);
+  const JsonValue document = parse_json(text, file);
+  if (document.type == JsonValue::Type::array) return ring_text(reader, document);
+  if (document.find("type")) return ring_of_geojson(reader, document);
+  JsonObject object(reader, document);
+  const JsonValue& ring = object.required("polygon", "[[x,y],...] in m");
+  object.finish();
+  return ring_text(reader, ring);
 }
 
 }  // namespace
 
-std::vector<Vec2> read_polygon_file(const std::string& file) {
-  const std::string text = read_text(file);
-  const size_t start = text.find_first_not_of(" \t\r\n");
-  if (start == std::string::npos) throw SceneError(file, 0, "", "is empty; give a polygon");
-  if (std::isalpha(static_cast<unsigned char>(text[start]))) {
-    return parse_wkt(text.substr(start, text.find_last_not_of(" \t\r\n") + 1 - start), file);
-  }
-  const JsonReader reader(file);
-  const JsonValue document = parse_json(text, file);
-  if (document.type == JsonValue::Type::array) return reader.ring(document);
-  JsonObject object(reader, document);
-  std::vector<Vec2> ring = reader.ring(object.required("polygon", "[[x,y],...] in m"));
-  object.finish();
-  return ring;
+RingText read_polygon_file(const std::string& file) {
+  return parse_polygon(read_text(file, kLargestJson), file);
 }
 
-std::vector<Vec2> read_ring(std::istream& line) {
-  int n = 0;
-  if (!(line >> n) || n < 0) throw InvalidPolygon("the number of vertices is missing", 0);
-  std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) {
-    std::string x, y;  // read as words, because streams do not read nan or inf
-    if (!(line >> x >> y)) throw InvalidPolygon("the line ends before the vertex", i);
-    char* end_x = nullptr;
-    char* end_y = nullptr;
-    ring.emplace_back(std::strtod(x.c_str(), &end_x), std::strtod(y.c_str(), &end_y));
-    if (*end_x != '\0' || *end_y != '\0') throw InvalidPolygon("is not a number", i);
+Polygon polygon_of_file(const std::string& file) {
+  RingText text = read_polygon_file(file);
+  try {
+    return Polygon(std::move(text.ring));
+  } catch (const InvalidPolygon& error) {
+    const auto vertex = static_cast<size_t>(error.vertex());
+    const int line = vertex < text.lines.size() ? text.lines[vertex] : 0;
+    throw PolygonError(file, line, std::string("the polygon is not usable: ") + error.what(),
+                       error.vertex());
   }
-  return ring;
-}
-
-void require_end(std::istream& line) {
-  if (std::string rest; line >> rest) throw InvalidPolygon("text behind the last vertex", 0);
 }
 
 }  // namespace apothem

@@ -11,32 +11,25 @@ std::string file_beside(const JsonReader& scene, const std::string& name) {
 }
 
 Polygon read_polygon(const JsonReader& in, const JsonValue& outline) {
-  std::string where;
-  std::vector<Vec2> ring;
   if (outline.type == JsonValue::Type::string) {
-    const std::string file = file_beside(in, outline.string);
     try {
-      ring = read_polygon_file(file);
+      return polygon_of_file(file_beside(in, outline.string));
     } catch (const SceneError& error) {
       in.fail(outline, error.what());
     }
-    where = file + ": ";
-  } else {
-    ring = in.ring(outline);
   }
   try {
-    return Polygon(std::move(ring));
+    return Polygon(in.ring(outline));
   } catch (const InvalidPolygon& error) {
-    refuse_polygon(in, outline, error, where);
+    refuse_polygon(in, outline, error);
   }
 }
 
-void refuse_polygon(const JsonReader& in, const JsonValue& outline, const InvalidPolygon& error,
-                    const std::string& where) {
+void refuse_polygon(const JsonReader& in, const JsonValue& outline, const InvalidPolygon& error) {
   const bool inside = outline.type == JsonValue::Type::array && error.vertex() >= 0 &&
                       error.vertex() < static_cast<int>(outline.items.size());
   in.fail(inside ? outline.items[error.vertex()] : outline,
-          where + "not a usable polygon: " + error.what());
+          std::string("not a usable polygon: ") + error.what());
 }
 
 }  // namespace apothem

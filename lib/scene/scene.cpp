@@ -47,6 +47,7 @@ class SceneReader {
  private:
   void settings(JsonObject& top) {
     model_.name = std::filesystem::path(scene_.file).stem().string();
+    if (const JsonValue* v = top.optional("$schema")) in_.string(*v);
     if (const JsonValue* v = top.optional("name")) model_.name = scene_name(*v);
     if (const JsonValue* v = top.optional("description")) in_.string(*v);
     if (const JsonValue* v = top.optional("gravity")) model_.gravity = in_.vec2(*v, "m/s^2");
@@ -115,12 +116,24 @@ SceneError Scene::error_at(const std::string& pointer, const std::string& what) 
   return {file, at->line, at->pointer, what};
 }
 
-Scene read_scene(const std::string& file) {
+Scene read_scene(const std::string& file, const std::vector<Setting>& settings) {
   Scene scene;
   scene.file = file;
-  scene.text = read_text(file);
+  scene.text = read_text(file, kLargestJson);
+  scene.settings = settings;
   scene.document = parse_json(scene.text, file);
-  SceneReader(scene).read();
+  std::vector<std::string> places;
+  for (const Setting& s : settings) places.push_back(apply_setting(scene.document, s, file));
+  try {
+    SceneReader(scene).read();
+  } catch (const SceneError& error) {
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (error.pointer() != places[i] && !error.pointer().starts_with(places[i] + "/")) continue;
+      throw SceneError(file, error.line(), error.pointer(),
+                       error.reason() + ", set by \"" + settings[i].text() + "\"");
+    }
+    throw;
+  }
   return scene;
 }
 

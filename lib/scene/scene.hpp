@@ -7,12 +7,14 @@
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
 #include "apothem/scene/json.hpp"
+#include "apothem/scene/setting.hpp"
 
 namespace apothem {
 
 struct Scene {
   std::string file;
-  std::string text;  ///< contents of the file
+  std::string text;               ///< contents of the file
+  std::vector<Setting> settings;  ///< that replace values of the file
   Model model;
   TimeSettings time;
   OutputSettings output;
@@ -24,7 +26,8 @@ struct Scene {
   [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;
 };
 
-/// Reads a scene. Throws SceneError if it cannot be read or is not a valid scene.
-Scene read_scene(const std::string& file);
+/// Reads a scene, with settings in place of values of the file. Throws SceneError if it cannot be
+/// read or is not a valid scene.
+Scene read_scene(const std::string& file, const std::vector<Setting>& settings = {});
 
 }  // namespace apothem

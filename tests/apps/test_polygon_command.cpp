@@ -160,14 +160,15 @@ TEST_CASE("a refused polygon says why and where, as text or as JSON", "[program]
   const Result json = run({"polygon", file, "--json"}, folder);
   CHECK(json.code == 2);
   const Json o = Json::parse(json.out);
-  CHECK(o.size() == 2);
   CHECK(o["error"].get<std::string>().find("cross") != std::string::npos);
+  CHECK(o["file"] == file);
+  CHECK(o["line"] == 1);
   CHECK(o["vertex"] == 2);
   for (const std::string& bad : {std::string("[[0,0],[1,"), std::string("POLYGON((0 0, 1 1"),
                                  std::string("POINT(1 1)"), std::string()}) {
     const Result r = run({"polygon", folder.write("bad.txt", bad), "--json"}, folder);
     CHECK(r.code == 2);
-    CHECK(r.out.empty());
+    CHECK(Json::parse(r.out).contains("error"));
     CHECK(lines(r.err) == 1);
     CHECK(r.err.find("bad.txt") != std::string::npos);
   }
@@ -194,10 +195,19 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
   CHECK(list[1]["name"] == "bow#2");
   CHECK(list[1]["vertex"] == 2);
   CHECK(list[3]["vertex"] == 2);
-  for (int i = 1; i < 5; ++i) CHECK(list[i].contains("error"));
+  for (int i = 1; i < 5; ++i) {
+    CHECK(list[i].contains("error"));
+    CHECK(list[i]["line"] == i + 2);
+  }
   CHECK(list[5]["name"] == "l");
   CHECK(list[5]["singular_area"]["kind"] == "segment");
   CHECK(run({"polygon", "--batch", folder.write("ok.txt", "t 3 0 0 1 0 0 1\n")}, folder).code == 0);
+  for (const char* command : {"polygon", "contact"}) {
+    const Result empty = run({command, "--batch", folder.write("empty.txt", "\n")}, folder);
+    CHECK(empty.code == 2);
+    CHECK(empty.err.find("empty.txt: is empty; write on each line name n x y ...") !=
+          std::string::npos);
+  }
 }
 
 TEST_CASE("every public ring is described or refused", "[program][polygon]") {

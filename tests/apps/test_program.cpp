@@ -425,6 +425,59 @@ TEST_CASE("Ctrl-C finishes the step and closes the files", "[program]") {
   CHECK(content(folder / "long/frames.pvd").ends_with("</VTKFile>\n"));
 }
 
+TEST_CASE("a run that is killed goes on from its last checkpoint, bit for bit", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("long.json", scene(R"({ "end": 0.6, "step": 2e-6 })"));
+  const std::vector<std::string> often{"--set", "output.checkpoint.wall_clock=0.02"};
+  std::vector<std::string> arguments{"run", file, "-o", folder / "parts"};
+  arguments.insert(arguments.end(), often.begin(), often.end());
+  const Result r = run(arguments, folder,
+                       {.interrupt_after = 0.05,
+                        .signal = SIGKILL,
+                        .once_exists = folder / "parts/checkpoint.json"});
+  REQUIRE(r.code == -SIGKILL);
+  CHECK_FALSE(std::filesystem::exists(folder / "parts/run.json"));
+  REQUIRE(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 0);
+  arguments[3] = folder / "whole";
+  REQUIRE(run(arguments, folder).code == 0);
+  for (const char* name : {"history.csv", "energy.csv", "momentum.csv", "frames.pvd"}) {
+    INFO(name);
+    CHECK((content(folder / (std::string("whole/") + name)) ==
+           content(folder / (std::string("parts/") + name))));
+  }
+  CHECK(Json::parse(content(folder / "whole/run.json"))["final_state_hash"] ==
+        Json::parse(content(folder / "parts/run.json"))["final_state_hash"]);
+}
+
+TEST_CASE("--from begins with the last state of another run", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("fall.json", scene(R"({ "end": 0.1 })"));
+  REQUIRE(run({"run", file, "-o", folder / "one"}, folder).code == 0);
+  const Result r = run({"run", file, "-o", folder / "two", "--from", folder / "one@0.1"}, folder);
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  CHECK(r.out.find("began with 2 bodies of " + folder / "one" + " at t = 0.1 s") !=
+        std::string::npos);
+  const HistoryTable one = read_history(folder / "one/history.csv");
+  const HistoryTable two = read_history(folder / "two/history.csv");
+  CHECK(two.column("square.y")->front() == Approx(one.column("square.y")->back()).epsilon(1e-12));
+  CHECK(two.column("square.vy")->front() == Approx(one.column("square.vy")->back()).epsilon(1e-12));
+  for (const auto& [from, says] :
+       {std::pair<const char*, const char*>{"one@0.05", "not supported yet"},
+        {"one@soon", "--from: the time behind @"},
+        {"none", "holds no state of a run"}}) {
+    const Result bad = run({"run", file, "-o", folder / "bad", "--from", folder / from}, folder);
+    INFO(bad.err);
+    CHECK(bad.code == 2);
+    CHECK(lines(bad.err) == 1);
+    CHECK(bad.err.find(says) != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "bad"));
+  }
+  CHECK(
+      run({"run", file, "-o", folder / "two", "--resume", "--from", folder / "one"}, folder).code ==
+      2);
+}
+
 TEST_CASE("a resumed run of elements with damping continues bit for bit", "[program]") {
   const Folder folder;
   const std::string file = folder.write("beam.json", R"({

@@ -8,7 +8,6 @@
 #include <valijson/validator.hpp>
 
 #include "apothem/mesh/locate.hpp"
-#include "apothem/scene/polygon_file.hpp"
 #include "apothem/scene/scene.hpp"
 #include "folder.hpp"
 #include "support.hpp"
@@ -413,23 +412,27 @@ TEST_CASE("the JSON Schema lists exactly the keys that the reader knows", "[scen
   }
 }
 
-TEST_CASE("polygon files: JSON, object and WKT", "[scene]") {
+TEST_CASE("the polygon of a body may stand in a file", "[scene]") {
   const Folder folder;
-  const std::vector<Vec2> expected{{0, 0}, {1.5, 0}, {0.25, 1e-3}};
-  CHECK(read_polygon_file(folder.write("a.json", "[[0,0],[1.5,0],[0.25,1e-3]]")) == expected);
-  CHECK(read_polygon_file(folder.write("b.json", "{\"polygon\": [[0,0],[1.5,0],[0.25,1e-3]]}")) ==
-        expected);
-  CHECK(read_polygon_file(folder.write("c.wkt", "POLYGON((0 0, 1.5 0, 0.25 1e-3, 0 0))\n")) ==
-        expected);
-  CHECK_THROWS_AS(read_polygon_file(
-                      folder.write("d.wkt", "POLYGON((0 0, 4 0, 4 4, 0 0), (3 1, 3 2, 2 1, 3 1))")),
-                  SceneError);
-  CHECK_THROWS_AS(read_polygon_file(folder.write("e.wkt", "POINT(0 0)")), SceneError);
-  CHECK_THROWS_AS(read_polygon_file(folder.write("f.wkt", "POLYGON((0 zero))")), SceneError);
-  CHECK_THROWS_AS(read_polygon_file(folder.write("g.json", "  ")), SceneError);
-  const std::string scene = replaced(kGood, "[[0, 0.1], [0.5, 0.9], [-0.5, 0.9]]", "\"c.wkt\"");
+  folder.write("c.wkt", "POLYGON((0 0, 1.5 0, 0.25 1e-3, 0 0))\n");
+  const std::string polygon = "[[0, 0.1], [0.5, 0.9], [-0.5, 0.9]]";
+  const std::string scene = replaced(kGood, polygon, "\"c.wkt\"");
   CHECK(read_scene(folder.write("file.json", scene)).model.bodies[1].area ==
         Approx(1.5 * 1e-3 / 2));
+  folder.write("c.wkt", "POLYGON((0 0,\n1,5 0,0 1,0 0))");
+  const std::string error = error_of(folder.write("file.json", scene));
+  CHECK(error.find("file.json:10: /bodies/1/polygon: ") != std::string::npos);
+  CHECK(error.find("c.wkt:2: vertex 1 has one coordinate, 1") != std::string::npos);
+}
+
+TEST_CASE("a ring in a scene may repeat its first vertex at the end", "[scene]") {
+  const Folder folder;
+  const std::string closed = replaced(kGood, "[-0.5, 0.9]]", "[-0.5, 0.9], [0, 0.1]]");
+  const Scene scene = read_scene(folder.write("closed.json", closed));
+  CHECK(scene.model.bodies[1].potential.size() == 3);
+  CHECK(error_of(folder.write("z.json", replaced(kGood, "[0.5, 0.9]", "[0.5, 0.9, 0]")))
+            .find("/bodies/1/polygon/1: has 3 coordinates, and bodies are two-dimensional") !=
+        std::string::npos);
 }
 
 TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {

@@ -1,0 +1,28 @@
+// Private header: the command line of all sub-commands. It is described once, to CLI11; help,
+// hints, shell completion and the manual page all come from that description.
+#pragma once
+
+#include "commands.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace apothem {
+
+/// What the command line asks of each sub-command.
+struct Options {
+  RunOptions run;
+  CheckOptions check;
+  ContactOptions contact;
+  PolygonOptions polygon;
+  MeshOptions mesh;
+  AccuracyOptions accuracy;
+  ReproduceOptions reproduce;
+  CompletionOptions completion;
+};
+
+/// Adds all sub-commands and their options, which are written to `options`.
+void add_commands(CLI::App& app, Options& options);
+
+}  // namespace apothem

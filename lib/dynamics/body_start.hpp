@@ -1,0 +1,19 @@
+// Where a body begins, if another run says so and not its scene.
+#pragma once
+
+#include <vector>
+
+#include "apothem/archive/archive.hpp"
+#include "apothem/mesh/indices.hpp"
+
+namespace apothem {
+
+/// Where a body begins instead of where its scene puts it: x, y and angle of the mass centre, or
+/// the displacements of the nodes; and their rates.
+struct BodyStart {
+  BodyIndex body = 0;
+  std::vector<double> x, v;
+  void fields(Archive& archive) { archive("body", body)("x", x)("v", v); }
+};
+
+}  // namespace apothem

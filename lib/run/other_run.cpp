@@ -1,0 +1,120 @@
+#include "apothem/run/other_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "apothem/run/checkpoint.hpp"
+#include "apothem/run/json_archive.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kSameTime = 1e-6;  // of the time
+
+// What contacts remember, as it stands in a file: in one of the terms of the simulation, and only
+// where there is friction or damping.
+nlohmann::json contacts_of(const nlohmann::json& simulation) {
+  nlohmann::json contacts;
+  for (const auto& [name, term] : simulation.items()) {
+    if (name.starts_with("term_") && term.is_object() && term.contains("contacts")) {
+      contacts = term["contacts"];
+    }
+  }
+  const nlohmann::json none = nlohmann::json::array();
+  if (!contacts.is_object()) {
+    contacts["friction"] = {{"springs", none},
+                            {"energy", 0},
+                            {"balanced_energy", 0},
+                            {"friction_loss", 0},
+                            {"damping_loss", 0}};
+  }
+  if (!contacts.contains("tangential")) {
+    contacts["tangential"] = {{"pairs", none}, {"runs", none}, {"dampers", none}};
+  }
+  return contacts;
+}
+
+}  // namespace
+
+OtherRun::OtherRun(const std::string& folder, std::optional<double> time) {
+  beginning_.folder = folder;
+  std::error_code error;
+  std::string file = state_file(folder, StateFile::final);
+  if (!std::filesystem::exists(file, error)) file = state_file(folder, StateFile::checkpoint);
+  if (!std::filesystem::exists(file, error)) {
+    throw SceneError(folder, 0, "",
+                     "holds no state of a run, neither final.json nor checkpoint.json; give the "
+                     "folder of a run that is done or was stopped");
+  }
+  try {
+    load(file);
+  } catch (const nlohmann::json::exception& bad) {
+    throw SceneError(file, 0, "", std::string("is not the state of a run: ") + bad.what());
+  } catch (const ArchiveMismatch& bad) {
+    throw SceneError(file, 0, "", std::string("is damaged: ") + bad.what());
+  }
+  beginning_.time = state_.time;
+  if (time && !(std::abs(*time - state_.time) <= kSameTime * std::abs(state_.time))) {
+    throw SceneError(
+        file, 0, "",
+        fmt::format("is the state at t = {} s; to begin at t = {} s is not supported yet, because "
+                    "frames hold no whole state: run the other scene --until that time",
+                    state_.time, *time));
+  }
+}
+
+void OtherRun::load(const std::string& file) {
+  const nlohmann::json json = nlohmann::json::parse(read_text(file));
+  JsonLoader archive(json);
+  archive("model", record_);
+  state_ = State(record_.layout());
+  const nlohmann::json& simulation = json.at("simulation");
+  JsonLoader of_simulation(simulation);
+  of_simulation("state", state_);
+  const nlohmann::json contacts = contacts_of(simulation);
+  JsonLoader of_contacts(contacts);
+  memory_.fields(of_contacts);
+}
+
+Beginning OtherRun::move_into(Scene& scene) {
+  if (scene.time.settled) {
+    throw scene.error_at(
+        "/time/start", "finds a start of its own; leave it out to begin with another run's state");
+  }
+  if (scene.time.statics) {
+    throw scene.error_at("/time/mode",
+                         "a static run that begins with another run's state is not supported yet");
+  }
+  Inheritance found = inheritance(record_, state_, scene.model);
+  if (found.starts.empty()) {
+    throw SceneError(
+        beginning_.folder, 0, "",
+        fmt::format("has no body of the same name and shape as one of {}", scene.file));
+  }
+  begin_at(scene.model, found.starts);
+  heirs_ = std::move(found.heirs);
+  beginning_.bodies = std::move(found.starts);
+  return beginning_;
+}
+
+void OtherRun::hand_contacts_to(Simulation& simulation) const {
+  const ContactNumbers numbers = simulation.contact_numbers();
+  if (numbers.bodies.empty() || record_.contacts.bodies.empty()) return;
+  simulation.inherit(hand_over(memory_, record_.contacts, numbers, heirs_));
+}
+
+std::vector<std::string> not_moved(const Model& model, const Beginning& beginning) {
+  std::vector<std::string> names;
+  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
+  for (BodyIndex i = 0; i < bodies; ++i) {
+    const bool moved = std::any_of(beginning.bodies.begin(), beginning.bodies.end(),
+                                   [&](const BodyStart& start) { return start.body == i; });
+    if (!moved) names.push_back(model.name_of(i));
+  }
+  return names;
+}
+
+}  // namespace apothem

@@ -1,0 +1,25 @@
+// Numbers in text that is not JSON: lines of batch files, WKT, arguments of the command line. All
+// of them are read here, so that a word is a number everywhere or nowhere.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace apothem {
+
+/// The error for a word that is not a number. It says what the word is instead.
+class BadNumber : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// The number that a whole word holds in decimal notation: digits with a point, a sign and an
+/// exponent if need be. Hexadecimal numbers, infinity and NaN are no numbers here. A value too
+/// small for double precision becomes 0. Throws BadNumber.
+double parse_decimal(std::string_view word);
+
+/// The whole number, 0 or more, that a whole word holds. Throws BadNumber.
+int parse_count(std::string_view word);
+
+}  // namespace apothem

@@ -1,0 +1,61 @@
+#include "apothem/scene/geojson.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace apothem {
+namespace {
+
+const JsonValue& member(const JsonReader& in, const JsonValue& object, const char* key) {
+  const JsonValue* value = object.find(key);
+  if (!value) in.fail(object, fmt::format("GeoJSON without \"{}\"", key));
+  return *value;
+}
+
+const JsonValue& only_item(const JsonReader& in, const JsonValue& list, const char* what) {
+  const std::vector<JsonValue>& items = in.array(list);
+  if (items.size() == 1) return items[0];
+  in.fail(list, fmt::format("holds {} {}; {}", items.size(), what, kOnePolygon));
+}
+
+RingText outer_ring(const JsonReader& in, const JsonValue& rings) {
+  const std::vector<JsonValue>& items = in.array(rings);
+  if (items.empty()) in.fail(rings, "the polygon is empty; give it three vertices or more");
+  if (items.size() > 1) in.fail(items[1], "the polygon has a hole; give a simple polygon");
+  return ring_text(in, items[0]);
+}
+
+}  // namespace
+
+RingText ring_text(const JsonReader& in, const JsonValue& ring) {
+  RingText text;
+  text.ring = in.ring(ring);
+  for (size_t i = 0; i < text.ring.size(); ++i) text.lines.push_back(ring.items[i].line);
+  return text;
+}
+
+RingText ring_of_geojson(const JsonReader& in, const JsonValue& object) {
+  if (object.type != JsonValue::Type::object) in.fail(object, "must be an object of GeoJSON");
+  const std::vector<std::string> types{
+      "Polygon", "MultiPolygon", "Feature",    "FeatureCollection", "GeometryCollection",
+      "Point",   "MultiPoint",   "LineString", "MultiLineString"};
+  const JsonValue& type = member(in, object, "type");
+  const int kind = in.choice(type, types);
+  switch (kind) {
+    case 0:
+      return outer_ring(in, member(in, object, "coordinates"));
+    case 1:
+      return outer_ring(in, only_item(in, member(in, object, "coordinates"), "polygons"));
+    case 2:
+      return ring_of_geojson(in, member(in, object, "geometry"));
+    case 3:
+      return ring_of_geojson(in, only_item(in, member(in, object, "features"), "features"));
+    case 4:
+      return ring_of_geojson(in, only_item(in, member(in, object, "geometries"), "geometries"));
+    default:
+      in.fail(type, fmt::format("is a {}; give a Polygon", types[static_cast<size_t>(kind)]));
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,17 @@
+// Polygons in GeoJSON (RFC 7946), as geographical programs write it.
+#pragma once
+
+#include "apothem/scene/json.hpp"
+#include "apothem/scene/ring_text.hpp"
+
+namespace apothem {
+
+/// The ring of an object of type Polygon, or of one that holds a single polygon: a Feature, a
+/// FeatureCollection, a GeometryCollection or a MultiPolygon. Properties and coordinate systems are
+/// not used. Throws SceneError for anything else: holes, further polygons, empty ones.
+RingText ring_of_geojson(const JsonReader& in, const JsonValue& object);
+
+/// A ring [[x, y], ...] with the lines of its vertices. Throws SceneError.
+RingText ring_text(const JsonReader& in, const JsonValue& ring);
+
+}  // namespace apothem

@@ -1,0 +1,72 @@
+#include "apothem/scene/ring_line.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/scene/decimal.hpp"
+#include "apothem/scene/json.hpp"
+#include "apothem/scene/ring_text.hpp"
+
+namespace apothem {
+
+void for_each_line(const std::string& file, const char* form,
+                   const std::function<void(const BatchLine&)>& evaluate) {
+  std::ifstream stream = open_text(file);
+  for_each_line(stream, file, form, evaluate);
+  if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
+}
+
+void for_each_line(std::istream& text, const std::string& file, const char* form,
+                   const std::function<void(const BatchLine&)>& evaluate) {
+  BatchLine line;
+  bool any = false;
+  for (line.number = 1; std::getline(text, line.text); ++line.number) {
+    if (line.number == 1) strip_byte_order_mark(line.text, file);
+    std::istringstream words(line.text);
+    if (!(words >> line.name) || line.name == "#") continue;
+    any = true;
+    evaluate(line);
+  }
+  if (!any) throw SceneError(file, 0, "", std::string("is empty; write on each line ") + form);
+}
+
+std::vector<Vec2> read_ring(std::istream& line) {
+  std::string word;
+  if (!(line >> word)) throw InvalidPolygon("the number of vertices is missing", 0);
+  int n = 0;
+  try {
+    n = parse_count(word);
+  } catch (const BadNumber& error) {
+    throw InvalidPolygon(fmt::format("the number of vertices: {}", error.what()), 0);
+  }
+  std::vector<Vec2> ring;
+  for (int i = 0; i < n; ++i) {
+    Vec2 vertex;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!(line >> word)) {
+        throw InvalidPolygon(fmt::format("the line ends before vertex {} of {} {}", i, n,
+                                         axis == 0 ? "begins" : "has its y"),
+                             i);
+      }
+      try {
+        vertex[axis] = parse_decimal(word);
+      } catch (const BadNumber& error) {
+        throw InvalidPolygon(fmt::format("vertex {}: {}", i, error.what()), i);
+      }
+    }
+    ring.push_back(vertex);
+  }
+  leave_out_closing_vertex(ring);
+  return ring;
+}
+
+void require_end(std::istream& line) {
+  if (std::string rest; line >> rest) {
+    throw InvalidPolygon(fmt::format("text behind the last vertex: \"{}\"", rest.substr(0, 40)), 0);
+  }
+}
+
+}  // namespace apothem

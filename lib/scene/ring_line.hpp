@@ -1,0 +1,36 @@
+// Files with one ring, or one pair of rings, per line: a name, the number of vertices, and their
+// coordinates.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+struct BatchLine {
+  std::string name;  ///< the first word
+  std::string text;  ///< the whole line
+  int number;        ///< in the file, counted from 1
+};
+
+/// Calls evaluate() for each line but those that are blank or begin with the word #, which are
+/// comments. Throws SceneError if the file cannot be read, or if there is no such line: `form` says
+/// what to write.
+void for_each_line(const std::string& file, const char* form,
+                   const std::function<void(const BatchLine&)>& evaluate);
+/// The same for the text of a file.
+void for_each_line(std::istream& text, const std::string& file, const char* form,
+                   const std::function<void(const BatchLine&)>& evaluate);
+
+/// Reads a ring given by the words n x y ..., where n is the number of vertices. A closing vertex
+/// counts in n and is left out. Throws InvalidPolygon.
+std::vector<Vec2> read_ring(std::istream& line);
+
+/// Throws InvalidPolygon if anything but white space is left of the line.
+void require_end(std::istream& line);
+
+}  // namespace apothem

@@ -1,0 +1,236 @@
+// Runs that begin where another one has stopped: places, velocities and the memory of contacts.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apothem/output/files.hpp"
+#include "apothem/run/hash.hpp"
+#include "dynamics/term_of.hpp"
+#include "scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+using Json = nlohmann::json;
+
+namespace {
+
+Scene scene_with(const Folder& folder, const std::string& text,
+                 const std::vector<std::string>& settings) {
+  const std::string file = folder.write("scene.json", text);
+  std::vector<Setting> parsed;
+  for (const std::string& s : settings) parsed.push_back(parse_setting(s, file));
+  return read_scene(file, parsed);
+}
+
+// The largest difference between two lists, in parts of the largest entry.
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double difference = 0, size = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+    size = std::max(size, std::abs(a[i]));
+  }
+  return difference / size;
+}
+
+// A block on a slope, stopped while it rubs, as in rubbing_scenes().
+const char* const kRough = R"({ "coefficient": 0.6, "tangential_stiffness": 1e9 })";
+const char* const kBlock =
+    R"("velocity": [1, 0], "polygon": [[-0.25, 0], [0.25, 0], [0.25, 0.125], [-0.25, 0.125]])";
+
+}  // namespace
+
+TEST_CASE("a run that begins with another's state goes on as that one would", "[run][from]") {
+  for (const NamedScene& named : rubbing_scenes()) {
+    INFO(named.name);
+    const Folder folder;
+    const double step = Run(scene_of(folder, named.text), {}).simulation().step_size();
+    const std::string fixed = "time.step=" + Json(step).dump();
+    Run first(scene_with(folder, named.text, {fixed}), {.folder = folder / "first"});
+    REQUIRE(first.run(named.stop) == Run::Status::done);
+    REQUIRE(!springs(first.simulation()).empty());
+
+    Run second(scene_with(folder, named.text, {fixed, "time.end=" + Json(200 * step).dump()}),
+               {.folder = folder / "second", .from = folder / "first"});
+    CHECK(second.state().time == 0);
+    CHECK(second.beginning().time == first.state().time);
+    CHECK(apart(first.state().x, second.state().x) == 0);
+    CHECK(apart(first.state().v, second.state().v) == 0);
+    const auto before = springs(first.simulation()), now = springs(second.simulation());
+    REQUIRE(before.size() == now.size());
+    double largest = 0;
+    for (const Spring& spring : before) largest = std::max(largest, std::abs(spring.force));
+    for (size_t i = 0; i < now.size(); ++i) {
+      CHECK(now[i].key == before[i].key);
+      CHECK(std::abs(now[i].force - before[i].force) <= 1e-9 * largest);
+    }
+    CHECK(second.simulation().energies().friction_loss == Approx(0).margin(1e-9));
+    CHECK(second.simulation().energies().total_error == Approx(0).margin(1e-9));
+
+    REQUIRE(second.run() == Run::Status::done);
+    REQUIRE(second.state().step == 200);
+    for (int i = 0; i < 200; ++i) first.simulation().step();
+    CHECK(apart(first.state().x, second.state().x) < 1e-10);
+    CHECK(apart(first.state().v, second.state().v) < 1e-6);
+  }
+}
+
+TEST_CASE("bodies keep their springs where others come, go, or stand in another order",
+          "[run][from]") {
+  for (const char* law : {"resultant", "per_edge"}) {
+    INFO(law);
+    const Folder folder;
+    const std::string rough =
+        std::string(kRough).replace(1, 0, " \"law\": \"" + std::string(law) + "\",");
+    Run first(
+        scene_of(folder, slope(rough, kBlock,
+                               R"(, "damping": { "model": "normal_viscous", "ratio": 0.2 })")),
+        {.folder = folder / "first"});
+    REQUIRE(first.run(.013) == Run::Status::done);
+    const BodyForce on = first.simulation().contact_forces()[1];
+    REQUIRE(on.friction > 1);
+
+    const std::string other =
+        R"({ "gravity": [-0.3, -9.5], "materials": { "rock": { "density": 2500 } },
+      "contact": { "normal_stiffness": 2e9, "friction": )" +
+        rough + R"(,
+                   "damping": { "model": "normal_viscous", "ratio": 0.2 } },
+      "bodies": [
+        { "name": "guest", "material": "rock", "polygon": [[3, 3], [4, 3], [3, 4]] },
+        { "name": "block", "material": "rock", "position": [77, 5],
+          "polygon": [[-0.25, 0], [0.25, 0], [0.25, 0.125], [-0.25, 0.125]] },
+        { "name": "slope", "material": "rock", "motion": "fixed", "polygon": [[-5, -1], [5, -1], [5, 1e-7], [-5, 1e-7]] } ],
+      "time": { "end": 0.02 } })";
+    Run second(scene_of(folder, other), {.folder = folder / "second", .from = folder / "first"});
+    CHECK(second.beginning().bodies.size() == 2);
+    const Vec2 moved = second.scene().model.origin - first.scene().model.origin;
+    CHECK((second.state().pose(1) - first.state().pose(1)).head<2>().isApprox(-moved, 1e-12));
+    CHECK(second.state().pose_rate(1).isApprox(first.state().pose_rate(1), 1e-15));
+    CHECK(second.state().pose(0)[0] + second.scene().model.origin.x() == Approx(10. / 3));
+    const BodyForce again = second.simulation().contact_forces()[1];
+    CHECK(again.friction == Approx(on.friction).epsilon(1e-6));
+    const Eigen::Vector3d force = first.state().force(1), here = second.state().force(1);
+    CHECK(here.head<2>().isApprox(force.head<2>(), 1e-6));
+    const auto before = springs(first.simulation()), now = springs(second.simulation());
+    REQUIRE(now.size() == before.size());
+    for (const Spring& spring : now) CHECK(spring.key.a == 1);  // the block comes first now
+
+    // Without what contacts remember, friction would begin anew.
+    Json forgetful = Json::parse(content(folder / "first/checkpoint.json"));
+    forgetful["simulation"]["term_0"]["contacts"]["friction"]["springs"] = Json::array();
+    write_file(folder / "first/checkpoint.json", forgetful.dump());
+    Run third(scene_of(folder, other), {.folder = folder / "third", .from = folder / "first"});
+    CHECK(third.simulation().contact_forces()[1].friction < .01 * on.friction);
+  }
+}
+
+TEST_CASE("a mesh may be given at another place; its strain comes along", "[run][from]") {
+  const Folder folder;
+  const auto beam = [](const char* origin, const char* more) {
+    return std::string(
+               R"({ "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+      "gravity": [0, -9.81],
+      "bodies": [ { "name": "beam", "material": "rock",
+        "mesh": { "rectangle": { "size": [2, 0.5], "cells": [8, 2], "origin": )") +
+           origin + R"( } },
+        "supports": [ { "where": { "x": )" +
+           std::string(origin).substr(1, std::string(origin).find(',') - 1) +
+           R"( }, "fix": ["x", "y"] } ] } ],
+      "time": { "end": 0.004 }, "output": { "frames": 2)" +
+           more + " } }";
+  };
+  Run first(scene_of(folder, beam("[0, 0]", "")), {.folder = folder / "first"});
+  REQUIRE(first.run() == Run::Status::done);
+  REQUIRE(std::filesystem::exists(folder / "first/final.json"));
+  Run second(scene_of(folder, beam("[100, 7]", "")),
+             {.folder = folder / "second", .from = folder / "first"});
+  const Energies old = first.simulation().energies(), now = second.simulation().energies();
+  REQUIRE(old.strain > 0);
+  CHECK(now.strain == Approx(old.strain).epsilon(1e-8));
+  CHECK(now.kinetic == Approx(old.kinetic).epsilon(1e-12));
+  CHECK(now.gravity == 0);
+  // It is where it was, not where the scene puts it.
+  const Vec2 place = second.scene().model.deformables[0].mesh.nodes[0] +
+                     second.scene().model.origin + second.state().node(0);
+  const Vec2 before = first.scene().model.deformables[0].mesh.nodes[0] +
+                      first.scene().model.origin + first.state().node(0);
+  CHECK((place - before).norm() < 1e-12);
+  REQUIRE(second.run() == Run::Status::done);
+  CHECK(std::abs(second.simulation().energies().total_error) < 1e-2 * old.strain);
+}
+
+TEST_CASE("a run that began with another's state resumes bit for bit, without the other folder",
+          "[run][from]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, slope(kRough, kBlock));
+  Run(scene, {.folder = folder / "first"}).run();
+  REQUIRE(std::filesystem::exists(folder / "first/final.json"));
+  REQUIRE_FALSE(std::filesystem::exists(folder / "first/checkpoint.json"));
+  Run whole(scene, {.folder = folder / "whole", .from = folder / "first"});
+  REQUIRE(whole.run() == Run::Status::done);
+  Run(scene, {.folder = folder / "parts", .from = folder / "first"}).run(.011);
+  std::filesystem::remove_all(folder / "first");
+  Run second(scene, {.folder = folder / "parts", .resume = true});
+  CHECK(second.beginning().folder == folder / "first");
+  REQUIRE(second.run() == Run::Status::done);
+  CHECK(state_hash(second.state()) == state_hash(whole.state()));
+  CHECK(content(folder / "parts/energy.csv") == content(folder / "whole/energy.csv"));
+  const Json from = Json::parse(content(folder / "parts/run.json"))["from"];
+  CHECK(from["folder"] == folder / "first");
+  CHECK(from["time"] == Approx(.02));
+  CHECK(from["bodies"] == 2);
+  CHECK(from["others"].empty());
+}
+
+TEST_CASE("bodies of another name or shape begin where their scene puts them", "[run][from]") {
+  const Folder folder;
+  Run(scene_of(folder, flying_block(", \"velocity\": [3, 1]")), {.folder = folder / "first"}).run();
+  const auto bodies = [](const char* shape) {
+    return std::string(R"({ "materials": { "rock": { "density": 2000 } },
+      "contact": { "normal_stiffness": 1e9 }, "bodies": [
+      { "name": "block", "material": "rock", "polygon": )") +
+           shape +
+           R"( }, { "name": "new", "material": "rock", "polygon": [[9, 9], [10, 9], [9, 10]] } ],
+      "time": { "end": 0.1 } })";
+  };
+  Run same(scene_of(folder, bodies("[[0, 0], [1, 0], [1, 1], [0, 1]]")),
+           {.folder = folder / "same", .from = folder / "first"});
+  CHECK(same.state().pose(0)[0] + same.scene().model.origin.x() == Approx(.5 + 3 * .5));
+  CHECK(same.state().pose_rate(0)[0] == 3);
+  same.run();
+  CHECK(Json::parse(content(folder / "same/run.json"))["from"]["others"] == Json{"new"});
+  CHECK_THROWS_WITH(Run(scene_of(folder, bodies("[[0, 0], [2, 0], [2, 1], [0, 1]]")),
+                        RunSettings{.folder = folder / "other", .from = folder / "first"}),
+                    Catch::Contains("no body of the same name and shape"));
+  CHECK_FALSE(std::filesystem::exists(folder / "other"));
+}
+
+TEST_CASE("a state that is not there is refused, with the time that is", "[run][from]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, flying_block());
+  Run(scene, {.folder = folder / "first"}).run();
+  CHECK_NOTHROW(Run(scene, {.from = folder / "first", .from_time = .5}));
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first", .from_time = .3}),
+                    Catch::Contains("is the state at t = 0.5 s; to begin at t = 0.3 s is not "
+                                    "supported yet"));
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "nowhere"}),
+                    Catch::Contains("neither final.json nor checkpoint.json"));
+  const std::string good = content(folder / "first/final.json");
+  write_file(folder / "first/final.json", good.substr(0, good.size() / 2));
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first"}),
+                    Catch::Contains("is not the state of a run"));
+  Json damaged = Json::parse(good);
+  damaged["simulation"]["state"]["x"] = {1.};
+  write_file(folder / "first/final.json", damaged.dump());
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first"}),
+                    Catch::Contains("is damaged"));
+  write_file(folder / "first/final.json", good);
+  const Scene settled = scene_of(
+      folder,
+      R"({ "materials": { "rock": { "density": 2000 } }, "contact": { "normal_stiffness": 1e9 },
+    "bodies": [ { "name": "block", "material": "rock", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] },
+                { "name": "b", "material": "rock", "motion": "fixed", "polygon": [[5, 5], [6, 5], [5, 6]] } ],
+    "time": { "end": 1, "start": "settled" } })");
+  CHECK_THROWS_WITH(Run(settled, RunSettings{.from = folder / "first"}),
+                    Catch::Contains("/time/start: finds a start of its own"));
+}
