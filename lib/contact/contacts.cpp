@@ -102,29 +102,33 @@ size_t Contacts::candidates() const {
 }
 
 // First by what is known of all contacts; then exactly of the few that may be deeper than that.
-PairPeak Contacts::largest_penetration(double floor, std::span<const double> lengths) const {
+Penetrations Contacts::penetrations(std::span<const double> lengths,
+                                    const Penetrations& floors) const {
   constexpr double kKnown = 1 + 1e-6;
+  Penetrations found = floors;
   const auto length = [&](const Contact& c) {
-    if (lengths.empty()) return 1.;
     const auto [a, b] = bodies(c);
     return std::min(lengths[a], lengths[b]);
   };
-  const Contact* deepest = nullptr;
-  double largest = floor;
+  const auto raise = [&](const Contact& c, double depth, PairPeak& peak) {
+    if (!(depth > peak.value)) return;
+    const auto [a, b] = bodies(c);
+    peak = {depth, a, b};
+  };
   for (const Contact& c : contacts_) {
-    const double value = c.depth / length(c);
-    if (value > largest) largest = value, deepest = &c;
+    raise(c, c.depth, found.largest);
+    raise(c, c.depth / length(c), found.relative);
   }
   for (const Contact& c : contacts_) {
     if (c.at_most <= kKnown * c.depth) continue;
-    const double known = largest * length(c);
+    const double known = std::min(found.largest.value, found.relative.value * length(c));
     if (!(c.at_most > known)) continue;
-    const double found = kernels_[c.kernel]->penetration(c, known);
-    if (found > known) largest = found / length(c), deepest = &c;
+    const double depth = kernels_[c.kernel]->penetration(c, known);
+    if (!(depth > known)) continue;
+    raise(c, depth, found.largest);
+    raise(c, depth / length(c), found.relative);
   }
-  if (!deepest) return {};
-  const auto [a, b] = bodies(*deepest);
-  return {largest, a, b};
+  return found;
 }
 
 PairPeak Contacts::largest_force() const {

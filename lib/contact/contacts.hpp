@@ -23,6 +23,12 @@
 
 namespace apothem {
 
+/// The largest penetration of a pair of bodies, m, and the largest ratio of one to the smaller of
+/// two lengths that belong to the bodies. They may be of different pairs.
+struct Penetrations {
+  PairPeak largest, relative;
+};
+
 class Contacts {
  public:
   /// `thickness` of the model in m.
@@ -62,11 +68,10 @@ class Contacts {
 
   [[nodiscard]] std::int64_t searches() const { return searches_; }
   [[nodiscard]] size_t candidates() const;
-  /// Of the last step: the largest penetration of a pair of bodies, m, to one part in a million;
-  /// or, with a length in m for every body, its ratio to the smaller length of the two. None if it
-  /// is not above `floor`, which is soon found out.
-  [[nodiscard]] PairPeak largest_penetration(double floor = 0,
-                                             std::span<const double> lengths = {}) const;
+  /// Of the last step: the largest penetrations of pairs of bodies, to one part in a million, or
+  /// `floors` where they are not above these, which is soon found out. `lengths`: of every body, m.
+  [[nodiscard]] Penetrations penetrations(std::span<const double> lengths,
+                                          const Penetrations& floors = {}) const;
   /// Of the last step: the largest normal force of a pair of bodies, N. It is not known for pairs
   /// with a mesh.
   [[nodiscard]] PairPeak largest_force() const;

@@ -193,9 +193,10 @@ void ContactTerm::note_peaks(const State& state) {
   const auto note = [&](const PairPeak& found, Peak& peak) {
     if (found.value > peak.value) peak = {found.value, state.time, found.a, found.b};
   };
-  note(contacts_.largest_penetration(penetration_.value), penetration_);
-  note(contacts_.largest_penetration(relative_penetration_.value, inradius_),
-       relative_penetration_);
+  const Penetrations found =
+      contacts_.penetrations(inradius_, {{penetration_.value}, {relative_penetration_.value}});
+  note(found.largest, penetration_);
+  note(found.relative, relative_penetration_);
   note(contacts_.largest_force(), force_);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <catch2/catch.hpp>
 #include <deque>
 #include <memory>
 #include <numeric>
@@ -161,6 +162,14 @@ inline double deepest_share(const Contacts& contacts) {
   double share = 0;
   for (const Contact& c : contacts.contacts()) share = std::max(share, c.share);
   return share;
+}
+
+/// The largest penetration of a pair of bodies, m.
+inline double largest_penetration(const Contacts& contacts) {
+  const std::vector<double> ones(static_cast<size_t>(contacts.surfaces().body_count()), 1.);
+  const Penetrations found = contacts.penetrations(ones);
+  CHECK(found.relative.value == found.largest.value);
+  return found.largest.value;
 }
 
 /// The part of a contact's normal or tangential forces that acts on a body.

@@ -189,8 +189,7 @@ TEST_CASE("an element that does not deform feels what a rigid polygon feels",
     CHECK(bodies.on_rigid(0).moment == Approx(pair.integral.moment_a).epsilon(1e-12));
     CHECK(bodies.contacts->energy() == Approx(pair.volume.energy).epsilon(1e-12));
     REQUIRE(bodies.contacts->contacts().size() == 1);
-    CHECK(bodies.contacts->largest_penetration().value ==
-          Approx(pair.integral.depth).epsilon(1e-12));
+    CHECK(largest_penetration(*bodies.contacts) == Approx(pair.integral.depth).epsilon(1e-12));
     const std::vector<ContactRecord> record = bodies.contacts->records();
     REQUIRE(record.size() == 1);
     CHECK(record[0].penetration == Approx(pair.integral.depth).epsilon(1e-12));

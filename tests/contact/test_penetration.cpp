@@ -38,7 +38,7 @@ TEST_CASE("a block squeezed in a U has two patches, each as deep as its overlap"
   for (const Block block : {Block::rigid, Block::outline, Block::elements}) {
     CAPTURE(static_cast<int>(block));
     const Bodies bodies = squeezed(block, d);
-    CHECK(bodies.contacts->largest_penetration().value == Approx(d).epsilon(1e-6));
+    CHECK(largest_penetration(*bodies.contacts) == Approx(d).epsilon(1e-6));
     const std::vector<ContactRecord> records = bodies.contacts->records();
     REQUIRE(records.size() == 2);
     for (const ContactRecord& record : records) {
@@ -59,7 +59,7 @@ TEST_CASE("a tip on a row of elements is as deep as it is in the body, not in an
       bodies.add_mesh(rectangle_mesh({9, 1}, {9, 1}, {-4.5, -1}, ElementShape::quadrilateral));
       bodies.join();
       bodies.evaluate();
-      CHECK(bodies.contacts->largest_penetration().value == Approx(d).epsilon(1e-9));
+      CHECK(largest_penetration(*bodies.contacts) == Approx(d).epsilon(1e-9));
       double deepest = 0;
       for (const ContactRecord& r : bodies.contacts->records()) {
         deepest = std::max(deepest, r.penetration);
@@ -72,23 +72,46 @@ TEST_CASE("a tip on a row of elements is as deep as it is in the body, not in an
 TEST_CASE("the largest penetration of outlines is that of their patches",
           "[contact][penetration]") {
   samples::Random random(1206);
-  int found = 0, steeper = 0;
+  int found = 0;
   for (int i = 0; i < scaled(200); ++i) {
     const std::optional<OutlinePair> pair = random_pair(random, 7, .4);
     if (!pair) continue;
     ++found;
     const Contacts& contacts = *pair->contacts;
-    double deepest = 0, known = 0;
+    double deepest = 0, least = 0, most = 0;
     for (const ContactRecord& r : contacts.records()) deepest = std::max(deepest, r.penetration);
     for (const Contact& c : contacts.contacts()) {
-      known = std::max(known, c.depth);
-      CHECK(c.depth <= c.at_most);
+      least = std::max(least, c.depth);
+      most = std::max(most, c.at_most);
     }
-    steeper += deepest > known * (1 + 1e-6);
-    CHECK(contacts.largest_penetration().value == Approx(deepest).epsilon(1e-6));
+    CHECK(least <= deepest * (1 + 1e-12));
+    CHECK(deepest <= most * (1 + 1e-12));
+    CHECK(largest_penetration(contacts) == Approx(deepest).epsilon(1e-6));
   }
   CHECK(found > scaled(200) / 2);
-  CHECK(steeper > 0);
+}
+
+TEST_CASE("a tip in a narrow notch is as far in as it is below the bottom of the notch",
+          "[contact][penetration]") {
+  const double tangent = std::tan(.3), d = .02;
+  const std::vector<Vec2> notched{{-2, -2}, {2, -2},       {2, 1}, {tangent, 1},
+                                  {0, 0},   {-tangent, 1}, {-2, 1}};
+  const std::vector<Vec2> wedge{{0, -d}, {.1, 1}, {-.1, 1}};
+  const OutlinePair meshes(notched, wedge, .3, .05);
+  Bodies rigid(law_of(1));
+  rigid.add_polygon(Polygon(notched));
+  rigid.add_polygon(Polygon(wedge), {1, 1, 1});
+  rigid.join();
+  rigid.evaluate();
+  for (const Contacts* contacts : {meshes.contacts.get(), rigid.contacts.get()}) {
+    double known = 0;
+    for (const Contact& c : contacts->contacts()) known = std::max(known, c.depth);
+    CHECK(known < .4 * d);  // the height of the roof
+    CHECK(largest_penetration(*contacts) == Approx(d).epsilon(1e-9));
+    double deepest = 0;
+    for (const ContactRecord& r : contacts->records()) deepest = std::max(deepest, r.penetration);
+    CHECK(deepest == Approx(d).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("a largest penetration counts above a floor, and relative to lengths of the bodies",
@@ -101,15 +124,16 @@ TEST_CASE("a largest penetration counts above a floor, and relative to lengths o
   bodies.join();
   bodies.evaluate();
   const Contacts& contacts = *bodies.contacts;
-  const PairPeak deepest = contacts.largest_penetration();
-  CHECK(deepest.value == Approx(.04));
-  CHECK(deepest.a == 0);
-  CHECK(deepest.b == 1);
-  CHECK(contacts.largest_penetration(.05).a == -1);
-  CHECK(contacts.largest_penetration(.03).value == Approx(.04));
-  const std::vector<double> lengths{2, 4, .5};
-  const PairPeak relative = contacts.largest_penetration(0, lengths);
-  CHECK(relative.value == Approx(.01 / .5));
-  CHECK(relative.b == 2);
-  CHECK(contacts.largest_penetration(.03, lengths).a == -1);
+  const std::vector<double> lengths{2, 4, .25};
+  const Penetrations found = contacts.penetrations(lengths);
+  CHECK(found.largest.value == Approx(.04));
+  CHECK(found.largest.a == 0);
+  CHECK(found.largest.b == 1);
+  CHECK(found.relative.value == Approx(.01 / .25));
+  CHECK(found.relative.b == 2);
+  const Penetrations above = contacts.penetrations(lengths, {{.05}, {.03}});
+  CHECK(above.largest.value == .05);
+  CHECK(above.largest.a == -1);
+  CHECK(above.relative.b == 2);
+  CHECK(contacts.penetrations(lengths, {{.03}, {.05}}).relative.a == -1);
 }

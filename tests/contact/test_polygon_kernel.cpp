@@ -95,7 +95,7 @@ TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
     CHECK(contacts[0].stiffness == Approx(k * (integral.own_length_a * shapes.slope(1) +
                                                integral.own_length_b * shapes.slope(0)))
                                        .epsilon(1e-11));
-    const double deepest = bodies.contacts->largest_penetration().value;
+    const double deepest = largest_penetration(*bodies.contacts);
     CHECK(deepest == Approx(penetration(a, b)).epsilon(1e-6));
     CHECK(deepest >= contacts[0].depth);
     CHECK(deepest <= contacts[0].at_most);

@@ -187,7 +187,6 @@ TEST_CASE("frames show bodies and elements that are not convex as they are", "[o
   }
   CHECK(wrong_pixels(cells_of(grid, 2), outline) == 0);
   // Values repeat, and `part` numbers the cells of a body or an element.
-  REQUIRE(grid->GetNumberOfCells() == 8);
   const auto column = [&](const char* name) {
     std::vector<int> values;
     for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
@@ -195,9 +194,20 @@ TEST_CASE("frames show bodies and elements that are not convex as they are", "[o
     }
     return values;
   };
-  CHECK(column("part") == std::vector<int>{0, 1, 2, 0, 0, 1, 0, 1});
-  CHECK(column("body") == std::vector<int>{0, 0, 0, 1, 2, 2, 2, 2});
-  CHECK(column("stress_zz") == std::vector<int>{0, 0, 0, 0, 4, 4, 8, 8});
+  const auto parts_of_l = static_cast<int>(
+      convex_cells(Ring{outline[0], outline[1], outline[4], outline[5], outline[6], outline[7]})
+          .size());
+  std::vector<int> part, body, stress;
+  for (const auto& [count, of, zz] :
+       {std::tuple(3, 0, 0), {1, 1, 0}, {parts_of_l, 2, 4}, {2, 2, 8}}) {
+    for (int i = 0; i < count; ++i) {
+      part.push_back(i), body.push_back(of), stress.push_back(zz);
+    }
+  }
+  CHECK(parts_of_l > 1);
+  CHECK(column("part") == part);
+  CHECK(column("body") == body);
+  CHECK(column("stress_zz") == stress);
 
   // Read back, a body or an element is one cell again.
   const Frame frame = read_frame(folder.path(), 0, 1);

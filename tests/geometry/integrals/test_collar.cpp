@@ -170,7 +170,7 @@ TEST_CASE("flat on flat: the closed form for any splitting of the edges", "[coll
       CHECK(on_c.force.y() == Approx(force).epsilon(1e-13));
       CHECK(std::abs(on_c.force.x()) < 1e-14);
       CHECK(pair.contacts->energy() == Approx(energy).epsilon(1e-13));
-      CHECK(pair.contacts->largest_penetration().value == Approx(d).epsilon(1e-14));
+      CHECK(largest_penetration(*pair.contacts) == Approx(d).epsilon(1e-14));
       // Away from the corners p = k d (1/r_c + 1/r_t).
       const double pressure = pair.contacts->surface_records()[3].pressure;
       if (parts == 7) CHECK(pressure == Approx(k * d * (1 / r_t + 1 / r_c)).epsilon(1e-13));
