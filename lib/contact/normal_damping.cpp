@@ -16,10 +16,17 @@ double damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, Rigi
   const Vec2 rise = normal - damper.normal;
   const double rise_a = moment_a - damper.moment_a;
   const double rise_b = moment_b - damper.moment_b;
+  const PatchDamper before = damper;
   damper = {normal, moment_a, moment_b};
+  if (!(dt > 0)) {  // a first look, perhaps with the memory of another run: as springs do, it stays
+    damper.damping = before.damping;
+    damper.damping_a = before.damping_a;
+    damper.damping_b = before.damping_b;
+    return loss;
+  }
 
   const double size = normal.norm();
-  if (!(size > kNoResultant * k * patch.weight) || !(dt > 0)) return loss;
+  if (!(size > kNoResultant * k * patch.weight)) return loss;
   const Vec2 n = normal / size;
   const Vec2 point = loading_point(patch);
   const auto mobility = [&](RigidIndex body, const Vec2& arm) {

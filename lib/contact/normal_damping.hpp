@@ -69,7 +69,8 @@ struct PatchDamper {
 
 /// beta times the rate of the resultant and its moments, beta = 2 ratio/omega with the contact's
 /// present stiffness and the two bodies' mobility, and never so much that the contact would pull.
-/// `k`: normal stiffness times thickness, N/m. Returns the energy that it takes from the bodies, J.
+/// With dt = 0 it keeps its force. `k`: normal stiffness times thickness, N/m. Returns the energy
+/// that it takes from the bodies, J.
 double damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
             const PairIntegral& patch, const PairMotion& motion, double dt, PatchDamper& damper);
 

@@ -209,20 +209,21 @@ TEST_CASE("a state that is not there is refused, with the time that is", "[run][
   const Folder folder;
   const Scene scene = scene_of(folder, flying_block());
   Run(scene, {.folder = folder / "first"}).run();
-  CHECK_NOTHROW(Run(scene, {.from = folder / "first", .from_time = .5}));
-  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first", .from_time = .3}),
-                    Catch::Contains("is the state at t = 0.5 s; to begin at t = 0.3 s is not "
-                                    "supported yet"));
-  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "nowhere"}),
+  CHECK_NOTHROW(Run(scene, {.folder = "", .from = folder / "first", .from_time = .5}));
+  CHECK_THROWS_WITH(
+      Run(scene, RunSettings{.folder = "", .from = folder / "first", .from_time = .3}),
+      Catch::Contains("is the state at t = 0.5 s; to begin at t = 0.3 s is not "
+                      "supported yet"));
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "nowhere"}),
                     Catch::Contains("neither final.json nor checkpoint.json"));
   const std::string good = content(folder / "first/final.json");
   write_file(folder / "first/final.json", good.substr(0, good.size() / 2));
-  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first"}),
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "first"}),
                     Catch::Contains("is not the state of a run"));
   Json damaged = Json::parse(good);
   damaged["simulation"]["state"]["x"] = {1.};
   write_file(folder / "first/final.json", damaged.dump());
-  CHECK_THROWS_WITH(Run(scene, RunSettings{.from = folder / "first"}),
+  CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "first"}),
                     Catch::Contains("is damaged"));
   write_file(folder / "first/final.json", good);
   const Scene settled = scene_of(
@@ -231,6 +232,6 @@ TEST_CASE("a state that is not there is refused, with the time that is", "[run][
     "bodies": [ { "name": "block", "material": "rock", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] },
                 { "name": "b", "material": "rock", "motion": "fixed", "polygon": [[5, 5], [6, 5], [5, 6]] } ],
     "time": { "end": 1, "start": "settled" } })");
-  CHECK_THROWS_WITH(Run(settled, RunSettings{.from = folder / "first"}),
+  CHECK_THROWS_WITH(Run(settled, RunSettings{.folder = "", .from = folder / "first"}),
                     Catch::Contains("/time/start: finds a start of its own"));
 }

@@ -88,6 +88,7 @@ TEST_CASE("a setting that leads nowhere names the path and what is near", "[scen
     INFO(message);
     CHECK(message.find(place) != std::string::npos);
     CHECK(message.find(says) != std::string::npos);
-    CHECK(message.find(setting) != std::string::npos);
+    CHECK(message.find(std::string(setting).substr(0, std::string(setting).find('='))) !=
+          std::string::npos);
   }
 }
