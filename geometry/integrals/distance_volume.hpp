@@ -66,16 +66,21 @@ class DistanceVolume {
       return {origin, {c[0] * f, c[1] * f, c[2] * f}, id};
     }
     // Writes candidates for the points where the function meets g. Where it does not, they may be
-    // NaN, infinite or outside the interval that starts at `from`.
+    // NaN, infinite or outside the interval that starts at `from`. They are computed relative to
+    // the origin of the function with the larger curvature: far from there its coefficients would
+    // be so large that the two points of a narrow parabola are lost in their round-off.
     int crossings(const Quadratic& g, const Real& from, std::array<Real, 2>& roots) const {
+      using std::abs;
       using std::sqrt;
-      const Real c0 = (*this)(from)-g(from);
-      const Real half = slope(from) / 2 - g.slope(from) / 2;
+      const Real own = abs(c[2]), other = abs(g.c[2]);
+      const Real base = own > other ? origin : other > 0 ? g.origin : from;
+      const Real c0 = (*this)(base)-g(base);
+      const Real half = slope(base) / 2 - g.slope(base) / 2;
       const Real c2 = c[2] - g.c[2];
       const Real discriminant = half * half - c0 * c2;
       if (!(discriminant >= 0)) return 0;
       const Real q = -(half + (half < 0 ? Real(-sqrt(discriminant)) : Real(sqrt(discriminant))));
-      roots = {Real(from + q / c2), Real(from + c0 / q)};
+      roots = {Real(base + q / c2), Real(base + c0 / q)};
       return 2;
     }
 

@@ -323,16 +323,19 @@ PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
 
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b) {
+  PairResult result;
+  const double own_length_a = boundary_inside(a, b);
+  const double own_length_b = boundary_inside(b, a);
+  if (own_length_a == 0 && own_length_b == 0) return result;
   const PlacedPair placed(a, potential_a, b, potential_b);
   EdgeWorkspace workspace;
-  PairResult result;
   PairIntegral& pair = result.integral;
   pair = is_needle(a, potential_a, b, potential_b)
              ? needle_integral(placed.a.view, placed.b.view, workspace)
              : pair_integral(placed.a.view, placed.b.view, Vec2::Zero(), workspace);
   placed.about_centroids(pair);
-  pair.own_length_a = boundary_inside(a, b);
-  pair.own_length_b = boundary_inside(b, a);
+  pair.own_length_a = own_length_a;
+  pair.own_length_b = own_length_b;
   result.volume = pair_volume(placed.a.view, placed.b.view, Vec2::Zero());
   return result;
 }

@@ -112,8 +112,8 @@ struct PairResult {
 /// Computes all integrals of two polygons at their given positions, with potentials made by
 /// make_potential. Moments are about the polygons' centroids and positions are relative to the
 /// centroid of a. It is meant for single evaluations: vertices are used exactly as given, so the
-/// round-off is as small as the kernel allows, and the own
-/// lengths are decided exactly.
+/// round-off is as small as the kernel allows. The own lengths are decided exactly, and polygons
+/// that do not overlap have no contact at all.
 PairResult edge_method(const Polygon& a, const Potential& potential_a, const Polygon& b,
                        const Potential& potential_b);
 

@@ -39,34 +39,50 @@ class Line {
     box.include(q.x(), q.y());
     if (apart(box, box_)) return 0;
     crossings_.clear();
-    const Vec2 edge = q - p;
-    const double length2 = edge.squaredNorm();
-    const auto along = [&](const Vec2& v) { return edge.dot(v - p) / length2; };
+    const Vec2 direction = (q - p).normalized();
+    const Place from = at(direction, p, 0);
+    const Place to = at(direction, q, 0);
     const Vec2* a = &polygon_[polygon_.size() - 1];
     double side_a = side(p, q, *a);
     for (int i = 0; i < polygon_.size(); ++i) {
       const Vec2* b = &polygon_[i];
       const double side_b = side(p, q, *b);
       if ((side_a > 0) != (side_b > 0)) {
-        const double share = side_a / (side_a - side_b);
-        const double start = along(*a);
-        crossings_.push_back(start + share * (along(*b) - start));
+        const double along = direction.dot(*b - *a) / (side_a - side_b);
+        crossings_.push_back(std::abs(side_a) < std::abs(side_b)
+                                 ? at(direction, *a, side_a * along)
+                                 : at(direction, *b, side_b * along));
       }
       a = b;
       side_a = side_b;
     }
-    std::sort(crossings_.begin(), crossings_.end());
+    const auto before = [](const Place& x, const Place& y) { return x.along < y.along; };
+    std::sort(crossings_.begin(), crossings_.end(), before);
     double sum = 0;
     for (size_t i = 0; i + 1 < crossings_.size(); i += 2) {
-      sum += std::max(0.0, std::min(crossings_[i + 1], 1.0) - std::max(crossings_[i], 0.0));
+      const Place& first = std::max(crossings_[i], from, before);
+      const Place& last = std::min(crossings_[i + 1], to, before);
+      const double length = direction.dot(*last.near - *first.near) + (last.rest - first.rest);
+      if (first.along <= last.along) sum += std::max(0.0, length);
     }
-    return sum * std::hypot(edge.x(), edge.y());
+    return sum;
   }
 
  private:
+  // A place on the line: the foot of the perpendicular from a vertex that is near, and the rest of
+  // the way. So the distance of two places has few wrong digits however small it is.
+  struct Place {
+    double along;
+    const Vec2* near;
+    double rest;
+  };
+  [[nodiscard]] Place at(const Vec2& direction, const Vec2& near, double rest) const {
+    return {direction.dot(near - polygon_[0]) + rest, &near, rest};
+  }
+
   const Polygon& polygon_;
   const Box box_;
-  std::vector<double> crossings_;
+  std::vector<Place> crossings_;
 };
 
 }  // namespace

@@ -9,8 +9,19 @@
 #include <string>
 
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 
 namespace apothem::test {
+
+/// The pair as the step loop evaluates it, with rounded decisions.
+inline PairIntegral kernel(const Polygon& a, const Potential& potential_a, const Polygon& b,
+                           const Potential& potential_b) {
+  PlacedShapes shapes;
+  shapes.place(shapes.add(potential_a), 0, 0, 0);
+  shapes.place(shapes.add(potential_b), 0, 0, 0);
+  EdgeWorkspace workspace;
+  return pair_integral(shapes.view(0), shapes.view(1), a.origin() - b.origin(), workspace);
+}
 
 /// Error of the edge kernel against the exact overlap, in units of the round-off that it may have:
 /// eps (size/r) own length for forces, times the size for moments (docs/theory.md, Normal contact).
@@ -53,7 +64,10 @@ inline PairCheck check_pair(const Polygon& a, const Potential& potential_a, cons
   }
   const double size = std::max(bounding_box(a).extent(), bounding_box(b).extent());
   const double steepest = std::max(potential_a.steepest, potential_b.steepest);
-  const double length = std::max(p.own_length_a + p.own_length_b, x.own_length_a + x.own_length_b);
+  // The kernel's own lengths: edges that touch within round-off count, as they add round-off.
+  const PairIntegral kernel = test::kernel(a, potential_a, b, potential_b);
+  const double length =
+      std::max(kernel.own_length_a + kernel.own_length_b, x.own_length_a + x.own_length_b);
   const double unit = 0x1p-52 * size * steepest * length;
   const auto in_units = [](double error, double u) {
     return error == 0 ? 0 : error / std::max(u, 1e-300);

@@ -6,6 +6,7 @@
 
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
+#include "fuzz/pair_check.hpp"
 #include "support.hpp"
 
 using namespace apothem;
@@ -101,6 +102,10 @@ TEST_CASE("own lengths of edges that are shared at any angle", "[own-length]") {
     CHECK(boundary_inside(above, flat) == Approx(shared).epsilon(1e-14));
     CHECK(boundary_inside(flat, above) == Approx(shared + sides).epsilon(1e-14));
     CHECK(test::edge(above, below).integral.own_length_a == 0);
+    CHECK(test::edge(above, below).integral.weight == 0);
+    const PairIntegral kernel =
+        test::kernel(above, make_potential(above), below, make_potential(below));
+    CHECK(kernel.weight < 1e-15);  // decided with rounded heights
     CHECK(test::edge(flat, above).integral.own_length_b == Approx(shared).epsilon(1e-14));
   }
 }
