@@ -15,12 +15,14 @@ namespace {
 using Ring = std::vector<Vec2>;
 using Node = Skeleton::Node;
 
-bool is_simple(const Ring& ring) {
+// The ring as a polygon, if it is a simple one and not clockwise.
+std::optional<Polygon> simple_polygon(const Ring& ring) {
   try {
-    return Polygon(ring).vertices() == ring;  // equal unless the ring is clockwise
+    Polygon polygon(ring);
+    if (polygon.vertices() == ring) return polygon;
   } catch (const InvalidPolygon&) {
-    return false;
   }
+  return std::nullopt;
 }
 
 // The coordinates of the construction, with the polygon centred and scaled to the size 1. The scale
@@ -29,6 +31,7 @@ bool is_simple(const Ring& ring) {
 struct Frame {
   Vec2 centre;
   double scale;
+  std::optional<Polygon> outline;  // the polygon in these coordinates, if it is simple in them
 
   explicit Frame(const Polygon& polygon) {
     const Box box = bounding_box(polygon);
@@ -36,7 +39,10 @@ struct Frame {
     const double grid = std::ldexp(1 / scale, -8);
     centre = {grid * std::round((box.x0 + box.x1) / 2 / grid),
               grid * std::round((box.y0 + box.y1) / 2 / grid)};
-    if (!is_simple(inward(polygon))) centre.setZero();
+    outline = simple_polygon(inward(polygon));
+    if (outline) return;
+    centre.setZero();
+    outline = simple_polygon(inward(polygon));
   }
 
   [[nodiscard]] Ring inward(const Polygon& polygon) const {
@@ -136,8 +142,8 @@ class Search {
 
   // Each attempt moves the vertices in other directions.
   bool try_wavefront(int attempt) {
-    if (!is_simple(ring_)) return fail("the outline is not simple in scaled coordinates");
-    std::optional<SkeletonParts> parts = trace_wavefront(Polygon(ring_), attempt + 1, progress_);
+    if (!frame_.outline) return fail("the outline is not simple in scaled coordinates");
+    std::optional<SkeletonParts> parts = trace_wavefront(*frame_.outline, attempt + 1, progress_);
     if (!parts) return fail("the wavefront was not traced to its end");
     found_ = assemble(std::move(*parts));
     return corrected();
@@ -145,7 +151,7 @@ class Search {
 
   bool try_cgal(const Attempt& attempt) {
     const Ring input = jittered(ring_, attempt.jitter, ++seed_);
-    if (!is_simple(input)) return fail("the outline is not simple in scaled coordinates");
+    if (!simple_polygon(input)) return fail("the outline is not simple in scaled coordinates");
     CgalAnswer answer =
         ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact), progress_);
     if (!answer.parts) return fail(answer.failure);
