@@ -74,7 +74,11 @@ void require_no_spike(const std::vector<Vec2>& ring) {
   }
 }
 
+// Rings with more vertices than this are first tested as a whole, in about n log n steps.
+constexpr size_t kMany = 256;
+
 void require_simple(const std::vector<Vec2>& ring) {
+  if (ring.size() > kMany && is_simple(ring)) return;
   // The boxes of the edges are swept from left to right, and the exact test is made only where two
   // boxes overlap.
   const int n = static_cast<int>(ring.size());

@@ -1,6 +1,7 @@
 #include "apothem/geometry/polygon/predicates.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_2_algorithms.h>
 
 namespace apothem {
 namespace {
@@ -29,6 +30,14 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   if (abc * abd < 0 && cda * cdb < 0) return true;
   return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) ||
          (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+}
+
+bool is_simple(const std::vector<Vec2>& ring) {
+  std::vector<Point> points;
+  points.reserve(ring.size());
+  for (const Vec2& v : ring) points.push_back(cgal(v));
+  return CGAL::is_simple_2(points.begin(), points.end(),
+                           CGAL::Exact_predicates_inexact_constructions_kernel());
 }
 
 bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p) {

@@ -19,6 +19,10 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 /// True if the closed segments ab and cd have at least one point in common.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 
+/// True if no two edges of the ring meet anywhere but at their common vertex. The ring has three or
+/// more distinct vertices and no spike. It takes about n log n steps.
+bool is_simple(const std::vector<Vec2>& ring);
+
 /// True if p lies inside the simple ring and not on it. The ring may be clockwise or
 /// counter-clockwise.
 bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p);

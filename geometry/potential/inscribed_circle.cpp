@@ -15,13 +15,21 @@
 // position can make the radius too large. The upper bound ends the search only when no larger
 // circle can be left. A long corridor, which would be costly with the cells of a grid, consists of
 // a few long triangles.
+//
+// In a polygon with many vertices, the triangles may be long slivers that cross each other's wide
+// places. The search then starts with two triangles that cover the bounding box. Those that turn
+// out to lie outside are dropped, and a point counts only if it is inside. Triangles with long
+// lists of edges are halved without a linear programme. If that takes too many triangles, as it
+// does in a needle, the search starts anew with the triangulation.
 #include "apothem/geometry/potential/inscribed_circle.hpp"
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
+#include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/polygon/triangulation.hpp"
 
 namespace apothem {
@@ -34,6 +42,13 @@ constexpr double kSameHeight = 1e-13;     // relative tolerance for equal radii,
 constexpr double kThinnest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
 constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
 constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
+constexpr size_t kManyEdges = 200;   // a search for a polygon with more edges starts with its box
+constexpr size_t kMostCells = 2000;  // per edge; then that search is given up
+constexpr size_t kLongList = 64;     // with more edges in its list, a triangle is usually halved
+constexpr double kSimilar = .7;      // unless halving leaves more than this share of the list
+constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as none
+constexpr double kInTheWay = .5;  // a circle that moves towards an edge at this rate stops at once
+constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
 // Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
 constexpr int kFewEdges = 100;
 
@@ -203,7 +218,10 @@ struct Centre {
 
 class Search {
  public:
-  Search(const Polygon& polygon, double unit) {
+  /// Where a search starts: with a triangulation, or with two triangles around the polygon.
+  enum class Start { triangles, box };
+
+  Search(const Polygon& polygon, double unit, Start start) : beyond_(start == Start::box) {
     vertices_ = polygon.local_vertices();
     for (Vec2& v : vertices_) v /= unit;
     for (size_t i = 0; i < vertices_.size(); ++i) {
@@ -211,15 +229,21 @@ class Search {
       // Two vertices that are equal in local coordinates have no edge between them.
       if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
     }
-    for (const Triangle& t : triangulate(polygon)) {
-      Cell cell{{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]}, 0};
-      cell.bound = corner_bound(cell);
-      queue_.push_back(std::move(cell));
+    if (beyond_) {
+      cover_box();
+    } else {
+      for (const Triangle& t : triangulate(polygon)) {
+        Cell cell{{vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]}, 0};
+        cell.bound = corner_bound(cell);
+        queue_.push_back(std::move(cell));
+      }
+      std::make_heap(queue_.begin(), queue_.end(), lower);
     }
-    std::make_heap(queue_.begin(), queue_.end(), lower);
   }
 
-  void run() {
+  /// Returns false if the search was given up.
+  bool run() {
+    const size_t most = beyond_ ? kMostCells * edges_.size() : std::numeric_limits<size_t>::max();
     // The edges are shuffled, because highest_point is fast only if their order is random.
     std::vector<int> all(edges_.size());
     std::iota(all.begin(), all.end(), 0);
@@ -237,7 +261,9 @@ class Search {
       } else {
         split(cell);
       }
+      if (examined_ > most) return false;
     }
+    return true;
   }
 
   [[nodiscard]] double radius() const { return radius_; }
@@ -277,6 +303,46 @@ class Search {
     return least;
   }
 
+  // Queues two triangles that cover the bounding box.
+  void cover_box() {
+    Box box;
+    for (const Vec2& v : vertices_) box.include(v.x(), v.y());
+    const Vec2 a(box.x0, box.y0), b(box.x1, box.y0), c(box.x1, box.y1), d(box.x0, box.y1);
+    queue_.push_back({{a, b, c}, HUGE_VAL});
+    queue_.push_back({{a, c, d}, HUGE_VAL});
+  }
+
+  // Tells on which side of the edge, or of the vertex at its nearer end, a point lies: 1 inside, -1
+  // outside, 0 if that cannot be told.
+  [[nodiscard]] int side(int e, const Vec2& p) const {
+    const Edge& edge = edges_[e];
+    const Vec2 d = p - edge.start;
+    const double along = edge.direction.dot(d);
+    if (along > 0 && along < edge.length) return cross(edge.direction, d) > 0 ? 1 : -1;
+    const int count = static_cast<int>(edges_.size());
+    const Edge& other = edges_[along <= 0 ? (e + count - 1) % count : (e + 1) % count];
+    const Vec2 arm = along <= 0 ? d : p - edge.end;
+    const Vec2 sum = (edge.direction + other.direction).normalized();
+    const double above = cross(sum, arm);
+    return !(std::abs(above) > kAlongside * arm.norm()) ? 0 : above > 0 ? 1 : -1;
+  }
+
+  // True if a point is inside the polygon, where `edges` include all nearest ones, and `least` is
+  // their distance. The nearest edge tells. If it does not, as at the two sides of a crack, the
+  // whole outline is asked.
+  [[nodiscard]] bool inside(const Vec2& p, const std::vector<int>& edges, double least) const {
+    int sides = 0;
+    int count = 0;
+    for (const int e : edges) {
+      if (edges_[e].distance(p) > least * (1 + kSameSide) + kNoise) continue;
+      const int s = side(e, p);
+      if (s == 0) return strictly_inside(vertices_, p);
+      sides += s;
+      ++count;
+    }
+    return std::abs(sides) == count ? sides > 0 : strictly_inside(vertices_, p);
+  }
+
   // Bounds f in the cell from above and below, and queues the cell unless it is too low.
   void examine(Cell cell, const std::vector<int>& edges) {
     const Vec2 middle = (cell.corners[0] + cell.corners[1] + cell.corners[2]) / 3;
@@ -287,9 +353,20 @@ class Search {
     for (const int e : edges) distances_.push_back(edges_[e].distance(middle));
     const double least = *std::min_element(distances_.begin(), distances_.end());
     cell.bound = std::min(cell.bound, least + reach);
+    ++examined_;
     if (cell.bound < radius_ - tolerance()) return;
+    const bool clear = !beyond_ || least > reach;  // of the boundary
+    const bool middle_inside = !beyond_ || inside(middle, edges, least);
+    if (clear && !middle_inside) return;
     for (size_t i = 0; i < edges.size(); ++i) {
       if (distances_[i] <= cell.bound + reach) cell.edges.push_back(edges[i]);
+    }
+    if (beyond_ && cell.edges.size() > kLongList &&
+        static_cast<double>(cell.edges.size()) < kSimilar * static_cast<double>(edges.size())) {
+      cell.point = middle;
+      cell.height = middle_inside ? least : 0;
+      queue(std::move(cell));
+      return;
     }
 
     planes_.clear();
@@ -303,14 +380,23 @@ class Search {
     if (cell.bound < radius_ - tolerance()) return;
     cell.point = cell.at(summit.place);
     cell.height = height(cell, cell.point);
-    climb(cell);
+    if (clear || inside(cell.point, cell.edges, cell.height)) {
+      climb(cell, clear);
+    } else {
+      cell.height = 0;
+    }
+    queue(std::move(cell));
+  }
+
+  void queue(Cell cell) {
     radius_ = std::max(radius_, cell.height);
     queue_.push_back(std::move(cell));
     std::push_heap(queue_.begin(), queue_.end(), lower);
   }
 
-  // Improves the lower bound of a cell: moves its point upwards with the tangent planes.
-  void climb(Cell& cell) {
+  // Improves the lower bound of a cell: moves its point upwards with the tangent planes. The cell
+  // is `clear` if it lies inside the polygon.
+  void climb(Cell& cell, bool clear) {
     constexpr int kSteps = 10;
     for (int step = 0; step < kSteps && cell.bound - cell.height > kNoise; ++step) {
       planes_.clear();
@@ -324,6 +410,7 @@ class Search {
       const Vec2 next = cell.at(highest_point(planes_).place);
       const double next_height = height(cell, next);
       if (!(next_height > cell.height)) return;
+      if (!clear && !inside(next, cell.edges, next_height)) return;
       cell.point = next;
       cell.height = next_height;
     }
@@ -355,6 +442,7 @@ class Search {
           continue;
         }
         Vec2 u = ((a.end - a.start) - (b.end - b.start)).normalized();
+        if (blocked(touched, point, u)) continue;
         // Short edges give an inexact direction. It is improved with the points of the wall that
         // the circles at both ends of the segment touch.
         for (double length = 0, previous = -1; length > 2 * previous; u = along_wall(longest, u)) {
@@ -366,6 +454,20 @@ class Search {
       }
     }
     return longest;
+  }
+
+  // True if edges that the circle at a point touches stand in its way in the directions u and -u,
+  // which is so for most pairs of edges of a round polygon.
+  static bool blocked(const std::vector<const Edge*>& touched, const Vec2& point, const Vec2& u) {
+    bool ahead = false;
+    bool behind = false;
+    for (const Edge* edge : touched) {
+      const double rate = edge->distance_and_gradient(point).gradient.dot(u);
+      ahead = ahead || rate < -kInTheWay;
+      behind = behind || rate > kInTheWay;
+      if (ahead && behind) return true;
+    }
+    return false;
   }
 
   // The longest segment through a point in the direction u that keeps the distance `radius` or more
@@ -400,6 +502,8 @@ class Search {
     return d.dot(u) > 0 ? Vec2(d.normalized()) : u;
   }
 
+  bool beyond_;          // the cells may reach beyond the polygon
+  size_t examined_ = 0;  // number of cells
   std::vector<Vec2> vertices_;
   std::vector<Edge> edges_;
   std::vector<Cell> queue_;
@@ -420,8 +524,13 @@ bool before(const Vec2& p, const Vec2& q) {
 InscribedCircle largest_inscribed_circle(const Polygon& polygon) {
   if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
   const double unit = std::exp2(std::ceil(std::log2(bounding_box(polygon).extent())));
-  Search search(polygon, unit);
-  search.run();
+  using Start = Search::Start;
+  Search search(polygon, unit,
+                polygon.vertices().size() > kManyEdges ? Start::box : Start::triangles);
+  if (!search.run()) {
+    search = Search(polygon, unit, Start::triangles);
+    search.run();
+  }
   if (!(search.radius() > kThinnest)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);
   }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kMemory = 4e9;  // bytes that the child may map beyond what the parent has mapped
 constexpr double kWait = 10;     // limit of the time by the clock over that of the processor time
+constexpr int kLook = 100;       // ms between two calls of `meanwhile`
 
 void write_all(int file, const std::vector<double>& numbers) {
   const char* data = reinterpret_cast<const char*>(numbers.data());
@@ -57,12 +59,15 @@ double mapped_bytes() {
   return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-// The child has inherited the program's signal handlers and must not run any of them.
+// The child has inherited the program's signal handlers and must not run any of them. An interrupt
+// from the terminal reaches it too; the parent sees it as well and ends the child.
 [[noreturn]] void work_as_child(int file, const std::function<void(const SendNumbers&)>& work,
-                                double seconds) {
+                                double seconds, pid_t parent) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTERM, SIGINT}) {
     std::signal(signal, SIG_DFL);
   }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it has died already
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   limit_processor_time(seconds);
@@ -87,7 +92,8 @@ double mapped_bytes() {
 
 // Reads the numbers that come through the pipe until it is closed. Returns false if nothing has
 // come for kWait * seconds by the clock.
-bool read_to_end(int file, double seconds, std::vector<double>& numbers) {
+bool read_to_end(int file, double seconds, const std::function<void()>& meanwhile,
+                 std::vector<double>& numbers) {
   std::vector<char> bytes;
   char buffer[65536];
   const auto patience = std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds));
@@ -98,7 +104,8 @@ bool read_to_end(int file, double seconds, std::vector<double>& numbers) {
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
     if (left.count() <= 0) break;
     pollfd wait{file, POLLIN, 0};
-    const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), 1000)));
+    const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), kLook)));
+    if (meanwhile) meanwhile();
     if (ready <= 0) continue;
     const ssize_t count = read(file, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
@@ -111,6 +118,44 @@ bool read_to_end(int file, double seconds, std::vector<double>& numbers) {
               reinterpret_cast<char*>(numbers.data()));
   return ended;
 }
+
+// An open file, closed at the end of its scope.
+class File {
+ public:
+  explicit File(int file) : file_(file) {}
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() { close(file_); }
+
+ private:
+  int file_;
+};
+
+// A child process, killed at the end of its scope unless it has been waited for.
+class Child {
+ public:
+  explicit Child(pid_t id) : id_(id) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    if (id_ <= 0 || waited_) return;
+    end();
+    wait();
+  }
+  [[nodiscard]] pid_t id() const { return id_; }
+  void end() const { kill(id_, SIGKILL); }
+  int wait() {
+    int status = 0;
+    while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    }
+    waited_ = true;
+    return status;
+  }
+
+ private:
+  pid_t id_;
+  bool waited_ = false;
+};
 
 }  // namespace
 
@@ -130,27 +175,24 @@ std::string ChildAnswer::failure() const {
   return "could not be started in a child process";
 }
 
-ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds) {
+ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds,
+                         const std::function<void()>& meanwhile) {
   using End = ChildAnswer::End;
   ChildAnswer answer;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return answer;
-  const pid_t child = fork();
-  if (child == 0) {
+  const pid_t parent = getpid();
+  Child child(fork());
+  if (child.id() == 0) {
     close(ends[0]);
-    work_as_child(ends[1], work, seconds);
+    work_as_child(ends[1], work, seconds, parent);
   }
   close(ends[1]);
-  if (child < 0) {
-    close(ends[0]);
-    return answer;
-  }
-  const bool ended = read_to_end(ends[0], seconds, answer.numbers);
-  close(ends[0]);
-  if (!ended) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const File pipe(ends[0]);
+  if (child.id() < 0) return answer;
+  const bool ended = read_to_end(ends[0], seconds, meanwhile, answer.numbers);
+  if (!ended) child.end();
+  const int status = child.wait();
   if (!ended) {
     answer.end = End::silent;
   } else if (WIFSIGNALED(status)) {

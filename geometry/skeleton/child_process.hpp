@@ -27,7 +27,10 @@ using SendNumbers = std::function<void(const std::vector<double>&)>;
 /// Runs `work` in a child process, whose standard output and standard error are discarded. The
 /// child is killed if it sends nothing for `seconds` of processor time (rounded up), or for ten
 /// times that by the clock. It may take 4 GB of memory in addition to what the parent has mapped.
-/// Failures of the child are reported in the answer and not by an exception.
-ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds);
+/// Failures of the child are reported in the answer and not by an exception. `meanwhile` is called
+/// several times a second; if it throws, the child is killed and the exception passed on. The child
+/// does not outlive the parent.
+ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds,
+                         const std::function<void()>& meanwhile = {});
 
 }  // namespace apothem

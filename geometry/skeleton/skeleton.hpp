@@ -10,9 +10,12 @@
 // of the polygon's size.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
@@ -53,9 +56,25 @@ inline Vec2 world_point(const Polygon& polygon, const std::vector<Skeleton::Node
   return i < polygon.size() ? polygon[i] : Vec2(polygon.origin() + nodes[i].point);
 }
 
-/// Constructs the straight skeleton. Convex polygons usually need no child process. Throws
-/// SkeletonFailure if no attempt passes the laws.
-Skeleton straight_skeleton(const Polygon& polygon);
+/// The largest number of vertices of a polygon whose skeleton is constructed.
+inline constexpr int kMostVertices = 100000;
+
+/// Throws InvalidPolygon if a polygon with so many vertices is too large for a skeleton.
+void require_few_vertices(std::size_t vertices);
+
+/// How far a long construction has come.
+struct Stage {
+  std::string_view name;       ///< what is being done
+  std::optional<double> done;  ///< share of this stage that is done, 0 to 1, if it is known
+};
+
+/// Called about every tenth of a second or hundredth of a stage of a long construction. It may
+/// throw to end the construction; a child process is then killed.
+using Progress = std::function<void(const Stage&)>;
+
+/// Constructs the straight skeleton. Throws InvalidPolygon if the polygon has more than
+/// kMostVertices vertices, and SkeletonFailure if no attempt passes the laws.
+Skeleton straight_skeleton(const Polygon& polygon, const Progress& progress = {});
 
 /// Returns a description of the first law that the skeleton of this polygon breaks, or nothing if
 /// it obeys all of them. The laws, with a tolerance of 1e-9 of the polygon's size, are:

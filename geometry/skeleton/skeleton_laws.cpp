@@ -192,20 +192,30 @@ class Laws {
       slack += back;
     }
     if (!(error <= tolerance_)) fail("a face is not monotone along its edge");
+    const std::vector<size_t> order = sorted(along, n);
     for (size_t i = 0; i < n; ++i) {
       const Vec2& p = point(face[i]);
       const Vec2 side = point(face[(i + 1) % n]) - p;
       const double length = side.norm();
       const double low = std::min(along[i], along[i + 1]) + slack;
       const double high = std::max(along[i], along[i + 1]) - slack;
-      if (!(low < high)) continue;
-      for (size_t j = 0; j < n; ++j) {
-        if (along[j] > low && along[j] < high &&
-            !(bends[i] * cross(side, point(face[j]) - p) >= -tolerance_ * length)) {
+      auto j = std::partition_point(order.begin(), order.end(),
+                                    [&](size_t k) { return !(along[k] > low); });
+      for (; j != order.end() && along[*j] < high; ++j) {
+        if (!(bends[i] * cross(side, point(face[*j]) - p) >= -tolerance_ * length)) {
           fail("a face is folded over itself");
         }
       }
     }
+  }
+
+  // The indices 0 to n - 1 in ascending order of their values.
+  static std::vector<size_t> sorted(const std::vector<double>& values, size_t n) {
+    std::vector<size_t> order(n);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](size_t a, size_t b) { return values[a] < values[b]; });
+    return order;
   }
 
   // Change of the roof's gradient across the side of face f from node `start` to node `end`.
@@ -257,20 +267,61 @@ class Laws {
     return result;
   }
 
+  // Counts the edges that a ray to the right of each node crosses. The nodes are visited from the
+  // lowest to the highest one; `crossed` holds the edges at the height of the present one.
   void check_inside() {
-    for (size_t i = static_cast<size_t>(size_); i < skeleton_.nodes.size(); ++i) {
-      const Vec2& p = skeleton_.nodes[i].point;
-      bool inside = false;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (int e = 0; e < size_; ++e) {
-        const Vec2 a = ring_[e] - p;
-        const Vec2 b = ring_[next(e, size_)] - p;
-        if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) inside = !inside;
-        const double along = std::clamp(lines_[e].along(p), 0.0, lines_[e].length);
-        nearest = std::min(nearest, (a + along * lines_[e].tangent).norm());
-      }
-      if (!inside && nearest > tolerance_) fail("a node is outside the polygon");
+    const std::vector<bool> near = near_their_edges();
+    std::vector<double> heights;
+    for (const Node& node : skeleton_.nodes) heights.push_back(node.point.y());
+    const std::vector<size_t> nodes = sorted(heights, heights.size());
+    std::vector<double> bottoms;
+    for (int e = 0; e < size_; ++e) {
+      bottoms.push_back(std::min(ring_[e].y(), ring_[next(e, size_)].y()));
     }
+    const std::vector<size_t> edges = sorted(bottoms, bottoms.size());
+    auto coming = edges.begin();
+    std::vector<std::pair<Vec2, Vec2>> crossed;
+    for (const size_t i : nodes) {
+      const Vec2& p = skeleton_.nodes[i].point;
+      for (; coming != edges.end() && bottoms[*coming] <= p.y(); ++coming) {
+        const int e = static_cast<int>(*coming);
+        crossed.emplace_back(ring_[e], ring_[next(e, size_)]);
+      }
+      bool inside = false;
+      for (size_t k = 0; k < crossed.size();) {
+        const Vec2 a = crossed[k].first - p;
+        const Vec2 b = crossed[k].second - p;
+        if (a.y() < 0 && b.y() < 0) {
+          crossed[k] = crossed.back();
+          crossed.pop_back();
+          continue;
+        }
+        if ((a.y() > 0) != (b.y() > 0) && (cross(a, b) > 0) == (b.y() > a.y())) inside = !inside;
+        ++k;
+      }
+      if (!inside && !near[i] && !near_outline(p)) fail("a node is outside the polygon");
+    }
+  }
+
+  [[nodiscard]] double distance_to_edge(int e, const Vec2& p) const {
+    const double along = std::clamp(lines_[e].along(p), 0.0, lines_[e].length);
+    return (ring_[e] - p + along * lines_[e].tangent).norm();
+  }
+  [[nodiscard]] bool near_outline(const Vec2& p) const {
+    for (int e = 0; e < size_; ++e) {
+      if (distance_to_edge(e, p) <= tolerance_) return true;
+    }
+    return false;
+  }
+  // The nodes that lie within the tolerance of the edge of one of their faces.
+  [[nodiscard]] std::vector<bool> near_their_edges() const {
+    std::vector<bool> near(skeleton_.nodes.size());
+    for (int f = 0; f < size_; ++f) {
+      for (const int i : skeleton_.faces[f]) {
+        if (!near[i]) near[i] = distance_to_edge(f, point(i)) <= tolerance_;
+      }
+    }
+    return near;
   }
 
   const Skeleton& skeleton_;

@@ -1,0 +1,43 @@
+#include "apothem/geometry/skeleton/skeleton_parts.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace apothem {
+namespace {
+
+int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
+
+void set_arcs(Skeleton& skeleton) {
+  const int n = static_cast<int>(skeleton.faces.size());
+  std::map<std::pair<int, int>, int> face_of;
+  for (int f = 0; f < n; ++f) {
+    const std::vector<int>& face = skeleton.faces[f];
+    for (size_t i = 0; i < face.size(); ++i) {
+      face_of[{face[i], face[i + 1 == face.size() ? 0 : i + 1]}] = f;
+    }
+  }
+  for (int e = 0; e < n; ++e) skeleton.arcs.push_back({e, next(e, n), e, -1});
+  for (const auto& [ends, face] : face_of) {
+    const auto [start, end] = ends;
+    if (face < n && start == face && end == next(face, n)) continue;
+    const auto opposite = face_of.find({end, start});
+    const int right = opposite == face_of.end() ? -1 : opposite->second;
+    if (right < 0 || start < end) skeleton.arcs.push_back({start, end, face, right});
+  }
+}
+
+}  // namespace
+
+Skeleton assemble(SkeletonParts parts) {
+  Skeleton skeleton;
+  skeleton.nodes = std::move(parts.nodes);
+  skeleton.faces = std::move(parts.faces);
+  set_arcs(skeleton);
+  for (const Skeleton::Node& node : skeleton.nodes) {
+    skeleton.roof_height = std::max(skeleton.roof_height, node.height);
+  }
+  return skeleton;
+}
+
+}  // namespace apothem

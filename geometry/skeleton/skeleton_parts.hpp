@@ -1,0 +1,21 @@
+// The nodes and faces from which a skeleton is assembled. This header is private to the
+// construction of the straight skeleton.
+#pragma once
+
+#include <vector>
+
+#include "apothem/geometry/skeleton/skeleton.hpp"
+
+namespace apothem {
+
+/// The nodes and faces of a skeleton, see Skeleton.
+struct SkeletonParts {
+  std::vector<Skeleton::Node> nodes;
+  std::vector<std::vector<int>> faces;
+};
+
+/// Derives the arcs and the height of the roof from the nodes and faces. Where two faces do not fit
+/// together, the result has an arc that breaks a law.
+Skeleton assemble(SkeletonParts parts);
+
+}  // namespace apothem
