@@ -122,6 +122,9 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
   CLI::Option* cases = sub->add_option(
       "--cases", o.cases, "Files of pairs (JSON, or lines as of contact --batch) instead of ours");
   sub->add_option("-o,--output", o.folder, "Output folder")->capture_default_str();
+  sub->add_option("--repeat", o.repetitions, "Measure times so often, and print their range")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   sub->add_option("--write-cases", o.write_cases,
                   "Write our hard pairs with expected values to this file, and end")
       ->excludes(cases);
