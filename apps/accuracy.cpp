@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
+#include "accuracy_cases.hpp"
 #include "accuracy_methods.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/gnuplot.hpp"
 #include "apothem/scene/error.hpp"
-#include "apothem/scene/pair_file.hpp"
 #include "cases/hard_pairs.hpp"
-#include "cases/samples.hpp"
 #include "commands.hpp"
 
 namespace apothem {
@@ -24,92 +20,9 @@ namespace {
 constexpr double kWrong = 1e-2;
 // The goal: error of the force over the length of the own boundary inside the other polygon.
 constexpr double kGoal = 1e-12;
-
-// A set of pairs that share a row of the table.
-struct Case {
-  std::string name;
-  std::vector<PreparedPair> pairs;
-  // One expected contact per pair, empty where the file gives none.
-  std::vector<std::optional<ExpectedContact>> expected;
-  int refused = 0;  // number of pairs whose polygons are invalid
-};
-
-class Cases {
- public:
-  void add(const std::string& kind, const std::string& name, const std::vector<Vec2>& a,
-           const std::vector<Vec2>& b, const std::optional<ExpectedContact>& expected = {}) {
-    Case& to = named(kind);
-    const char* which = "a";
-    try {
-      Polygon polygon_a(a);
-      which = "b";
-      Polygon polygon_b(b);
-      which = "a or b";
-      to.pairs.emplace_back(name, std::move(polygon_a), std::move(polygon_b));
-      to.expected.push_back(expected);
-    } catch (const InvalidPolygon& error) {
-      refuse(to, name,
-             fmt::format("polygon {}, vertex {}: {}", which, error.vertex(), error.what()));
-    } catch (const SkeletonFailure& error) {
-      refuse(to, name, error.what());
-    }
-  }
-  [[nodiscard]] const std::vector<Case>& all() const { return cases_; }
-
- private:
-  Case& named(const std::string& kind) {
-    for (Case& c : cases_) {
-      if (c.name == kind) return c;
-    }
-    return cases_.emplace_back(Case{kind, {}, {}, 0});
-  }
-  static void refuse(Case& in, const std::string& name, const std::string& why) {
-    ++in.refused;
-    fmt::print(stderr, "apothem: {}\n", SceneError(name, 0, "", "refused: " + why).what());
-  }
-
-  std::vector<Case> cases_;
-};
-
-// Adds pairs of random polygons in general position that overlap.
-void add_generic(Cases& cases) {
-  const auto fill = [&](const std::string& kind, int count, const auto& shape) {
-    samples::Random random(7);
-    for (int i = 1; i <= count;) {
-      const Polygon a = shape(random);
-      const double angle = random.uniform(0, 2 * M_PI);
-      const double distance = random.uniform(.3, 1.2);
-      const Vec2 centre =
-          samples::world_centroid(a) + distance * Vec2(std::cos(angle), std::sin(angle));
-      const Polygon b = samples::posed(shape(random), centre, random.uniform(0, 2 * M_PI));
-      if (overlap_polygons(a, b, a.origin()).empty()) continue;
-      cases.add(kind, fmt::format("{}/{}", kind, i++), a.vertices(), b.vertices());
-    }
-  };
-  fill("generic-convex", 200, [](samples::Random& random) {
-    return samples::random_convex(random, random.integer(3, 8));
-  });
-  fill("generic-non-convex", 50, [](samples::Random& random) {
-    return samples::random_star_shaped(random, random.integer(6, 12), .35);
-  });
-}
-
-Cases cases_of(const AccuracyOptions& options) {
-  Cases cases;
-  for (const std::string& file : options.cases) {
-    for (const PolygonPair& pair : read_pair_file(file)) {
-      const std::string kind =
-          pair.kind.empty() ? std::filesystem::path(file).filename().string() : pair.kind;
-      cases.add(kind, pair.name, pair.a, pair.b, pair.expected);
-    }
-  }
-  if (!options.cases.empty()) return cases;
-  add_generic(cases);
-  for (const HardPair& pair : hard_pairs()) {
-    cases.add(pair.kind, pair.name, pair.a.vertices(), pair.b.vertices());
-  }
-  return cases;
-}
+// Place of the method that the times of all others are compared with.
+constexpr size_t kEdge = 1;
+static_assert(kAccuracyMethods[kEdge].name == "edge");
 
 // The error figures of docs/theory.md for one pair, against the exact force F. W is the integral of
 // phi over both boundaries inside the other polygon.
@@ -151,13 +64,35 @@ struct Worst {
   }
 };
 
+struct Range {
+  double least = std::nan(""), most = std::nan("");
+  void include(double x) {
+    least = std::fmin(least, x);
+    most = std::fmax(most, x);
+  }
+  // Both ends to two digits, or one number where they agree to two digits.
+  [[nodiscard]] std::string text() const {
+    const std::string from = digits(least), to = digits(most);
+    return from == to ? from : from + " to " + to;
+  }
+
+ private:
+  static std::string digits(double x) {
+    if (!(std::abs(x) > 0) || !std::isfinite(x)) return fmt::format("{}", x);
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(x))) - 1);
+    return fmt::format("{:.4g}", std::round(x / unit) * unit);
+  }
+};
+
 struct Row {
   std::string case_name;
   std::string_view method;
+  bool random = false;  // random pairs, not hard ones
   size_t pairs = 0;
   int refused = 0;
   int failures = 0;
-  double nanoseconds = 0;
+  Range time;                    // per pair, ns, of the repetitions
+  Range ratio;                   // of this time to that of edge in the same repetition
   double median = 0, worst = 0;  // of |dF| / W
   Worst of_length, scaled;
 };
@@ -174,16 +109,16 @@ class Accuracy {
   explicit Accuracy(const AccuracyOptions& options) : options_(options) {}
 
   int execute() {
-    const Cases cases = cases_of(options_);
-    if (std::all_of(cases.all().begin(), cases.all().end(),
-                    [](const Case& c) { return c.pairs.empty(); })) {
+    const std::vector<AccuracyCase> cases = accuracy_cases(options_.cases);
+    if (std::all_of(cases.begin(), cases.end(),
+                    [](const AccuracyCase& c) { return c.pairs.empty(); })) {
       throw UsageError("accuracy", "no pair is left to evaluate");
     }
     create_folder(options_.folder);
     fmt::print("Errors of the force: of W, and of stiffness x own boundary length.\n");
     fmt::print("{:<20} {:<16} {:>5} {:>12} {:>12} {:>12} {:>12} {:>8}\n", "case", "method", "pairs",
                "ns per pair", "median of W", "worst of W", "of length", "failures");
-    for (const Case& c : cases.all()) {
+    for (const AccuracyCase& c : cases) {
       if (!c.pairs.empty()) measure(c);
     }
     write_results(cases);
@@ -191,20 +126,33 @@ class Accuracy {
   }
 
  private:
-  void measure(const Case& c) {
-    const AccuracyRun reference = run_method(kAccuracyMethods[0].name, c.pairs);
-    compare_with_expected(c, reference);
+  void measure(const AccuracyCase& c) {
+    std::vector<AccuracyRun> runs;
     for (const AccuracyMethod& method : kAccuracyMethods) {
-      const bool is_reference = &method == kAccuracyMethods.data();
-      const AccuracyRun run = is_reference ? reference : run_method(method.name, c.pairs);
-      add_row(c, method.name, run, reference);
+      runs.push_back(run_method(method.name, c.pairs));
+    }
+    compare_with_expected(c, runs[0]);
+    // The methods take turns, so that what else the machine does meets all of them.
+    std::vector<std::array<double, kAccuracyMethods.size()>> times(options_.repetitions);
+    for (auto& turn : times) {
+      for (size_t m = 0; m < turn.size(); ++m) {
+        turn[m] = time_method(kAccuracyMethods[m].name, c.pairs, runs[m]);
+      }
+    }
+    for (size_t m = 0; m < runs.size(); ++m) {
+      Range time, ratio;
+      for (const auto& turn : times) {
+        time.include(turn[m]);
+        ratio.include(turn[m] / turn[kEdge]);
+      }
+      add_row(c, kAccuracyMethods[m].name, runs[m], runs[0], time, ratio);
     }
     std::fflush(stdout);
   }
 
-  void add_row(const Case& c, std::string_view method, const AccuracyRun& run,
-               const AccuracyRun& reference) {
-    Row row{c.name, method, c.pairs.size(), c.refused, 0, run.nanoseconds, 0, 0, {}, {}};
+  void add_row(const AccuracyCase& c, std::string_view method, const AccuracyRun& run,
+               const AccuracyRun& reference, const Range& time, const Range& ratio) {
+    Row row{c.name, method, c.random, c.pairs.size(), c.refused, 0, time, ratio, 0, 0, {}, {}};
     std::vector<double> of_weight;
     for (size_t i = 0; i < c.pairs.size(); ++i) {
       const std::string& name = c.pairs[i].name;
@@ -234,12 +182,12 @@ class Accuracy {
       row.worst = of_weight.back();
     }
     fmt::print("{:<20} {:<16} {:>5} {:>12.0f} {:>12.1e} {:>12.1e} {:>12.1e} {:>8}\n", row.case_name,
-               row.method, row.pairs, row.nanoseconds, row.median, row.worst, row.of_length.value,
+               row.method, row.pairs, row.time.least, row.median, row.worst, row.of_length.value,
                row.failures);
     rows_.push_back(row);
   }
 
-  void compare_with_expected(const Case& c, const AccuracyRun& reference) {
+  void compare_with_expected(const AccuracyCase& c, const AccuracyRun& reference) {
     for (size_t i = 0; i < c.pairs.size(); ++i) {
       if (!c.expected[i]) continue;
       const ExpectedContact& x = *c.expected[i];
@@ -265,14 +213,16 @@ class Accuracy {
     }
   }
 
-  void write_results(const Cases& cases) {
+  void write_results(const std::vector<AccuracyCase>& cases) {
     std::string table =
         "case,method,pairs,refused,failures,time [ns],median_error [W],worst_error [W],"
-        "worst_error [own_length],worst_scaled_error [eps size/depth]\n";
+        "worst_error [own_length],worst_scaled_error [eps size/depth],largest_time [ns],"
+        "least_ratio [time of edge],largest_ratio [time of edge]\n";
     for (const Row& r : rows_) {
-      table += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv(r.case_name), r.method, r.pairs,
-                           r.refused, r.failures, r.nanoseconds, r.median, r.worst,
-                           r.of_length.value, r.scaled.value);
+      table +=
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv(r.case_name), r.method,
+                      r.pairs, r.refused, r.failures, r.time.least, r.median, r.worst,
+                      r.of_length.value, r.scaled.value, r.time.most, r.ratio.least, r.ratio.most);
     }
     write_file(options_.folder + "/accuracy.csv", table);
     write_file(options_.folder + "/pairs.csv",
@@ -282,12 +232,14 @@ class Accuracy {
     write_file(options_.folder + "/accuracy.gnuplot", plot_script());
     fmt::print("\n");
     for (const std::string_view method : {"edge", "overlap"}) print_goals(method);
+    print_times();
+    print_failures();
     if (compared_ > 0) {
       fmt::print("expected values: {} of {} agree with the reference, to {:.1g}\n", agreed_,
                  compared_, furthest_);
     }
     int refused = 0;
-    for (const Case& c : cases.all()) refused += c.refused;
+    for (const AccuracyCase& c : cases) refused += c.refused;
     if (refused > 0) fmt::print("refused pairs: {}\n", refused);
     const Plotted plotted = plot_with_gnuplot(options_.folder, "accuracy.gnuplot", "accuracy.png");
     fmt::print("results in {}: accuracy.csv, pairs.csv{}\n", options_.folder,
@@ -314,6 +266,36 @@ class Accuracy {
         "{}: worst |dF| / own boundary length {:.1e} ({}), worst scaled error {:.2g} ({}), {} "
         "failures\n",
         method, of_length.value, of_length.pair, scaled.value, scaled.pair, failures);
+  }
+
+  // Times of the random pairs, each method beside edge.
+  void print_times() const {
+    for (const Row& edge : rows_) {
+      if (!edge.random || edge.method != kAccuracyMethods[kEdge].name) continue;
+      fmt::print("{}: edge takes {} ns per pair", edge.case_name, edge.time.text());
+      for (const Row& r : rows_) {
+        if (r.case_name != edge.case_name || &r == &edge) continue;
+        fmt::print(", {} {} times as long", r.method, r.ratio.text());
+      }
+      fmt::print("\n");
+    }
+  }
+
+  // Failures on the pairs that are not random.
+  void print_failures() const {
+    std::string text;
+    size_t pairs = 0;
+    for (const AccuracyMethod& method : kAccuracyMethods) {
+      int failures = 0;
+      pairs = 0;
+      for (const Row& r : rows_) {
+        if (r.random || r.method != method.name) continue;
+        failures += r.failures;
+        pairs += r.pairs;
+      }
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", method.name, failures);
+    }
+    fmt::print("failures on {} pairs that are not random: {}\n", pairs, text);
   }
 
   [[nodiscard]] std::string plot_script() const;

@@ -140,6 +140,9 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
   });
 }
 
+// How long a child process may be silent, s.
+double patience_with(std::string_view method) { return method == "exact" ? 600 : 20; }
+
 std::string describe(const ChildAnswer& answer, double patience) {
   switch (answer.end) {
     case ChildAnswer::End::crashed:
@@ -165,10 +168,8 @@ PreparedPair::PreparedPair(std::string pair_name, Polygon polygon_a, Polygon pol
       convex(a.is_convex() && b.is_convex()) {}
 
 AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>& pairs) {
-  const double patience = method == "exact" ? 600 : 20;
+  const double patience = patience_with(method);
   AccuracyRun run;
-  std::vector<size_t> good;
-  double seconds = 0;
   while (run.outcomes.size() < pairs.size()) {
     const ChildAnswer answer = run_in_child(
         [&](const SendNumbers& send) { evaluate_from(run.outcomes.size(), method, pairs, send); },
@@ -196,24 +197,30 @@ AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>&
         pair.moment_a -= cross(area_moments(pairs[i].a).centroid, pair.force);
         pair.moment_b += cross(area_moments(pairs[i].b).centroid, pair.force);
       }
-      good.push_back(i);
-      seconds += r.seconds;
+      run.seconds += r.seconds;
     }
     if (run.outcomes.size() < pairs.size()) {
       run.outcomes.emplace_back().failure = describe(answer, patience);
     }
   }
-  run.nanoseconds = std::nan("");
-  if (good.empty()) return run;
-  run.nanoseconds = 1e9 * seconds / static_cast<double>(good.size());
-  if (seconds > .3) return run;
-  const ChildAnswer timing = run_in_child(
-      [&](const SendNumbers& send) {
-        time_rounds(method, pairs, good, seconds / static_cast<double>(good.size()), send);
-      },
-      patience);
-  if (!timing.numbers.empty()) run.nanoseconds = timing.numbers[0];
   return run;
+}
+
+double time_method(std::string_view method, const std::vector<PreparedPair>& pairs,
+                   const AccuracyRun& run) {
+  std::vector<size_t> good;
+  for (size_t i = 0; i < run.outcomes.size(); ++i) {
+    if (run.outcomes[i].failure.empty()) good.push_back(i);
+  }
+  if (good.empty()) return std::nan("");
+  const double seconds_per_pair = run.seconds / static_cast<double>(good.size());
+  if (run.seconds <= .3) {
+    const ChildAnswer timing = run_in_child(
+        [&](const SendNumbers& send) { time_rounds(method, pairs, good, seconds_per_pair, send); },
+        patience_with(method));
+    if (!timing.numbers.empty()) return timing.numbers[0];
+  }
+  return 1e9 * seconds_per_pair;
 }
 
 }  // namespace apothem

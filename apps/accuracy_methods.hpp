@@ -47,12 +47,16 @@ struct AccuracyOutcome {
 /// The results of one method for all pairs.
 struct AccuracyRun {
   std::vector<AccuracyOutcome> outcomes;  ///< one per pair
-  /// Time per pair with a result, ns, in the fastest rounds; NaN if there is no result.
-  double nanoseconds = 0;
+  double seconds = 0;  ///< time of the first and only evaluation of all pairs with a result
 };
 
 /// Runs a method on all pairs in a child process. If the child crashes or is silent for 20 s (the
 /// reference: 10 min), that pair fails and a new child continues with the next one.
 AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>& pairs);
+
+/// Time per pair with a result in `run`, in ns: in the fastest of several rounds, or in that run
+/// itself if it took more than 0.3 s. NaN if there is no result.
+double time_method(std::string_view method, const std::vector<PreparedPair>& pairs,
+                   const AccuracyRun& run);
 
 }  // namespace apothem

@@ -106,6 +106,7 @@ int polygon_command(const PolygonOptions& options);
 struct AccuracyOptions {
   std::vector<std::string> cases;  ///< files of pairs; empty: the built-in generic and hard pairs
   std::string folder = "out/accuracy";  ///< folder of results
+  int repetitions = 1;                  ///< how often times are measured; their range is printed
   /// If not empty: write the hard pairs and their expected contact to this file instead.
   std::string write_cases;
 };

@@ -177,6 +177,10 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
   sub->add_option("-o,--output", o.folder, "Output folder")
       ->type_name("DIR")
       ->capture_default_str();
+  sub->add_option("--repeat", o.repetitions, "Measure times so often, and print their range")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   sub->add_option("--write-cases", o.write_cases,
                   "Write our hard pairs with expected values to this file, and end")
       ->type_name("FILE")

@@ -61,13 +61,15 @@ TEST_CASE("accuracy measures every method and names what it refuses", "[accuracy
   for (const char* method : kMethods) {
     INFO(method);
     const std::vector<std::string>& row = rows["pairs.txt," + std::string(method)];
-    REQUIRE(row.size() == 8);
+    REQUIRE(row.size() == 11);
     CHECK(row[0] == "2");  // pairs
     CHECK(row[1] == "2");  // refused
     CHECK(row[2] == "0");  // failures
     CHECK(std::stod(row[3]) > 10);
     CHECK(std::stod(row[5]) < (std::string(method) == "boost" ? 1e-4 : 1e-14));
   }
+  CHECK(r.out.find("failures on 2 pairs that are not random: exact 0, edge 0") !=
+        std::string::npos);
   CHECK(rows["pairs.txt,exact"][5] == "0");
   auto pairs = table(folder / "out/pairs.csv", 3);
   CHECK(pairs.size() == 1 + 2 * std::size(kMethods));
@@ -76,6 +78,31 @@ TEST_CASE("accuracy measures every method and names what it refuses", "[accuracy
   const bool picture = std::filesystem::exists(folder / "out/accuracy.png");
   CHECK(picture == (r.out.find("no picture") == std::string::npos));
   CHECK_FALSE(std::filesystem::exists(folder / "out/accuracy.png.partial"));
+}
+
+TEST_CASE("times that are measured again give the range of each and of its ratio to edge",
+          "[accuracy]") {
+  const Folder folder;
+  const std::string file = folder.write("pairs.txt", "a 3 0 0 1 0 0 1 3 0.2 0.2 1 1 0 1\n");
+  const Result r =
+      run({"accuracy", "--cases", file, "--repeat", "3", "-o", folder / "out"}, folder);
+  CHECK(r.code == 0);
+  auto rows = table(folder / "out/accuracy.csv", 2);
+  for (const char* method : kMethods) {
+    INFO(method);
+    const std::vector<std::string>& row = rows["pairs.txt," + std::string(method)];
+    REQUIRE(row.size() == 11);
+    const double time = std::stod(row[3]), longest = std::stod(row[8]);
+    const double least = std::stod(row[9]), most = std::stod(row[10]);
+    CHECK(time < longest);
+    CHECK(least <= most);
+    if (std::string(method) == "edge") {
+      CHECK(least == 1);
+      CHECK(most == 1);
+    } else {
+      CHECK(least > 1);  // of two triangles: every other method takes longer than edge
+    }
+  }
 }
 
 TEST_CASE("without gnuplot the numbers are written all the same", "[accuracy]") {

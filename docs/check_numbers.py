@@ -1,0 +1,445 @@
+#!/usr/bin/env python3
+"""Compares the numbers of the documents with a fresh run of the commands that print them.
+
+docs/numbers.json lists the numbers. An entry is one of:
+
+  {"in": DOCUMENT, "text": "the force is {9.605e5} N", "values": ["expect('impact', 'b.fy', 'max')"]}
+      A passage with its numbers in braces, and an expression for each of them. `{< 1e-9}` is a bound,
+      `{20 to 30}` a range. The expression gives a number, or the least and the largest of several.
+  {"in": DOCUMENT, "table": "| case |", "cells": {"edge": ["csv('accuracy', row, 'edge', 'time')"]}}
+      All rows of the table whose header starts so. The expressions belong to the numbers of a cell, from
+      left to right; `row` is the first cell of the row, `cells` are all. `where` (an expression)
+      chooses rows. Numbers that a cell leaves out at its end must be 0.
+  {"in": DOCUMENT, "heading": "## Meshes", "rows": {"start of a row": ["name of a test"]}}
+      A section that rests on tests: the tests exist, and every row of its tables is listed. Its key
+      `text` lists in the same way what the section states outside of tables.
+  {"in": DOCUMENT, "name": "Fig. 13"}
+      Digits that are part of a name, or a choice of ours; nothing prints them.
+
+`within` says by how much a fresh number may differ: "2%", "x3" (a factor, for times), "1e-3" (in the
+unit of the text); without it by one unit of the last digit that is stated. Commands are in `commands`;
+scenes need none, `apothem run` makes them. A command is run once, when a number needs it.
+
+Exit code 1: a number is stale, a passage is gone, or a test does not exist.
+"""
+import argparse
+import csv as csv_module
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+NUMBER = re.compile(
+    r"(?<![\w.^#/])([-+]?(?:\d{1,3}(?: \d{3})+(?![\d.])|\d+\.\d+|\d+|\.\d+)(?:e[-+]?\d+)?)(k|M)?(?![\w])")
+
+
+class NotRun(Exception):
+    """The command of a number is left out."""
+
+
+class Problem(Exception):
+    """What makes an entry wrong, whatever a fresh run prints."""
+
+
+def number(text):
+    match = NUMBER.search(text)
+    if not match:
+        raise Problem(f"'{text}' is no number")
+    return value_of(match)
+
+
+def value_of(match):
+    digits = match.group(1).replace(" ", "")
+    scale = {None: 1.0, "k": 1e3, "M": 1e6}[match.group(2)]
+    mantissa, _, exponent = digits.partition("e")
+    places = len(mantissa.partition(".")[2])
+    unit = 10.0 ** (int(exponent or 0) - places)
+    if "." not in mantissa and not exponent and match.group(2) is None:
+        zeros = len(mantissa) - len(mantissa.rstrip("0"))
+        unit = 10.0 ** min(zeros, max(0, len(mantissa.lstrip("+-")) - 2))
+    return float(digits) * scale, unit * scale
+
+
+def agrees(stated, now, within):
+    """Whether a fresh number, or (least, largest), is what the document states."""
+    low, high = now if isinstance(now, (tuple, list)) else (now, now)
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return False
+    if stated.strip().startswith("<"):
+        return high <= number(stated)[0]
+    ends = [number(end) for end in stated.split(" to ")]
+    least, largest = ends[0][0], ends[-1][0]
+    if within is None:
+        slack = 1.0001 * max(unit for _, unit in ends)
+    elif within.endswith("%"):
+        slack = float(within[:-1]) / 100 * max(abs(least), abs(largest))
+    elif within.startswith("x"):
+        factor = float(within[1:])
+        return low <= largest * factor and high >= least / factor
+    else:
+        slack = float(within)
+    return low <= largest + slack and high >= least - slack
+
+
+class Fresh:
+    """Runs commands, each once, and reads what they leave."""
+
+    def __init__(self, root, commands, options):
+        self.root, self.commands, self.options = root, commands, options
+        self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
+        self.done, self.files = {}, {}
+
+    def program(self, word):
+        folder = self.options.tests if word == "apothem_tests" else self.options.build
+        path = self.root / folder / word
+        if not path.exists():
+            raise NotRun(f"{folder}/{word} is not built")
+        return str(path)
+
+    def run(self, name):
+        """The output folder of a command, and what it printed."""
+        if name not in self.done:
+            self.done[name] = self.execute(name)
+        if isinstance(self.done[name], Exception):
+            raise self.done[name]
+        return self.done[name]
+
+    def execute(self, name):
+        scene = self.root / "data/scenes" / (name + ".json")
+        if name in self.commands:
+            command = self.commands[name]
+        elif scene.exists():
+            slow = name in self.commands["slow scenes"]
+            command = {"run": f"apothem run data/scenes/{name}.json -o {{out}} --overwrite", "quick": not slow}
+        else:
+            return Problem(f"no command and no scene is called {name}")
+        if self.options.only and name not in self.options.only:
+            return NotRun("left out")
+        if self.options.quick and not command.get("quick"):
+            return NotRun("not in the quick subset")
+        folder = self.folder / name
+        shown = command["run"].replace("{out}", str(folder))
+        words = shown.split()
+        environment = dict(os.environ)
+        while "=" in words[0]:
+            key, value = words.pop(0).split("=", 1)
+            environment[key] = value
+        try:
+            words[0] = self.program(words[0])
+        except NotRun as why:
+            return why
+        words = [w.replace("~", " ") for w in words]  # a space within a word
+        log = folder / "printed.txt"
+        if self.options.keep and log.exists():
+            return folder, log.read_text()
+        folder.mkdir(parents=True, exist_ok=True)
+        print(f"running {shown}", file=sys.stderr, flush=True)
+        result = subprocess.run(words, cwd=self.root, env=environment, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+        if result.returncode != command.get("exit", 0):
+            return Problem(f"'{shown}' ended with exit code {result.returncode}")
+        log.write_text(result.stdout)
+        return folder, result.stdout
+
+    def read(self, path):
+        if path not in self.files:
+            if path.suffix == ".json":
+                self.files[path] = json.loads(path.read_text())
+            else:
+                with open(path, newline="") as file:
+                    self.files[path] = list(csv_module.reader(file))
+        return self.files[path]
+
+    # What expressions may use.
+
+    def out(self, name, pattern, group=1):
+        """The first number that the pattern finds in what a command prints."""
+        match = re.search(pattern, self.run(name)[1])
+        if not match:
+            raise Problem(f"{name} does not print '{pattern}'")
+        return float(match.group(group).replace(" ", ""))
+
+    def csv(self, name, first, second, column):
+        """A column of the row of accuracy.csv with these first two cells."""
+        rows = self.read(self.run(name)[0] / "accuracy.csv")
+        at = [i for i, title in enumerate(rows[0]) if title.split(" [")[0] == column][0]
+        return float([row for row in rows if row[:2] == [first, second]][0][at])
+
+    def total(self, name, method, column):
+        """The sum of a column of accuracy.csv over the cases that are not random."""
+        rows = self.read(self.run(name)[0] / "accuracy.csv")
+        return sum(self.csv(name, r[0], method, column) for r in rows[1:]
+                   if r[1] == method and not r[0].startswith("generic"))
+
+    def bench(self, name, of="time", command="benchmark"):
+        """Time in ns of a benchmark, or one of its counters: least and largest of the repetitions."""
+        text = self.run(command)[1]
+        start = text.index("{\n")
+        rows = [r for r in json.loads(text[start:text.rindex("}") + 1])["benchmarks"]
+                if r["run_name"] == name and r["run_type"] == "iteration"]
+        if not rows:
+            raise Problem(f"the benchmark {name} does not exist")
+        if of == "time":
+            unit = {"ns": 1, "us": 1e3, "ms": 1e6}[rows[0]["time_unit"]]
+            values = [r["cpu_time"] * unit for r in rows]
+        else:
+            values = [r[of] for r in rows]
+        return min(values), max(values)
+
+    def expect(self, scene, quantity, take="last", field="value", nth=0):
+        """The result of a scene's expectation; `field` may be error or relative as well."""
+        data = self.read(self.run(scene)[0] / "run.json")
+        found = [e for e in data["expectations"] if (e["quantity"], e["take"]) == (quantity, take)]
+        if nth >= len(found):
+            raise Problem(f"the scene {scene} expects no {take} of {quantity}")
+        e = found[nth]
+        error = e["value"] - e["expected"]
+        return {"value": e["value"], "error": abs(error),
+                "relative": abs(error / e["expected"]) if e["expected"] else math.nan}[field]
+
+    def summary(self, scene, pointer):
+        """A value of run.json."""
+        at = self.read(self.run(scene)[0] / "run.json")
+        for key in pointer.split("/"):
+            at = at[int(key) if isinstance(at, list) else key]
+        return at
+
+    def history(self, scene, column, take="last", file="history.csv"):
+        """The last, least, largest, or largest absolute value of a column of a scene's CSV file."""
+        rows = self.read(self.run(scene)[0] / file)
+        at = [i for i, title in enumerate(rows[0]) if title.split(" [")[0] == column][0]
+        values = [float(row[at]) for row in rows[1:]]
+        return {"first": lambda: values[0], "last": lambda: values[-1], "min": lambda: min(values),
+                "max": lambda: max(values), "max_abs": lambda: max(map(abs, values))}[take]()
+
+    def evaluate(self, expression, **more):
+        def ratio(a, b):
+            low_a, high_a = a if isinstance(a, tuple) else (a, a)
+            low_b, high_b = b if isinstance(b, tuple) else (b, b)
+            return low_a / high_b, high_a / low_b
+        names = {f: getattr(self, f) for f in
+                 ("out", "csv", "total", "bench", "expect", "summary", "history")}
+        names.update(ratio=ratio, abs=abs, max=max, min=min, sum=sum, sqrt=math.sqrt, range=range,
+                     scaled=lambda a, s: (a[0] * s, a[1] * s) if isinstance(a, tuple) else a * s, **more)
+        try:
+            return eval(expression, {"__builtins__": {}}, names)  # from our own list
+        except (KeyError, IndexError, ValueError, NameError, OSError, TypeError) as error:
+            raise Problem(f"{expression}: {type(error).__name__} {error}") from error
+
+
+class Document:
+    def __init__(self, root, name):
+        self.name = name
+        self.text = (root / name).read_text()
+        self.lines = self.text.split("\n")
+        self.covered = []
+
+    def line(self, position):
+        return self.text.count("\n", 0, position) + 1
+
+    def find(self, passage):
+        """Start and end of a passage; any white space stands for any other."""
+        pattern = r"\s+".join(re.escape(word) for word in passage.split())
+        found = list(re.finditer(pattern, self.text))
+        if len(found) != 1:
+            raise Problem(f"{'not' if not found else 'more than once'} in {self.name}: {passage}")
+        return found[0].span()
+
+    def section(self, heading):
+        """First line (from 0) behind a heading, and the line of the next one."""
+        at = [i for i, line in enumerate(self.lines) if line.startswith(heading)]
+        if len(at) != 1:
+            raise Problem(f"{'no' if not at else 'more than one'} heading in {self.name}: {heading}")
+        end = at[0] + 1
+        while end < len(self.lines) and not self.lines[end].startswith("#"):
+            end += 1
+        return at[0], end
+
+    def rows(self, first, end):
+        """Lines of table rows between two lines, with their cells; headers are left out."""
+        for i in range(first, end):
+            line = self.lines[i]
+            ruled = i + 1 < len(self.lines) and self.lines[i + 1].startswith("| ---")
+            if line.startswith("|") and not line.startswith("| ---") and not ruled:
+                yield i, [cell.strip() for cell in line.strip("|").split("|")]
+
+    def uncovered(self):
+        """Numbers that stand neither in an entry nor in code, links and addresses."""
+        hidden = list(self.covered)
+        for pattern in (r"```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"<[^>]*>"):
+            hidden += [m.span() for m in re.finditer(pattern, self.text, re.DOTALL)]
+        for match in re.finditer(r"(?<![\w.])[-+]?\.?\d[\d.,]*(?:e[-+]?\d+)?", self.text):
+            if not any(a <= match.start() < b for a, b in hidden):
+                yield self.line(match.start()), match.group().rstrip(".,")
+
+
+def tests_of(root):
+    """Names of the test cases, by file."""
+    names = {}
+    for path in (root / "tests").rglob("*.cpp"):
+        for match in re.finditer(r'TEST_CASE\(\s*((?:"[^"]*"\s*)+)', path.read_text()):
+            names["".join(re.findall(r'"([^"]*)"', match.group(1)))] = path.relative_to(root)
+    return names
+
+
+class Checker:
+    def __init__(self, root, options):
+        self.root, self.options = root, options
+        data = json.loads((root / "docs/numbers.json").read_text())
+        self.entries, self.commands = data["entries"], data["commands"]
+        self.fresh = Fresh(root, self.commands, options)
+        self.tests = tests_of(root)
+        self.documents = {}
+        self.table, self.problems, self.asserted = [], [], []
+
+    def document(self, name):
+        if name not in self.documents:
+            self.documents[name] = Document(self.root, name)
+        return self.documents[name]
+
+    def compare(self, document, line, stated, expression, within, **more):
+        if self.options.texts:
+            compile(expression, expression, "eval")
+            number(stated)
+            return
+        try:
+            now = self.fresh.evaluate(expression, **more)
+        except NotRun as why:
+            self.table.append((document.name, line, stated, "-", f"not run: {why}"))
+            return
+        shown = " to ".join(f"{x:.7g}" for x in now) if isinstance(now, (tuple, list)) else f"{now:.7g}"
+        verdict = "ok" if agrees(stated, now, within) else "STALE"
+        self.table.append((document.name, line, stated, shown, verdict))
+
+    def passage(self, entry):
+        document = self.document(entry["in"])
+        text = entry["text"]
+        stated = re.findall(r"\{([^}]*)\}", text)
+        if len(stated) != len(entry["values"]):
+            raise Problem(f"{len(stated)} numbers and {len(entry['values'])} values: {text}")
+        start, end = document.find(re.sub(r"[{}]", "", text))
+        document.covered.append((start, end))
+        words_before = 0
+        for k, piece in enumerate(re.split(r"\{[^}]*\}", text)[:-1]):
+            words_before += len(piece.split())
+            position = [m.start() for m in re.finditer(r"\S+", document.text[start:end])]
+            line = document.line(start + position[min(words_before, len(position) - 1)])
+            within = entry.get("within")
+            within = within[k] if isinstance(within, list) else within
+            self.compare(document, line, stated[k], entry["values"][k], within)
+            words_before += len(stated[k].split())
+
+    def whole_table(self, entry):
+        document = self.document(entry["in"])
+        at = [i for i, line in enumerate(document.lines) if line.startswith(entry["table"])]
+        if len(at) != 1:
+            raise Problem(f"{len(at)} tables in {document.name} start with: {entry['table']}")
+        titles = [cell.strip() for cell in document.lines[at[0]].strip("|").split("|")]
+        for title in entry["cells"]:
+            if title not in titles:
+                raise Problem(f"the table {entry['table']} has no column {title}")
+        last, rows = at[0], 0
+        while document.lines[last].startswith("|"):
+            last += 1
+        for i, cells in document.rows(at[0], last):
+            more = {"cells": cells, "row": re.sub(r" \(.*|\*", "", cells[0])}
+            if "where" in entry and not self.fresh.evaluate(entry["where"], **more):
+                continue
+            rows += 1
+            for title, values in entry["cells"].items():
+                stated = [m.group() for m in NUMBER.finditer(cells[titles.index(title)])]
+                if len(stated) > len(values):
+                    raise Problem(f"{document.name}:{i + 1}: more numbers than values in column {title}")
+                for k, value in enumerate(values):
+                    within = entry.get("within")
+                    within = within[k] if isinstance(within, list) else within
+                    self.compare(document, i + 1, stated[k] if k < len(stated) else "0", value, within, **more)
+            start = sum(len(line) + 1 for line in document.lines[:i])
+            document.covered.append((start, start + len(document.lines[i])))
+        if rows == 0:
+            raise Problem(f"no row of the table {entry['table']} is chosen")
+
+    def section(self, entry):
+        document = self.document(entry["in"])
+        first, end = document.section(entry["heading"])
+        listed = dict(entry["rows"])
+        for i, cells in document.rows(first, end):
+            start = sum(len(line) + 1 for line in document.lines[:i])
+            if any(a <= start < b for a, b in document.covered):
+                continue
+            keys = [key for key in listed if document.lines[i].strip("| ").startswith(key)]
+            if not keys:
+                raise Problem(f"{document.name}:{i + 1}: no test is named for the row: {cells[0]}")
+            document.covered.append((start, start + len(document.lines[i])))
+            self.assert_by(document, i + 1, cells[0], listed[max(keys, key=len)])
+        for key in listed:
+            if not any(line.strip("| ").startswith(key) for line in document.lines[first:end]):
+                raise Problem(f"the section {entry['heading']} has no row: {key}")
+        for text, tests in entry.get("text", {}).items():
+            start, finish = document.find(text)
+            document.covered.append((start, finish))
+            self.assert_by(document, document.line(start), text, tests)
+
+    def assert_by(self, document, line, what, tests):
+        for test in tests:
+            if test not in self.tests:
+                self.problems.append(f"{document.name}:{line}: the test does not exist: {test}")
+            else:
+                self.asserted.append((document.name, line, what, test, self.tests[test]))
+
+    def name(self, entry):
+        document = self.document(entry["in"])
+        names = entry["name"] if isinstance(entry["name"], list) else [entry["name"]]
+        for text in names:
+            document.covered.append(document.find(text))
+
+    def check(self):
+        # Sections last: their rows may be covered by tables and passages.
+        for kind, method in (("text", self.passage), ("table", self.whole_table), ("name", self.name),
+                             ("heading", self.section)):
+            for entry in self.entries:
+                if kind not in entry or (kind == "text" and "heading" in entry):
+                    continue
+                try:
+                    method(entry)
+                except Problem as problem:
+                    self.problems.append(str(problem))
+        self.report()
+        return 1 if self.problems or any(row[4] == "STALE" for row in self.table) else 0
+
+    def report(self):
+        for name, line, stated, now, verdict in sorted(self.table):
+            print(f"{name + ':' + str(line):<26} stated {stated:<18} now {now:<28} {verdict}")
+        if not self.options.texts:
+            for name, line, what, test, file in sorted(self.asserted):
+                print(f"{name + ':' + str(line):<26} {what[:48]:<48} asserted by the test '{test}' ({file})")
+        for shown in ["README.md"] + self.options.uncovered:
+            for line, text in self.document(shown).uncovered():
+                print(f"{shown}:{line}: no entry covers {text}")
+        for problem in self.problems:
+            print(f"WRONG {problem}")
+        verdicts = [row[4].split(":")[0] for row in self.table]
+        print(f"{verdicts.count('ok')} numbers ok, {verdicts.count('STALE')} stale, "
+              f"{verdicts.count('not run')} not run; {len(self.asserted)} assertions by tests; "
+              f"{len(self.problems)} entries wrong")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--root", default=pathlib.Path(__file__).resolve().parent.parent, type=pathlib.Path)
+    parser.add_argument("--build", default="build/release", help="folder of apothem and apothem_benchmark")
+    parser.add_argument("--tests", default="build/dev", help="folder of apothem_tests")
+    parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
+    parser.add_argument("--texts", action="store_true", help="run nothing: do passages and tests exist?")
+    parser.add_argument("--only", nargs="*", default=[], help="only these commands and scenes")
+    parser.add_argument("--keep", help="folder for the results; what is there already is not run again")
+    parser.add_argument("--uncovered", nargs="*", default=[], help="list numbers without entry of these too")
+    return Checker(*(lambda o: (o.root, o))(parser.parse_args())).check()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
