@@ -16,7 +16,7 @@ static void describe(Archive& archive, Setting& setting) {
 
 namespace {
 
-void require_fitting(const Simulation& simulation, const Progress& progress) {
+void require_fitting(const Simulation& simulation, const RunProgress& progress) {
   const size_t bodies = simulation.model().deformables.size();
   const auto fits = [&](const LoadStep& s) {
     return s.off.size() == bodies && s.worst >= 0 && static_cast<size_t>(s.worst) < bodies;
@@ -53,7 +53,7 @@ std::string state_file(const std::string& folder, StateFile kind) {
 }
 
 void write_state(const std::string& folder, StateFile kind, const Scene& scene,
-                 const std::string& scene_hash, Simulation& simulation, Progress& progress) {
+                 const std::string& scene_hash, Simulation& simulation, RunProgress& progress) {
   JsonWriter archive;
   std::string hash = scene_hash;
   std::vector<Setting> settings = scene.settings;
@@ -63,8 +63,8 @@ void write_state(const std::string& folder, StateFile kind, const Scene& scene,
   write_file(state_file(folder, kind), archive.json().dump() + "\n");
 }
 
-Progress read_progress(const std::string& folder) {
-  Progress progress;
+RunProgress read_progress(const std::string& folder) {
+  RunProgress progress;
   with_checkpoint(folder, [&](Archive& archive) { archive("progress", progress); });
   return progress;
 }
@@ -76,7 +76,7 @@ std::vector<Setting> settings_of_checkpoint(const std::string& folder) {
 }
 
 void read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                     Simulation& simulation, Progress& progress) {
+                     Simulation& simulation, RunProgress& progress) {
   with_checkpoint(folder, [&](Archive& archive) {
     std::string hash;
     archive("scene_hash", hash);

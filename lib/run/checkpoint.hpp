@@ -22,7 +22,7 @@ struct Beginning {
 };
 
 /// What a run keeps besides its simulation.
-struct Progress {
+struct RunProgress {
   std::vector<double> history_sizes = std::vector<double>(kHistoryFiles.size());  ///< bytes
   std::vector<double> frame_times;                                                ///< s
   std::int64_t next_row = 1, next_frame = 1;
@@ -41,18 +41,18 @@ std::string state_file(const std::string& folder, StateFile kind);
 
 /// Throws SystemFailure; an older file is then intact.
 void write_state(const std::string& folder, StateFile kind, const Scene& scene,
-                 const std::string& scene_hash, Simulation& simulation, Progress& progress);
+                 const std::string& scene_hash, Simulation& simulation, RunProgress& progress);
 
 /// What the checkpoint in a folder says about the run, before there is a simulation. Throws
 /// SceneError if there is no checkpoint, or if it is damaged.
-Progress read_progress(const std::string& folder);
+RunProgress read_progress(const std::string& folder);
 /// The settings of the run that has left the checkpoint. Throws as read_progress().
 std::vector<Setting> settings_of_checkpoint(const std::string& folder);
 
 /// Loads a simulation and what belongs to it. Throws SceneError if there is no checkpoint, if it is
 /// damaged or belongs to another scene, or if the histories it continues are not there any more.
 void read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                     Simulation& simulation, Progress& progress);
+                     Simulation& simulation, RunProgress& progress);
 
 void remove_checkpoint(const std::string& folder);
 

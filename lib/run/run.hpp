@@ -116,7 +116,7 @@ class Run {
   RunSettings settings_;
   std::unique_ptr<Simulation> simulation_;
   std::string scene_hash_;
-  Progress progress_;
+  RunProgress progress_;
   std::optional<HistoryWriter> history_;  // only with a folder
   std::optional<FrameWriter> frames_;     // likewise
   Schedule rows_, pictures_;
