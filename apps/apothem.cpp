@@ -13,6 +13,7 @@
 #include "apothem/scene/error.hpp"
 #include "commands.hpp"
 #include "version.hpp"
+#include "work_line.hpp"
 
 namespace {
 
@@ -188,6 +189,8 @@ int main(int argc, char** argv) {
     return code;
   } catch (const apothem::SceneError& error) {
     return fail(apothem::exit_code::bad_input, error.what());
+  } catch (const apothem::Interrupted& interrupt) {
+    return fail(apothem::exit_code::interrupted, interrupt.what());
   } catch (const apothem::SystemFailure& error) {
     return fail(apothem::exit_code::system_failed, error.what());
   } catch (const std::bad_alloc&) {
