@@ -16,6 +16,7 @@
 #include "manual.hpp"
 #include "options.hpp"
 #include "usage.hpp"
+#include "work_line.hpp"
 
 namespace {
 
@@ -107,6 +108,8 @@ int main(int argc, char** argv) {
     return fail(error);
   } catch (const UsageError& error) {
     return fail(exit_code::bad_input, error.what());
+  } catch (const Interrupted& interrupt) {
+    return fail(exit_code::interrupted, interrupt.what());
   } catch (const SystemFailure& error) {
     return fail(exit_code::system_failed, error.what());
   } catch (const std::bad_alloc&) {

@@ -13,6 +13,7 @@
 #include "apothem/scene/ring_line.hpp"
 #include "commands.hpp"
 #include "polygon_input.hpp"
+#include "work_line.hpp"
 
 namespace apothem {
 namespace {
@@ -28,12 +29,15 @@ struct Analysis {
   SingularArea singular;
 };
 
-// All properties of a polygon. Throws InvalidPolygon.
+// All properties of a polygon. Throws InvalidPolygon, and Interrupted after a signal.
 Analysis analyse(Polygon polygon, const PotentialChoice& choice) {
-  InscribedCircle circle = largest_inscribed_circle(polygon);
+  require_few_vertices(polygon.vertices().size());
+  WorkLine line(fmt::format("{} vertices", polygon.size()));
+  const Progress progress = [&](const Stage& stage) { line.report(stage); };
+  InscribedCircle circle = largest_inscribed_circle(polygon, progress);
   Skeleton skeleton = [&] {
     try {
-      return straight_skeleton(polygon);
+      return straight_skeleton(polygon, progress);
     } catch (const SkeletonFailure& failure) {
       throw InvalidPolygon(failure.what(), 0);
     }
@@ -43,6 +47,7 @@ Analysis analyse(Polygon polygon, const PotentialChoice& choice) {
                            : choice.reference == Reference::inscribed_circle ? circle.radius
                                                                              : skeleton.roof_height;
   SingularArea singular = singular_area(skeleton, reference);
+  WorkLine::check();
   const AreaMoments moments = area_moments(polygon);
   return {std::move(polygon),  moments,   std::move(circle),
           std::move(skeleton), reference, std::move(singular)};

@@ -31,6 +31,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp
   geometry/polygon/predicates.hpp
+  geometry/polygon/progress.hpp
   geometry/polygon/segment_moments.hpp
   geometry/polygon/triangulation.hpp
   geometry/potential/distance_field.hpp

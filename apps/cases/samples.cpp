@@ -167,6 +167,43 @@ Polygon random_simple(Random& random, int n) {
   return Polygon(ring);
 }
 
+Polygon coastline(Random& random, int n) {
+  std::vector<Vec2> ring = regular(6).vertices();
+  while (static_cast<int>(ring.size()) < n) {
+    const size_t bends = std::min(ring.size(), static_cast<size_t>(n) - ring.size());
+    std::vector<Vec2> bent;
+    for (size_t i = 0; i < ring.size(); ++i) {
+      bent.push_back(ring[i]);
+      if (i >= bends) continue;
+      const Vec2 side = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+      const double height = random.uniform(-.15, .15);
+      bent.push_back(ring[i] + side / 2 + height * Vec2(-side.y(), side.x()));
+    }
+    ring = std::move(bent);
+  }
+  return Polygon(std::move(ring));
+}
+
+Polygon skyline(Random& random, int n) {
+  std::vector<Vec2> below, above;
+  for (int i = 0; i < n / 4; ++i) {
+    // A height that differs from the one before, which would leave a repeated vertex.
+    const auto height = [&](const std::vector<Vec2>& line, int sign) {
+      int h = random.integer(5, 40);
+      if (!line.empty() && line.back().y() == sign * h) ++h;
+      return sign * h;
+    };
+    const double bottom = height(below, -1);
+    const double top = height(above, 1);
+    for (const int x : {i, i + 1}) {
+      below.emplace_back(x, bottom);
+      above.emplace_back(x, top);
+    }
+  }
+  below.insert(below.end(), above.rbegin(), above.rend());
+  return Polygon(std::move(below));
+}
+
 Polygon shifted(const Polygon& polygon, const Vec2& by) {
   return mapped(polygon, [&](const Vec2& v) -> Vec2 { return v + by; });
 }

@@ -63,6 +63,12 @@ Polygon random_star_shaped(Random& random, int n, double inner);
 /// itself.
 Polygon random_simple(Random& random, int n);
 
+/// A hexagon whose edges are divided and bent at their middles again and again, like a coastline,
+/// until there are n vertices.
+Polygon coastline(Random& random, int n);
+/// Columns of width 1 and random whole heights above and below a line: n / 4 of them.
+Polygon skyline(Random& random, int n);
+
 /// The polygon with each vertex v moved to map(v). Throws InvalidPolygon if the result is not
 /// simple.
 template <class Map>

@@ -42,7 +42,8 @@ constexpr double kSameHeight = 1e-13;     // relative tolerance for equal radii,
 constexpr double kThinnest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
 constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
 constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
-constexpr size_t kManyEdges = 200;   // a search for a polygon with more edges starts with its box
+constexpr size_t kManyEdges = 200;  // a search for a polygon with more edges starts with its box
+constexpr size_t kCellsPerReport = 100;
 constexpr size_t kMostCells = 2000;  // per edge; then that search is given up
 constexpr size_t kLongList = 64;     // with more edges in its list, a triangle is usually halved
 constexpr double kSimilar = .7;      // unless halving leaves more than this share of the list
@@ -242,8 +243,9 @@ class Search {
   }
 
   /// Returns false if the search was given up.
-  bool run() {
+  bool run(const Progress& progress) {
     const size_t most = beyond_ ? kMostCells * edges_.size() : std::numeric_limits<size_t>::max();
+    size_t report_at = 0;
     // The edges are shuffled, because highest_point is fast only if their order is random.
     std::vector<int> all(edges_.size());
     std::iota(all.begin(), all.end(), 0);
@@ -262,6 +264,10 @@ class Search {
         split(cell);
       }
       if (examined_ > most) return false;
+      if (progress && examined_ >= report_at) {
+        progress({"inscribed circle", std::nullopt});
+        report_at = examined_ + kCellsPerReport;
+      }
     }
     return true;
   }
@@ -521,15 +527,15 @@ bool before(const Vec2& p, const Vec2& q) {
 
 }  // namespace
 
-InscribedCircle largest_inscribed_circle(const Polygon& polygon) {
+InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress) {
   if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
   const double unit = std::exp2(std::ceil(std::log2(bounding_box(polygon).extent())));
   using Start = Search::Start;
   Search search(polygon, unit,
                 polygon.vertices().size() > kManyEdges ? Start::box : Start::triangles);
-  if (!search.run()) {
+  if (!search.run(progress)) {
     search = Search(polygon, unit, Start::triangles);
-    search.run();
+    search.run(progress);
   }
   if (!(search.radius() > kThinnest)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);

@@ -12,6 +12,6 @@ namespace apothem {
 /// the polygon's size count as equal. For convex polygons with up to 100 edges the function calls
 /// inscribed_circle. Throws InvalidPolygon if the polygon is thinner than double precision
 /// resolves.
-InscribedCircle largest_inscribed_circle(const Polygon& polygon);
+InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress = {});
 
 }  // namespace apothem

@@ -3,22 +3,22 @@
 // Every face of the skeleton belongs to one edge of the polygon, and in it the roof is the distance
 // to the line of that edge.
 //
-// CGAL's construction sometimes fails on ordinary input: it returns nothing, never returns, crashes
-// or returns a wrong skeleton. Therefore CGAL runs in a child process with a time limit, its result
-// is corrected with the lines of the polygon's edges, and the result has to pass the laws that
-// broken_law lists. Otherwise the construction is repeated with the vertices moved by 1e-13 to 1e-9
-// of the polygon's size.
+// Every construction may fail: CGAL's sometimes returns nothing, never returns, crashes or returns
+// a wrong skeleton. Therefore CGAL runs in a child process with a time limit, every result is
+// corrected with the lines of the polygon's edges, and it has to pass the laws that broken_law
+// lists. Otherwise the construction is repeated with the vertices moved by 1e-13 to 1e-9 of the
+// polygon's size. Polygons with more than 64 vertices are given to the trace of a wavefront
+// (wavefront.hpp) first, because CGAL's construction needs n^2 steps and n^2 memory.
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/geometry/polygon/progress.hpp"
 
 namespace apothem {
 
@@ -61,16 +61,6 @@ inline constexpr int kMostVertices = 100000;
 
 /// Throws InvalidPolygon if a polygon with so many vertices is too large for a skeleton.
 void require_few_vertices(std::size_t vertices);
-
-/// How far a long construction has come.
-struct Stage {
-  std::string_view name;       ///< what is being done
-  std::optional<double> done;  ///< share of this stage that is done, 0 to 1, if it is known
-};
-
-/// Called about every tenth of a second or hundredth of a stage of a long construction. It may
-/// throw to end the construction; a child process is then killed.
-using Progress = std::function<void(const Stage&)>;
 
 /// Constructs the straight skeleton. Throws InvalidPolygon if the polygon has more than
 /// kMostVertices vertices, and SkeletonFailure if no attempt passes the laws.
