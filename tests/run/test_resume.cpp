@@ -204,6 +204,41 @@ TEST_CASE("a static run continues between its load steps, bit for bit", "[resume
                             "frames/surfaces_000005.vtu"});
 }
 
+TEST_CASE("a static run that is killed goes on from the checkpoint behind a load step",
+          "[resume]") {
+  const Folder folder;
+  Scene scene = scene_of(folder, pressed_blocks(5));
+  scene.output.checkpoint_interval = 1e-9;
+  Run whole(scene, {.folder = folder / "whole"});
+  whole.on_progress([&](const Run& now) {
+    if (now.state().step != 3) return;
+    std::filesystem::copy(folder / "whole", folder / "killed",
+                          std::filesystem::copy_options::recursive);
+  });
+  REQUIRE(whole.run() == Run::Status::done);
+  Run second(scene, {.folder = folder / "killed", .resume = true});
+  CHECK(second.state().step == 2);
+  REQUIRE(second.run() == Run::Status::done);
+  check_same(second, whole);
+  CHECK(content(folder / "whole/history.csv") == content(folder / "killed/history.csv"));
+}
+
+TEST_CASE("without an interval there is no checkpoint before the run stops", "[resume]") {
+  const Folder folder;
+  Scene scene = scene_of(folder, rubbing_scenes()[1].text);
+  for (const bool off : {false, true}) {
+    scene.output.checkpoint_interval = 1e-9;
+    if (off) scene.output.checkpoint_interval.reset();
+    const std::string out = folder / (off ? "off" : "on");
+    Run run(scene, {.folder = out});
+    int seen = 0;
+    run.on_progress(
+        [&](const Run& /*now*/) { seen += std::filesystem::exists(out + "/checkpoint.json"); });
+    REQUIRE(run.run() == Run::Status::done);
+    CHECK((seen > 0) == !off);
+  }
+}
+
 TEST_CASE("a run that was asked to stop leaves a checkpoint", "[resume]") {
   const Folder folder;
   const Scene scene = scene_of(folder, rubbing_scenes()[1].text);

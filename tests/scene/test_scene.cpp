@@ -355,6 +355,17 @@ TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
     INFO(broken.what << " -> " << broken.by);
     if (broken.schema) CHECK_FALSE(valid(schema, replaced(kGood, broken.what, broken.by)));
   }
+  for (const auto& [checkpoint, good] : {std::pair<const char*, bool>{"false", true},
+                                         {R"({ "wall_clock": 60 })", true},
+                                         {"true", false},
+                                         {"{}", false},
+                                         {R"({ "wall_clock": 0 })", false}}) {
+    INFO(checkpoint);
+    const std::string text = replaced(kGood, "\"frames\": 10",
+                                      std::string("\"frames\": 10, \"checkpoint\": ") + checkpoint);
+    CHECK(valid(schema, text) == good);
+    CHECK(error_of(Folder().write("checkpoint.json", text)).empty() == good);
+  }
   int shipped = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::kSource + "/data/scenes")) {
     INFO(entry.path());
