@@ -31,6 +31,8 @@
 
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/polygon/triangulation.hpp"
+#include "apothem/geometry/potential/edge_distance.hpp"
+#include "apothem/geometry/potential/highest_point.hpp"
 
 namespace apothem {
 namespace {
@@ -52,132 +54,6 @@ constexpr double kInTheWay = .5;  // a circle that moves towards an edge at this
 constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
 // Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
 constexpr int kFewEdges = 100;
-
-using Heights = Eigen::Vector3d;  // heights of a plane at the three corners of a triangle
-
-// A distance and its gradient.
-struct Distance {
-  double value;
-  Vec2 gradient;
-};
-
-struct Edge {
-  Vec2 start, end, direction;
-  double length;
-
-  Edge(const Vec2& a, const Vec2& b)
-      : start(a), end(b), direction(b - a), length(std::hypot(direction.x(), direction.y())) {
-    direction /= length;
-  }
-
-  [[nodiscard]] double distance(const Vec2& p) const {
-    const Vec2 d = p - start;
-    const double along = direction.dot(d);
-    if (along <= 0) return d.norm();
-    return along >= length ? (p - end).norm() : std::abs(cross(direction, d));
-  }
-
-  [[nodiscard]] Distance distance_and_gradient(const Vec2& p) const {
-    const Vec2 d = p - start;
-    const double along = direction.dot(d);
-    if (along > 0 && along < length) {
-      const double across = cross(direction, d);
-      const double sign = across < 0 ? -1 : 1;
-      return {sign * across, sign * Vec2(-direction.y(), direction.x())};
-    }
-    const Vec2 arm = along <= 0 ? d : p - end;
-    const double value = arm.norm();
-    return {value, value > 0 ? Vec2(arm / value) : Vec2::Zero()};
-  }
-
-  /// The first s >= 0 at which the point x + s u is closer to the edge than `radius`, or infinity
-  /// if there is none. u has unit length. The points of a line within that distance form one
-  /// interval, which is the union of the intervals in the discs about the two ends of the edge and
-  /// in the strip between them.
-  [[nodiscard]] double first_hit(const Vec2& x, const Vec2& u, double radius) const {
-    double enter = HUGE_VAL;
-    double leave = -HUGE_VAL;
-    const auto add = [&](double low, double high) {
-      if (!(low < high)) return;
-      enter = std::min(enter, low);
-      leave = std::max(leave, high);
-    };
-    for (const Vec2& centre : {start, end}) {
-      const double middle = u.dot(centre - x);
-      const double half = radius * radius - std::pow(cross(u, centre - x), 2);
-      if (half > 0) add(middle - std::sqrt(half), middle + std::sqrt(half));
-    }
-    double low = -HUGE_VAL;
-    double high = HUGE_VAL;
-    const auto clip = [&](double value, double slope, double least, double most) {
-      if (slope == 0) {
-        if (!(least < value && value < most)) high = -HUGE_VAL;
-        return;
-      }
-      const auto [first, second] = std::minmax({(least - value) / slope, (most - value) / slope});
-      low = std::max(low, first);
-      high = std::min(high, second);
-    };
-    clip(direction.dot(x - start), direction.dot(u), 0, length);
-    clip(cross(direction, x - start), cross(direction, u), -radius, radius);
-    add(low, high);
-    return leave > 0 ? std::max(enter, 0.0) : HUGE_VAL;
-  }
-};
-
-// The highest point of a lower envelope of planes over a triangle.
-struct Summit {
-  Heights place = Heights(1, 0, 0);  // barycentric coordinates
-  double height = HUGE_VAL;          // upper bound of the height
-};
-
-// Finds the highest point by Seidel's incremental linear programming, which takes time linear in
-// the number of planes if their order is random. A plane counts as below another one only if it is
-// so by more than round-off, so that nothing is cut off wrongly where planes coincide or nearly
-// coincide.
-Summit highest_point(const std::vector<Heights>& planes) {
-  double largest = 0;
-  for (const Heights& plane : planes) largest = std::max(largest, plane.cwiseAbs().maxCoeff());
-  const double slack = 0x1p-51 * largest;
-  Summit summit;
-  for (size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].dot(summit.place) >= summit.height - slack) continue;
-    // The summit lies on plane i. It is the highest point of this plane at which no earlier plane
-    // is below it.
-    Eigen::Index corner;
-    planes[i].maxCoeff(&corner);
-    Heights place = Heights::Unit(corner);
-    for (size_t j = 0; j < i; ++j) {
-      const Heights side = planes[j] - planes[i];
-      if (side.dot(place) >= -slack) continue;
-      // The summit lies on the line side = 0, between its two crossings with the triangle's border.
-      std::array<Heights, 2> ends;
-      size_t count = 0;
-      for (int k = 0; k < 3; ++k) {
-        const int l = (k + 1) % 3;
-        if ((side[k] < 0) == (side[l] < 0)) continue;
-        const double share = side[k] / (side[k] - side[l]);
-        ends[count++] = (1 - share) * Heights::Unit(k) + share * Heights::Unit(l);
-      }
-      if (count < 2) continue;
-      double low = 0;
-      double high = 1;
-      for (size_t l = 0; l < j; ++l) {
-        const Heights other = planes[l] - planes[i];
-        const double first = other.dot(ends[0]) + slack;
-        const double second = other.dot(ends[1]) + slack;
-        if (first < 0) low = std::max(low, second > 0 ? first / (first - second) : 2);
-        if (second < 0) high = std::min(high, first > 0 ? first / (first - second) : -1);
-      }
-      if (low > high) continue;
-      const double best = planes[i].dot(ends[0]) > planes[i].dot(ends[1]) ? low : high;
-      place = (1 - best) * ends[0] + best * ends[1];
-    }
-    summit = {place, std::min(summit.height, planes[i].dot(place))};
-  }
-  summit.height += 2 * slack;
-  return summit;
-}
 
 // A triangle inside the polygon.
 struct Cell {

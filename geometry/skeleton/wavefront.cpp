@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 
-#include "apothem/geometry/polygon/triangulation.hpp"
-#include "apothem/geometry/skeleton/double_double.hpp"
 #include "apothem/geometry/skeleton/event_queue.hpp"
+#include "apothem/geometry/skeleton/moving_front.hpp"
 
 namespace apothem {
 namespace {
@@ -15,94 +13,15 @@ using Real = DoubleDouble;
 
 constexpr int kNone = -1;
 // Largest movement of a vertex, as a share of the polygon's size. A vertex between two edges that
-// are parallel but for a movement d has the speed 1 / d, and its place has the error 1e-32 / d.
-// Both d and d^2 / 1e-32 have to be small for all events to be told apart.
+// are parallel but for a movement d has the speed 1 / d, and its place has the error 1e-32 / d,
+// which has to be much smaller than d.
 constexpr double kMovement = 0x1p-46;
-// A vertex moves by no more than this share of its distance from the opposite side of a triangle,
-// so that the triangles of the polygon remain triangles.
-constexpr double kSafe = 0x1p-10;
 // The construction is given up after so many changes of triangles per vertex and in addition. Usual
 // polygons need 10 to 30 per vertex.
 constexpr double kMostChanges = 500;
 constexpr double kMoreChanges = 1e5;
 
 int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
-
-// ------------------------------------------------------------------------------------------------
-// The moved polygon
-
-FineVec fine(const Vec2& p) { return {p.x(), p.y()}; }
-
-// Twice the area of a triangle.
-Real twice_area(const FineVec& a, const FineVec& b, const FineVec& c) {
-  return cross(b - a, c - a);
-}
-
-// The vertices, moved in random directions.
-std::vector<FineVec> moved_vertices(const Polygon& polygon, const std::vector<Triangle>& triangles,
-                                    double movement, unsigned seed) {
-  std::vector<FineVec> points;
-  for (const Vec2& v : polygon.vertices()) points.push_back(fine(v));
-  std::vector<double> steps(points.size(), movement);
-  for (const Triangle& t : triangles) {
-    const double area = static_cast<double>(twice_area(points[t[0]], points[t[1]], points[t[2]]));
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) {
-      longest = std::max(longest, (polygon[t[k]] - polygon[t[(k + 1) % 3]]).norm());
-    }
-    for (const int v : t) steps[v] = std::min(steps[v], kSafe * area / longest);
-  }
-  std::mt19937_64 engine(seed);
-  const auto random = [&] { return std::ldexp(static_cast<double>(engine() >> 11), -52) - 1; };
-  for (size_t i = 0; i < points.size(); ++i) {
-    const double x = random();
-    const double y = random();
-    points[i] = points[i] + Real(steps[i]) * FineVec{x, y};
-  }
-  return points;
-}
-
-// The line of an edge: at the time t the points x on it fulfil normal . x = offset + t.
-struct Line {
-  FineVec tangent, normal;
-  Real offset;
-};
-
-Line line_through(const FineVec& a, const FineVec& b) {
-  const FineVec side = b - a;
-  const Real length = sqrt(side.dot(side));
-  const FineVec tangent{side.x / length, side.y / length};
-  const FineVec normal{-tangent.y, tangent.x};
-  return {tangent, normal, normal.dot(a)};
-}
-
-// ------------------------------------------------------------------------------------------------
-// The front
-
-// A vertex of the front, from the node at which it starts until the next event.
-struct FrontVertex {
-  FineVec start, speed;  // place at the time `since`; movement per time
-  Real since;
-  int before, after;  // edges of the polygon on whose lines it moves: its front edges end and start
-                      // in it
-  int node;           // where it starts
-};
-
-// A triangle inside the front. Side k is opposite to corner k. A side is the number of the
-// neighbouring triangle, or, where the front is, ~e with the polygon's edge e.
-struct FrontTriangle {
-  std::array<int, 3> corners{}, sides{};
-
-  [[nodiscard]] int place_of(int corner) const {
-    return corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2;
-  }
-  [[nodiscard]] int side_to(int triangle) const {
-    return sides[0] == triangle ? 0 : sides[1] == triangle ? 1 : 2;
-  }
-  [[nodiscard]] int front_sides() const {
-    return static_cast<int>(std::count_if(sides.begin(), sides.end(), [](int s) { return s < 0; }));
-  }
-};
 
 // A border of a face, from one node to the next one, counter-clockwise.
 struct Border {
@@ -120,11 +39,11 @@ class Wavefront {
     const std::vector<Triangle> corners = triangulate(polygon);
     const std::vector<FineVec> points = moved_vertices(polygon, corners, movement, seed);
     for (int e = 0; e < size_; ++e) {
-      lines_.push_back(line_through(points[e], points[next(e, size_)]));
+      front_.add_line(points[e], points[next(e, size_)]);
       nodes_.push_back({polygon[e], 0});
     }
     for (int v = 0; v < size_; ++v) {
-      add_vertex(points[v], 0, v == 0 ? size_ - 1 : v - 1, v, v);
+      front_.add_vertex(points[v], 0, v == 0 ? size_ - 1 : v - 1, v, v);
     }
     connect(corners);
     for (int t = 0; t < size_ - 2 && sound_; ++t) {
@@ -189,103 +108,8 @@ class Wavefront {
     }
   }
 
-  int add_vertex(const FineVec& start, const Real& since, int before, int after, int node) {
-    // The speed v solves n_before . v = n_after . v = 1.
-    const FineVec sum = lines_[before].normal + lines_[after].normal;
-    const Real square = sum.dot(sum);
-    if (!(square > 0)) sound_ = false;
-    vertices_.push_back({start, Real(2) / square * sum, since, before, after, node});
-    return static_cast<int>(vertices_.size()) - 1;
-  }
-
-  [[nodiscard]] FineVec place(int vertex, const Real& time) const {
-    const FrontVertex& v = vertices_[vertex];
-    return v.start + (time - v.since) * v.speed;
-  }
-
-  // ----------------------------------------------------------------------------------------------
-  // When a triangle collapses
-
-  // The time at which a decreasing linear function reaches zero, or nothing.
-  static std::optional<Real> zero(const Real& now, const Real& value, const Real& rate) {
-    if (!(rate < 0)) return std::nullopt;
-    return now - value / rate;
-  }
-
-  // The time at which the front edge on side k of a triangle has shrunk to nothing.
-  [[nodiscard]] std::optional<Real> shrink_time(const FrontTriangle& t, int k,
-                                                const Real& now) const {
-    const int a = t.corners[(k + 1) % 3];
-    const int b = t.corners[(k + 2) % 3];
-    const FineVec& tangent = lines_[~t.sides[k]].tangent;
-    return zero(now, tangent.dot(place(b, now) - place(a, now)),
-                tangent.dot(vertices_[b].speed - vertices_[a].speed));
-  }
-  // The time at which the corner opposite to the front edge on side k reaches the edge's line.
-  [[nodiscard]] std::optional<Real> reach_time(const FrontTriangle& t, int k,
-                                               const Real& now) const {
-    const Line& line = lines_[~t.sides[k]];
-    const int c = t.corners[k];
-    return zero(now, line.normal.dot(place(c, now)) - line.offset - now,
-                line.normal.dot(vertices_[c].speed) - 1);
-  }
-  // The time at which a triangle without front edges becomes flat: the first zero of a quadratic
-  // function of the time at which it decreases.
-  [[nodiscard]] std::optional<Real> flat_time(const FrontTriangle& t, const Real& now) const {
-    const auto [a, b, c] = t.corners;
-    const FineVec origin = place(a, now);
-    const FineVec p = place(b, now) - origin;
-    const FineVec q = place(c, now) - origin;
-    const FineVec dp = vertices_[b].speed - vertices_[a].speed;
-    const FineVec dq = vertices_[c].speed - vertices_[a].speed;
-    const Real value = cross(p, q);
-    const Real half = (cross(p, dq) + cross(dp, q)) * 0.5;
-    const Real square = cross(dp, dq);
-    if (!(value > 0) && half < 0) return now;
-    const Real root = half * half - value * square;
-    if (root < 0) return std::nullopt;
-    // The zeros are (-half -+ sqrt(root)) / square; the one where the function decreases is
-    // (-half - sqrt(root)) / square = value / (sqrt(root) - half). The form without cancellation
-    // is taken.
-    if (half < 0) return now + value / (sqrt(root) - half);
-    if (!(square < 0)) return std::nullopt;
-    return now + (half + sqrt(root)) / -square;
-  }
-
-  // The time at which a triangle whose sides are all front edges shrinks to a point: a corner
-  // reaches the opposite side. The two sides at the corner with the largest angle between their
-  // lines determine the corner best.
-  [[nodiscard]] std::optional<Real> end_time(const FrontTriangle& t, const Real& now) const {
-    int best = 0;
-    double largest = -1;
-    for (int k = 0; k < 3; ++k) {
-      const double sine = std::abs(static_cast<double>(
-          cross(lines_[~t.sides[(k + 1) % 3]].normal, lines_[~t.sides[(k + 2) % 3]].normal)));
-      if (sine > largest) largest = sine, best = k;
-    }
-    return reach_time(t, best, now);
-  }
-
-  static std::optional<Real> earlier(const std::optional<Real>& a, const std::optional<Real>& b) {
-    if (!a || !b) return a ? a : b;
-    return *b < *a ? b : a;
-  }
-
   void schedule(int triangle, const Real& now) {
-    const FrontTriangle& t = triangles_[triangle];
-    const int count = t.front_sides();
-    std::optional<Real> time;
-    if (count == 3) {
-      time = end_time(t, now);
-    } else if (count == 0) {
-      time = flat_time(t, now);
-    } else {
-      for (int k = 0; k < 3; ++k) {
-        if (t.sides[k] >= 0) continue;
-        time = earlier(time, shrink_time(t, k, now));
-        if (count == 1) time = earlier(time, reach_time(t, k, now));
-      }
-    }
+    const MovingFront::Time time = front_.collapse_time(triangles_[triangle], now);
     ++changes_;
     time ? queue_.set(triangle, *time) : queue_.remove(triangle);
   }
@@ -302,12 +126,12 @@ class Wavefront {
     std::optional<Real> first_time;
     for (int k = 0; k < 3; ++k) {
       if (t.sides[k] >= 0) continue;
-      const std::optional<Real> time = shrink_time(t, k, now_);
+      const std::optional<Real> time = front_.shrink_time(t, k, now_);
       if (time && (!first_time || *time < *first_time)) first = k, first_time = time;
     }
     if (count == 1) {
       const int k = t.side_to(*std::min_element(t.sides.begin(), t.sides.end()));
-      const std::optional<Real> reach = reach_time(t, k, now_);
+      const std::optional<Real> reach = front_.reach_time(t, k, now_);
       if (reach && (!first_time || *reach < *first_time)) return hit(triangle, k);
     }
     if (first == kNone) {
@@ -321,7 +145,7 @@ class Wavefront {
     std::array<double, 3> lengths{};
     for (int k = 0; k < 3; ++k) {
       const FineVec side =
-          place(t.corners[(k + 2) % 3], now_) - place(t.corners[(k + 1) % 3], now_);
+          front_.place(t.corners[(k + 2) % 3], now_) - front_.place(t.corners[(k + 1) % 3], now_);
       lengths[k] = static_cast<double>(side.dot(side));
     }
     return static_cast<int>(std::max_element(lengths.begin(), lengths.end()) - lengths.begin());
@@ -331,13 +155,13 @@ class Wavefront {
   // edge if it lies on it; otherwise an end of the edge crosses another side.
   void hit(int triangle, int k) {
     const FrontTriangle& t = triangles_[triangle];
-    const FineVec& tangent = lines_[~t.sides[k]].tangent;
-    const FineVec c = place(t.corners[k], now_);
+    const FineVec& tangent = front_.line(~t.sides[k]).tangent;
+    const FineVec c = front_.place(t.corners[k], now_);
     const int after_start = (k + 1) % 3;
     const int after_end = (k + 2) % 3;
-    if (!(tangent.dot(c - place(t.corners[after_start], now_)) > 0)) {
+    if (!(tangent.dot(c - front_.place(t.corners[after_start], now_)) > 0)) {
       flip(triangle, after_start);
-    } else if (!(tangent.dot(place(t.corners[after_end], now_) - c) > 0)) {
+    } else if (!(tangent.dot(front_.place(t.corners[after_end], now_) - c) > 0)) {
       flip(triangle, after_end);
     } else {
       divide(triangle, k);
@@ -371,21 +195,9 @@ class Wavefront {
     schedule(other, now_);
   }
 
-  // Adds the node at which the lines of three edges meet now. The two lines with the largest angle
-  // between them determine its place.
+  // Adds the node at which the lines of three edges meet now.
   int add_node(int e, int f, int g, FineVec& where) {
-    const std::array<std::array<int, 2>, 3> pairs{{{e, f}, {f, g}, {g, e}}};
-    std::array<int, 2> best = pairs[0];
-    Real largest;
-    for (const auto& pair : pairs) {
-      const Real sine = cross(lines_[pair[0]].normal, lines_[pair[1]].normal);
-      if (abs(sine) > abs(largest)) largest = sine, best = pair;
-    }
-    const Line &p = lines_[best[0]], &q = lines_[best[1]];
-    const Real along_p = p.offset + now_;
-    const Real along_q = q.offset + now_;
-    where = {(along_p * q.normal.y - along_q * p.normal.y) / largest,
-             (along_q * p.normal.x - along_p * q.normal.x) / largest};
+    where = front_.meeting_point(e, f, g, now_);
     const Vec2 point(static_cast<double>(where.x), static_cast<double>(where.y));
     if (!is_finite(point)) sound_ = false;
     nodes_.push_back({point, static_cast<double>(now_)});
@@ -394,7 +206,7 @@ class Wavefront {
 
   // Adds the arc on which a vertex has moved to a node to the borders of the faces on its sides.
   void add_arc(int vertex, int node) {
-    const FrontVertex& v = vertices_[vertex];
+    const FrontVertex& v = front_.vertex(vertex);
     borders_[v.before].push_back({v.node, node});
     borders_[v.after].push_back({node, v.node});
   }
@@ -413,13 +225,13 @@ class Wavefront {
     const int b = t.corners[(k + 2) % 3];
     const int beside_a = t.sides[(k + 2) % 3];
     const int beside_b = t.sides[(k + 1) % 3];
-    const int before = vertices_[a].before;
-    const int after = vertices_[b].after;
+    const int before = front_.vertex(a).before;
+    const int after = front_.vertex(b).after;
     FineVec where;
     const int node = add_node(before, ~t.sides[k], after, where);
     add_arc(a, node);
     add_arc(b, node);
-    const int vertex = add_vertex(where, now_, before, after, node);
+    const int vertex = front_.add_vertex(where, now_, before, after, node);
     if (beside_a >= 0)
       triangles_[beside_a].sides[triangles_[beside_a].side_to(triangle)] = beside_b;
     if (beside_b >= 0)
@@ -436,13 +248,13 @@ class Wavefront {
     const int c = t.corners[k];
     const int beside_a = t.sides[(k + 2) % 3];  // side c a
     const int beside_b = t.sides[(k + 1) % 3];  // side b c
-    const int before = vertices_[c].before;
-    const int after = vertices_[c].after;
+    const int before = front_.vertex(c).before;
+    const int after = front_.vertex(c).after;
     FineVec where;
     const int node = add_node(before, edge, after, where);
     add_arc(c, node);
-    const int first = add_vertex(where, now_, edge, after, node);
-    const int second = add_vertex(where, now_, before, edge, node);
+    const int first = front_.add_vertex(where, now_, edge, after, node);
+    const int second = front_.add_vertex(where, now_, before, edge, node);
     triangles_[beside_a].sides[triangles_[beside_a].side_to(triangle)] = ~edge;
     triangles_[beside_b].sides[triangles_[beside_b].side_to(triangle)] = ~edge;
     replace(beside_a, ~edge, c, first);
@@ -494,8 +306,7 @@ class Wavefront {
   bool sound_ = true;  // false once something has happened that cannot be
   Real now_;
   double changes_ = 0;
-  std::vector<Line> lines_;  // per edge of the polygon
-  std::vector<FrontVertex> vertices_;
+  MovingFront front_;
   std::vector<FrontTriangle> triangles_;
   EventQueue queue_;          // of triangles
   std::vector<int> changed_;  // triangles that have to be scheduled anew

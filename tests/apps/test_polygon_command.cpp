@@ -1,11 +1,15 @@
 // `apothem polygon` as its users meet it.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "apothem/geometry/skeleton/skeleton.hpp"
 #include "folder.hpp"
 #include "program.hpp"
 #include "public_rings.hpp"
@@ -208,6 +212,41 @@ TEST_CASE("polygon of many rings goes on after a refusal", "[program][polygon]")
     CHECK(empty.err.find("empty.txt: is empty; write on each line name n x y ...") !=
           std::string::npos);
   }
+}
+
+TEST_CASE("more vertices than the limit are refused, and a batch goes on", "[program][polygon]") {
+  const Folder folder;
+  const Ring big = samples::regular(kMostVertices + 1).vertices();
+  const Result r = run({"polygon", folder.write("big.json", text(big))}, folder);
+  CHECK(r.code == 2);
+  CHECK(r.out.empty());
+  CHECK(lines(r.err) == 1);
+  for (const char* part : {"big.json", "100001 vertices", "limited to 100000", "simplify"}) {
+    CHECK(r.err.find(part) != std::string::npos);
+  }
+  std::string batch = "big " + std::to_string(big.size());
+  for (const Vec2& v : big) batch += fmt::format(" {} {}", v.x(), v.y());
+  batch += "\nsquare 4 0 0 2 0 2 2 0 2\n";
+  const Result b = run({"polygon", "--batch", folder.write("rings.txt", batch)}, folder);
+  CHECK(b.code == 2);
+  const std::vector<Json> list = objects(b.out);
+  REQUIRE(list.size() == 2);
+  CHECK(list[0]["error"].get<std::string>().find("limited to 100000") != std::string::npos);
+  CHECK(list[1]["area"] == 4);
+}
+
+TEST_CASE("a big polygon shows its progress and ends on Ctrl-C", "[program][polygon]") {
+  const Folder folder;
+  // A comb has as many largest inscribed circles as teeth, which takes a minute.
+  const std::string file =
+      folder.write("big.json", text(samples::comb(kMostVertices / 4, 9).vertices()));
+  const auto start = std::chrono::steady_clock::now();
+  const Result r = run({"polygon", file, "--json"}, folder, {.interrupt_after = 2.5});
+  CHECK(r.code == 130);
+  CHECK(r.out.empty());
+  CHECK(r.err.find("100000 vertices: ") != std::string::npos);
+  CHECK(r.err.find("interrupted") != std::string::npos);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(60));
 }
 
 TEST_CASE("every public ring is described or refused", "[program][polygon]") {

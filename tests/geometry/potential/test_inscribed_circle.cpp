@@ -313,3 +313,43 @@ TEST_CASE("convex polygons of many edges: the same circle as by clipping", "[ins
   const double length = 3 - 2 * std::tan(M_PI / 400);
   CHECK(std::abs((circle.centres[1] - circle.centres[0]).norm() - length) < 1e-9);
 }
+
+TEST_CASE("many vertices on the edges change nothing", "[inscribed]") {
+  const auto divided = [](const Polygon& polygon, int parts) {
+    std::vector<Vec2> ring;
+    for (int i = 0; i < polygon.size(); ++i) {
+      for (int k = 0; k < parts; ++k) {
+        ring.push_back(polygon[i] + double(k) / parts * (polygon.after(i) - polygon[i]));
+      }
+    }
+    return Polygon(ring);
+  };
+  for (const double angle : {0., .3}) {
+    for (const Polygon& shape : {h_shape(), u_shape(), l_shape(), cross_of_squares(), star(7, .4),
+                                 comb(4, 9), spiral(2, 12), needle(1, .001)}) {
+      const Polygon polygon = turned(shape, angle);
+      const Polygon big = divided(polygon, 1 + 400 / polygon.size());
+      const InscribedCircle few = largest_inscribed_circle(polygon);
+      const InscribedCircle many = largest_inscribed_circle(big);
+      INFO(polygon.size() << " and " << big.size() << " vertices, turned by " << angle);
+      require_consistent(big, many);
+      CHECK(std::abs(many.radius - few.radius) < 1e-13 * size_of(polygon));
+      CHECK(many.centres.size() == few.centres.size());
+    }
+  }
+}
+
+TEST_CASE("big combs, stars and coastlines have the largest circles that brute force finds",
+          "[inscribed]") {
+  Random random(21);
+  const int n = std::max(300, test::scaled(2000));
+  checked(coastline(random, n));
+  checked(turned(skyline(random, n), .2));
+  checked(star(n / 2, .5));
+  // One circle between each two neighbouring teeth, which touches the bar and two corners.
+  for (const double angle : {0., .3}) {
+    const InscribedCircle circle = largest_inscribed_circle(turned(comb(n / 4, 9), angle));
+    CHECK(circle.radius == Approx(.625).epsilon(1e-12));
+    CHECK(static_cast<int>(circle.centres.size()) == n / 4 - 2);
+  }
+}

@@ -1,8 +1,10 @@
 #include "apothem/geometry/skeleton/child_process.hpp"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <memory>
 #include <stdexcept>
@@ -57,4 +59,22 @@ TEST_CASE("what goes wrong in a child process stays there", "[child]") {
   const ChildAnswer failed = after_one_number([] { throw std::runtime_error("no"); });
   CHECK(failed.end == End::failed);
   CHECK(failed.numbers == std::vector<double>{1});
+}
+
+TEST_CASE("the parent may lose patience with its child", "[child]") {
+  struct Enough {};
+  int calls = 0;
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_THROWS_AS(run_in_child(
+                      [](const SendNumbers&) {
+                        while (true) sleep(1);
+                      },
+                      60,
+                      [&] {
+                        if (++calls == 3) throw Enough();
+                      }),
+                  Enough);
+  CHECK(calls == 3);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
+  CHECK(waitpid(-1, nullptr, WNOHANG) == -1);  // no child is left
 }
