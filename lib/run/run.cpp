@@ -151,8 +151,11 @@ Run::Status Run::run(std::optional<double> until) {
     }
     throw;
   }
-  for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
-    warn(std::move(sentence));
+  // A run that has become unstable has said enough.
+  if (status_ != Status::unstable) {
+    for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
+      warn(std::move(sentence));
+    }
   }
   if (!settings_.folder.empty()) write_summary(*this);
   return status_;

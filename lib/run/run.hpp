@@ -89,7 +89,7 @@ class Run {
   /// Why the run has stopped; empty if it is done.
   [[nodiscard]] const std::string& message() const { return message_; }
   /// Reasons to doubt the results, as whole sentences: those of warn(), and at the end of run()
-  /// what the run itself has found (warnings.hpp). They stand in run.json.
+  /// what it has found itself, unless it is unstable (warnings.hpp). They stand in run.json.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
