@@ -11,7 +11,7 @@ namespace apothem {
 class EnergyGuard {
  public:
   /// Steps between two looks. A look costs about as much as a step.
-  static constexpr std::int64_t kEvery = 64;
+  static constexpr std::int64_t kEvery = 128;
 
   explicit EnergyGuard(const Model& model);
 
