@@ -223,9 +223,9 @@ TEST_CASE("frames show bodies and elements that are not convex as they are", "[o
   const auto lines = read(folder / "frames/outlines_000000.vtu");
   REQUIRE(lines->GetOutput()->GetNumberOfCells() == 3);
   CHECK(lines->GetOutput()->GetCellType(0) == VTK_POLY_LINE);
-  for (const auto& [body, shape] :
+  for (const auto& [number, shape] :
        {std::pair<int, Ring>(0, shape_of(0)), {1, shape_of(1)}, {2, outline}}) {
-    const std::vector<Ring> loops = cells_of(lines->GetOutput(), body);
+    const std::vector<Ring> loops = cells_of(lines->GetOutput(), number);
     REQUIRE(loops.size() == 1);
     REQUIRE(loops[0].size() == shape.size() + 1);
     CHECK(loops[0].front() == loops[0].back());
