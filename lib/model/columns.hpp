@@ -72,6 +72,7 @@ inline constexpr std::array kMomentumColumns{
 template <class Columns>
 std::vector<std::string> names_of(const Columns& columns) {
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const auto& column : columns) names.emplace_back(column.name);
   return names;
 }

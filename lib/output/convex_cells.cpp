@@ -33,6 +33,7 @@ std::vector<std::vector<int>> convex_cells(std::span<const Vec2> ring) {
   corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
   if (corners.size() > 1 && same(corners.front(), corners.back())) corners.pop_back();
   std::vector<Vec2> places;
+  places.reserve(corners.size());
   for (const int i : corners) places.push_back(ring[i]);
   try {
     std::vector<std::vector<int>> cells = convex_parts(Polygon(places));

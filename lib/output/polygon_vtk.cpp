@@ -37,9 +37,11 @@ std::string faces(const Polygon& polygon, const Skeleton& skeleton, double refer
   vtkNew<vtkIntArray> plateau = integers("plateau");
   for (const CutFaces::Part& part : cut.parts) {
     std::vector<Vec2> ring;
+    ring.reserve(part.nodes.size());
     for (const int i : part.nodes) ring.push_back(cut.nodes[i].point);
     for (const std::vector<int>& cell : convex_cells(ring)) {
       std::vector<vtkIdType> nodes;
+      nodes.reserve(cell.size());
       for (const int corner : cell) nodes.push_back(part.nodes[corner]);
       grid->InsertNextCell(VTK_POLYGON, static_cast<vtkIdType>(nodes.size()), nodes.data());
       edge->InsertNextValue(polygon.input_edge(part.edge));
@@ -65,6 +67,7 @@ std::string singular_parts(const Polygon& polygon, const SingularArea& singular)
     }
     for (const std::vector<int>& cell : cells) {
       std::vector<vtkIdType> nodes;
+      nodes.reserve(cell.size());
       for (const int corner : cell) nodes.push_back(first + corner);
       grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
     }
