@@ -47,13 +47,13 @@ TEST_CASE("accuracy measures every method and names what it refuses", "[accuracy
                                         "bow#2 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n"
                                         "\n"
                                         "L#3 6 0 0 2 0 2 1 1 1 1 2 0 2 4 1.5 0.25 3 0.5 3 3 1 3\n"
-                                        "nan#4 3 0 0 1 0 0 1 3 0 0 1 0 nan 1\n");
+                                        "bow#4 3 0 0 1 0 0 1 4 0 0 1 1 1 0 0 1\n");
   const Result r = run({"accuracy", "--cases", file, "-o", folder / "out"}, folder);
   INFO(r.out << r.err);
   CHECK(r.code == 0);
   CHECK(test::lines(r.err) == 2);
   CHECK(r.err.find("bow#2: refused: polygon a, vertex 2") != std::string::npos);
-  CHECK(r.err.find("nan#4: refused: polygon b, vertex 2") != std::string::npos);
+  CHECK(r.err.find("bow#4: refused: polygon b, vertex 2") != std::string::npos);
   CHECK(r.out.find("refused pairs: 2") != std::string::npos);
 
   auto rows = table(folder / "out/accuracy.csv", 2);
@@ -147,7 +147,8 @@ TEST_CASE("bad files of pairs end with exit code 2, name and line", "[accuracy]"
        {std::pair("a 3 0 0 1 0 0 1 3 0 0 1 0 0 1\nshort 3 0 0 1 0\n", ":2: short, polygon a"),
         std::pair("words 3 0 0 1 0 0 up 3 0 0 1 0 0 1\n", ":1: words, polygon a, vertex 2"),
         std::pair("long 3 0 0 1 0 0 1 3 0 0 1 0 0 1 7\n", ":1: long: text behind"),
-        std::pair("\n", "has no pair"), std::pair("{\"pairs\": [\n{\"nam\": 1}]}", ":2: /pairs/0"),
+        std::pair("\n", "is empty"),
+        std::pair("nan 3 0 0 1 0 0 1 3 0 0 1 0 nan 1\n", ":1: nan, polygon b, vertex 2"), std::pair("{\"pairs\": [\n{\"nam\": 1}]}", ":2: /pairs/0"),
         std::pair("{\"pairs\": [\n{\"name\": \"x\", \"a\": 1}]}", ":2: /pairs/0/a"),
         std::pair("bow 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n", "no pair is left")}) {
     const std::string file = folder.write("bad.txt", text);

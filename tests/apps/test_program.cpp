@@ -449,7 +449,7 @@ TEST_CASE("a run that is killed goes on from its last checkpoint, bit for bit", 
         Json::parse(content(folder / "parts/run.json"))["final_state_hash"]);
 }
 
-TEST_CASE("--from begins with the last state of another run", "[program]") {
+TEST_CASE("a run may begin with the last state of another one", "[program]") {
   const Folder folder;
   const std::string file = folder.write("fall.json", scene(R"({ "end": 0.1 })"));
   REQUIRE(run({"run", file, "-o", folder / "one"}, folder).code == 0);

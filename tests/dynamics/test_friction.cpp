@@ -292,7 +292,7 @@ TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bod
       CHECK(r.penetration > 1e-8);
       CHECK(r.penetration < 1e-3);
       CHECK(r.phi > 0);
-      sum -= r.normal + r.tangential;
+      sum -= r.normal + r.tangential + r.damping;
       sideways += r.tangential.x();
     }
     const Eigen::Vector3d force = simulation.state().force(1);
