@@ -114,7 +114,6 @@ class Splitter {
       walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
         moments.add(u1, v1, u2, v2);
       });
-      if (moments.sum == 0 && touches_from_outside(row, y, edge.ex, edge.ey)) continue;
       add_run(of_a, e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false),
               moments);
     }

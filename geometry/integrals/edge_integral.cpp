@@ -74,7 +74,6 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
     SegmentMoments<double> moments;
     walk_envelope(row, s0, s1,
                   [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
-    if (moments.sum == 0 && touches_from_outside(row, y, edge.ex, edge.ey)) continue;
     accumulate(edge, moments, s1 - s0, half);
     pieces.add(edge, s0, s1);
   }

@@ -52,16 +52,16 @@ struct PlacedPotential {
 /// The own length of a polygon is the length of the parts of its boundary that have points of the
 /// other polygon immediately on their inner side. It is the polygon's share of the boundary of the
 /// overlap. Where edges of both polygons lie on each other, they count for both if the polygons lie
-/// on the same side, and for neither if they lie on opposite sides and only touch. All methods
-/// agree about it, but at a depth of round-off the length changes suddenly from nothing to that of
-/// a whole edge: there pair_integral and contact_patches, which round all heights, may take either.
+/// on the same side, and for neither if they lie on opposite sides and only touch. edge_method,
+/// overlap_method and exact_method agree about it. pair_integral and contact_patches round all
+/// heights; for edges that lie on each other they may take either.
 struct PairIntegral {
   Vec2 force = Vec2::Zero();   ///< force on a, m
   double moment_a = 0;         ///< moment on a about its reference point, m^2
   double moment_b = 0;         ///< moment on b about its reference point, m^2
   double weight = 0;           ///< W = SUM INT phi ds, the scale of round-off errors, m
   Vec2 centre = Vec2::Zero();  ///< weighted centre p0 = SUM INT phi x ds / W, m
-  double own_length_a = 0;     ///< length of the boundary of a inside b, m (see below)
+  double own_length_a = 0;     ///< length of the boundary of a inside b, m (see above)
   double own_length_b = 0;     ///< length of the boundary of b inside a, m
   double largest_phi = 0;      ///< largest phi found along the edges
   /// Largest depth of an edge in the other polygon as its potential measures it, which is phi over

@@ -45,18 +45,6 @@ bool clip(const Row<Real>& row, Real& s0, Real& s1) {
   return !(s0 >= s1);
 }
 
-// True if an edge (ex, ey) of another polygon lies on an edge of y and the two polygons lie on
-// opposite sides of it. Then the edge is not inside y. The edge's `row` is that of y. Out of line,
-// because it is rare and would burden the loop that calls it.
-[[gnu::cold, gnu::noinline]] inline bool touches_from_outside(const Row<double>& row,
-                                                              const PlacedPotential& y, double ex,
-                                                              double ey) {
-  for (int i = 0; i < row.size; ++i) {
-    if (row.a[i] == 0 && row.b[i] == 0 && y.gy[i] * ex - y.gx[i] * ey < 0) return true;
-  }
-  return false;
-}
-
 // Calls piece(s, value, s_next, value_next) for every linear piece of phi, which is a concave lower
 // envelope, from s0 to s1.
 template <class Real, class Piece>

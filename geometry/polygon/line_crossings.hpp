@@ -1,10 +1,7 @@
 // The crossings of a straight line with the arcs of a planar graph, such as the edges of a polygon
 // or the arcs of a straight skeleton. One sign per node decides them, by a half-open rule and
-// without a tolerance: a node on the line counts as one on its right. Along an edge of a
-// counter-clockwise polygon the arcs are so crossed as if by a parallel line immediately inside the
-// edge, and an edge on an edge is inside if the two polygons lie on the same side of it. In
-// whichever way round-off decides the signs, a closed chain of arcs is crossed an even number of
-// times.
+// without a tolerance. In whichever way round-off decides the signs, a closed chain of arcs is
+// crossed an even number of times.
 #pragma once
 
 #include <vector>
@@ -38,7 +35,7 @@ class LineCrossings {
   /// arc, 0 at a and 1 at b.
   template <class Crossing>
   void cross(int a, int b, const Crossing& crossing) const {
-    if ((side_[a] > 0) == (side_[b] > 0)) return;
+    if ((side_[a] >= 0) == (side_[b] >= 0)) return;
     const Real w = side_[a] / (side_[a] - side_[b]);
     const Real start = along(a);
     crossing(start + w * (along(b) - start), w);

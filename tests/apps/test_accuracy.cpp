@@ -148,7 +148,8 @@ TEST_CASE("bad files of pairs end with exit code 2, name and line", "[accuracy]"
         std::pair("words 3 0 0 1 0 0 up 3 0 0 1 0 0 1\n", ":1: words, polygon a, vertex 2"),
         std::pair("long 3 0 0 1 0 0 1 3 0 0 1 0 0 1 7\n", ":1: long: text behind"),
         std::pair("\n", "is empty"),
-        std::pair("nan 3 0 0 1 0 0 1 3 0 0 1 0 nan 1\n", ":1: nan, polygon b, vertex 2"), std::pair("{\"pairs\": [\n{\"nam\": 1}]}", ":2: /pairs/0"),
+        std::pair("nan 3 0 0 1 0 0 1 3 0 0 1 0 nan 1\n", ":1: nan, polygon b, vertex 2"),
+        std::pair("{\"pairs\": [\n{\"nam\": 1}]}", ":2: /pairs/0"),
         std::pair("{\"pairs\": [\n{\"name\": \"x\", \"a\": 1}]}", ":2: /pairs/0/a"),
         std::pair("bow 4 0 0 1 1 1 0 0 1 3 0 0 1 0 0 1\n", "no pair is left")}) {
     const std::string file = folder.write("bad.txt", text);
