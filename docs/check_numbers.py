@@ -8,8 +8,8 @@ docs/numbers.json lists the numbers. An entry is one of:
       `{20 to 30}` a range. The expression gives a number, or the least and the largest of several.
   {"in": DOCUMENT, "table": "| case |", "cells": {"edge": ["csv('accuracy', row, 'edge', 'time')"]}}
       All rows of the table whose header starts so. The expressions belong to the numbers of a cell, from
-      left to right; `row` is the first cell of the row, `cells` are all. `where` (an expression)
-      chooses rows. Numbers that a cell leaves out at its end must be 0.
+      left to right; `row` is the first cell of the row, `first` the last one that is not empty, `cells`
+      are all. `where` (an expression) chooses rows. Numbers that a cell leaves out at its end must be 0.
   {"in": DOCUMENT, "heading": "## Meshes", "rows": {"start of a row": ["name of a test"]}}
       A section that rests on tests: the tests exist, and every row of its tables is listed. Its key
       `text` lists in the same way what the section states outside of tables.
@@ -17,8 +17,9 @@ docs/numbers.json lists the numbers. An entry is one of:
       Digits that are part of a name, or a choice of ours; nothing prints them.
 
 `within` says by how much a fresh number may differ: "2%", "x3" (a factor, for times), "1e-3" (in the
-unit of the text); without it by one unit of the last digit that is stated. Commands are in `commands`;
-scenes need none, `apothem run` makes them. A command is run once, when a number needs it.
+unit of the text), "below" (a bound); without it by one unit of the last digit that is stated. Commands
+are in `commands`, and the document names them by `named`; scenes need none, `apothem run` makes them. A
+command is run once, when a number needs it.
 
 Exit code 1: a number is stale, a passage is gone, or a test does not exist.
 """
@@ -34,7 +35,8 @@ import sys
 import tempfile
 
 NUMBER = re.compile(
-    r"(?<![\w.^#/])([-+]?(?:\d{1,3}(?: \d{3})+(?![\d.])|\d+\.\d+|\d+|\.\d+)(?:e[-+]?\d+)?)(k|M)?(?![\w])")
+    r"(?<![\w.^#/])([-+]?(?:\d{1,3}(?: \d{3})+(?:\.\d+)?(?![\d.])|\d+\.\d+|\d+|\.\d+)(?:e[-+]?\d+)?)(k|M)?(?![\w])")
+RANGE = re.compile(f"{NUMBER.pattern}(?: to {NUMBER.pattern})?")
 
 
 class NotRun(Exception):
@@ -69,8 +71,9 @@ def agrees(stated, now, within):
     low, high = now if isinstance(now, (tuple, list)) else (now, now)
     if not (math.isfinite(low) and math.isfinite(high)):
         return False
-    if stated.strip().startswith("<"):
-        return high <= number(stated)[0]
+    if stated.strip().startswith("<") or within == "below":
+        value, unit = number(stated)
+        return high <= value + unit / 2
     ends = [number(end) for end in stated.split(" to ")]
     least, largest = ends[0][0], ends[-1][0]
     if within is None:
@@ -88,8 +91,8 @@ def agrees(stated, now, within):
 class Fresh:
     """Runs commands, each once, and reads what they leave."""
 
-    def __init__(self, root, commands, options):
-        self.root, self.commands, self.options = root, commands, options
+    def __init__(self, root, commands, slow, options):
+        self.root, self.commands, self.slow, self.options = root, commands, slow, options
         self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
         self.done, self.files = {}, {}
 
@@ -113,8 +116,8 @@ class Fresh:
         if name in self.commands:
             command = self.commands[name]
         elif scene.exists():
-            slow = name in self.commands["slow scenes"]
-            command = {"run": f"apothem run data/scenes/{name}.json -o {{out}} --overwrite", "quick": not slow}
+            command = {"run": f"apothem run data/scenes/{name}.json -o {{out}} --overwrite",
+                       "quick": name not in self.slow}
         else:
             return Problem(f"no command and no scene is called {name}")
         if self.options.only and name not in self.options.only:
@@ -122,8 +125,13 @@ class Fresh:
         if self.options.quick and not command.get("quick"):
             return NotRun("not in the quick subset")
         folder = self.folder / name
+        log = folder / "printed.txt"
+        if self.options.keep and log.exists():
+            return folder, log.read_text()
         shown = command["run"].replace("{out}", str(folder))
-        words = shown.split()
+        if "$APOTHEM_POLYGONS" in shown and "APOTHEM_POLYGONS" not in os.environ:
+            return NotRun("APOTHEM_POLYGONS names no folder")
+        words = os.path.expandvars(shown).split()
         environment = dict(os.environ)
         while "=" in words[0]:
             key, value = words.pop(0).split("=", 1)
@@ -132,10 +140,7 @@ class Fresh:
             words[0] = self.program(words[0])
         except NotRun as why:
             return why
-        words = [w.replace("~", " ") for w in words]  # a space within a word
-        log = folder / "printed.txt"
-        if self.options.keep and log.exists():
-            return folder, log.read_text()
+        words = [word.replace("~", " ") for word in words]  # a space within a word
         folder.mkdir(parents=True, exist_ok=True)
         print(f"running {shown}", file=sys.stderr, flush=True)
         result = subprocess.run(words, cwd=self.root, env=environment, stdout=subprocess.PIPE,
@@ -164,16 +169,22 @@ class Fresh:
         return float(match.group(group).replace(" ", ""))
 
     def csv(self, name, first, second, column):
-        """A column of the row of accuracy.csv with these first two cells."""
+        """A column (title or number) of the row of accuracy.csv with these first two cells."""
         rows = self.read(self.run(name)[0] / "accuracy.csv")
-        at = [i for i, title in enumerate(rows[0]) if title.split(" [")[0] == column][0]
-        return float([row for row in rows if row[:2] == [first, second]][0][at])
+        if isinstance(column, str):
+            column = [title.split(" [")[0] for title in rows[0]].index(column)
+        return float([row for row in rows if row[:2] == [first, second]][0][column])
 
     def total(self, name, method, column):
         """The sum of a column of accuracy.csv over the cases that are not random."""
         rows = self.read(self.run(name)[0] / "accuracy.csv")
         return sum(self.csv(name, r[0], method, column) for r in rows[1:]
                    if r[1] == method and not r[0].startswith("generic"))
+
+    def crashes(self, name, method):
+        """How often a method crashed, by pairs.csv."""
+        rows = self.read(self.run(name)[0] / "pairs.csv")
+        return sum(row[2] == method and row[3].startswith("crashed") for row in rows)
 
     def bench(self, name, of="time", command="benchmark"):
         """Time in ns of a benchmark, or one of its counters: least and largest of the repetitions."""
@@ -222,11 +233,11 @@ class Fresh:
             low_b, high_b = b if isinstance(b, tuple) else (b, b)
             return low_a / high_b, high_a / low_b
         names = {f: getattr(self, f) for f in
-                 ("out", "csv", "total", "bench", "expect", "summary", "history")}
-        names.update(ratio=ratio, abs=abs, max=max, min=min, sum=sum, sqrt=math.sqrt, range=range,
+                 ("out", "csv", "total", "crashes", "bench", "expect", "summary", "history")}
+        names.update(ratio=ratio, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
                      scaled=lambda a, s: (a[0] * s, a[1] * s) if isinstance(a, tuple) else a * s, **more)
         try:
-            return eval(expression, {"__builtins__": {}}, names)  # from our own list
+            return eval(expression, {"__builtins__": {}, **names})  # from our own list
         except (KeyError, IndexError, ValueError, NameError, OSError, TypeError) as error:
             raise Problem(f"{expression}: {type(error).__name__} {error}") from error
 
@@ -270,7 +281,7 @@ class Document:
     def uncovered(self):
         """Numbers that stand neither in an entry nor in code, links and addresses."""
         hidden = list(self.covered)
-        for pattern in (r"```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"<[^>]*>"):
+        for pattern in (r"```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"<[^>]*>", r"\n\d+\. "):
             hidden += [m.span() for m in re.finditer(pattern, self.text, re.DOTALL)]
         for match in re.finditer(r"(?<![\w.])[-+]?\.?\d[\d.,]*(?:e[-+]?\d+)?", self.text):
             if not any(a <= match.start() < b for a, b in hidden):
@@ -291,7 +302,7 @@ class Checker:
         self.root, self.options = root, options
         data = json.loads((root / "docs/numbers.json").read_text())
         self.entries, self.commands = data["entries"], data["commands"]
-        self.fresh = Fresh(root, self.commands, options)
+        self.fresh = Fresh(root, self.commands, data.get("slow scenes", []), options)
         self.tests = tests_of(root)
         self.documents = {}
         self.table, self.problems, self.asserted = [], [], []
@@ -315,12 +326,22 @@ class Checker:
         verdict = "ok" if agrees(stated, now, within) else "STALE"
         self.table.append((document.name, line, stated, shown, verdict))
 
+    def commands_are_named(self, document, expressions):
+        """The document names every command that the expressions use."""
+        for name, command in self.commands.items():
+            used = any(re.search(rf"'{re.escape(name)}'", e) for e in expressions)
+            if name == "benchmark":
+                used = used or any("bench(" in e for e in expressions)
+            if used and " ".join(command["named"].split()) not in " ".join(document.text.split()):
+                raise Problem(f"{document.name} does not name the command: {command['named']}")
+
     def passage(self, entry):
         document = self.document(entry["in"])
         text = entry["text"]
         stated = re.findall(r"\{([^}]*)\}", text)
         if len(stated) != len(entry["values"]):
             raise Problem(f"{len(stated)} numbers and {len(entry['values'])} values: {text}")
+        self.commands_are_named(document, entry["values"])
         start, end = document.find(re.sub(r"[{}]", "", text))
         document.covered.append((start, end))
         words_before = 0
@@ -342,16 +363,18 @@ class Checker:
         for title in entry["cells"]:
             if title not in titles:
                 raise Problem(f"the table {entry['table']} has no column {title}")
-        last, rows = at[0], 0
+        self.commands_are_named(document, [v for values in entry["cells"].values() for v in values])
+        last, rows, first = at[0], 0, ""
         while document.lines[last].startswith("|"):
             last += 1
         for i, cells in document.rows(at[0], last):
-            more = {"cells": cells, "row": re.sub(r" \(.*|\*", "", cells[0])}
+            first = cells[0] or first
+            more = {"cells": cells, "row": re.sub(r" \(.*|\*", "", cells[0]), "first": first}
             if "where" in entry and not self.fresh.evaluate(entry["where"], **more):
                 continue
             rows += 1
             for title, values in entry["cells"].items():
-                stated = [m.group() for m in NUMBER.finditer(cells[titles.index(title)])]
+                stated = [m.group() for m in RANGE.finditer(cells[titles.index(title)])]
                 if len(stated) > len(values):
                     raise Problem(f"{document.name}:{i + 1}: more numbers than values in column {title}")
                 for k, value in enumerate(values):
@@ -369,12 +392,13 @@ class Checker:
         listed = dict(entry["rows"])
         for i, cells in document.rows(first, end):
             start = sum(len(line) + 1 for line in document.lines[:i])
-            if any(a <= start < b for a, b in document.covered):
+            end_of_row = start + len(document.lines[i])
+            if any(a < end_of_row and b > start for a, b in document.covered):
                 continue
             keys = [key for key in listed if document.lines[i].strip("| ").startswith(key)]
             if not keys:
                 raise Problem(f"{document.name}:{i + 1}: no test is named for the row: {cells[0]}")
-            document.covered.append((start, start + len(document.lines[i])))
+            document.covered.append((start, end_of_row))
             self.assert_by(document, i + 1, cells[0], listed[max(keys, key=len)])
         for key in listed:
             if not any(line.strip("| ").startswith(key) for line in document.lines[first:end]):
@@ -413,7 +437,14 @@ class Checker:
 
     def report(self):
         for name, line, stated, now, verdict in sorted(self.table):
-            print(f"{name + ':' + str(line):<26} stated {stated:<18} now {now:<28} {verdict}")
+            if not verdict.startswith("not run"):
+                print(f"{name + ':' + str(line):<26} stated {stated:<18} now {now:<28} {verdict}")
+        left_out = {}
+        for name, line, _, _, verdict in sorted(self.table):
+            if verdict.startswith("not run"):
+                left_out.setdefault((verdict, name), set()).add(line)
+        for (verdict, name), lines in left_out.items():
+            print(f"{verdict}: {name}, lines {', '.join(map(str, sorted(lines)))}")
         if not self.options.texts:
             for name, line, what, test, file in sorted(self.asserted):
                 print(f"{name + ':' + str(line):<26} {what[:48]:<48} asserted by the test '{test}' ({file})")

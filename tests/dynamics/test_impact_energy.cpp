@@ -1,5 +1,7 @@
 // What impacts of deformable bodies do to the energy: the shipped scenes with every kind of
 // element, by the bodies' own surfaces and by potentials of their elements.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -68,6 +70,14 @@ double worst_error(const Scene& scene, double safety) {
   return worst;
 }
 
+// With APOTHEM_LONG a row of the table in docs/verification.md: the errors at safety .4, .2, .1.
+void print_row(const std::string& name, const std::string& shape, const std::string& law,
+               const Scene& scene) {
+  if (!test::long_run()) return;
+  fmt::print("{} {} {}: {:.1e} / {:.1e} / {:.1e}\n", name, shape, law, worst_error(scene, .4),
+             worst_error(scene, .2), worst_error(scene, .1));
+}
+
 }  // namespace
 
 TEST_CASE("an impact keeps the energy to 1e-4 at the usual step, and with its square",
@@ -78,6 +88,7 @@ TEST_CASE("an impact keeps the energy to 1e-4 at the usual step, and with its sq
       CHECK_FALSE(scene.time.element_safety);  // the usual one
       const double usual = worst_error(scene, .2), fine = worst_error(scene, .05);
       CAPTURE(name, shape, usual, fine);
+      print_row(name, shape, "body", scene);
       CHECK(usual < 1e-4);
       // Each kink where an edge meets a face adds its own phase: not exactly 16.
       CHECK(usual / fine > 8);
@@ -96,6 +107,7 @@ TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_en
         const Scene scene = read(json);
         const double usual = worst_error(scene, .2), fine = worst_error(scene, .1);
         CAPTURE(name, shape, distribution, usual, fine);
+        print_row(name, shape, distribution, scene);
         CHECK(fine > 2e-4);
         CHECK(usual / fine < 1.3);
       }
@@ -113,6 +125,7 @@ TEST_CASE("a flat impact needs a shorter step", "[surface][impact_energy]") {
     const Scene scene = read(json);
     const double usual = worst_error(scene, .2), fine = worst_error(scene, .05);
     CAPTURE(shape, usual, fine);
+    print_row("flat", shape, "body", scene);
     CHECK(usual < 7e-4);
     CHECK(fine < 1e-4);
     CHECK(usual / fine > 8);

@@ -1,0 +1,23 @@
+# The target apothem_numbers: runs the commands that docs/numbers.json lists and says which numbers of
+# the documents are stale.
+find_package(Python3 COMPONENTS Interpreter)
+if(NOT Python3_FOUND)
+  return()
+endif()
+option(APOTHEM_NUMBERS_QUICK "apothem_numbers leaves out the commands that take minutes" OFF)
+set(programs apothem_program)
+if(TARGET apothem_benchmark)
+  list(APPEND programs apothem_benchmark)
+endif()
+if(TARGET apothem_tests)
+  list(APPEND programs apothem_tests)
+endif()
+add_custom_target(apothem_numbers
+  COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
+          --tests ${PROJECT_BINARY_DIR} $<$<BOOL:${APOTHEM_NUMBERS_QUICK}>:--quick>
+  DEPENDS ${programs} USES_TERMINAL COMMAND_EXPAND_LISTS)
+if(APOTHEM_TESTS)
+  add_test(NAME docs.numbers COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --texts)
+  add_test(NAME docs.check_numbers
+           COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/docs/test_check_numbers.py)
+endif()
