@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 
 #include "apothem/geometry/exact/exact_integral.hpp"
@@ -17,14 +17,11 @@
 namespace apothem {
 namespace {
 
-// Processor time of this process, s: what else the machine does counts less than by the clock.
-double now() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+using Clock = std::chrono::steady_clock;
 
-double seconds_since(double start) { return now() - start; }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // The edge-integral kernel as the step loop calls it: shapes are placed and memory is allocated.
 class EdgeKernel {
@@ -94,7 +91,7 @@ void evaluate_from(size_t first, std::string_view method, const std::vector<Prep
   with_method(method, pairs, [&](const auto& evaluate) {
     for (size_t i = first; i < pairs.size(); ++i) {
       Record r{};
-      const double start = now();
+      const Clock::time_point start = Clock::now();
       try {
         const auto [pair, volume] = evaluate(i);
         r = {0,
@@ -127,10 +124,10 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
     const size_t length = good.size() * (1 + 10 * block / good.size());
     std::vector<double> fastest((length + block - 1) / block, HUGE_VAL);
     volatile double sink = 0;
-    const double start = now();
+    const Clock::time_point start = Clock::now();
     for (int round = 0; round < 3 || seconds_since(start) < .05; ++round) {
       for (size_t b = 0; b < fastest.size(); ++b) {
-        const double before = now();
+        const Clock::time_point before = Clock::now();
         for (size_t k = b * block; k < std::min(length, (b + 1) * block); ++k) {
           sink = evaluate(good[k % good.size()]).integral.force.x();
         }

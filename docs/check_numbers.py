@@ -463,7 +463,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--root", default=pathlib.Path(__file__).resolve().parent.parent, type=pathlib.Path)
     parser.add_argument("--build", default="build/release", help="folder of apothem and apothem_benchmark")
-    parser.add_argument("--tests", default="build/dev", help="folder of apothem_tests")
+    parser.add_argument("--tests", default="build/release", help="folder of apothem_tests")
     parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
     parser.add_argument("--texts", action="store_true", help="run nothing: do passages and tests exist?")
     parser.add_argument("--only", nargs="*", default=[], help="only these commands and scenes")
