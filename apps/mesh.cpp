@@ -17,12 +17,10 @@
 namespace apothem {
 namespace {
 
-using Json = nlohmann::json;
-
 std::string rows(const std::vector<Vec2>& points) {
   std::string text;
   for (const Vec2& p : points) {
-    text += (text.empty() ? "" : ",\n") + Json{p.x(), p.y()}.dump();
+    text += (text.empty() ? "" : ",\n") + nlohmann::json{p.x(), p.y()}.dump();
   }
   return "[\n" + text + "\n]";
 }
@@ -30,7 +28,7 @@ std::string rows(const std::vector<Vec2>& points) {
 std::string rows(const std::vector<std::vector<int>>& cells) {
   std::string text;
   for (const std::vector<int>& cell : cells) {
-    text += (text.empty() ? "" : ",\n") + Json(cell).dump();
+    text += (text.empty() ? "" : ",\n") + nlohmann::json(cell).dump();
   }
   return "[\n" + text + "\n]";
 }
@@ -96,9 +94,9 @@ std::string description(const Mesh& mesh) {
   return text;
 }
 
-Json description_json(const Mesh& mesh) {
+nlohmann::json description_json(const Mesh& mesh) {
   const MeshQuality q = mesh_quality(mesh);
-  Json groups = Json::array();
+  nlohmann::json groups = nlohmann::json::array();
   for (const MeshGroup& group : mesh.groups) {
     groups.push_back(
         {{"name", group.name}, {"nodes", group.nodes.size()}, {"edges", group.edges.size()}});
@@ -118,7 +116,7 @@ Json description_json(const Mesh& mesh) {
 std::string groups_json(const Mesh& mesh) {
   std::string text;
   for (const MeshGroup& group : mesh.groups) {
-    const Json json{{"name", group.name}, {"nodes", group.nodes}, {"edges", group.edges}};
+    const nlohmann::json json{{"name", group.name}, {"nodes", group.nodes}, {"edges", group.edges}};
     text += (text.empty() ? "" : ",\n") + json.dump();
   }
   return "[\n" + text + "\n]";

@@ -19,7 +19,6 @@ namespace apothem {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 // The data folder that --data names, that is installed with the program, or, if there is none, the
 // one in the source folder from which the program was built.
@@ -46,7 +45,7 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
   return names;
 }
 
-std::string in_words(const Json& expectation) {
+std::string in_words(const nlohmann::json& expectation) {
   const std::string label = expectation.at("label");
   const std::string column = fmt::format("{} of {}", expectation.at("take").get<std::string>(),
                                          expectation.at("quantity").get<std::string>());
@@ -97,7 +96,7 @@ class Reproduction {
     run.overwrite = run.quiet = true;
     const int code = run_command(run);
     unstable_ = unstable_ || code == exit_code::unstable;
-    outcomes_[scene] = Json::parse(read_text(run.folder + "/run.json"));
+    outcomes_[scene] = nlohmann::json::parse(read_text(run.folder + "/run.json"));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     fmt::print("{}: {} {} ({:.1f} s)\n", figure, scene,
@@ -166,19 +165,19 @@ class Reproduction {
   }
 
   void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
-    const Json& outcome = outcomes_.at(scene);
+    const nlohmann::json& outcome = outcomes_.at(scene);
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
       report.faults.push_back(scene + ": " + outcome["message"].get<std::string>());
     }
     const std::vector<std::string>& quantities = figure.numbers.at(scene);
-    for (const Json& e : outcome.at("expectations")) {
+    for (const nlohmann::json& e : outcome.at("expectations")) {
       const std::string quantity = e.at("quantity");
       if (!quantities.empty() &&
           std::find(quantities.begin(), quantities.end(), quantity) == quantities.end()) {
         continue;
       }
-      const Json& value = e.at("value");  // null if the run has no row in its time window
+      const nlohmann::json& value = e.at("value");  // null if the run has no row in its time window
       state({scene, in_words(e), e.at("expected"),
              value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met")},
             report);
@@ -187,7 +186,7 @@ class Reproduction {
 
   const ReproduceOptions& options_;
   std::string data_;
-  std::map<std::string, Json> outcomes_;  // content of run.json of each scene
+  std::map<std::string, nlohmann::json> outcomes_;  // content of run.json of each scene
   std::vector<ReportFigure> reports_;
   int numbers_ = 0, missed_ = 0;
   bool no_gnuplot_ = false, unstable_ = false;

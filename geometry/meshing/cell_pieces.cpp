@@ -37,9 +37,9 @@ std::optional<Ring> united(const Ring& a, const Ring& b) {
 }
 
 // Does the work of join_pieces.
-class Joiner {
+class PieceJoiner {
  public:
-  explicit Joiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
+  explicit PieceJoiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
     std::iota(group_.begin(), group_.end(), 0);
     for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
       const Ring& ring = pieces_.list[i].ring;
@@ -128,6 +128,6 @@ void put_in_order(Pieces& pieces, int outline_size) {
   pieces = std::move(sorted);
 }
 
-bool join_pieces(Pieces& pieces) { return Joiner(pieces).run(); }
+bool join_pieces(Pieces& pieces) { return PieceJoiner(pieces).run(); }
 
 }  // namespace apothem

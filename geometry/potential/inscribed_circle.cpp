@@ -40,8 +40,8 @@ namespace {
 // All lengths below are divided by the polygon's size, rounded up to a power of two, so that the
 // division is exact.
 constexpr double kNoise = 0x1p-50;        // larger than the round-off of a distance
-constexpr double kSameHeight = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
-constexpr double kThinnest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
+constexpr double kSameRadius = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
+constexpr double kSmallest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
 constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
 constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
 constexpr size_t kManyEdges = 200;  // a search for a polygon with more edges starts with its box
@@ -176,7 +176,7 @@ class Search {
   };
 
   static bool lower(const Cell& a, const Cell& b) { return a.bound < b.bound; }
-  [[nodiscard]] double tolerance() const { return kSameHeight * radius_ + 4 * kNoise; }
+  [[nodiscard]] double tolerance() const { return kSameRadius * radius_ + 4 * kNoise; }
 
   // Value of f at a point of the cell.
   [[nodiscard]] double height(const Cell& cell, const Vec2& point) const {
@@ -413,7 +413,7 @@ InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress&
     search = Search(polygon, unit, Start::triangles);
     search.run(progress);
   }
-  if (!(search.radius() > kThinnest)) {
+  if (!(search.radius() > kSmallest)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);
   }
   std::vector<Centre> centres = search.centres();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "apothem/geometry/polygon/cyclic.hpp"
 #include "apothem/geometry/skeleton/edge_lines.hpp"
 
 namespace apothem {
@@ -13,8 +14,6 @@ namespace {
 using Ring = std::vector<Vec2>;
 using Node = Skeleton::Node;
 using Faces = std::vector<std::vector<int>>;
-
-int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
 
 // Builds the skeleton of a convex polygon: the edge of the front that vanishes first is removed
 // until three edges are left. All nodes are computed from the lines of the original edges, so a

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "apothem/geometry/polygon/cyclic.hpp"
 #include "apothem/geometry/skeleton/edge_lines.hpp"
 
 namespace apothem {
@@ -10,8 +11,6 @@ namespace {
 
 using Node = Skeleton::Node;
 using Faces = std::vector<std::vector<int>>;
-
-int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
 
 class Polish {
  public:

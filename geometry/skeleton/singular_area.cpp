@@ -11,7 +11,7 @@ namespace {
 
 // Tolerance for a height equal to the depth, as for inscribed circles: this share of the height
 // plus this share of the polygon's size.
-constexpr double kSameHeight = 1e-13;
+constexpr double kSameLevel = 1e-13;
 constexpr double kNoise = 0x1p-48;
 constexpr double kSamePlace = 1e-9;  // level ridges shorter than this times the depth are points
 constexpr double kSameDirection = 1e-9;  // sine of the angle below which two ridges are in line
@@ -35,7 +35,7 @@ class Level {
     const double noise = kNoise * box.extent();
     for (size_t i = 0; i < nodes_.size(); ++i) {
       double& height = nodes_[i].height;
-      if (std::abs(height - depth) <= kSameHeight * height + noise) height = depth;
+      if (std::abs(height - depth) <= kSameLevel * height + noise) height = depth;
       sides_[i] = height > depth ? 1 : height == depth ? 0 : -1;
     }
     for (const Skeleton::Arc& arc : skeleton.arcs) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "apothem/geometry/polygon/cyclic.hpp"
 #include "apothem/geometry/skeleton/edge_lines.hpp"
 #include "apothem/geometry/skeleton/skeleton.hpp"
 
@@ -17,8 +18,6 @@ using Node = Skeleton::Node;
 using Faces = std::vector<std::vector<int>>;
 
 constexpr double kTolerance = 1e-9;  // as a share of the polygon's size
-
-int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
 
 class Laws {
  public:

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "apothem/geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 namespace {
-
-int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
 
 void set_arcs(Skeleton& skeleton) {
   const int n = static_cast<int>(skeleton.faces.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apothem/geometry/polygon/cyclic.hpp"
 #include "apothem/geometry/skeleton/event_queue.hpp"
 #include "apothem/geometry/skeleton/moving_front.hpp"
 
@@ -20,8 +21,6 @@ constexpr double kMovement = 0x1p-46;
 // polygons need 10 to 30 per vertex.
 constexpr double kMostChanges = 500;
 constexpr double kMoreChanges = 1e5;
-
-int next(int i, int n) { return i + 1 == n ? 0 : i + 1; }
 
 // A border of a face, from one node to the next one, counter-clockwise.
 struct Border {

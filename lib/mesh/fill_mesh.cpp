@@ -9,7 +9,7 @@
 namespace apothem {
 namespace {
 
-constexpr double kTriangle = 2.2;  // edge length of the triangles to cut, over the wanted size
+constexpr double kTriangleToCut = 2.2;  // edge length of the triangles to cut, over the wanted size
 constexpr double kLeastSine = .6;  // least sine of the corners of two joined triangles
 constexpr int kSweeps = 20;        // of smoothing
 
@@ -24,7 +24,7 @@ std::vector<int> edge_numbers(const Polygon& outline) {
 Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
                ElementShape shape) {
   const bool quadrilaterals = shape == ElementShape::quadrilateral;
-  TriangleMesh triangles = delaunay_mesh(outline, holes, quadrilaterals ? kTriangle * size : size);
+  TriangleMesh triangles = delaunay_mesh(outline, holes, quadrilaterals ? kTriangleToCut * size : size);
   Mesh mesh;
   mesh.nodes = std::move(triangles.points);
   for (const Triangle& t : triangles.triangles) mesh.add_element(t);

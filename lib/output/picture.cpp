@@ -76,11 +76,11 @@ View choose_view(const Ring& ring) {
   return least > 0 && least < kThin && !upright.stretched ? chord : upright;
 }
 
-struct Layout {
+struct PictureLayout {
   Box window, frame;
 };
 
-Layout lay_out(const Box& box, bool stretched) {
+PictureLayout lay_out(const Box& box, bool stretched) {
   const double w = box.x1 - box.x0;
   const double h = box.y1 - box.y0;
   if (stretched) {
@@ -191,7 +191,7 @@ class Drawing {
 
 // The lines of the title.
 std::vector<std::string> title(const PotentialPicture& picture, const View& view,
-                               const Layout& layout) {
+                               const PictureLayout& layout) {
   std::vector<std::string> lines{
       fmt::format("Distance potential φ, r = {:.6g} m ({})", picture.reference,
                   picture.reference_name),
@@ -235,7 +235,7 @@ void draw_legend(Canvas& canvas, const Vec2& start, const Pen& faces,
 std::string draw_potential(const PotentialPicture& picture, PictureFormat format) {
   const Ring ring = picture.polygon.local_vertices();
   const View view = choose_view(ring);
-  const Layout layout = lay_out(box_of(view(ring)), view.stretched);
+  const PictureLayout layout = lay_out(box_of(view(ring)), view.stretched);
   const Vec2 zero = picture.polygon.origin();
   const Axes axes =
       view.turned

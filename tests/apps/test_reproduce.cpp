@@ -15,7 +15,7 @@ using test::run;
 namespace {
 
 // A stone's fall for 10 ms, and a table of what theory says.
-const char* const kScene = R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -10],
+const char* const kStudy = R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -10],
   "bodies": [ { "name": "stone", "material": "rock", "polygon": [[0,0],[1,0],[1,1],[0,1]] } ],
   "time": { "end": 0.01, "step": 1e-4 }, "output": { "frames": 1, "history": { "interval": 1e-3 } },
   "expect": [ { "label": "speed <at the end>", "quantity": "stone.vy", "take": "last", "value": -0.1, "tolerance": 1e-9 },
@@ -57,7 +57,7 @@ std::string data_folder(const Folder& folder, const std::string& figure = kFigur
   for (const char* part : {"data/figures", "data/scenes", "data/reference"}) {
     std::filesystem::create_directories(folder / part);
   }
-  folder.write("data/scenes/fall.json", kScene);
+  folder.write("data/scenes/fall.json", kStudy);
   folder.write("data/reference/fall.csv", "time [ms],speed [mm/s]\n0,500\n5,550\n10,600\n");
   folder.write("data/scenes/pulled.json", kPulled);
   std::string cells = "x,y,sxx\n";

@@ -100,19 +100,19 @@ Scene random_scene(samples::Random& random, int polygons, int meshes, bool outli
 
 // Every body drifts and turns; every node of a mesh drifts with its neighbours and deforms a
 // little, so little that the smallest elements stay convex.
-struct Motion {
+struct RandomMotion {
   std::vector<Vec2> drift;
   std::vector<double> spin;
 };
-Motion random_motion(samples::Random& random, size_t bodies) {
-  Motion motion;
+RandomMotion random_motion(samples::Random& random, size_t bodies) {
+  RandomMotion motion;
   for (size_t i = 0; i < bodies; ++i) {
     motion.drift.emplace_back(random.uniform(-.002, .002), random.uniform(-.002, .002));
     motion.spin.push_back(random.uniform(-.001, .001));
   }
   return motion;
 }
-void move(Scene& scene, const Motion& motion, samples::Random& random) {
+void move(Scene& scene, const RandomMotion& motion, samples::Random& random) {
   for (size_t i = 0; i < scene.pose.size() / 3; ++i) {
     scene.pose[3 * i] += motion.drift[i].x();
     scene.pose[3 * i + 1] += motion.drift[i].y();
@@ -140,7 +140,7 @@ TEST_CASE("the search misses no touching pair of moving surfaces, large or small
     int touching = 0, searches = 0, steps = 0;
     for (int round = 0; round < scaled(6); ++round) {
       Scene scene = random_scene(random, mix.polygons, mix.meshes, mix.outlines);
-      const Motion motion = random_motion(random, static_cast<size_t>(scene.surfaces.body_count()));
+      const RandomMotion motion = random_motion(random, static_cast<size_t>(scene.surfaces.body_count()));
       Search search;
       EdgeWorkspace workspace;
       for (int step = 0; step < 40; ++step, ++steps) {

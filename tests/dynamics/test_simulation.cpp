@@ -18,7 +18,7 @@ RigidBody make_body(const Model& model, const std::string& name, const Polygon& 
   return body;
 }
 
-Model make_model(double stiffness = 20e9) {
+Model falling_model(double stiffness = 20e9) {
   Model model;
   model.gravity = {0, -9.81};
   model.materials = {{"rock", 2000}};
@@ -29,7 +29,7 @@ Model make_model(double stiffness = 20e9) {
 // Benchmark geometry A, case 1: equilateral triangles, apex on apex, x and angle locked.
 Model bouncing_triangle() {
   const double c = std::sqrt(.75);
-  Model model = make_model();
+  Model model = falling_model();
   model.bodies.push_back(
       make_body(model, "target", Polygon({{-.5, -c}, {.5, -c}, {0, 0}}), Motion::fixed));
   model.bodies.push_back(
@@ -43,7 +43,7 @@ double drop_energy(const Model& model) { return model.bodies[1].mass * 9.81 * .1
 // A dense heap: bodies of different shapes in a box of four walls.
 Model heap(int columns, int rows) {
   samples::Random random(20);
-  Model model = make_model(1e8);
+  Model model = falling_model(1e8);
   const double w = columns * 2.2, h = rows * 2.2 + 5;
   const auto wall = [&](const char* name, double x0, double y0, double x1, double y1) {
     model.bodies.push_back(
@@ -132,7 +132,7 @@ TEST_CASE("the automatic step keeps the energy of 100 bounces", "[dynamics]") {
 }
 
 TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]") {
-  Model model = make_model();
+  Model model = falling_model();
   model.bodies.push_back(
       make_body(model, "flat", Polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}}), Motion::fixed));
   model.bodies.push_back(
@@ -170,7 +170,7 @@ TEST_CASE("the stability limit of a square at rest on a flat block", "[dynamics]
 }
 
 TEST_CASE("momenta and energy of free bodies that collide", "[dynamics]") {
-  Model model = make_model(2e9);
+  Model model = falling_model(2e9);
   model.gravity = Vec2::Zero();
   samples::Random random(21);
   for (int i = 0; i < 6; ++i) {
@@ -228,7 +228,7 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
 }
 
 TEST_CASE("the same bits for any number of threads", "[dynamics]") {
-  Model model = make_model(1e8);
+  Model model = falling_model(1e8);
   samples::Random random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads
     const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
@@ -279,7 +279,7 @@ TEST_CASE("a pair search with a skin changes nothing", "[dynamics]") {
 
 TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
   const auto fall = [](const Vec2& offset) {
-    Model model = make_model();
+    Model model = falling_model();
     const Polygon target = samples::shifted(Polygon({{-1, 0}, {.25, -1.25}, {1, 0}}), offset);
     const Polygon falling = samples::shifted(Polygon({{0, .125}, {.5, 1}, {-.5, 1}}), offset);
     Box box = bounding_box(target);
@@ -299,7 +299,7 @@ TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
 
 TEST_CASE("what round-off moves is no energy error", "[dynamics]") {
   for (const double w : {.1, .3, .7, 1.0, 3.0}) {
-    Model model = make_model();  // squares that touch exactly
+    Model model = falling_model();  // squares that touch exactly
     model.gravity = Vec2::Zero();
     for (int i = 0; i < 12; ++i) {
       model.bodies.push_back(
@@ -312,7 +312,7 @@ TEST_CASE("what round-off moves is no energy error", "[dynamics]") {
       REQUIRE_NOTHROW(simulation.check_energy());
     }
   }
-  Model model = make_model();  // a short fall from far up
+  Model model = falling_model();  // a short fall from far up
   model.bodies.push_back(
       make_body(model, "floor", Polygon({{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}), Motion::fixed));
   model.bodies.push_back(make_body(model, "high", Polygon({{0, 100}, {.5, 101}, {-.5, 101}})));
@@ -324,7 +324,7 @@ TEST_CASE("what round-off moves is no energy error", "[dynamics]") {
 }
 
 TEST_CASE("the step respects rotation", "[dynamics]") {
-  Model model = make_model(1e8);
+  Model model = falling_model(1e8);
   model.gravity = Vec2::Zero();
   model.bodies.push_back(
       make_body(model, "bar", Polygon({{-5, -.2}, {5, -.2}, {5, .2}, {-5, .2}})));

@@ -1,4 +1,5 @@
 // Patch test: in any mesh, constant stress is exact.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <numeric>

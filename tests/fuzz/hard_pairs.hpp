@@ -99,12 +99,12 @@ inline Vec2 move(Random& random, const Polygon& a, const Polygon& b) {
 }
 
 /// Depends on the pool and the number alone.
-struct HardPair {
+struct AdversarialPair {
   const Shape& a;
   const Shape& b;
   Polygon moved;  ///< b where it stands
 };
-inline HardPair hard_pair(const std::vector<Shape>& pool, unsigned number) {
+inline AdversarialPair hard_pair(const std::vector<Shape>& pool, unsigned number) {
   Random random(number);
   const Shape& a = pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
   const Shape& b =

@@ -7,7 +7,6 @@
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -19,6 +18,7 @@
 #include "contact/bodies.hpp"
 #include "folder.hpp"
 #include "shapes.hpp"
+#include "vtk_reader.hpp"
 
 using namespace apothem;
 using namespace apothem::test;
@@ -73,13 +73,6 @@ std::vector<Ring> places(const Cells& cells, const Ring& ring) {
 std::vector<int> from_smallest(std::vector<int> ring) {
   std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
   return ring;
-}
-
-vtkNew<vtkXMLUnstructuredGridReader> read(const std::string& file) {
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader;
 }
 
 // The places of the cells of a body.
@@ -166,7 +159,7 @@ TEST_CASE("frames show bodies and elements that are not convex as they are", "[o
                 .forces = std::vector<BodyForce>(3),
                 .node_mass = std::vector<double>(8, 1)});
 
-  const auto bodies = read(folder / "frames/bodies_000000.vtu");
+  const auto bodies = test::read_grid(folder / "frames/bodies_000000.vtu");
   vtkUnstructuredGrid* grid = bodies->GetOutput();
   const auto shape_of = [&](RigidIndex i) {
     Ring ring;
@@ -220,7 +213,7 @@ TEST_CASE("frames show bodies and elements that are not convex as they are", "[o
   CHECK(frame.stress[3].zz == 8);
 
   // The outlines are closed lines around the bodies.
-  const auto lines = read(folder / "frames/outlines_000000.vtu");
+  const auto lines = test::read_grid(folder / "frames/outlines_000000.vtu");
   REQUIRE(lines->GetOutput()->GetNumberOfCells() == 3);
   CHECK(lines->GetOutput()->GetCellType(0) == VTK_POLY_LINE);
   for (const auto& [number, shape] :
@@ -239,7 +232,7 @@ TEST_CASE("cells of a tiling that are not convex are divided", "[output][convex]
   const PolygonMesh mesh{{{0, 0}, {2, 0}, {2, 2}, {1, 2}, {1, 1}, {0, 1}, {0, 2}},
                          {{0, 1, 2, 3, 4, 5}, {5, 4, 3, 6}}};
   write_mesh(folder / "mesh.vtu", mesh);
-  const auto reader = read(folder / "mesh.vtu");
+  const auto reader = test::read_grid(folder / "mesh.vtu");
   vtkUnstructuredGrid* grid = reader->GetOutput();
   REQUIRE(grid->GetNumberOfCells() == 3);
   const std::vector<std::array<double, 3>> expected{{0, 0, 3}, {0, 1, 3}, {1, 0, 1}};

@@ -52,7 +52,7 @@ struct Change {
 };
 
 // A scene that uses both features of a row. Without the last change it is accepted.
-struct Trial {
+struct FeatureTrial {
   Feature asked, with;
   const char* scene;
   std::vector<Change> changes;
@@ -62,7 +62,7 @@ struct Trial {
 using F = Feature;
 const char* const kMotion = R"({ "velocity": [[0, 1, 0]] })";
 const char* const kMassDamping = R"({ "model": "mass", "rate": 1 })";
-const std::vector<Trial> kTrials{
+const std::vector<FeatureTrial> kTrials{
     {F::field,
      F::area_potential,
      kRigid,
@@ -246,7 +246,7 @@ std::string markdown() {
 TEST_CASE("every pair of features that do not go together is refused", "[scene]") {
   for (const Incompatibility& pair : kIncompatible) {
     INFO(text_of(pair.asked).what << " " << text_of(pair.with).where);
-    const auto trial = std::find_if(kTrials.begin(), kTrials.end(), [&](const Trial& t) {
+    const auto trial = std::find_if(kTrials.begin(), kTrials.end(), [&](const FeatureTrial& t) {
       return t.asked == pair.asked && t.with == pair.with;
     });
     REQUIRE(trial != kTrials.end());

@@ -40,7 +40,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), by);
 }
 
-std::string error_of(const std::string& file) {
+std::string error_of_file(const std::string& file) {
   try {
     read_scene(file);
   } catch (const SceneError& error) {
@@ -193,7 +193,7 @@ bool valid(const valijson::Schema& schema, const std::string& text) {
 
 namespace {
 
-const char* const kMeshed = R"({
+const char* const kMeshedScene = R"({
   "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 }, "sand": { "density": 1500 } },
   "bodies": [
     { "name": "beam", "material": "rock",
@@ -254,7 +254,7 @@ const std::vector<Broken> kBrokenMeshed{
 
 TEST_CASE("a meshed body becomes elements, supports, loads and points", "[scene]") {
   const Folder folder;
-  const Scene scene = read_scene(folder.write("meshed.json", kMeshed));
+  const Scene scene = read_scene(folder.write("meshed.json", kMeshedScene));
   REQUIRE(scene.model.deformables.size() == 1);
   const DeformableBody& beam = scene.model.deformables[0];
   CHECK(beam.element == ElementKind::quad4);
@@ -282,18 +282,19 @@ TEST_CASE("a meshed body becomes elements, supports, loads and points", "[scene]
     const std::string contact =
         R"("contact": { "normal_stiffness": 1, "surface": "element")" + text + " }, \"bodies\"";
     const Scene by_element =
-        read_scene(folder.write("element.json", replaced(kMeshed, "\"bodies\"", contact)));
+        read_scene(folder.write("element.json", replaced(kMeshedScene, "\"bodies\"", contact)));
     CHECK(by_element.model.contact.surface == ContactSurface::element);
     CHECK(by_element.model.contact.distribution == distribution);
   }
   for (const Broken& broken : kBrokenMeshed) {
-    const std::string file = folder.write("broken.json", replaced(kMeshed, broken.what, broken.by));
+    const std::string file =
+        folder.write("broken.json", replaced(kMeshedScene, broken.what, broken.by));
     INFO(broken.what << " -> " << broken.by);
     if (*broken.message == 0) {
       CHECK_NOTHROW(read_scene(file));
       continue;
     }
-    const std::string error = error_of(file);
+    const std::string error = error_of_file(file);
     INFO(error);
     CHECK(error.find(file + broken.place) == 0);
     CHECK(error.find(broken.message) != std::string::npos);
@@ -320,7 +321,7 @@ TEST_CASE("every kind of broken scene gives one line that names the place", "[sc
   const Folder folder;
   for (const Broken& broken : kBroken) {
     const std::string file = folder.write("broken.json", replaced(kGood, broken.what, broken.by));
-    const std::string error = error_of(file);
+    const std::string error = error_of_file(file);
     INFO(broken.what << " -> " << broken.by << "\n" << error);
     CHECK(error.find(file + broken.place) == 0);
     CHECK(error.find(broken.message) != std::string::npos);
@@ -328,28 +329,29 @@ TEST_CASE("every kind of broken scene gives one line that names the place", "[sc
   }
   for (const auto& [what, by] : {std::pair("\"gravity\"", "\"grav\\nity\""),
                                  std::pair("\"rock\", \"motion\"", "\"ro\\nck\", \"motion\"")}) {
-    const std::string error = error_of(folder.write("lines.json", replaced(kGood, what, by)));
+    const std::string error = error_of_file(folder.write("lines.json", replaced(kGood, what, by)));
     CHECK(error.find("lines.json:") != std::string::npos);
     CHECK(error.find('\n') == std::string::npos);
   }
-  CHECK(error_of(folder.write("nul.json", std::string(kGood) + '\0' + "x")).find("NUL") !=
+  CHECK(error_of_file(folder.write("nul.json", std::string(kGood) + '\0' + "x")).find("NUL") !=
         std::string::npos);
-  CHECK(error_of(folder.write("empty.json", "")).find("not valid JSON") != std::string::npos);
-  CHECK(error_of(folder.write("array.json", "[]")).find("must be an object") != std::string::npos);
-  CHECK(error_of(folder.write("deep.json", std::string(100000, '['))).find("nested too deeply") !=
+  CHECK(error_of_file(folder.write("empty.json", "")).find("not valid JSON") != std::string::npos);
+  CHECK(error_of_file(folder.write("array.json", "[]")).find("must be an object") !=
         std::string::npos);
-  CHECK(error_of("/nowhere/scene.json").find("cannot be opened") != std::string::npos);
-  CHECK(error_of("/tmp").find("is a directory") != std::string::npos);
+  CHECK(error_of_file(folder.write("deep.json", std::string(100000, '[')))
+            .find("nested too deeply") != std::string::npos);
+  CHECK(error_of_file("/nowhere/scene.json").find("cannot be opened") != std::string::npos);
+  CHECK(error_of_file("/tmp").find("is a directory") != std::string::npos);
 }
 
 TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
   valijson::Schema schema;
   read_schema(schema);
   CHECK(valid(schema, kGood));
-  CHECK(valid(schema, kMeshed));
+  CHECK(valid(schema, kMeshedScene));
   for (const Broken& broken : kBrokenMeshed) {
     INFO(broken.what << " -> " << broken.by);
-    if (broken.schema) CHECK_FALSE(valid(schema, replaced(kMeshed, broken.what, broken.by)));
+    if (broken.schema) CHECK_FALSE(valid(schema, replaced(kMeshedScene, broken.what, broken.by)));
   }
   for (const Broken& broken : kBroken) {
     INFO(broken.what << " -> " << broken.by);
@@ -364,7 +366,7 @@ TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
     const std::string text = replaced(kGood, "\"frames\": 10",
                                       std::string("\"frames\": 10, \"checkpoint\": ") + checkpoint);
     CHECK(valid(schema, text) == good);
-    CHECK(error_of(Folder().write("checkpoint.json", text)).empty() == good);
+    CHECK(error_of_file(Folder().write("checkpoint.json", text)).empty() == good);
   }
   int shipped = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::kSource + "/data/scenes")) {
@@ -396,19 +398,19 @@ TEST_CASE("the JSON Schema lists exactly the keys that the reader knows", "[scen
       {"\"frames\"", &top["output"]["properties"]},
       {"\"interval\"", &top["output"]["properties"]["history"]["properties"]},
       {"\"quantity\"", &definitions["expectation"]["properties"]},
-      {"\"name\": \"beam\"", &definitions["deformable_body"]["properties"], kMeshed},
-      {"\"rectangle\"", &mesh, kMeshed},
-      {"\"size\"", &mesh["rectangle"]["properties"], kMeshed},
-      {"\"where\": { \"x\"", &definitions["support"]["properties"], kMeshed},
-      {"\"x\": 0", &definitions["place"]["properties"], kMeshed},
-      {"\"at\"", &definitions["load"]["properties"], kMeshed},
+      {"\"name\": \"beam\"", &definitions["deformable_body"]["properties"], kMeshedScene},
+      {"\"rectangle\"", &mesh, kMeshedScene},
+      {"\"size\"", &mesh["rectangle"]["properties"], kMeshedScene},
+      {"\"where\": { \"x\"", &definitions["support"]["properties"], kMeshedScene},
+      {"\"x\": 0", &definitions["place"]["properties"], kMeshedScene},
+      {"\"at\"", &definitions["load"]["properties"], kMeshedScene},
       {"\"body\": \"beam\", \"point\"",
        &top["output"]["properties"]["history"]["properties"]["track"]["items"]["properties"],
-       kMeshed},
+       kMeshedScene},
   };
   const Folder folder;
   for (const Case& c : cases) {
-    const std::string error = error_of(folder.write(
+    const std::string error = error_of_file(folder.write(
         "keys.json", replaced(c.scene, c.at, std::string("\"qqqqqqqq\": 1, ") + c.at)));
     INFO(error);
     const size_t start = error.find("(known here: ");
@@ -431,7 +433,7 @@ TEST_CASE("the polygon of a body may stand in a file", "[scene]") {
   CHECK(read_scene(folder.write("file.json", scene)).model.bodies[1].area ==
         Approx(1.5 * 1e-3 / 2));
   folder.write("c.wkt", "POLYGON((0 0,\n1,5 0,0 1,0 0))");
-  const std::string error = error_of(folder.write("file.json", scene));
+  const std::string error = error_of_file(folder.write("file.json", scene));
   CHECK(error.find("file.json:10: /bodies/1/polygon: ") != std::string::npos);
   CHECK(error.find("c.wkt:2: vertex 1 has one coordinate, 1") != std::string::npos);
 }
@@ -441,7 +443,7 @@ TEST_CASE("a ring in a scene may repeat its first vertex at the end", "[scene]")
   const std::string closed = replaced(kGood, "[-0.5, 0.9]]", "[-0.5, 0.9], [0, 0.1]]");
   const Scene scene = read_scene(folder.write("closed.json", closed));
   CHECK(scene.model.bodies[1].potential.size() == 3);
-  CHECK(error_of(folder.write("z.json", replaced(kGood, "[0.5, 0.9]", "[0.5, 0.9, 0]")))
+  CHECK(error_of_file(folder.write("z.json", replaced(kGood, "[0.5, 0.9]", "[0.5, 0.9, 0]")))
             .find("/bodies/1/polygon/1: has 3 coordinates, and bodies are two-dimensional") !=
         std::string::npos);
 }
@@ -460,7 +462,7 @@ TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {
 TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
   const Folder folder;
   const std::string good =
-      replaced(kMeshed, "\"time\": { \"end\": 1 }",
+      replaced(kMeshedScene, "\"time\": { \"end\": 1 }",
                "\"time\": { \"end\": 1, \"mode\": \"static\", \"load_steps\": 4 }");
   const Scene scene = read_scene(folder.write("static.json", good));
   CHECK(scene.time.statics);
@@ -500,7 +502,8 @@ TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
        "/contact/surface: is not supported yet in a static run"},
   };
   for (const Case& c : cases) {
-    const std::string error = error_of(folder.write("broken.json", replaced(good, c.what, c.by)));
+    const std::string error =
+        error_of_file(folder.write("broken.json", replaced(good, c.what, c.by)));
     INFO(error);
     CHECK(error.find(c.message) != std::string::npos);
   }
@@ -513,5 +516,5 @@ TEST_CASE("the example in the documentation is a scene", "[scene]") {
   const size_t start = document.find(fence) + fence.size();
   const std::string example = document.substr(start, document.find("```", start) - start);
   folder.write("block.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))");
-  CHECK(error_of(folder.write("example.json", example)) == "");
+  CHECK(error_of_file(folder.write("example.json", example)) == "");
 }

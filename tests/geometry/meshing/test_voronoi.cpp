@@ -20,7 +20,7 @@ namespace {
 
 Ring square() { return {{0, 0}, {1, 0}, {1, 1}, {0, 1}}; }
 
-Ring star(int points, double inner) {
+Ring pointed_ring(int points, double inner) {
   Ring ring;
   for (int i = 0; i < 2 * points; ++i) {
     const double angle = M_PI * i / points;
@@ -45,7 +45,7 @@ Ring comb(int teeth) {
   return ring;
 }
 
-Ring spiral(double turns, int steps) {
+Ring wound_ring(double turns, int steps) {
   Ring ring;
   for (const double width : {0., 3.}) {
     Ring side;
@@ -82,10 +82,10 @@ std::vector<Shape> shapes() {
             {0, 2},
             {0, 1},
             {1, 1}}},
-          {"star", star(7, .4)},
-          {"star of 1000 vertices", star(500, .8)},
+          {"star", pointed_ring(7, .4)},
+          {"star of 1000 vertices", pointed_ring(500, .8)},
           {"comb", comb(6)},
-          {"spiral", spiral(3, 100)}};
+          {"spiral", wound_ring(3, 100)}};
 }
 
 // Twice the area between the ring and its origin, without any rounding.

@@ -69,7 +69,7 @@ TEST_CASE("big polygons full of simultaneous events get a skeleton without CGAL"
   Random random(6);
   const int n = std::max(300, test::scaled(2000));
   for (const double angle : {0., .3}) {
-    CHECK(std::abs(traced(turned(comb(n / 4, 9), angle)).roof_height - .5) < 1e-12);
+    CHECK(std::abs(traced(turned(samples::comb(n / 4, 9), angle)).roof_height - .5) < 1e-12);
     traced(turned(star(n / 2, .5), angle));
     traced(turned(skyline(random, n), angle));
     traced(turned(coastline(random, n), angle));

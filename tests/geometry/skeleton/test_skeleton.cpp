@@ -206,7 +206,7 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
        {{0, 0}, {.5, 0}, {1, 0}, {2, 0}, {3, 0}, {3, .5}, {3, 1}, {2, 1}, {1, 1}, {0, 1}},
        .5},
       {"1000-gon", regular(1000).vertices(), std::cos(M_PI / 1000)},
-      {"comb", comb(6).vertices(), .5},
+      {"comb", samples::comb(6).vertices(), .5},
       {"sliver", {{0, 0}, {1, 0}, {1, 1e-6}, {0, 1e-6}}, 5e-7},
       {"triangle 3 4 5", {{0, 0}, {4, 0}, {0, 3}}, 1}};
   for (const Known& shape : shapes) {
@@ -222,8 +222,8 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
 
 TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skeleton]") {
   for (const Polygon& polygon :
-       {star(5, .4), star(17, .9), star(8, .1), comb(3, 3), comb(20, 3), spiral(1, 12),
-        spiral(4, 12), regular(1000), Polygon({{0, 0}, {1, 0}, {.3, 1e-6}})}) {
+       {star(5, .4), star(17, .9), star(8, .1), samples::comb(3, 3), samples::comb(20, 3),
+        spiral(1, 12), spiral(4, 12), regular(1000), Polygon({{0, 0}, {1, 0}, {.3, 1e-6}})}) {
     const Ring ring = polygon.vertices();
     for (const Variant& variant : variants(ring)) {
       INFO(ring.size() << " vertices, " << variant.name);
@@ -261,7 +261,7 @@ TEST_CASE("known shapes: the roof is that of the motorcycle graph at 10 000 poin
       {"L", l_shape()},
       {"star of 5", turned(star(5, .4), .3)},
       {"star of 40", turned(star(40, .7), .3)},
-      {"comb of 8", turned(comb(8), .3)},
+      {"comb of 8", turned(samples::comb(8), .3)},
       {"spiral of 3", turned(spiral(3, 12), .3)},
       {"bent sliver of aspect 1e6",
        turned(Polygon({{0, 0}, {1, 0}, {1, 1e-6}, {.4, 5e-7}, {0, 1e-6}}), .3)}};
