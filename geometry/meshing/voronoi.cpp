@@ -33,7 +33,7 @@ using Segments = CGAL::Arr_segment_traits_2<Exact>;
 using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
 
-constexpr double kEven = 1e-3;        // movement over the cell size that ends Lloyd's iteration
+constexpr double kEven = 1e-3;           // movement over the cell size that ends Lloyd's iteration
 constexpr double kUnresolved = 0x1p-40;  // shorter edges over the region's size always collapse
 
 // Rounds a point. The result has the same bits however the point was constructed; CGAL's own

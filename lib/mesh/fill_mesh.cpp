@@ -10,8 +10,8 @@ namespace apothem {
 namespace {
 
 constexpr double kTriangleToCut = 2.2;  // edge length of the triangles to cut, over the wanted size
-constexpr double kLeastSine = .6;  // least sine of the corners of two joined triangles
-constexpr int kSweeps = 20;        // of smoothing
+constexpr double kLeastSine = .6;       // least sine of the corners of two joined triangles
+constexpr int kSweeps = 20;             // of smoothing
 
 std::vector<int> edge_numbers(const Polygon& outline) {
   std::vector<int> numbers;
@@ -24,7 +24,8 @@ std::vector<int> edge_numbers(const Polygon& outline) {
 Mesh fill_mesh(const Polygon& outline, const std::vector<Polygon>& holes, double size,
                ElementShape shape) {
   const bool quadrilaterals = shape == ElementShape::quadrilateral;
-  TriangleMesh triangles = delaunay_mesh(outline, holes, quadrilaterals ? kTriangleToCut * size : size);
+  TriangleMesh triangles =
+      delaunay_mesh(outline, holes, quadrilaterals ? kTriangleToCut * size : size);
   Mesh mesh;
   mesh.nodes = std::move(triangles.points);
   for (const Triangle& t : triangles.triangles) mesh.add_element(t);

@@ -140,7 +140,8 @@ TEST_CASE("the search misses no touching pair of moving surfaces, large or small
     int touching = 0, searches = 0, steps = 0;
     for (int round = 0; round < scaled(6); ++round) {
       Scene scene = random_scene(random, mix.polygons, mix.meshes, mix.outlines);
-      const RandomMotion motion = random_motion(random, static_cast<size_t>(scene.surfaces.body_count()));
+      const RandomMotion motion =
+          random_motion(random, static_cast<size_t>(scene.surfaces.body_count()));
       Search search;
       EdgeWorkspace workspace;
       for (int step = 0; step < 40; ++step, ++steps) {
