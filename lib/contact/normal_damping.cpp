@@ -14,8 +14,13 @@ double damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, Rigi
   const double moment_a = k * patch.moment_a;
   const double moment_b = k * patch.moment_b;
   const Vec2 rise = normal - damper.normal;
-  const double rise_a = moment_a - damper.moment_a;
-  const double rise_b = moment_b - damper.moment_b;
+  double rise_a = moment_a - damper.moment_a;
+  double rise_b = moment_b - damper.moment_b;
+  // The moments before were in balance where the bodies were then. What is left over where they are
+  // now goes half and half to both, so that the damping keeps the angular momentum.
+  const double rest = cross(motion.between, rise) + (rise_a + rise_b);
+  rise_a -= rest / 2;
+  rise_b -= rest / 2;
   const PatchDamper before = damper;
   damper = {normal, moment_a, moment_b};
   if (!(dt > 0)) {  // a first look, perhaps with the memory of another run: as springs do, it stays

@@ -91,6 +91,21 @@ TEST_CASE("a block starts to slide at atan(mu)", "[friction]") {
   }
 }
 
+TEST_CASE("normal damping keeps the momenta of free bodies", "[friction]") {
+  for (const double coefficient : {0., .4}) {
+    Model model = collision(coefficient);
+    model.contact.normal_damping = .3;
+    Simulation simulation(model, {.end = 1}, 1, 1);
+    while (simulation.state().time < 1) simulation.step();
+    const Momenta p = simulation.momenta();
+    const double scale = model.bodies[0].mass * 2;
+    CHECK(simulation.energies().damping_loss > .01 * simulation.energies().kinetic);
+    CHECK(std::abs(p.x_error) < 1e-12 * scale);
+    CHECK(std::abs(p.y_error) < 1e-12 * scale);
+    CHECK(std::abs(p.angular_error) < 1e-10 * scale);
+  }
+}
+
 TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with order 2",
           "[friction]") {
   double errors[2];
