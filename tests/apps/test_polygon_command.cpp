@@ -240,9 +240,14 @@ TEST_CASE("a big polygon shows its progress and ends on Ctrl-C", "[program][poly
   // A comb has as many largest inscribed circles as teeth, which takes a minute.
   const std::string file =
       folder.write("big.json", text(samples::comb(kMostVertices / 4, 9).vertices()));
-  const auto start = std::chrono::steady_clock::now();
-  const Result r = run({"polygon", file, "--json"}, folder, {.interrupt_after = 2.5});
-  CHECK(r.code == 130);
+  Result r{};
+  std::chrono::steady_clock::time_point start;
+  for (const double after : {2.5, 10., 20.}) {  // a slow machine may still read the file
+    start = std::chrono::steady_clock::now();
+    r = run({"polygon", file, "--json"}, folder, {.interrupt_after = after});
+    if (r.err.find("100000 vertices: ") != std::string::npos) break;
+  }
+  REQUIRE(r.code == 130);
   CHECK(Json::parse(r.out).contains("error"));
   CHECK(r.err.find("100000 vertices: ") != std::string::npos);
   CHECK(r.err.find("interrupted") != std::string::npos);
