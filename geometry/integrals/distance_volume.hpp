@@ -21,6 +21,7 @@
 
 #include "apothem/geometry/integrals/distance_outline.hpp"
 #include "apothem/geometry/potential/piecewise_minimum.hpp"
+#include "apothem/geometry/potential/quadratic.hpp"
 
 namespace apothem {
 
@@ -49,44 +50,7 @@ class DistanceVolume {
 
  private:
   using Point = PlanePoint<Real>;
-
-  // The function c[0] + c[1] z + c[2] z^2 with z = s - origin. The origin is chosen so that the
-  // values near it are small. `id` names the feature that the function belongs to.
-  struct Quadratic {
-    Real origin;
-    std::array<Real, 3> c;
-    int id;
-    [[nodiscard]] Real operator()(const Real& s) const {
-      const Real z = s - origin;
-      return c[0] + z * (c[1] + z * c[2]);
-    }
-    [[nodiscard]] bool operator==(const Quadratic& g) const { return id == g.id; }
-    [[nodiscard]] bool below(const Quadratic& g, const Real& s) const { return (*this)(s) < g(s); }
-    [[nodiscard]] Quadratic times(const Real& f) const {
-      return {origin, {c[0] * f, c[1] * f, c[2] * f}, id};
-    }
-    // Writes candidates for the points where the function meets g. Where it does not, they may be
-    // NaN, infinite or outside the interval that starts at `from`. They are computed relative to
-    // the origin of the function with the larger curvature: far from there its coefficients would
-    // be so large that the two points of a narrow parabola are lost in their round-off.
-    int crossings(const Quadratic& g, const Real& from, std::array<Real, 2>& roots) const {
-      using std::abs;
-      using std::sqrt;
-      const Real own = abs(c[2]), other = abs(g.c[2]);
-      const Real base = own > other ? origin : other > 0 ? g.origin : from;
-      const Real c0 = (*this)(base)-g(base);
-      const Real half = slope(base) / 2 - g.slope(base) / 2;
-      const Real c2 = c[2] - g.c[2];
-      const Real discriminant = half * half - c0 * c2;
-      if (!(discriminant >= 0)) return 0;
-      const Real q = -(half + (half < 0 ? Real(-sqrt(discriminant)) : Real(sqrt(discriminant))));
-      roots = {Real(base + q / c2), Real(base + c0 / q)};
-      return 2;
-    }
-
-   private:
-    [[nodiscard]] Real slope(const Real& s) const { return c[1] + 2 * c[2] * (s - origin); }
-  };
+  using Quadratic = apothem::Quadratic<Real>;
 
   // The volume of one cell, summed from its foot (low) and from its ceiling (high), and the sums of
   // the absolute values of the terms. Both sums are equal up to round-off, but if the ring passes
@@ -121,6 +85,9 @@ class DistanceVolume {
       if (cuts_[i - 1] < cuts_[i]) piece(cuts_[i - 1], cuts_[i]);
     }
   }
+
+  // The mean of s^2 from a to b.
+  static Real mean_square(const Real& a, const Real& b) { return (a * a + a * b + b * b) / 3; }
 
   // INT f ds from a to b by Gauss quadrature, exact for polynomials of degree 5.
   template <class F>
@@ -189,12 +156,10 @@ class DistanceVolume {
         add_cuts(ceiling, {0, {top_, 0, 0}, 0});
       }
       between_cuts([&](const Real& a, const Real& b) {
-        const Real middle = (a + b) / 2;
-        const Real h = height(middle);
-        const Real top = ceiling(middle);
+        const Real h = line.mean(a, b);
         const Real full = gauss(a, b, [&](const Real& tau) { return column(ceiling(tau)); });
         const Real part = h <= 0 ? Real(0)
-                          : h < top
+                          : h < ceiling.mean(a, b)
                               ? gauss(a, b, [&](const Real& tau) { return column(height(tau)); })
                               : full;
         sums.add(sign * part, sign * full);
@@ -229,16 +194,21 @@ class DistanceVolume {
       insert_reach({0, {-p.x / d2, -2 * p.y / d2, p.x / d2}, 0}, t0, t1);
     }
     Sums sums;
-    Real coverage = 0;  // winding number of the ring about the vertex, in the middle direction
+    Real coverage = 0;    // winding number of the ring about the vertex, in the middle direction
+    bool inside = false;  // whether the ring has a vertex inside the cell or enters it sideways
     for (size_t k = 0; k < ring_.size(); ++k) {
       Point p = ring_[k] - corner;
       Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - corner;
       if (!clip(p, q, cross(right, p), cross(right, q))) continue;
       if (!clip(p, q, cross(p, left), cross(q, left))) continue;
-      beyond_segment(in_frame(p), in_frame(q), sums, coverage);
+      p = in_frame(p), q = in_frame(q);
+      inside = inside || in_cell(p) || in_cell(q);
+      beyond_segment(p, q, sums, coverage);
     }
     // Near the vertex, directions consist of round-off, which only the sum from the foot tolerates.
-    if (sums.high_size > 0) return sums.low;
+    // A segment that leads straight to the vertex has no width there, so its terms may all be 0,
+    // but the winding number of a ring through the vertex does not tell which part it covers.
+    if (inside || sums.high_size > 0) return sums.low;
     Real whole = 0;
     for (size_t k = 0; k < ceiling_.size(); ++k) {
       if (!ceiling_[k].known) continue;
@@ -266,6 +236,17 @@ class DistanceVolume {
     const Point cut = p + (q - p) * (side_p / (side_p - side_q));
     (side_p >= 0 ? q : p) = cut;
     return true;
+  }
+
+  // Whether p is nearer to the vertex than the border of its cell in the direction of p.
+  [[nodiscard]] bool in_cell(const Point& p) const {
+    using std::sqrt;
+    const Real t = half_tangent(p);
+    for (size_t k = 0; k < ceiling_.size(); ++k) {
+      if (!ceiling_[k].known || t < ceiling_[k].from || t > ceiling_.end(k)) continue;
+      if (-ceiling_[k].function(t) * sqrt(dot(p, p)) < 1 + t * t) return true;
+    }
+    return false;
   }
 
   // A border of a vertex's cell. It is the line u . normal = d / rho, u the unit direction, or a
@@ -330,7 +311,6 @@ class DistanceVolume {
   [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
     using std::atan2;
     using std::sqrt;
-    const Real middle = (t1 + t2) / 2;
     const Real half_angle = atan2(Real(t2 - t1), Real(1 + t1 * t2));
     const Real cone = top_ * top_ * top_ / 3;
     const Real& d = reach.d;
@@ -340,8 +320,8 @@ class DistanceVolume {
         return Real((reach.ec * t - reach.es) / denominator(t));
       };
       if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // narrower than round-off
-      const Real y1 = y(t1), y2 = y(t2), ym = y(middle);
-      if (capped_ && d * (1 + ym * ym) > 2 * top_) {
+      const Real y1 = y(t1), y2 = y(t2);
+      if (capped_ && d * (1 + mean_square(y1, y2)) > 2 * top_) {
         return d * d / 4 * top_ * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
                cone * half_angle;
       }
@@ -353,12 +333,15 @@ class DistanceVolume {
     const Real size = sqrt(dot(reach.normal, reach.normal));
     const Real D = d / size;
     const Point n = reach.normal * (1 / size);
-    const auto across = [&](const Real& t) { return Real(n.x * (1 - t * t) + 2 * n.y * t); };
-    const Real c1 = across(t1), c2 = across(t2);
+    const auto across = [&](const Real& t, const Real& t_squared) {
+      return Real(n.x * (1 - t_squared) + 2 * n.y * t);
+    };
+    const Real c1 = across(t1, t1 * t1), c2 = across(t2, t2 * t2);
     if (!(c1 > 0 && c2 > 0)) return 0;
     const Real w = D * (n.x * 2 * t1 - n.y * (1 - t1 * t1)) / c1;
     const Real step = 2 * D * (t2 - t1) * (1 + t1 * t2) / (c1 * c2);
-    if (capped_ && D * (1 + middle * middle) > top_ * across(middle)) {
+    const Real t_squared = mean_square(t1, t2);
+    if (capped_ && D * (1 + t_squared) > top_ * across((t1 + t2) / 2, t_squared)) {
       return D * step / 2 * top_ - cone * half_angle;
     }
     return D / 3 * root_moments<Real>(D * D, w, step)[0];
@@ -393,9 +376,8 @@ class DistanceVolume {
       add_cap_cuts(line, d);
       between_cuts([&](const Real& a, const Real& b) {
         const Real full = sector(reach, a, b);
-        const Real middle = (a + b) / 2;
-        const bool missed = line(middle) >= 0;  // by round-off, if the segment passes the vertex
-        const bool nearer = line.below(scaled, middle);
+        const bool missed = line.mean(a, b) >= 0;  // by round-off, if the segment passes the vertex
+        const bool nearer = line.below(scaled, a, b);
         sums.add(sign * (missed ? Real(0) : nearer ? sector(own, a, b) : full), sign * full);
       });
     }

@@ -137,8 +137,13 @@ class DistanceTrace {
       return vertex ? Real(sqrt(square(s))) : Real(abs(a + b * s));
     }
     [[nodiscard]] bool operator==(const Function& g) const { return id == g.id; }
-    [[nodiscard]] bool below(const Function& g, const Real& s) const {
-      return square(s) < g.square(s);
+    // The mean of the square from s0 to s1.
+    [[nodiscard]] Real mean_square(const Real& s0, const Real& s1) const {
+      const Real half = (s1 - s0) / 2 * (vertex ? k : b);
+      return square((s0 + s1) / 2) + half * half / 3;
+    }
+    [[nodiscard]] bool below(const Function& g, const Real& s0, const Real& s1) const {
+      return mean_square(s0, s1) < g.mean_square(s0, s1);
     }
     int crossings(const Function& g, const Real& from, std::array<Real, 2>& roots) const {
       using std::sqrt;

@@ -13,10 +13,11 @@ namespace apothem {
 /// - int crossings(g, from, roots) const writes up to two candidates for solutions of f = g, in any
 ///   order, and returns their number. They are best computed relative to `from`. Candidates outside
 ///   the interval in question, and NaN, are ignored.
-/// - bool below(g, s) const is true if f(s) < g(s).
+/// - bool below(g, a, b) const is true if f is below g between a and b, where they do not cross.
+///   Mean values must decide, of f and g or of increasing functions of them. f and g may touch at
+///   a single point, and there round-off would decide.
 /// - bool operator== is true for the same function.
-/// Which of two functions is lower between two candidates is decided in the middle between them. So
-/// a root that round-off moves, adds or loses changes the minimum by no more than round-off.
+/// So a root that round-off moves, adds or loses changes the minimum by no more than round-off.
 template <class Real, class Function>
 class PiecewiseMinimum {
  public:
@@ -84,7 +85,7 @@ class PiecewiseMinimum {
     for (int k = 0; k <= count; ++k) {
       const Real& stop = k < count ? roots[k] : b;
       if (!(start < stop)) continue;
-      if (f.below(piece.function, (start + stop) / 2)) {
+      if (f.below(piece.function, start, stop)) {
         next_.push_back({start, true, f});
         changed = true;
       } else {

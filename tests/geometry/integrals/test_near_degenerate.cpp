@@ -11,6 +11,7 @@
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "apothem/geometry/skeleton/skeleton.hpp"
 #include "apothem/scene/pair_file.hpp"
 #include "support.hpp"
 
@@ -100,7 +101,7 @@ TEST_CASE("two vertices that are one unit in the last place apart", "[near-degen
 
 TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near-degenerate]") {
   samples::Random random(90);
-  int touching = 0;
+  int touching = 0, refused = 0;
   const int pairs = std::max(cases(60), 6);
   for (int i = 0; i < pairs; ++i) {
     const auto [a, b] = samples::near_degenerate_pair(random, 1e-3);
@@ -110,10 +111,18 @@ TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near
       const PotentialChoice choice = i % 3 == 0   ? choice_of(field, Reference::inscribed_circle)
                                      : i % 3 == 1 ? choice_of(field, Reference::length, .1 * size)
                                                   : choice_of(field);
-      touching += check_methods(a.polygon, b.polygon, choice);
+      try {
+        touching += check_methods(a.polygon, b.polygon, choice);
+      } catch (const SkeletonFailure&) {
+        // Some of these polygons have details below 1e-9 of their size, which a skeleton may not
+        // resolve. Then it is refused; a distance field never is.
+        CHECK(field == Field::roof);
+        ++refused;
+      }
     }
   }
   CHECK(2 * touching > pairs);
+  CHECK(30 * refused <= pairs);
 }
 
 TEST_CASE("needless vertices do not change the distance field", "[near-degenerate]") {
