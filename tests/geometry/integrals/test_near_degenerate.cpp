@@ -11,7 +11,6 @@
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
 #include "apothem/scene/pair_file.hpp"
 #include "support.hpp"
 
@@ -113,7 +112,7 @@ TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near
                                                   : choice_of(field);
       try {
         touching += check_methods(a.polygon, b.polygon, choice);
-      } catch (const SkeletonFailure&) {
+      } catch (const InvalidPolygon&) {
         // Some of these polygons have details below 1e-9 of their size, which a skeleton may not
         // resolve. Then it is refused; a distance field never is.
         CHECK(field == Field::roof);
