@@ -8,6 +8,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "apothem/geometry/polygon/predicates.hpp"
+
 namespace apothem {
 namespace {
 
@@ -80,6 +82,7 @@ class PieceJoiner {
       common[j] += (pieces_.nodes[u] - pieces_.nodes[v]).norm();
     }
     std::vector<int> neighbours;
+    neighbours.reserve(common.size());
     for (const auto& [j, length] : common) neighbours.push_back(j);
     std::stable_sort(neighbours.begin(), neighbours.end(),
                      [&](int a, int b) { return common[a] > common[b]; });
@@ -126,6 +129,43 @@ void put_in_order(Pieces& pieces, int outline_size) {
     return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
   });
   pieces = std::move(sorted);
+}
+
+RingMoments ring_moments(const std::vector<Vec2>& ring, const Vec2& origin) {
+  RingMoments m;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 p = ring[i] - origin;
+    const Vec2 q = ring[i + 1 == ring.size() ? 0 : i + 1] - origin;
+    m.area += cross(p, q) / 2;
+    m.first += cross(p, q) * (p + q) / 6;
+  }
+  return m;
+}
+
+void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites) {
+  std::vector<std::vector<int>> of_site(sites.size());
+  for (size_t i = 0; i < pieces.list.size(); ++i) {
+    of_site[pieces.list[i].site].push_back(static_cast<int>(i));
+  }
+  for (size_t site = 0; site < sites.size(); ++site) {
+    const std::vector<int>& list = of_site[site];
+    if (list.empty()) continue;
+    int best = list[0];
+    double largest = -1;
+    for (const int i : list) {
+      if (list.size() == 1) break;
+      const std::vector<Vec2> ring = pieces.points(pieces.list[i].ring);
+      if (strictly_inside(ring, sites[site])) {
+        best = i;
+        break;
+      }
+      if (const double size = ring_moments(ring, sites[site]).area; size > largest) {
+        largest = size;
+        best = i;
+      }
+    }
+    pieces.list[best].owned = true;
+  }
 }
 
 bool join_pieces(Pieces& pieces) { return PieceJoiner(pieces).run(); }

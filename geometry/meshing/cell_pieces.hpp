@@ -1,5 +1,5 @@
 // The pieces into which the outline of a region cuts its Voronoi cells. This header is private to
-// voronoi.cpp.
+// voronoi.cpp and voronoi_cells.cpp.
 #pragma once
 
 #include <vector>
@@ -34,6 +34,17 @@ struct Pieces {
 /// to right. Each ring starts at its smallest node index. Pieces are sorted by their site, then by
 /// their ring.
 void put_in_order(Pieces& pieces, int outline_size);
+
+/// Area of a ring and its first moment of area about a given origin.
+struct RingMoments {
+  double area = 0;
+  Vec2 first = Vec2::Zero();
+};
+RingMoments ring_moments(const std::vector<Vec2>& ring, const Vec2& origin);
+
+/// Marks one piece of each site as owned: the one that contains the site, or the largest one if no
+/// piece contains it because of rounding.
+void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites);
 
 /// Joins every piece without its site to a neighbour that has its site: the one that shares the
 /// longest boundary with it, among those whose union with it is bounded by a simple ring. Returns

@@ -1,21 +1,12 @@
 #include "apothem/geometry/meshing/voronoi.hpp"
 
-#include <CGAL/Arr_consolidated_curve_data_traits_2.h>
-#include <CGAL/Arr_extended_dcel.h>
-#include <CGAL/Arr_segment_traits_2.h>
-#include <CGAL/Arrangement_2.h>
-#include <CGAL/Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
-#include <array>
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
 #include "apothem/geometry/meshing/cell_pieces.hpp"
+#include "apothem/geometry/meshing/voronoi_cells.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/polygon/triangulation.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -23,24 +14,8 @@
 namespace apothem {
 namespace {
 
-using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
-using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Delaunay = CGAL::Delaunay_triangulation_2<
-    Inexact,
-    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<int, Inexact>,
-                                         CGAL::Triangulation_face_base_with_info_2<int, Inexact>>>;
-using Segments = CGAL::Arr_segment_traits_2<Exact>;
-using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
-using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
-
 constexpr double kEven = 1e-3;           // movement over the cell size that ends Lloyd's iteration
 constexpr double kUnresolved = 0x1p-40;  // shorter edges over the region's size always collapse
-
-// Rounds a point. The result has the same bits however the point was constructed; CGAL's own
-// approximation of the point would not.
-Vec2 rounded(const Exact::Point_2& p) {
-  return {CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y()))};
-}
 
 // The region in coordinates relative to its origin().
 Polygon local_polygon(const Polygon& region) {
@@ -53,294 +28,35 @@ Polygon local_polygon(const Polygon& region) {
   }
 }
 
-double area(const Polygon& region) { return area_moments(region).area; }
-
-// Area of a ring and its first moment of area about a given origin.
-struct Moments {
-  double area = 0;
-  Vec2 first = Vec2::Zero();
-};
-Moments moments(const std::vector<Vec2>& ring, const Vec2& origin) {
-  Moments m;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 p = ring[i] - origin;
-    const Vec2 q = ring[i + 1 == ring.size() ? 0 : i + 1] - origin;
-    m.area += cross(p, q) / 2;
-    m.first += cross(p, q) * (p + q) / 6;
+// Per site: whether an edge of the outline may come near its cell. The test uses the cell's box.
+std::vector<bool> cells_at_outline(const VoronoiDiagram& diagram, int sites,
+                                   const Polygon& region) {
+  std::vector<Box> boxes;
+  boxes.reserve(sites + region.size());
+  for (int i = 0; i < sites; ++i) boxes.push_back(diagram.box_of(i));
+  for (int k = 0; k < region.size(); ++k) {
+    Box& box = boxes.emplace_back();
+    box.include(region[k].x(), region[k].y());
+    box.include(region.after(k).x(), region.after(k).y());
   }
-  return m;
+  std::vector<BoxPair> pairs;
+  BoxGrid().find_pairs(boxes, pairs);
+  std::vector<bool> at_outline(sites, false);
+  for (const BoxPair& pair : pairs) {
+    if (pair.first >= sites || pair.second < sites || at_outline[pair.first]) continue;
+    const Box& box = boxes[pair.first];
+    const int k = pair.second - sites;
+    int left = 0, right = 0;
+    for (const Vec2& corner :
+         {Vec2(box.x0, box.y0), Vec2(box.x1, box.y0), Vec2(box.x1, box.y1), Vec2(box.x0, box.y1)}) {
+      const int side = orientation(region[k], region.after(k), corner);
+      left += side > 0;
+      right += side < 0;
+    }
+    at_outline[pair.first] = left < 4 && right < 4;
+  }
+  return at_outline;
 }
-
-// The Voronoi diagram of the sites in the plane.
-class Diagram {
- public:
-  struct Edge {
-    int a, b;           // indices of the two sites
-    int centre, other;  // its two ends, as indices of `centres`
-  };
-
-  Diagram(const std::vector<Vec2>& sites, const Box& box) : cells_(sites.size()) {
-    // The dummy sites are so far away that every point of the region is nearer to any site.
-    const double far = 4 * box.extent();
-    const Inexact::Point_2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
-    std::vector<std::pair<Inexact::Point_2, int>> points;
-    for (const double x : {-far, far}) {
-      for (const double y : {-far, far}) points.push_back({middle + Inexact::Vector_2(x, y), -1});
-    }
-    for (size_t i = 0; i < sites.size(); ++i) {
-      points.push_back({{sites[i].x(), sites[i].y()}, static_cast<int>(i)});
-    }
-    Delaunay delaunay(points.begin(), points.end());
-    if (delaunay.number_of_vertices() != points.size()) {
-      throw std::invalid_argument("two sites are the same point");
-    }
-    const CGAL::Cartesian_converter<Inexact, Exact> exact;
-    for (const auto face : delaunay.finite_face_handles()) {
-      face->info() = static_cast<int>(centres.size());
-      std::array<int, 3>& triple = triples_.emplace_back();
-      for (int k = 0; k < 3; ++k) triple[k] = face->vertex(k)->info();
-      std::sort(triple.begin(), triple.end());
-      centres.push_back(CGAL::circumcenter(exact(face->vertex(0)->point()),
-                                           exact(face->vertex(1)->point()),
-                                           exact(face->vertex(2)->point())));
-    }
-    for (const auto vertex : delaunay.finite_vertex_handles()) {
-      if (vertex->info() < 0) continue;
-      const auto start = delaunay.incident_faces(vertex);
-      auto face = start;
-      do {
-        cells_[vertex->info()].push_back(face->info());
-      } while (++face != start);
-    }
-    for (const auto& [face, k] : delaunay.finite_edges()) {
-      const int a = face->vertex(Delaunay::cw(k))->info();
-      const int b = face->vertex(Delaunay::ccw(k))->info();
-      if (a >= 0 && b >= 0) edges.push_back({a, b, face->info(), face->neighbor(k)->info()});
-    }
-  }
-
-  // A box that contains the cell of a site.
-  [[nodiscard]] Box box_of(int site) const {
-    Box box;
-    for (const int c : cells_[site]) {
-      const CGAL::Bbox_2 b = centres[c].bbox();
-      box.include(b.xmin(), b.ymin());
-      box.include(b.xmax(), b.ymax());
-    }
-    return box;
-  }
-
-  // The cell of a site without the outline, in double precision, which suffices to move sites.
-  [[nodiscard]] std::vector<Vec2> whole_cell(int site, const std::vector<Vec2>& sites) const {
-    std::vector<Vec2> ring;
-    for (const int c : cells_[site]) {
-      const auto& [i, j, k] = triples_[c];
-      const Vec2 p = sites[j] - sites[i];
-      const Vec2 q = sites[k] - sites[i];
-      const Vec2 r = q.squaredNorm() * p - p.squaredNorm() * q;
-      ring.push_back(sites[i] + Vec2(-r.y(), r.x()) / (2 * cross(p, q)));
-    }
-    return ring;
-  }
-
-  std::vector<Exact::Point_2> centres;  // vertices of the diagram
-  std::vector<Edge> edges;              // edges of the diagram
-
- private:
-  std::vector<std::vector<int>> cells_;      // per site: its centres, counter-clockwise
-  std::vector<std::array<int, 3>> triples_;  // per centre: its three sites, ascending
-};
-
-// Cuts Voronoi cells by the outline of a region, in coordinates relative to the region's origin().
-class Cutter {
- public:
-  explicit Cutter(const Polygon& region)
-      : region_(local_polygon(region)), box_(bounding_box(region_)) {
-    for (const Vec2& v : region_.vertices()) outline_.emplace_back(v.x(), v.y());
-  }
-
-  [[nodiscard]] const Polygon& region() const { return region_; }
-  [[nodiscard]] const Box& box() const { return box_; }
-
-  // Per site: whether an edge of the outline may come near its cell. The test uses the cell's box.
-  [[nodiscard]] std::vector<bool> cells_at_outline(const Diagram& diagram, int sites) const {
-    std::vector<Box> boxes;
-    for (int i = 0; i < sites; ++i) boxes.push_back(diagram.box_of(i));
-    for (int k = 0; k < region_.size(); ++k) {
-      Box& box = boxes.emplace_back();
-      box.include(region_[k].x(), region_[k].y());
-      box.include(region_.after(k).x(), region_.after(k).y());
-    }
-    std::vector<BoxPair> pairs;
-    BoxGrid().find_pairs(boxes, pairs);
-    std::vector<bool> at_outline(sites, false);
-    for (const BoxPair& pair : pairs) {
-      if (pair.first >= sites || pair.second < sites || at_outline[pair.first]) continue;
-      const Box& box = boxes[pair.first];
-      const int k = pair.second - sites;
-      int left = 0, right = 0;
-      for (const Vec2& corner : {Vec2(box.x0, box.y0), Vec2(box.x1, box.y0), Vec2(box.x1, box.y1),
-                                 Vec2(box.x0, box.y1)}) {
-        const int side = orientation(region_[k], region_.after(k), corner);
-        left += side > 0;
-        right += side < 0;
-      }
-      at_outline[pair.first] = left < 4 && right < 4;
-    }
-    return at_outline;
-  }
-
-  // The pieces into which the outline cuts the cells of the sites that are `wanted`. All edges of
-  // these cells are in the arrangement, so the pieces are complete.
-  [[nodiscard]] Pieces cut(const Diagram& diagram, const std::vector<Vec2>& sites,
-                           const std::vector<bool>& wanted) const {
-    const int n = region_.size();
-    std::vector<Traits::Curve_2> curves;
-    for (int k = 0; k < n; ++k) {
-      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[k + 1 == n ? 0 : k + 1]), k);
-    }
-    for (size_t e = 0; e < diagram.edges.size(); ++e) {
-      const Diagram::Edge& edge = diagram.edges[e];
-      if (!wanted[edge.a] && !wanted[edge.b]) continue;
-      const Exact::Point_2& p = diagram.centres[edge.centre];
-      const Exact::Point_2& q = diagram.centres[edge.other];
-      if (p != q) curves.emplace_back(Segments::Curve_2(p, q), n + static_cast<int>(e));
-    }
-    Arrangement arrangement;
-    CGAL::insert(arrangement, curves.begin(), curves.end());
-    mark_faces_inside(arrangement);
-
-    Pieces pieces;
-    pieces.nodes = region_.vertices();
-    pieces.freedom.assign(n, kNowhere);
-    for (const auto vertex : arrangement.vertex_handles()) vertex->set_data(-1);
-    for (const auto face : arrangement.face_handles()) {
-      if (face->data() != kInside) continue;
-      const int site = site_of(face, diagram, sites);
-      if (!wanted[site]) continue;
-      Piece& piece = pieces.list.emplace_back(Piece{site, {}, false});
-      const auto start = face->outer_ccb();
-      auto edge = start;
-      do {
-        piece.ring.push_back(node_at(edge->target(), pieces));
-      } while (++edge != start);
-    }
-    put_in_order(pieces, n);
-    find_owned(pieces, sites);
-    return pieces;
-  }
-
- private:
-  static constexpr int kUnknown = -1;
-  static constexpr int kOutside = 0;
-  static constexpr int kInside = 1;
-
-  // Index of the edge of the outline that a halfedge lies on, or -1.
-  template <class Halfedge>
-  [[nodiscard]] int outline_edge(const Halfedge& halfedge) const {
-    for (const int data : halfedge->curve().data()) {
-      if (data < region_.size()) return data;
-    }
-    return -1;
-  }
-
-  // Marks all faces as inside or outside, beginning with the unbounded face. The mark changes where
-  // the outline is crossed.
-  void mark_faces_inside(Arrangement& arrangement) const {
-    for (const auto face : arrangement.face_handles()) face->set_data(kUnknown);
-    std::vector<Arrangement::Face_handle> todo{arrangement.unbounded_face()};
-    todo.back()->set_data(kOutside);
-    while (!todo.empty()) {
-      const auto face = todo.back();
-      todo.pop_back();
-      const auto visit = [&](Arrangement::Ccb_halfedge_circulator start) {
-        auto edge = start;
-        do {
-          const auto next = edge->twin()->face();
-          if (next->data() != kUnknown) continue;
-          next->set_data(outline_edge(edge) < 0 ? face->data() : kInside + kOutside - face->data());
-          todo.push_back(next);
-        } while (++edge != start);
-      };
-      if (face->has_outer_ccb()) visit(face->outer_ccb());
-      for (auto hole = face->holes_begin(); hole != face->holes_end(); ++hole) visit(*hole);
-    }
-  }
-
-  // The site to whose cell a face belongs. Any Voronoi edge on its boundary determines it; if there
-  // is no such edge, there is only one site.
-  int site_of(Arrangement::Face_handle face, const Diagram& diagram,
-              const std::vector<Vec2>& sites) const {
-    const auto start = face->outer_ccb();
-    auto edge = start;
-    do {
-      for (const int data : edge->curve().data()) {
-        if (data < region_.size()) continue;
-        const Diagram::Edge& voronoi = diagram.edges[data - region_.size()];
-        const Vec2& a = sites[voronoi.a];
-        const bool a_is_left = CGAL::orientation(edge->source()->point(), edge->target()->point(),
-                                                 Exact::Point_2(a.x(), a.y())) == CGAL::LEFT_TURN;
-        return a_is_left ? voronoi.a : voronoi.b;
-      }
-    } while (++edge != start);
-    return 0;
-  }
-
-  // Index of the node at a vertex of the arrangement; adds the node if it is new.
-  int node_at(Arrangement::Vertex_handle vertex, Pieces& pieces) const {
-    if (vertex->data() >= 0) return vertex->data();
-    int freedom = kAnywhere;
-    const auto start = vertex->incident_halfedges();
-    auto edge = start;
-    do {
-      const int k = outline_edge(edge);
-      if (k < 0) continue;
-      freedom = k;
-      for (const int i : {k, k + 1 == region_.size() ? 0 : k + 1}) {
-        if (vertex->point() == outline_[i]) {
-          vertex->set_data(i);
-          return i;
-        }
-      }
-    } while (++edge != start);
-    vertex->set_data(static_cast<int>(pieces.nodes.size()));
-    pieces.nodes.push_back(rounded(vertex->point()));
-    pieces.freedom.push_back(freedom);
-    return vertex->data();
-  }
-
-  // Marks one piece of each site as owned: the one that contains the site, or the largest one if no
-  // piece contains it because of rounding.
-  void find_owned(Pieces& pieces, const std::vector<Vec2>& sites) const {
-    std::vector<std::vector<int>> of_site(sites.size());
-    for (size_t i = 0; i < pieces.list.size(); ++i) {
-      of_site[pieces.list[i].site].push_back(static_cast<int>(i));
-    }
-    for (size_t site = 0; site < sites.size(); ++site) {
-      const std::vector<int>& list = of_site[site];
-      if (list.empty()) continue;
-      int best = list[0];
-      double largest = -1;
-      for (const int i : list) {
-        if (list.size() == 1) break;
-        const std::vector<Vec2> ring = pieces.points(pieces.list[i].ring);
-        if (strictly_inside(ring, sites[site])) {
-          best = i;
-          break;
-        }
-        if (const double size = moments(ring, sites[site]).area; size > largest) {
-          largest = size;
-          best = i;
-        }
-      }
-      pieces.list[best].owned = true;
-    }
-  }
-
-  Polygon region_;
-  Box box_;
-  std::vector<Exact::Point_2> outline_;
-};
 
 // The new position of a site that moves towards `target` and must not leave the ring. It is the
 // target itself, or half-way to the ring if the ring is in the way.
@@ -358,27 +74,27 @@ Vec2 walk(const Vec2& site, const Vec2& target, const std::vector<Vec2>& ring) {
   return site + exit / 2 * way;
 }
 
-// The sites after one step of Lloyd's iteration.
-std::vector<Vec2> sites_after_step(const Cutter& cutter, const std::vector<Vec2>& sites) {
+// The sites after one step of Lloyd's iteration. The region is in local coordinates.
+std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2>& sites) {
   const int n = static_cast<int>(sites.size());
-  const Diagram diagram(sites, cutter.box());
-  const std::vector<bool> at_outline = cutter.cells_at_outline(diagram, n);
+  const VoronoiDiagram diagram(sites, bounding_box(region));
+  const std::vector<bool> at_outline = cells_at_outline(diagram, n, region);
   std::vector<Vec2> moved = sites;
   const auto centroid = [](const std::vector<Vec2>& ring, const Vec2& site) -> Vec2 {
-    const Moments m = moments(ring, site);
+    const RingMoments m = ring_moments(ring, site);
     return site + m.first / m.area;
   };
   for (int i = 0; i < n; ++i) {
-    if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i, sites), sites[i]);
+    if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i), sites[i]);
   }
-  Pieces pieces = cutter.cut(diagram, sites, at_outline);
+  Pieces pieces = diagram.cut(region, at_outline);
   join_pieces(pieces);
   for (const Piece& piece : pieces.list) {
     if (!piece.owned) continue;
     const Vec2& site = sites[piece.site];
     const std::vector<Vec2> ring = pieces.points(piece.ring);
     const Vec2 place = walk(site, centroid(ring, site), ring);
-    if (strictly_inside(cutter.region().vertices(), place)) moved[piece.site] = place;
+    if (strictly_inside(region.vertices(), place)) moved[piece.site] = place;
   }
   return moved;
 }
@@ -416,11 +132,11 @@ std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t s
 }
 
 Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps) {
-  const Cutter cutter(region);
-  const double size = std::sqrt(area(region) / static_cast<double>(sites.size()));
+  const Polygon local = local_polygon(region);
+  const double size = std::sqrt(area_moments(region).area / static_cast<double>(sites.size()));
   Relaxation result{0, 0};
   while (result.steps < steps) {
-    const std::vector<Vec2> moved = sites_after_step(cutter, sites);
+    const std::vector<Vec2> moved = sites_after_step(local, sites);
     result.movement = 0;
     for (size_t i = 0; i < sites.size(); ++i) {
       result.movement = std::max(result.movement, (moved[i] - sites[i]).norm());
@@ -434,15 +150,16 @@ Relaxation relax(const Polygon& region, std::vector<Vec2>& sites, int steps) {
 
 VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
                          double shortest_edge) {
-  const Cutter cutter(region);
+  const Polygon local = local_polygon(region);
   if (sites.empty()) throw std::invalid_argument("there must be at least one site");
   for (const Vec2& site : sites) {
-    if (!is_finite(site) || !strictly_inside(cutter.region().vertices(), site)) {
+    if (!is_finite(site) || !strictly_inside(local.vertices(), site)) {
       throw std::invalid_argument("every site must lie inside the region");
     }
   }
-  const Diagram diagram(sites, cutter.box());
-  Pieces pieces = cutter.cut(diagram, sites, std::vector<bool>(sites.size(), true));
+  const Box box = bounding_box(local);
+  const VoronoiDiagram diagram(sites, box);
+  Pieces pieces = diagram.cut(local, std::vector<bool>(sites.size(), true));
   VoronoiMesh result;
   result.sites = sites;
   result.joined_pieces = static_cast<int>(pieces.list.size() - sites.size());
@@ -455,10 +172,10 @@ VoronoiMesh voronoi_mesh(const Polygon& region, const std::vector<Vec2>& sites,
   result.mesh.points = std::move(pieces.nodes);
   result.mesh.cells.resize(sites.size());
   for (Piece& piece : pieces.list) result.mesh.cells[piece.site] = std::move(piece.ring);
-  const double size = std::sqrt(area(region) / static_cast<double>(sites.size()));
+  const double size = std::sqrt(area_moments(region).area / static_cast<double>(sites.size()));
   result.short_edges =
       collapse_short_edges(result.mesh, std::move(pieces.freedom),
-                           std::max(shortest_edge * size, kUnresolved * cutter.box().extent()));
+                           std::max(shortest_edge * size, kUnresolved * box.extent()));
   try {
     tiling_boundary(result.mesh);
   } catch (const InvalidPolygon& error) {

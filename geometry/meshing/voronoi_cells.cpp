@@ -1,0 +1,263 @@
+#include "apothem/geometry/meshing/voronoi_cells.hpp"
+
+#include <CGAL/Arr_consolidated_curve_data_traits_2.h>
+#include <CGAL/Arr_extended_dcel.h>
+#include <CGAL/Arr_segment_traits_2.h>
+#include <CGAL/Arrangement_2.h>
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "apothem/geometry/meshing/polygon_mesh.hpp"
+
+namespace apothem {
+namespace {
+
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Delaunay = CGAL::Delaunay_triangulation_2<
+    Inexact,
+    CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_with_info_2<int, Inexact>,
+                                         CGAL::Triangulation_face_base_with_info_2<int, Inexact>>>;
+using Segments = CGAL::Arr_segment_traits_2<Exact>;
+using Traits = CGAL::Arr_consolidated_curve_data_traits_2<Segments, int>;
+using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_extended_dcel<Traits, int, int, int>>;
+
+// Rounds a point. The result has the same bits however the point was constructed; CGAL's own
+// approximation of the point would not.
+Vec2 rounded(const Exact::Point_2& p) {
+  return {CGAL::to_double(CGAL::exact(p.x())), CGAL::to_double(CGAL::exact(p.y()))};
+}
+
+}  // namespace
+
+struct VoronoiDiagram::Parts {
+  struct Edge {
+    int a, b;           // indices of the two sites
+    int centre, other;  // its two ends, as indices of `centres`
+  };
+
+  std::vector<Vec2> sites;
+  std::vector<Exact::Point_2> centres;      // vertices of the diagram
+  std::vector<Edge> edges;                  // edges of the diagram
+  std::vector<std::vector<int>> cells;      // per site: its centres, counter-clockwise
+  std::vector<std::array<int, 3>> triples;  // per centre: its three sites, ascending
+};
+
+namespace {
+
+VoronoiDiagram::Parts voronoi_parts(const std::vector<Vec2>& sites, const Box& box) {
+  VoronoiDiagram::Parts parts;
+  parts.sites = sites;
+  parts.cells.resize(sites.size());
+  // The dummy sites are so far away that every point of the region is nearer to any site.
+  const double far = 4 * box.extent();
+  const Inexact::Point_2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
+  std::vector<std::pair<Inexact::Point_2, int>> points;
+  for (const double x : {-far, far}) {
+    for (const double y : {-far, far}) points.push_back({middle + Inexact::Vector_2(x, y), -1});
+  }
+  for (size_t i = 0; i < sites.size(); ++i) {
+    points.push_back({{sites[i].x(), sites[i].y()}, static_cast<int>(i)});
+  }
+  Delaunay delaunay(points.begin(), points.end());
+  if (delaunay.number_of_vertices() != points.size()) {
+    throw std::invalid_argument("two sites are the same point");
+  }
+  const CGAL::Cartesian_converter<Inexact, Exact> exact;
+  for (const auto face : delaunay.finite_face_handles()) {
+    face->info() = static_cast<int>(parts.centres.size());
+    std::array<int, 3>& triple = parts.triples.emplace_back();
+    for (int k = 0; k < 3; ++k) triple[k] = face->vertex(k)->info();
+    std::sort(triple.begin(), triple.end());
+    parts.centres.push_back(CGAL::circumcenter(exact(face->vertex(0)->point()),
+                                               exact(face->vertex(1)->point()),
+                                               exact(face->vertex(2)->point())));
+  }
+  for (const auto vertex : delaunay.finite_vertex_handles()) {
+    if (vertex->info() < 0) continue;
+    const auto start = delaunay.incident_faces(vertex);
+    auto face = start;
+    do {
+      parts.cells[vertex->info()].push_back(face->info());
+    } while (++face != start);
+  }
+  for (const auto& [face, k] : delaunay.finite_edges()) {
+    const int a = face->vertex(Delaunay::cw(k))->info();
+    const int b = face->vertex(Delaunay::ccw(k))->info();
+    if (a >= 0 && b >= 0) parts.edges.push_back({a, b, face->info(), face->neighbor(k)->info()});
+  }
+  return parts;
+}
+
+// Cuts Voronoi cells by the outline of a region, which is in the coordinates of the sites.
+class Cutter {
+ public:
+  Cutter(const VoronoiDiagram::Parts& diagram, const Polygon& region)
+      : diagram_(diagram), region_(region) {
+    for (const Vec2& v : region_.vertices()) outline_.emplace_back(v.x(), v.y());
+  }
+
+  // The pieces into which the outline cuts the cells of the sites that are `wanted`. All edges of
+  // these cells are in the arrangement, so the pieces are complete.
+  [[nodiscard]] Pieces cut(const std::vector<bool>& wanted) const {
+    const int n = region_.size();
+    std::vector<Traits::Curve_2> curves;
+    for (int k = 0; k < n; ++k) {
+      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[k + 1 == n ? 0 : k + 1]), k);
+    }
+    for (size_t e = 0; e < diagram_.edges.size(); ++e) {
+      const VoronoiDiagram::Parts::Edge& edge = diagram_.edges[e];
+      if (!wanted[edge.a] && !wanted[edge.b]) continue;
+      const Exact::Point_2& p = diagram_.centres[edge.centre];
+      const Exact::Point_2& q = diagram_.centres[edge.other];
+      if (p != q) curves.emplace_back(Segments::Curve_2(p, q), n + static_cast<int>(e));
+    }
+    Arrangement arrangement;
+    CGAL::insert(arrangement, curves.begin(), curves.end());
+    mark_faces_inside(arrangement);
+
+    Pieces pieces;
+    pieces.nodes = region_.vertices();
+    pieces.freedom.assign(n, kNowhere);
+    for (const auto vertex : arrangement.vertex_handles()) vertex->set_data(-1);
+    for (const auto face : arrangement.face_handles()) {
+      if (face->data() != kInside) continue;
+      const int site = site_of(face);
+      if (!wanted[site]) continue;
+      Piece& piece = pieces.list.emplace_back(Piece{site, {}, false});
+      const auto start = face->outer_ccb();
+      auto edge = start;
+      do {
+        piece.ring.push_back(node_at(edge->target(), pieces));
+      } while (++edge != start);
+    }
+    put_in_order(pieces, n);
+    mark_owned(pieces, diagram_.sites);
+    return pieces;
+  }
+
+ private:
+  static constexpr int kUnknown = -1;
+  static constexpr int kOutside = 0;
+  static constexpr int kInside = 1;
+
+  // Index of the edge of the outline that a halfedge lies on, or -1.
+  template <class Halfedge>
+  [[nodiscard]] int outline_edge(const Halfedge& halfedge) const {
+    for (const int data : halfedge->curve().data()) {
+      if (data < region_.size()) return data;
+    }
+    return -1;
+  }
+
+  // Marks all faces as inside or outside, beginning with the unbounded face. The mark changes where
+  // the outline is crossed.
+  void mark_faces_inside(Arrangement& arrangement) const {
+    for (const auto face : arrangement.face_handles()) face->set_data(kUnknown);
+    std::vector<Arrangement::Face_handle> todo{arrangement.unbounded_face()};
+    todo.back()->set_data(kOutside);
+    while (!todo.empty()) {
+      const auto face = todo.back();
+      todo.pop_back();
+      const auto visit = [&](Arrangement::Ccb_halfedge_circulator start) {
+        auto edge = start;
+        do {
+          const auto next = edge->twin()->face();
+          if (next->data() != kUnknown) continue;
+          next->set_data(outline_edge(edge) < 0 ? face->data() : kInside + kOutside - face->data());
+          todo.push_back(next);
+        } while (++edge != start);
+      };
+      if (face->has_outer_ccb()) visit(face->outer_ccb());
+      for (auto hole = face->holes_begin(); hole != face->holes_end(); ++hole) visit(*hole);
+    }
+  }
+
+  // The site to whose cell a face belongs. Any Voronoi edge on its boundary determines it; if there
+  // is no such edge, there is only one site.
+  int site_of(Arrangement::Face_handle face) const {
+    const auto start = face->outer_ccb();
+    auto edge = start;
+    do {
+      for (const int data : edge->curve().data()) {
+        if (data < region_.size()) continue;
+        const VoronoiDiagram::Parts::Edge& voronoi = diagram_.edges[data - region_.size()];
+        const Vec2& a = diagram_.sites[voronoi.a];
+        const bool a_is_left = CGAL::orientation(edge->source()->point(), edge->target()->point(),
+                                                 Exact::Point_2(a.x(), a.y())) == CGAL::LEFT_TURN;
+        return a_is_left ? voronoi.a : voronoi.b;
+      }
+    } while (++edge != start);
+    return 0;
+  }
+
+  // Index of the node at a vertex of the arrangement; adds the node if it is new.
+  int node_at(Arrangement::Vertex_handle vertex, Pieces& pieces) const {
+    if (vertex->data() >= 0) return vertex->data();
+    int freedom = kAnywhere;
+    const auto start = vertex->incident_halfedges();
+    auto edge = start;
+    do {
+      const int k = outline_edge(edge);
+      if (k < 0) continue;
+      freedom = k;
+      for (const int i : {k, k + 1 == region_.size() ? 0 : k + 1}) {
+        if (vertex->point() == outline_[i]) {
+          vertex->set_data(i);
+          return i;
+        }
+      }
+    } while (++edge != start);
+    vertex->set_data(static_cast<int>(pieces.nodes.size()));
+    pieces.nodes.push_back(rounded(vertex->point()));
+    pieces.freedom.push_back(freedom);
+    return vertex->data();
+  }
+
+  const VoronoiDiagram::Parts& diagram_;
+  const Polygon& region_;
+  std::vector<Exact::Point_2> outline_;
+};
+
+}  // namespace
+
+VoronoiDiagram::VoronoiDiagram(const std::vector<Vec2>& sites, const Box& box)
+    : parts_(std::make_unique<const Parts>(voronoi_parts(sites, box))) {}
+
+VoronoiDiagram::~VoronoiDiagram() = default;
+
+Box VoronoiDiagram::box_of(int site) const {
+  Box box;
+  for (const int c : parts_->cells[site]) {
+    const CGAL::Bbox_2 b = parts_->centres[c].bbox();
+    box.include(b.xmin(), b.ymin());
+    box.include(b.xmax(), b.ymax());
+  }
+  return box;
+}
+
+std::vector<Vec2> VoronoiDiagram::whole_cell(int site) const {
+  const std::vector<Vec2>& sites = parts_->sites;
+  std::vector<Vec2> ring;
+  for (const int c : parts_->cells[site]) {
+    const auto& [i, j, k] = parts_->triples[c];
+    const Vec2 p = sites[j] - sites[i];
+    const Vec2 q = sites[k] - sites[i];
+    const Vec2 r = q.squaredNorm() * p - p.squaredNorm() * q;
+    ring.push_back(sites[i] + Vec2(-r.y(), r.x()) / (2 * cross(p, q)));
+  }
+  return ring;
+}
+
+Pieces VoronoiDiagram::cut(const Polygon& region, const std::vector<bool>& wanted) const {
+  return Cutter(*parts_, region).cut(wanted);
+}
+
+}  // namespace apothem
