@@ -203,7 +203,7 @@ void impact_steps(benchmark::State& state) {
 }
 
 // The whole impacted beam, contacts by the bodies' surfaces (0) or by potentials of elements (1).
-// The shares of the phases are of the time in steps.
+// The shares of the phases are of the time in steps: all of them add up to 1.
 void beam_run(benchmark::State& state) {
   Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impacted-beam.json");
   if (state.range(0) == 1) {
@@ -220,10 +220,7 @@ void beam_run(benchmark::State& state) {
   }
   state.counters["steps/s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
   const double all = std::accumulate(seconds.begin(), seconds.end(), 0.);
-  for (const Phase phase : {Phase::elements, Phase::contact, Phase::integrate}) {
-    const auto i = static_cast<size_t>(phase);
-    state.counters[kPhaseNames[i]] = seconds[i] / all;
-  }
+  for (size_t i = 0; i < seconds.size(); ++i) state.counters[kPhaseNames[i]] = seconds[i] / all;
 }
 
 // A pack of quadrilaterals inside the skin of their neighbours: the whole step per body.
