@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -201,8 +202,10 @@ int reproduce_command(const ReproduceOptions& options) {
   if (!options.figures.empty()) {
     return Reproduction(options, data).execute(chosen(options, known));
   }
+  size_t width = 0;
+  for (const std::string& name : known) width = std::max(width, name.size());
   for (const std::string& name : known) {
-    fmt::print("{:<10} {}\n", name, read_figure(data, name).shown.title);
+    fmt::print("{:<{}} {}\n", name, width, read_figure(data, name).shown.title);
   }
   return exit_code::done;
 }

@@ -33,7 +33,11 @@ void with_checkpoint(const std::string& folder, const Load& load) {
   const std::string name = state_file(folder, StateFile::checkpoint);
   std::error_code error_code;
   if (!std::filesystem::exists(name, error_code)) {
-    throw SceneError(name, 0, "", "there is no checkpoint to resume from; run without --resume");
+    const bool ended = std::filesystem::exists(state_file(folder, StateFile::final), error_code);
+    throw SceneError(name, 0, "",
+                     ended ? "the run has ended, so there is no checkpoint to resume from; give "
+                             "--overwrite in place of --resume to run it anew"
+                           : "there is no checkpoint to resume from; run without --resume");
   }
   try {
     const nlohmann::json json = nlohmann::json::parse(read_text(name));

@@ -22,10 +22,11 @@ void prepare_folder(const std::string& folder, bool overwrite) {
     if (fs::exists(fs::path(folder) / name, error)) old.push_back(fs::path(folder) / name);
   }
   if (!old.empty() && !overwrite) {
+    const bool resumable = fs::exists(fs::path(folder) / "checkpoint.json", error);
     throw SceneError(
         folder, 0, "",
-        fmt::format("already holds results ({}); give --overwrite, or another folder with -o",
-                    old.front().filename().string()));
+        fmt::format("already holds results ({}); give {}--overwrite, or another folder with -o",
+                    old.front().filename().string(), resumable ? "--resume to continue, " : ""));
   }
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "frames", error)) {
     const std::string name = entry.path().filename().string();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -250,7 +251,14 @@ std::string read_text(const std::string& file, size_t limit) {
 
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string result = fmt::format("\"{}\"", word);
-  if (const std::string* best = nearest(word, candidates)) {
+  // A word that begins another one is that one cut short, however much of it is missing.
+  const auto longer =
+      std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
+        return word.size() >= 3 && candidate.starts_with(word);
+      });
+  if (longer != candidates.end()) {
+    result += fmt::format("; did you mean \"{}\"?", *longer);
+  } else if (const std::string* best = nearest(word, candidates)) {
     result += fmt::format("; did you mean \"{}\"?", *best);
   }
   return result;

@@ -50,6 +50,7 @@ TEST_CASE("a misspelt command line says what it may have meant and where help is
            {{"run", "a.json", "--thread", "2"},
             "unknown option \"--thread\"; did you mean \"--threads\"?",
             "see apothem run --help"},
+           {{"run", "a.json", "--out", "b"}, "did you mean \"--output\"?", "apothem run --help"},
            {{"run", "a.json", "--treads=2"}, "did you mean \"--threads\"?", "apothem run --help"},
            {{"run", "a.json", "--threads", "no"}, "--threads", "see apothem run --help"},
            {{"run", "a.json", "b.json"}, "\"b.json\" is one argument too many", "apothem run"},
