@@ -70,7 +70,7 @@ void measure(benchmark::State& state, const std::vector<Pair>& pairs, const Meth
     }
   }
   size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     try {
       benchmark::DoNotOptimize(method(pairs[i++ % pairs.size()]));
     } catch (const std::runtime_error&) {
@@ -103,7 +103,7 @@ void edge_kernel(benchmark::State& state, const std::vector<Pair>& pairs) {
         worst, (result.force - pair.exact.integral.force).norm() / pair.exact.integral.weight);
   }
   size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const Placed& p = placed[i++ % placed.size()];
     benchmark::DoNotOptimize(
         pair_integral(p.shapes.view(0), p.shapes.view(1), p.offset, workspace));
@@ -165,7 +165,7 @@ void cross_pair_edge(benchmark::State& state) {
   const CrossPairs pairs(PotentialChoice::Field(state.range(0)));
   EdgeWorkspace workspace;
   int i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const int k = i++ % CrossPairs::kPairs;
     benchmark::DoNotOptimize(pair_integral(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1),
                                            pairs.offsets[k], workspace));
@@ -178,7 +178,7 @@ void cross_pair_patches(benchmark::State& state) {
   std::vector<PairIntegral> patches;
   int i = 0;
   double count = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const int k = i++ % CrossPairs::kPairs;
     contact_patches(pairs.shapes.view(2 * k), pairs.shapes.view(2 * k + 1), pairs.offsets[k],
                     workspace, runs, patches);
@@ -190,7 +190,7 @@ void cross_pair_patches(benchmark::State& state) {
 void impact_steps(benchmark::State& state) {
   const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/impact-asymmetric.json");
   std::unique_ptr<Simulation> simulation;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     if (!simulation || simulation->state().time >= scene.time.end) {
       state.PauseTiming();
       simulation = std::make_unique<Simulation>(scene.model, scene.time, scene.output.frames, 1);
@@ -212,7 +212,7 @@ void beam_run(benchmark::State& state) {
   }
   double steps = 0;
   std::array<double, kPhaseNames.size()> seconds{};
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Simulation simulation(scene.model, scene.time, scene.output.frames, 1);
     while (simulation.state().time < scene.time.end) simulation.step();
     steps += static_cast<double>(simulation.own_steps());
@@ -242,7 +242,7 @@ void pack_step(benchmark::State& state) {
     model.bodies.push_back(body);
   }
   Simulation simulation(model, {.end = 1e3, .safety = .1}, 1, 1);
-  for (auto _ : state) simulation.step();
+  for ([[maybe_unused]] auto _ : state) simulation.step();
   state.counters["per_body"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * n,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

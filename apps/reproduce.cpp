@@ -60,6 +60,7 @@ class Reproduction {
 
   int execute(const std::vector<std::string>& names) {
     std::vector<Figure> figures;
+    figures.reserve(names.size());
     for (const std::string& name : names) figures.push_back(read_figure(data_, name));
     create_folder(options_.folder);
     for (const Figure& figure : figures) {

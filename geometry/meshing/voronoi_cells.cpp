@@ -109,6 +109,7 @@ class Cutter {
   [[nodiscard]] Pieces cut(const std::vector<bool>& wanted) const {
     const int n = region_.size();
     std::vector<Traits::Curve_2> curves;
+    curves.reserve(n + diagram_.edges.size());
     for (int k = 0; k < n; ++k) {
       curves.emplace_back(Segments::Curve_2(outline_[k], outline_[k + 1 == n ? 0 : k + 1]), k);
     }
