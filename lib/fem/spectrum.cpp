@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kStrain =
     1e-6;  // of the probing displacements: in the linear range, far above round-off
-constexpr double kAccuracy = 5e-3;  // relative, of the eigenvalue
-constexpr int kMostSteps = 200;     // of Lanczos' method
+constexpr double kAccuracy = 5e-3;      // relative, of the eigenvalue
+constexpr int kMostLanczosSteps = 200;  // of Lanczos' method
 
 }  // namespace
 
@@ -48,7 +48,7 @@ double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
   Vector before = Vector::Zero(n);
   std::vector<double> diagonal, beside;
   double answer = 0;
-  for (int step = 1; step <= kMostSteps; ++step) {
+  for (int step = 1; step <= kMostLanczosSteps; ++step) {
     Vector next = apply(q);
     diagonal.push_back(next.dot(q));
     next -= diagonal.back() * q;

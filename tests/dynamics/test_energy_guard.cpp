@@ -30,9 +30,9 @@ class Thief final : public Term {
 };
 
 // A spring to the place where the first body began; it gives no bound of the time step.
-class Spring final : public Term {
+class Oscillator final : public Term {
  public:
-  Spring(double stiffness, double start) : stiffness_(stiffness), start_(start) {}
+  Oscillator(double stiffness, double start) : stiffness_(stiffness), start_(start) {}
   [[nodiscard]] std::string describe() const override { return "a spring"; }
   void add_forces(const Evaluation& now) override {
     now.state.f[0] -= stiffness_ * (now.state.x[0] - start_);
@@ -105,8 +105,8 @@ TEST_CASE("a step a little too long is caught, one a little below the limit is n
     constexpr double kStep = 1e-3;
     Simulation simulation(model, {.end = 10, .fixed_step = kStep}, 1, 1);
     const double rate = 2 * share / kStep;
-    simulation.add(
-        std::make_unique<Spring>(model.bodies[0].mass * rate * rate, model.bodies[0].position.x()));
+    simulation.add(std::make_unique<Oscillator>(model.bodies[0].mass * rate * rate,
+                                                model.bodies[0].position.x()));
     for (int i = 0; i < 2000; ++i) simulation.step();
   };
   CHECK_NOTHROW(run(.3));

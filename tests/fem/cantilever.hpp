@@ -6,7 +6,7 @@
 namespace apothem::test {
 
 /// Nodes on the line x = const.
-inline std::vector<int> nodes_at(const Mesh& mesh, double x) {
+inline std::vector<int> beam_nodes_at(const Mesh& mesh, double x) {
   std::vector<int> nodes;
   for (size_t i = 0; i < mesh.nodes.size(); ++i) {
     if (std::abs(mesh.nodes[i].x() - x) < 1e-9) nodes.push_back(static_cast<int>(i));
@@ -32,7 +32,7 @@ struct Beam {
   /// Consistent nodal loads of the parabolic shear traction, sum 1 downwards, at the tip.
   [[nodiscard]] VectorXd tip_load(const Mesh& mesh) const {
     VectorXd load = VectorXd::Zero(static_cast<ptrdiff_t>(2 * mesh.nodes.size()));
-    const std::vector<int> tip = nodes_at(mesh, length);
+    const std::vector<int> tip = beam_nodes_at(mesh, length);
     const double h = height;
     for (size_t i = 0; i + 1 < tip.size(); ++i) {
       const double a = mesh.nodes[tip[i]].y(), b = mesh.nodes[tip[i + 1]].y();
@@ -50,7 +50,7 @@ struct Beam {
   [[nodiscard]] double clamped_deflection(Kind kind, const Mesh& mesh) const {
     const Structure structure(kind, mesh, material);
     Supports supports(mesh);
-    for (const int node : nodes_at(mesh, 0)) supports.fix(node);
+    for (const int node : beam_nodes_at(mesh, 0)) supports.fix(node);
     const VectorXd load = tip_load(mesh);
     return load.dot(solve_linear(structure, supports, load));
   }
@@ -62,7 +62,7 @@ struct Beam {
   [[nodiscard]] double smooth_deflection(Kind kind, const Mesh& mesh) const {
     const Structure structure(kind, mesh, material);
     Supports supports(mesh);
-    for (const int node : nodes_at(mesh, 0)) {
+    for (const int node : beam_nodes_at(mesh, 0)) {
       supports.fix(node, exact_displacement(mesh.nodes[node]));
     }
     const VectorXd load = tip_load(mesh);

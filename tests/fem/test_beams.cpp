@@ -58,7 +58,7 @@ std::vector<double> frequencies(const Beam& beam, Kind kind, const Mesh& mesh, b
   const Structure s(kind, mesh, beam.material);
   Supports supports(mesh);
   if (clamped) {
-    for (const int node : nodes_at(mesh, 0)) supports.fix(node);
+    for (const int node : beam_nodes_at(mesh, 0)) supports.fix(node);
   }
   const int rigid = clamped ? 0 : 3;
   std::vector<double> all =
@@ -249,8 +249,8 @@ TEST_CASE("a beam bent to a full circle", "[fem]") {
   for (const auto& [kind, mesh] : cases) {
     const Structure structure(kind, mesh, beam.material);
     Supports supports(mesh);
-    for (const int node : nodes_at(mesh, 0)) supports.fix(node);
-    for (const int node : nodes_at(mesh, beam.length)) supports.fix(node, {-beam.length, 0});
+    for (const int node : beam_nodes_at(mesh, 0)) supports.fix(node);
+    for (const int node : beam_nodes_at(mesh, beam.length)) supports.fix(node, {-beam.length, 0});
     VectorXd guess(structure.size());
     for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
       const Vec2& p = mesh.nodes[i];
@@ -261,7 +261,7 @@ TEST_CASE("a beam bent to a full circle", "[fem]") {
     const VectorXd reaction = structure.force(u);
     Vec2 force = Vec2::Zero();
     double moment = 0;
-    for (const int node : nodes_at(mesh, beam.length)) {
+    for (const int node : beam_nodes_at(mesh, beam.length)) {
       const Vec2 f = reaction.segment<2>(2 * node);
       force += f;
       moment += cross(Vec2(mesh.nodes[node] + u.segment<2>(2 * node)), f);

@@ -56,14 +56,14 @@ inline Ring any_ring(Random& random) {
   }
 }
 
-struct Shape {
+struct HardShape {
   Polygon polygon;
   Potential potential;
 };
 
-inline std::vector<Shape> shapes(int count) {
+inline std::vector<HardShape> shapes(int count) {
   Random random(60);
-  std::vector<Shape> result;
+  std::vector<HardShape> result;
   while (static_cast<int>(result.size()) < count) {
     Ring ring = any_ring(random);
     for (Vec2& v : ring) v = Vec2(on_grid(v.x(), kGrid), on_grid(v.y(), kGrid));
@@ -100,14 +100,14 @@ inline Vec2 move(Random& random, const Polygon& a, const Polygon& b) {
 
 /// Depends on the pool and the number alone.
 struct AdversarialPair {
-  const Shape& a;
-  const Shape& b;
+  const HardShape& a;
+  const HardShape& b;
   Polygon moved;  ///< b where it stands
 };
-inline AdversarialPair hard_pair(const std::vector<Shape>& pool, unsigned number) {
+inline AdversarialPair hard_pair(const std::vector<HardShape>& pool, unsigned number) {
   Random random(number);
-  const Shape& a = pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
-  const Shape& b =
+  const HardShape& a = pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
+  const HardShape& b =
       random.integer(0, 9) == 0 ? a : pool[random.integer(0, static_cast<int>(pool.size()) - 1)];
   return {a, b, samples::shifted(b.polygon, move(random, a.polygon, b.polygon))};
 }

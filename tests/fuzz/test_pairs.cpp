@@ -10,7 +10,7 @@ using namespace apothem;
 
 TEST_CASE("random and adversarial pairs", "[fuzz]") {
   const bool all = test::long_run();
-  const std::vector<test::Shape> pool = test::shapes(all ? 600 : test::scaled(300) + 30);
+  const std::vector<test::HardShape> pool = test::shapes(all ? 600 : test::scaled(300) + 30);
   const int pairs = all ? 1'000'000 : test::scaled(20'000);
   int touching = 0;
   test::PairErrors worst;

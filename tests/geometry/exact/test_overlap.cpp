@@ -9,7 +9,7 @@ using namespace apothem;
 
 namespace {
 
-constexpr double kEpsilon = 0x1p-52;
+constexpr double kUnitRoundOff = 0x1p-52;
 
 PairResult overlap(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
   return overlap_method(a, make_potential(a, choice), b, make_potential(b, choice));
@@ -43,7 +43,7 @@ TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
     ++touching;
     const double error = (e.integral.force - o.integral.force).norm() / weight;
     const double depth = o.integral.depth;
-    worst_conditioned = std::max(worst_conditioned, error * depth / kEpsilon);
+    worst_conditioned = std::max(worst_conditioned, error * depth / kUnitRoundOff);
     // Below a depth of 1e-3 the input itself, rounded to double, carries more than 1e-12.
     if (depth > 1e-3) worst = std::max(worst, error);
     REQUIRE(std::abs(e.integral.moment_a - o.integral.moment_a) <
@@ -73,7 +73,8 @@ TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
       const PairResult x = exact_method(a, b, choice);
       for (const PairResult& r : {test::edge(a, b, choice), overlap(a, b, choice)}) {
         const double tolerance =
-            std::max(1e-13, 4 * kEpsilon / std::max(x.integral.depth, 1e-9)) * x.integral.weight;
+            std::max(1e-13, 4 * kUnitRoundOff / std::max(x.integral.depth, 1e-9)) *
+            x.integral.weight;
         REQUIRE((r.integral.force - x.integral.force).norm() <= tolerance);
         REQUIRE(std::abs(r.integral.moment_a - x.integral.moment_a) <= 2 * tolerance);
         REQUIRE(std::abs(r.integral.moment_b - x.integral.moment_b) <= 2 * tolerance);
@@ -114,7 +115,7 @@ TEST_CASE("a tip on a long edge", "[overlap]") {
     const Polygon floor({{-.47 * length, 0}, {-.3 * length, -1}, {.53 * length, 0}});
     const PairResult x = exact_method(tip, floor, {});
     const PairResult e = test::edge(tip, floor);
-    const double rounding = kEpsilon * 4 / d;  // of the tip's own coordinates, at any length
+    const double rounding = kUnitRoundOff * 4 / d;  // of the tip's own coordinates, at any length
     CHECK((e.integral.force - x.integral.force).norm() < rounding * x.integral.weight);
     CHECK(std::abs(e.integral.own_length_b - x.integral.own_length_b) <
           10 * rounding * x.integral.own_length_b);

@@ -258,7 +258,7 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
 }
 
 TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", "[patches]") {
-  const std::vector<test::Shape> pool = test::shapes(test::scaled(300) + 30);
+  const std::vector<test::HardShape> pool = test::shapes(test::scaled(300) + 30);
   const bool all = test::long_run();
   constexpr double kWorthTheName = 1e-6;  // INT phi ds, m
   int touching = 0, several = 0, differ = 0;
@@ -324,12 +324,12 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
 }
 
 TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[patches]") {
-  const std::vector<test::Shape> pool = test::shapes(60);
+  const std::vector<test::HardShape> pool = test::shapes(60);
   samples::Random random(73);
   int patches = 0;
   for (int i = 0; i < test::scaled(5000); ++i) {
-    const test::Shape& a = pool[random.integer(0, 59)];
-    const test::Shape& b = pool[random.integer(0, 59)];
+    const test::HardShape& a = pool[random.integer(0, 59)];
+    const test::HardShape& b = pool[random.integer(0, 59)];
     const Polygon moved =
         samples::shifted(b.polygon, {random.uniform(-1, 1), random.uniform(-1, 1)});
     const PatchResult ab = edge_patches(a.polygon, a.potential, moved, b.potential);
