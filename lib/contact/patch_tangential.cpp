@@ -37,8 +37,32 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
   std::swap(now_, before_);
   now_.clear();
   place_ = {};
+  std::swap(forces_, forces_before_);
   forces_.clear();
-  for (const int pair : touching) step_pair(pairs, static_cast<size_t>(pair), now, dt, memory);
+  auto last = forces_before_.begin();
+  const auto release_until = [&](RigidIndex a, RigidIndex b) {
+    for (; last != forces_before_.end() && std::pair(last->a, last->b) < std::pair(a, b); ++last) {
+      release(*last, now, dt, memory);
+    }
+  };
+  for (const int p : touching) {
+    const auto pair = static_cast<size_t>(p);
+    const auto [a, b] = pairs.pairs()[pair];
+    release_until(a, b);
+    if (last != forces_before_.end() && last->a == a && last->b == b) ++last;
+    step_pair(pairs, pair, now, dt, memory);
+  }
+  release_until(std::numeric_limits<RigidIndex>::max(), 0);
+}
+
+// Of a pair that touches no more: in the first half of this step its last force has still acted.
+void PatchTangential::release(const TangentialForce& last, const Kinematics& now, double dt,
+                              FrictionMemory& memory) const {
+  const PairMotion motion(surfaces_, now, last.a, last.b);
+  const double damping = motion.power(last.damping, last.damping_a, last.damping_b);
+  const double all = motion.power(last.force, last.moment_a, last.moment_b);
+  memory.damp(-dt / 2 * damping);
+  memory.lose(-dt / 2 * (all - damping));
 }
 
 void PatchTangential::History::fields(Archive& archive) {
@@ -98,7 +122,7 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
       PatchDamper& d = dampers_[j];
       memory.damp(damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a, b,
                        patch, motion, dt, d));
-      total.add(d.damping, d.damping_a, d.damping_b);
+      total.add_damping(d);
     }
     if (!rough || edgewise()) continue;
     const double error =

@@ -22,11 +22,24 @@ struct TangentialForce {
   double moment_a = 0, moment_b = 0;  ///< N m
   double stiffness = 0;               ///< of the springs, N/m
   double arm = 0;                     ///< largest lever of a spring about either mass centre, m
+  /// Of these the damping.
+  Vec2 damping = Vec2::Zero();
+  double damping_a = 0, damping_b = 0;
 
   void add(const Vec2& on_a, double about_a, double about_b) {
     force += on_a;
     moment_a += about_a;
     moment_b += about_b;
+  }
+  void add_damping(const PatchDamper& d) {
+    add(d.damping, d.damping_a, d.damping_b);
+    damping += d.damping;
+    damping_a += d.damping_a;
+    damping_b += d.damping_b;
+  }
+  void fields(Archive& archive) {
+    archive("a", a)("b", b)("force", force)("moment_a", moment_a)("moment_b", moment_b);
+    archive("damping", damping)("damping_a", damping_a)("damping_b", damping_b);
   }
 };
 
@@ -69,7 +82,10 @@ class PatchTangential {
   };
   /// Takes over what the patches of another simulation remember.
   void inherit(History history) { now_ = std::move(history); }
-  void fields(Archive& archive) { now_.fields(archive); }
+  void fields(Archive& archive) {
+    now_.fields(archive);
+    archive("forces", forces_);
+  }
 
  private:
   struct Place {  // in a History
@@ -79,6 +95,8 @@ class PatchTangential {
   [[nodiscard]] const PairHistory* find_before(RigidIndex a, RigidIndex b);
   void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt,
                  FrictionMemory& memory);
+  void release(const TangentialForce& last, const Kinematics& now, double dt,
+               FrictionMemory& memory) const;
   void find_shares(const PairHistory* before);
   template <class T, class Add>
   void inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const;
@@ -96,7 +114,7 @@ class PatchTangential {
   double thickness_;
   History now_, before_;
   Place place_;  // of the next pair of the step before
-  std::vector<TangentialForce> forces_;
+  std::vector<TangentialForce> forces_, forces_before_;
   // Of the pair at hand; kept for their memory.
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;
