@@ -46,10 +46,13 @@ void say_step(const Scene& scene, const Simulation& simulation) {
     return;
   }
   const bool by_elements = choice.limit.reason.starts_with("elements");
-  const std::string how = scene.time.fixed_step
-                              ? "fixed"
-                              : fmt::format("auto, safety {:g}", by_elements ? choice.element_safety
-                                                                             : scene.time.safety);
+  const TimeSettings& time = scene.time;
+  std::string how = "fixed";
+  if (!time.fixed_step) {
+    how = fmt::format("auto, {:.3g} of the limit",
+                      by_elements ? choice.element_safety : choice.safety);
+    if (!time.safety) how += fmt::format(" for an accuracy of {:g}", time.accuracy);
+  }
   say("time step", fmt::format("{} s ({}); limited by: {}; stability limit {:.6g} s", choice.step,
                                how, choice.limit.reason, choice.stability));
 }

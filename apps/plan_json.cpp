@@ -49,8 +49,13 @@ Json bodies(const Model& model) {
 // JSON knows no infinity: where nothing limits the step, the limit is null.
 Json time_step(const Scene& scene, const Simulation& simulation) {
   const StepChoice& choice = simulation.step_choice();
+  const bool automatic = !scene.time.fixed_step.has_value();
+  Json accuracy;  // null where the scene gives the step or its safety
+  if (automatic && !scene.time.safety) accuracy = scene.time.accuracy;
   return {{"step", choice.step},
-          {"automatic", !scene.time.fixed_step.has_value()},
+          {"automatic", automatic},
+          {"accuracy", accuracy},
+          {"safety", automatic ? Json(choice.safety) : Json()},
           {"limited_by", choice.limit.reason},
           {"stability_limit", choice.stability},
           {"steps", std::ceil(scene.time.end / choice.step)}};

@@ -96,6 +96,15 @@ void print_summary(const Run& run) {
                run.beginning().folder, run.beginning().time,
                others.empty() ? "" : fmt::format("; as in the scene: {}", fmt::join(others, ", ")));
   }
+  const StepChanges& changes = run.simulation().step_changes();
+  if (changes.shortened > 0) {
+    const StepChange& first = changes.first.front();
+    fmt::print(
+        "step shortened {} times, first at t = {:.6g} s by the contacts of \"{}\", and lengthened "
+        "{} times; shortest {:.6g} s\n",
+        changes.shortened, first.time, scene.model.name_of(first.body), changes.lengthened,
+        changes.shortest);
+  }
   fmt::print(
       "largest penetration {:.9g} m ({:.3g} % of an inradius), contact force {:.9g} N, energy "
       "error {:.3g} J\n",
@@ -179,6 +188,7 @@ void read_from(const std::string& text, RunSettings& settings) {
 
 std::vector<Setting> settings_of(const std::vector<std::string>& texts, const std::string& scene) {
   std::vector<Setting> settings;
+  settings.reserve(texts.size());
   for (const std::string& text : texts) settings.push_back(parse_setting(text, scene));
   return settings;
 }

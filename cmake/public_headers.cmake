@@ -12,6 +12,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/ledger.hpp
   dynamics/results.hpp
   dynamics/simulation.hpp
+  dynamics/step_control.hpp
   dynamics/term.hpp
   dynamics/time_step.hpp
   dynamics/unstable.hpp

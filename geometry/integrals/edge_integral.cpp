@@ -75,22 +75,26 @@ Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, doub
     walk_envelope(row, s0, s1,
                   [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
     accumulate(edge, moments, s1 - s0, half);
+    if (s0 == 0 && edge.first == 0) half.enter(e);
     pieces.add(edge, s0, s1);
   }
   return half;
 }
 
 // Integrates phi of y, which is not convex, along the edges of x. For every edge that may enter y
-// it calls along(edge, inside), which returns the integrals of phi along the edge and adds the
-// share of the edge inside y to `inside`. An edge may enter y several times.
+// it calls along(edge, inside, start), which returns the integrals of phi along the edge, adds the
+// share of the edge inside y to `inside` and sets `start` to 0 if its start is inside. An edge may
+// enter y several times.
 template <class Along>
 Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                      const Along& along) {
   Half half;
-  half.weight += edges_near(x, y, dx, dy, [&](int, const PlacedEdge& edge) {
+  half.weight += edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
     double inside = 0;
-    const SegmentMoments<double> moments = along(edge, inside);
+    double start = 1;
+    const SegmentMoments<double> moments = along(edge, inside, start);
     accumulate(edge, moments, inside, half);
+    if (start == 0 && edge.first == 0) half.enter(e);
   });  // a NaN is added, so that it is never taken for "no contact"
   return half;
 }
@@ -98,12 +102,13 @@ Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double 
 Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                     RoofTrace<double>& trace, Pieces& pieces) {
   const PlacedRoof<double> roof = placed_roof(y);
-  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside, double& start) {
     trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
     SegmentMoments<double> moments;
     trace.pieces([&](double u1, double v1, double u2, double v2) {
       add_piece(y, u1, v1, u2, v2, moments);
       inside += u2 - u1;
+      start = std::min(start, u1);
       pieces.reserve(1);
       pieces.add(edge, u1, u2);
     });
@@ -114,9 +119,10 @@ Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double d
 Half integrate_distance(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                         DistanceTrace<double>& trace, Pieces& pieces) {
   const PlacedDistance<double> field = placed_distance(y);
-  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside) {
+  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside, double& start) {
     return trace.integrate(field, edge.px, edge.py, edge.ex, edge.ey, [&](double u1, double u2) {
       inside += u2 - u1;
+      start = std::min(start, u1);
       pieces.reserve(1);
       pieces.add(edge, u1, u2);
     });
@@ -267,6 +273,7 @@ class FineLines {
   }
   [[nodiscard]] std::vector<Fine> at(Fine px, Fine py) const {
     std::vector<Fine> row;
+    row.reserve(static_cast<size_t>(y_.size) + 1);
     for (int i = 0; i < y_.size; ++i)
       row.push_back(gx_[i] * (px - y_.x[i]) + gy_[i] * (py - y_.y[i]));
     if (y_.capped) row.push_back(1);

@@ -14,6 +14,7 @@
 // differences of positions are used, so no digits are lost far from the origin.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "apothem/geometry/potential/distance_field.hpp"
@@ -69,6 +70,9 @@ struct PairIntegral {
   /// the distance potential of convex polygons, and never more (see penetration.hpp).
   double depth = 0;
   double breadth = 0;  ///< extent of the overlap across the force, m
+  /// Which vertices of a lie inside b, and of b inside a: bit i mod 64 counts the vertices i,
+  /// modulo 2. Needles leave them out.
+  std::uint64_t inside_a = 0, inside_b = 0;
 
   /// True if the polygons touch, and also if the weight is NaN.
   [[nodiscard]] bool touching() const { return !(weight <= 0); }

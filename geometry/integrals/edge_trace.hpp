@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "apothem/geometry/integrals/edge_integral.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
@@ -131,7 +132,10 @@ struct Half {
   double weight = 0, wx = 0, wy = 0;  // SUM INT phi ds, m, and SUM INT phi x ds, m^2
   double length = 0;                  // length of the edges of x inside y, m
   double largest = 0;                 // largest phi along the edges
+  std::uint64_t inside = 0;           // vertices of x inside y: see PairIntegral
 
+  // Counts vertex i as inside.
+  void enter(int i) { inside ^= std::uint64_t{1} << (i % 64); }
   void add(const Half& other) {
     fx += other.fx, fy += other.fy;
     moment += other.moment;
@@ -317,6 +321,8 @@ inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm)
     pair.centre = {(of_b.wx + (of_a.wx - rx * of_a.weight)) / pair.weight,
                    (of_b.wy + (of_a.wy - ry * of_a.weight)) / pair.weight};
   }
+  pair.inside_a = of_a.inside;
+  pair.inside_b = of_b.inside;
   pair.own_length_a = of_a.length;
   pair.own_length_b = of_b.length;
   pair.largest_phi = std::max(of_a.largest, of_b.largest);

@@ -36,34 +36,56 @@ int PlacedShapes::add(const Potential& potential) {
   return size() - 1;
 }
 
-void PlacedShapes::place(int i, double x, double y, double angle) {
-  const Shape& shape = shapes_[i];
+Box PlacedShapes::rotate(const Shape& shape, double angle, const Coordinates& to) const {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  double* const vx = x_.data() + shape.vertices;
-  double* const vy = y_.data() + shape.vertices;
-  double* const gx = gx_.data() + shape.edges;
-  double* const gy = gy_.data() + shape.edges;
   const Vec2* const v = body_vertices_.data() + shape.edges;
   const Vec2* const g = body_gradients_.data() + shape.edges;
   Box box;
   for (int k = 0; k < shape.size; ++k) {
-    vx[k] = c * v[k].x() - s * v[k].y();
-    vy[k] = s * v[k].x() + c * v[k].y();
-    gx[k] = c * g[k].x() - s * g[k].y();
-    gy[k] = s * g[k].x() + c * g[k].y();
-    box.include(vx[k], vy[k]);
+    to.x[k] = c * v[k].x() - s * v[k].y();
+    to.y[k] = s * v[k].x() + c * v[k].y();
+    to.gx[k] = c * g[k].x() - s * g[k].y();
+    to.gy[k] = s * g[k].x() + c * g[k].y();
+    box.include(to.x[k], to.y[k]);
   }
-  vx[shape.size] = vx[0];
-  vy[shape.size] = vy[0];
+  to.x[shape.size] = to.x[0];
+  to.y[shape.size] = to.y[0];
   if (shape.roof) {
     const std::vector<Vec2>& points = shape.roof->points;
     for (size_t k = 0; k < points.size(); ++k) {
-      node_x_[shape.nodes + k] = c * points[k].x() - s * points[k].y();
-      node_y_[shape.nodes + k] = s * points[k].x() + c * points[k].y();
+      to.node_x[k] = c * points[k].x() - s * points[k].y();
+      to.node_y[k] = s * points[k].x() + c * points[k].y();
     }
   }
+  return box;
+}
+
+void PlacedShapes::place(int i, double x, double y, double angle) {
+  const Shape& shape = shapes_[i];
+  const Box box = rotate(
+      shape, angle,
+      {x_.data() + shape.vertices, y_.data() + shape.vertices, gx_.data() + shape.edges,
+       gy_.data() + shape.edges, node_x_.data() + shape.nodes, node_y_.data() + shape.nodes});
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
+}
+
+PlacedPotential PlacedShapes::turn(int i, double angle, Turned& t) const {
+  const Shape& shape = shapes_[i];
+  const auto n = static_cast<size_t>(shape.size);
+  const size_t nodes = shape.roof ? shape.roof->points.size() : 0;
+  const auto grow = [](std::vector<double>& v, size_t size) {
+    if (v.size() < size) v.resize(size);
+  };
+  for (std::vector<double>* v : {&t.x, &t.y, &t.gx, &t.gy}) grow(*v, n + 1);
+  for (std::vector<double>* v : {&t.node_x, &t.node_y}) grow(*v, nodes);
+  rotate(shape, angle,
+         {t.x.data(), t.y.data(), t.gx.data(), t.gy.data(), t.node_x.data(), t.node_y.data()});
+  PlacedPotential result = view(i);
+  result.x = t.x.data(), result.y = t.y.data();
+  result.gx = t.gx.data(), result.gy = t.gy.data();
+  result.node_x = t.node_x.data(), result.node_y = t.node_y.data();
+  return result;
 }
 
 int PlacedShapes::add_deforming(const Potential& potential) {

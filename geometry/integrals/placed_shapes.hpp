@@ -17,6 +17,14 @@ class PlacedShapes {
   /// Moves shape i: reference point to (x, y), rotated by `angle`.
   void place(int i, double x, double y, double angle);
 
+  /// Coordinates of one shape at another angle.
+  struct Turned {
+    std::vector<double> x, y, gx, gy, node_x, node_y;
+  };
+  /// Shape i at an angle, in the memory of `turned`, which must live as long as the result is used.
+  /// For shapes that do not deform.
+  PlacedPotential turn(int i, double angle, Turned& turned) const;
+
   /// Adds a convex shape whose vertices will move by themselves. The inverse lengths of its edges
   /// stay those of `potential`.
   int add_deforming(const Potential& potential);
@@ -67,6 +75,12 @@ class PlacedShapes {
     size_t nodes;      // (first of its placed nodes)
     const DistanceField* distance;
   };
+  struct Coordinates {
+    double *x, *y, *gx, *gy, *node_x, *node_y;
+  };
+  // Writes the coordinates of a shape at an angle and returns their box.
+  Box rotate(const Shape& shape, double angle, const Coordinates& to) const;
+
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
   std::vector<double> inverse_length_;                // 1/m, indexed by `edges`

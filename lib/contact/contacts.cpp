@@ -77,6 +77,16 @@ void Contacts::add_forces(const ForceViews& forces) {
   each([&](Kernel& kernel) { kernel.add_forces(forces); });
 }
 
+bool Contacts::find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) {
+  bool found = false;
+  each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt) || found; });
+  return found;
+}
+
+void Contacts::add_onsets(double scale, const ForceViews& forces) const {
+  each([&](const Kernel& kernel) { kernel.add_onsets(scale, forces); });
+}
+
 std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
   if (contact.kernel != outline_kernel) {
     return {surfaces_.body(contact.a), surfaces_.body(contact.b)};

@@ -59,6 +59,10 @@ class Contacts {
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
 
+  /// Impulses of contacts that have begun or ended in the drift of dt (s): see Kernel.
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt);
+  void add_onsets(double scale, const ForceViews& forces) const;
+
   /// Elastic energy of contacts and springs, J. Not for every step.
   [[nodiscard]] double energy() const;
   [[nodiscard]] double friction_loss() const { return memory_.loss(); }

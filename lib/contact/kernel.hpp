@@ -10,6 +10,7 @@
 #include "apothem/contact/contact.hpp"
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/surfaces.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 
@@ -57,6 +58,13 @@ class Kernel {
   virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
   /// Adds all forces, normal ones first.
   virtual void add_forces(const ForceViews& forces) = 0;
+  /// At the end of a drift of dt (s): finds the impulses that contacts lack that have begun or
+  /// ended in it (onset.hpp); true if there is one.
+  virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/) {
+    return false;
+  }
+  /// Adds these impulses over dt, times `scale`, to the forces.
+  virtual void add_onsets(double /*scale*/, const ForceViews& /*forces*/) const {}
   /// Of the last call: the largest normal force of a pair of bodies. Not known to all kernels.
   [[nodiscard]] virtual PairPeak largest_force() const { return {}; }
 

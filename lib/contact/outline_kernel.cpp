@@ -26,7 +26,8 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double 
     : outlines_(outlines),
       stiffness_(stiffness * thickness),
       thickness_(thickness),
-      threads_(threads) {
+      threads_(threads),
+      onset_(outlines, slope_) {
   const auto n = static_cast<size_t>(outlines.size());
   for (const Outlines::Body& body : outlines.bodies) {
     slope_.resize(static_cast<size_t>(body.end), stiffness_ / body.reference);

@@ -12,6 +12,7 @@
 
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/outline_friction.hpp"
+#include "apothem/contact/outline_onset.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
@@ -29,6 +30,13 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
+    return onset_.find(candidates_, contacts_, now, dynamics, dt);
+  }
+  void add_onsets(double scale, const ForceViews& forces) const override {
+    onset_.add(scale, forces);
+  }
+  void fields(Archive& archive) override { archive("outline_onset", onset_); }
 
   [[nodiscard]] double energy() const override;
   /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (docs/theory.md, Step) for nodes of
@@ -69,7 +77,8 @@ class OutlineKernel final : public Kernel {
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
   std::vector<double> areas_;    // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
-  BoundaryDistance boundary_;    // memory for penetrations
+  OutlineOnset onset_;
+  BoundaryDistance boundary_;  // memory for penetrations
 };
 
 }  // namespace apothem

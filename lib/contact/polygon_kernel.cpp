@@ -9,7 +9,10 @@ namespace apothem {
 
 PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
                              const FrictionTable& table, double thickness, int threads)
-    : surfaces_(surfaces), stiffness_(law.normal_stiffness * thickness), pairs_(surfaces, threads) {
+    : surfaces_(surfaces),
+      stiffness_(law.normal_stiffness * thickness),
+      pairs_(surfaces, threads),
+      onset_(surfaces, stiffness_) {
   if (table.rough() || law.normal_damping > 0) {
     tangential_.emplace(surfaces, law, table, thickness);
   }
@@ -61,6 +64,8 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 
 void PolygonKernel::add_normal(const ForceViews& forces) {
   largest_force_ = {};
+  auto spring =
+      tangential_ ? tangential_->forces().begin() : std::vector<TangentialForce>::const_iterator{};
   for (size_t i = 0; i < touching_.size(); ++i) {
     const auto p = static_cast<size_t>(touching_[i]);
     const PairIntegral& pair = pairs_[p];
@@ -76,17 +81,23 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
     fb[1] -= fy;
     fb[2] += stiffness_ * pair.moment_b;
     const double force = std::sqrt(fx * fx + fy * fy);
-    if (!(force > 0)) continue;
+    TangentialForce springs;
+    if (tangential_ && spring != tangential_->forces().end() && spring->a == a && spring->b == b) {
+      springs = *spring++;
+    }
     if (force > largest_force_.value) largest_force_ = {force, a, b};
     // No lever is longer than the body; where pushes from two sides cancel, M/F says nothing.
-    const auto arm = [&](RigidIndex body, double moment) {
-      return std::min(std::abs(stiffness_ * moment) / force, surfaces_.shapes().radius(body));
+    const auto add_rate = [&](RigidIndex body, double moment) {
+      const double arm = force > 0 ? std::min(std::abs(stiffness_ * moment) / force,
+                                              surfaces_.shapes().radius(body))
+                                   : 0;
+      forces.lambda[body] +=
+          movers(a, b) * contact_rate(surfaces_.rigid(body).inverse_mass,
+                                      force > 0 ? contact_stiffness_[i] : 0, arm, pair.breadth,
+                                      springs.stiffness, springs.arm);
     };
-    const double k = movers(a, b) * contact_stiffness_[i];
-    forces.lambda[a] +=
-        k * strip_mobility(surfaces_.rigid(a).inverse_mass, arm(a, pair.moment_a), pair.breadth);
-    forces.lambda[b] +=
-        k * strip_mobility(surfaces_.rigid(b).inverse_mass, arm(b, pair.moment_b), pair.breadth);
+    add_rate(a, pair.moment_a);
+    add_rate(b, pair.moment_b);
   }
 }
 
@@ -100,10 +111,6 @@ void PolygonKernel::add_tangential(const ForceViews& forces) const {
     fb[0] -= t.force.x();
     fb[1] -= t.force.y();
     fb[2] += t.moment_b;
-    const double k = movers(t.a, t.b) * t.stiffness;
-    for (const RigidIndex i : {t.a, t.b}) {
-      forces.lambda[i] += k * strip_mobility(surfaces_.rigid(i).inverse_mass, t.arm, 0);
-    }
   }
 }
 

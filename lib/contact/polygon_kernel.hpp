@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apothem/contact/kernel.hpp"
+#include "apothem/contact/onset.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/patch_tangential.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
@@ -24,6 +25,12 @@ class PolygonKernel final : public Kernel {
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
+    return onset_.find(pairs_, touching_, now, dynamics, dt);
+  }
+  void add_onsets(double scale, const ForceViews& forces) const override {
+    onset_.add(scale, forces.rigid);
+  }
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
 
   [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
@@ -36,6 +43,7 @@ class PolygonKernel final : public Kernel {
   }
   void fields(Archive& archive) override {
     if (tangential_) archive("tangential", *tangential_);
+    archive("onset", onset_);
   }
 
  private:
@@ -49,6 +57,7 @@ class PolygonKernel final : public Kernel {
   const Surfaces& surfaces_;
   double stiffness_;  // k_n times the thickness, N/m
   PairIntegrals pairs_;
+  Onset onset_;
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   std::vector<int> touching_;                  // pairs
   std::vector<double> contact_stiffness_;      // of these, N/m

@@ -22,6 +22,24 @@ inline double strip_mobility(const std::array<double, 3>& inverse_mass, double a
   return mean + std::sqrt(std::max(mean * mean - translation * spread, 0.0));
 }
 
+/// A bound of lambda of one body, 1/s^2, with the normal stiffness `normal` at the lever arm `arm`
+/// over the breadth and tangential springs of the stiffness `tangential`, N/m, at most at the arm
+/// `tangential_arm`. The two act across each other: on the place of the body only the larger one
+/// counts.
+inline double contact_rate(const std::array<double, 3>& inverse_mass, double normal, double arm,
+                           double breadth, double tangential, double tangential_arm) {
+  const double inverse = std::max(inverse_mass[0], inverse_mass[1]);
+  const double moment = normal * arm, tangential_moment = tangential * tangential_arm;
+  const double translation = std::max(normal, tangential) * inverse;
+  const double rotation =
+      (moment * arm + normal * breadth * breadth / 12 + tangential_moment * tangential_arm) *
+      inverse_mass[2];
+  const double coupling =
+      (moment * moment + tangential_moment * tangential_moment) * inverse * inverse_mass[2];
+  const double half = (translation - rotation) / 2;
+  return (translation + rotation) / 2 + std::sqrt(half * half + coupling);
+}
+
 /// Bound of w^2, 1/s^2, for a boundary node of the mass `mass` (kg) with half of the edges at it as
 /// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (docs/theory.md, Step).
 /// `stiffness`: k_n times the thickness, N/m. With a mass of 1 it is a stiffness in N/m.

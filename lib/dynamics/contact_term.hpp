@@ -24,6 +24,13 @@ class ContactTerm final : public Term {
   [[nodiscard]] std::string describe() const override;
   /// Throws Unstable where bodies are out of the method's range.
   void add_forces(const Evaluation& evaluation) override;
+  bool find_onsets(const State& state, std::span<const double> before, double dt) override {
+    return contacts_.find_onsets(state.kinematics(state.v),
+                                 {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
+  }
+  void add_onsets(State& state) const override {
+    contacts_.add_onsets(2, {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), {}});
+  }
   /// Throws Unstable if a body has moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt) override;
   void add_energies(const State& state, double dt, Energies& energies) override;

@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::int64_t kTimedEvery = 64;
 constexpr std::int64_t kWatchedEvery = 64;  // steps between looks at places and shapes
-constexpr double kOvershoot = 1.05;         // of a step just below the limit: see shorten_step
 
 const std::vector<double>& mass_of(const Elements* elements) {
   static const std::vector<double> kNone;
@@ -33,20 +32,21 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
       dofs_(model, mass_of(own_elements_.get())),
       state_(dofs_.start()),
       ledger_(dofs_),
-      automatic_(!time.fixed_step),
-      safety_(time.safety),
+      onsets_(time.onsets),
+      forces_(state_.f.size()),
       lambda_(model.bodies.size()),
       guard_(model) {
   make_terms(threads);
   StepBounds bounds;
   for (const auto& term : terms_) term->bound_step(bounds);
-  choice_ = choose_step(model, time, bounds, frames, ContactTerm::touches_meshes(model));
+  control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
   if (time.statics && elements_) {
     equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, time.tolerance);
   }
   try {
     find_forces(state_.v, 0);
     if (time.settled) settle();
+    add_onsets(0);
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
   }
@@ -98,25 +98,28 @@ void Simulation::explain(const Unstable& error) const {
 }
 
 void Simulation::take_step() {
-  const double dt = choice_.step;
+  const double dt = step_size();
   const bool timed = state_.step % kTimedEvery == 0;
   clock_.start(timed);
   damp(dt / 2);
   dofs_.kick(state_, dt / 2);
-  advance_time();
+  control_->advance(state_);
   dofs_.steer(state_, dt);
   ledger_.book_before_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.drift(state_, dt);
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
+  state_.f.swap(forces_);
   find_forces(state_.v, dt);
+  const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.kick(state_, dt / 2);
+  if (onsets) state_.f.swap(forces_);
   dofs_.follow(state_);
   damp(dt / 2);
-  shorten_step();
+  control_->follow(state_, lambda_);
   clock_.lap(Phase::integrate);
   timed_steps_ += timed;
   if (state_.step % kWatchedEvery == 0) watch();
@@ -126,15 +129,23 @@ void Simulation::damp(double h) {
   for (const auto& term : terms_) term->damp(state_, h, ledger_);
 }
 
-void Simulation::advance_time() {
-  ++state_.step;
-  state_.time = base_time_ + static_cast<double>(state_.step - base_step_) * choice_.step;
-}
-
 void Simulation::find_forces(std::span<const double> velocity, double dt) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
   std::fill(lambda_.begin(), lambda_.end(), 0.);
   for (const auto& term : terms_) term->add_forces({state_, velocity, dt, lambda_, clock_});
+}
+
+// Contacts that begin or end within the step push in its second half as if they had pushed when
+// they did. True if there are any: state.f holds their forces as well, and forces_ the others
+// alone.
+bool Simulation::add_onsets(double dt) {
+  if (!onsets_) return false;
+  bool found = false;
+  for (const auto& term : terms_) found = term->find_onsets(state_, forces_, dt) || found;
+  if (!found) return false;
+  forces_ = state_.f;
+  for (const auto& term : terms_) term->add_onsets(state_);
+  return true;
 }
 
 LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
@@ -161,11 +172,12 @@ void Simulation::inherit(const ContactMemory& memory) {
   contact_->inherit(memory);
   contact_->start_ledger();
   find_forces(state_.v, 0);
+  add_onsets(0);
   ledger_.start(state_, energies_of_terms());
 }
 
 void Simulation::settle() {
-  apothem::settle({model_, dofs_, state_, lambda_, choice_.stability},
+  apothem::settle({model_, dofs_, state_, lambda_, step_choice().stability},
                   [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); });
   for (const auto& term : terms_) term->start_ledger();
 }
@@ -201,33 +213,9 @@ void Simulation::check_energy() {
       e.total_error, guard_.in_play(), at_time(state_), cause));
 }
 
-// The limit known before the run holds for two bodies flat on each other; a body squeezed between
-// several is stiffer. An automatic step then shrinks by whole halves and never grows again: a step
-// that follows the contact would make the energy drift. The bound counts the short flanks of a flat
-// contact as well, which do not press: a fixed step may exceed it by a little.
-void Simulation::shorten_step() {
-  const auto worst = std::max_element(lambda_.begin(), lambda_.end());
-  if (worst == lambda_.end()) return;
-  const double largest = automatic_ ? safety_ : kOvershoot;
-  if (!(choice_.step * choice_.step * *worst > 4 * largest * largest)) return;
-  const double limit = 2 / std::sqrt(*worst);
-  const std::string& name = model_.bodies[static_cast<size_t>(worst - lambda_.begin())].name;
-  if (!automatic_) {
-    throw Unstable(
-        fmt::format("the step of {} s is above the stability limit of {:.6g} s of the "
-                    "contacts of body \"{}\" {}; give a smaller time.step or \"auto\"",
-                    choice_.step, limit, name, at_time(state_)));
-  }
-  base_time_ = state_.time;
-  base_step_ = state_.step;
-  while (choice_.step > safety_ * limit) choice_.step /= 2;
-  choice_.stability = limit;
-  choice_.limit = {limit, fmt::format("contacts of \"{}\" {}", name, at_time(state_))};
-}
-
 Energies Simulation::energies_of_terms() const {
   Energies sum;
-  for (const auto& term : terms_) term->add_energies(state_, choice_.step, sum);
+  for (const auto& term : terms_) term->add_energies(state_, step_size(), sum);
   return sum;
 }
 
@@ -235,9 +223,7 @@ Energies Simulation::energies() const { return ledger_.close(state_, energies_of
 
 void Simulation::fields(Archive& archive) {
   archive("state", state_)("ledger", ledger_);
-  archive("step_size", choice_.step)("step_limit", choice_.limit.step)(
-      "step_limited_by", choice_.limit.reason)("stability_limit", choice_.stability);
-  archive("base_time", base_time_)("base_step", base_step_);
+  archive("step_control", *control_);
   archive("energy_guard", guard_)("touching_before", touching_before_);
   for (size_t i = 0; i < terms_.size(); ++i) archive(fmt::format("term_{}", i).c_str(), *terms_[i]);
   if (equilibrium_) archive("equilibrium", *equilibrium_);

@@ -10,14 +10,15 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "apothem/dynamics/energy_guard.hpp"
 #include "apothem/dynamics/forecast.hpp"
 #include "apothem/dynamics/results.hpp"
+#include "apothem/dynamics/step_control.hpp"
 #include "apothem/dynamics/term.hpp"
-#include "apothem/dynamics/time_step.hpp"
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/execution/stopwatch.hpp"
 #include "apothem/model/model.hpp"
@@ -69,9 +70,10 @@ class Simulation {
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const DegreesOfFreedom& degrees_of_freedom() const { return dofs_; }
-  [[nodiscard]] double step_size() const { return choice_.step; }
+  [[nodiscard]] double step_size() const { return step_choice().step; }
   /// How the step was chosen; its limit changes if contacts turn out stiffer.
-  [[nodiscard]] const StepChoice& step_choice() const { return choice_; }
+  [[nodiscard]] const StepChoice& step_choice() const { return control_->choice(); }
+  [[nodiscard]] const StepChanges& step_changes() const { return control_->changes(); }
 
   /// Throws Unstable if more than a tenth of the energy in play is unaccounted for. Dynamic steps
   /// ask this at regular intervals by themselves; the end of a run asks it once more.
@@ -109,11 +111,10 @@ class Simulation {
   void take_step();
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
-  void advance_time();
   void find_forces(std::span<const double> velocity, double dt);
+  bool add_onsets(double dt);
   void settle();
   void watch();
-  void shorten_step();
   [[nodiscard]] Energies energies_of_terms() const;
 
   const Model& model_;
@@ -126,11 +127,9 @@ class Simulation {
   ContactTerm* contact_ = nullptr;            // likewise
   std::unique_ptr<Equilibrium> equilibrium_;  // only in static scenes
 
-  StepChoice choice_;
-  bool automatic_ = true;
-  double safety_ = 0.1;
-  double base_time_ = 0;  // time = base_time + (step - base_step) step size
-  std::int64_t base_step_ = 0;
+  std::optional<StepControl> control_;
+  bool onsets_ = true;
+  std::vector<double> forces_;  // at the start of the step; then at its end, without onsets
   std::vector<double> lambda_;  // of each rigid body's contacts: bound of stiffness/inertia, 1/s^2
   EnergyGuard guard_;
   std::int64_t touching_before_ = 0;  // touching pairs, summed over the steps, at the last look

@@ -42,6 +42,15 @@ class Term {
   /// and those of the nodes with the elements' (Elements is the first term where there are nodes).
   /// Throws Unstable.
   virtual void add_forces(const Evaluation& /*evaluation*/) {}
+  /// After add_forces at the end of a drift of dt (s): finds the impulses that the two ends of the
+  /// step do not tell of, because a force has begun or ended in between. `before`: all forces at
+  /// the start of the step. True if there is one.
+  virtual bool find_onsets(const State& /*state*/, std::span<const double> /*before*/,
+                           double /*dt*/) {
+    return false;
+  }
+  /// Adds these impulses as a force over the second half of the step.
+  virtual void add_onsets(State& /*state*/) const {}
   /// Slows bodies down over h (s), exactly for any h.
   virtual void damp(State& /*state*/, double /*h*/, Ledger& /*ledger*/) {}
   /// Work and impulses from outside over h (s), with the forces of the last evaluation and the

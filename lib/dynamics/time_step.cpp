@@ -14,6 +14,8 @@ namespace apothem {
 
 namespace {
 
+constexpr double kSmooth = .5;  // of the limit of stability, at most
+
 // An edge that lies flat on another body.
 struct FlatEdge {
   double length;    // m
@@ -150,9 +152,20 @@ void require_progress(const StepChoice& choice, double end) {
 
 }  // namespace
 
+double contact_safety(double accuracy) {
+  return std::min(.12 * std::pow(accuracy / 1e-4, 1. / 5), kSmooth);
+}
+
+double element_safety(double accuracy) {
+  return std::min(.2 * std::pow(accuracy / 1e-4, 1. / 4), kSmooth);
+}
+
 StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,
                        int frames, bool node_contact) {
   StepChoice choice;
+  choice.safety = time.safety.value_or(contact_safety(time.accuracy));
+  choice.element_safety =
+      time.element_safety.value_or(node_contact ? element_safety(time.accuracy) : kSmooth);
   choice.limit = bounds.nodes.step < bounds.bodies.step ? bounds.nodes : bounds.bodies;
   choice.stability = choice.limit.step;
   if (time.statics) {
@@ -172,8 +185,7 @@ StepChoice choose_step(const Model& model, const TimeSettings& time, const StepB
     require_progress(choice, time.end);
     return choice;
   }
-  double target = time.safety * bounds.bodies.step;
-  choice.element_safety = time.element_safety.value_or(node_contact ? .2 : .5);
+  double target = choice.safety * bounds.bodies.step;
   if (choice.element_safety * bounds.nodes.step < target) {
     target = choice.element_safety * bounds.nodes.step;
     choice.limit = bounds.nodes;

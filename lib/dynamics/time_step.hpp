@@ -38,11 +38,18 @@ StepLimit motion_step_limit(const Model& model);
 
 /// The step of a run.
 struct StepChoice {
-  double step = 0;            ///< s
-  StepLimit limit;            ///< what limits it
-  double stability = 0;       ///< largest stable step, s; infinite if nothing can touch
-  double element_safety = 0;  ///< an automatic step over the limit of the nodes
+  double step = 0;       ///< s
+  StepLimit limit;       ///< what limits it
+  double stability = 0;  ///< largest stable step, s; infinite if nothing can touch
+  /// An automatic step over the limit of the contacts of rigid bodies, and over that of the nodes.
+  double safety = 0, element_safety = 0;
 };
+
+/// Parts of the limits of stability that keep the energy error of an impact below `accuracy` of its
+/// energy: fits to the worst landings, nearly flat ones of squares and flat ones of meshed blocks
+/// (docs/verification.md, Time steps).
+double contact_safety(double accuracy);
+double element_safety(double accuracy);
 
 /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
 /// `node_contact`: nodes can touch something. Throws Unrunnable if a fixed step is above the

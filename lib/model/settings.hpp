@@ -13,9 +13,13 @@ namespace apothem {
 struct TimeSettings {
   double end = 0;                         ///< s
   std::optional<double> fixed_step = {};  ///< s; empty: automatic
-  double safety = 0.1;                    ///< automatic step / stability limit of contacts
-  /// The same for finite elements; empty: 0.5, 0.2 if they can touch something.
-  std::optional<double> element_safety = {};
+  /// Energy error allowed per impact, of its energy: chooses an automatic step.
+  double accuracy = 1e-4;
+  /// Automatic step over the stability limit of contacts, and of finite elements; empty: from the
+  /// accuracy.
+  std::optional<double> safety = {}, element_safety = {};
+  /// Corrects steps in which a contact begins or ends (contact/onset_rule.hpp).
+  bool onsets = true;
   bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
   bool statics = false;         ///< a sequence of equilibria (dynamics/equilibrium.cpp)
   int load_steps = 10;          ///< of a static run

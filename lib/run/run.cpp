@@ -134,7 +134,7 @@ Run::Status Run::run(std::optional<double> until) {
   try {
     try {
       loop(end);
-      if (status_ == Status::done) simulation_->check_energy();
+      if (reached(scene_.time.end)) simulation_->check_energy();
       close(end);
     } catch (const Unstable& error) {
       flush();

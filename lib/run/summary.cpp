@@ -107,6 +107,20 @@ Json expectations(const Run& run) {
   return list;
 }
 
+Json step_changes(const Run& run) {
+  const StepChanges& changes = run.simulation().step_changes();
+  Json list = Json::array();
+  for (const StepChange& c : changes.first) {
+    Json entry{{"t", c.time}, {"step", c.step}, {"dt", c.size}, {"body", nullptr}};
+    if (c.body >= 0) entry["body"] = run.scene().model.name_of(c.body);
+    list.push_back(std::move(entry));
+  }
+  return {{"shortened", changes.shortened},
+          {"lengthened", changes.lengthened},
+          {"smallest_dt", changes.shortest},
+          {"first", std::move(list)}};
+}
+
 }  // namespace
 
 double imbalance_of_load(const LoadStep& step, size_t body) {
@@ -133,6 +147,7 @@ std::string summary_text(const Run& run) {
             {"dt_limited_by", scene.time.fixed_step ? "time.step of the scene"
                                                     : simulation.step_choice().limit.reason},
             {"stability_limit", simulation.step_choice().stability},
+            {"dt_changes", step_changes(run)},
             {"steps_per_second", static_cast<double>(simulation.own_steps()) / wall},
             {"wall_time", wall_time(run, wall)},
             {"pairs_per_step",

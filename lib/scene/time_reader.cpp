@@ -19,7 +19,9 @@ class TimeReader {
     if (const JsonValue* v = object.optional("tolerance")) tolerance(*v);
     if (const JsonValue* v = object.optional("step")) step(*v);
     if (const JsonValue* v = object.optional("start")) start(*v);
+    if (const JsonValue* v = object.optional("accuracy")) accuracy(*v);
     if (const JsonValue* v = object.optional("safety")) safety(*v);
+    if (const JsonValue* v = object.optional("onsets")) onsets(*v);
     object.finish();
     return time_;
   }
@@ -56,14 +58,26 @@ class TimeReader {
     if (time_.settled) features_.add(Feature::settled_start, &value);
   }
 
+  void accuracy(const JsonValue& value) {
+    features_.add(Feature::accuracy, &value);
+    time_.accuracy = in_.positive(value, "parts of the energy of an impact");
+    if (!(time_.accuracy >= 1e-12 && time_.accuracy <= 0.1)) {
+      in_.fail(value, fmt::format("must lie between 1e-12 and 0.1, not {}", time_.accuracy));
+    }
+  }
+
   void safety(const JsonValue& value) {
     features_.add(Feature::safety, &value);
-    time_.safety = in_.positive(value, "parts of the stability limit");
-    time_.element_safety = time_.safety;
-    if (time_.safety > 0.8) {
-      in_.fail(value,
-               fmt::format("must not exceed 0.8 of the stability limit, is {}", time_.safety));
+    const double safety = in_.positive(value, "parts of the stability limit");
+    if (safety > 0.8) {
+      in_.fail(value, fmt::format("must not exceed 0.8 of the stability limit, is {}", safety));
     }
+    time_.safety = time_.element_safety = safety;
+  }
+
+  void onsets(const JsonValue& value) {
+    features_.add(Feature::onsets, &value);
+    time_.onsets = in_.choice(value, {"corrected", "plain"}) == 0;
   }
 
   const JsonReader& in_;

@@ -105,7 +105,7 @@ TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_en
         json["contact"]["surface"] = "element";
         json["contact"]["distribution"] = distribution;
         const Scene scene = read(json);
-        const double usual = worst_error(scene, .2), fine = worst_error(scene, .1);
+        const double usual = worst_error(scene, .2), fine = worst_error(scene, .05);
         CAPTURE(name, shape, distribution, usual, fine);
         print_row(name, shape, distribution, scene);
         CHECK(fine > 2e-4);
@@ -117,7 +117,9 @@ TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_en
 
 // All boundary nodes meet the other body in one step, with one phase theta: a spring of stiffness k
 // is first seen after (1 - theta) dt, and -k (v dt)^2 theta (1 - theta)/2 is missing.
-TEST_CASE("a flat impact needs a shorter step", "[surface][impact_energy]") {
+// Without the correction of such steps, that is.
+TEST_CASE("a flat impact is as accurate as others, with the correction of onsets",
+          "[surface][impact_energy]") {
   for (const char* shape : kShapes) {
     Json json = shipped("block-on-foundation", shape);
     json["bodies"][1]["angle"] = 0;
@@ -126,14 +128,14 @@ TEST_CASE("a flat impact needs a shorter step", "[surface][impact_energy]") {
     const double usual = worst_error(scene, .2), fine = worst_error(scene, .05);
     CAPTURE(shape, usual, fine);
     print_row("flat", shape, "body", scene);
-    CHECK(usual < 7e-4);
-    CHECK(fine < 1e-4);
-    CHECK(usual / fine > 8);
+    CHECK(usual < 4e-4);
+    CHECK(usual / fine > 8);  // order 2, as inside any contact
   }
 
   Json json = shipped("block-on-foundation", "Q4");
   json["bodies"][1]["angle"] = 0;
   Scene scene = read(json);
+  scene.time.onsets = false;
   scene.time.fixed_step = .2 * Simulation(scene.model, scene.time, 1, 1).step_choice().stability;
   const double stride = 20 * *scene.time.fixed_step;
   for (const double theta : {.3, .5, .7}) {

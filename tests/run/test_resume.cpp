@@ -307,7 +307,7 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
 
   for (const char* missing :
        {"/scene_hash", "/progress", "/progress/next_row", "/simulation", "/simulation/state/x",
-        "/simulation/ledger", "/simulation/step_size", "/simulation/term_0",
+        "/simulation/ledger", "/simulation/step_control/size", "/simulation/term_0",
         "/simulation/term_0/contacts/friction/springs/0/force"}) {
     INFO(missing);
     write(without(missing));
@@ -320,7 +320,7 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
   }
   write(with("/simulation/state/x", "no list"));
   refused("is damaged");
-  write(with("/simulation/step_size", 0));
+  write(with("/simulation/step_control/size", 0));
   refused("is damaged");
   write(with("/progress/history_sizes", {0}));
   refused("is damaged");

@@ -1,0 +1,180 @@
+#include "apothem/contact/onset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+namespace apothem {
+namespace {
+
+// The stiffness of a pair grows with the boundary of one inside the other. Where this changes by
+// such a part of an inradius within a step, as where a body lands nearly flat, the force is not
+// smooth even if no vertex enters or leaves.
+constexpr double kSudden = .03;
+constexpr int kPanels = 8;  // of the samples then
+
+}  // namespace
+
+struct Onset::Path {
+  RigidIndex a, b;
+  std::array<double, 3> rate_a, rate_b;  // of the pose, in a whole step
+  double angle_a, angle_b;               // at its end
+  Vec2 between;                          // at its end
+
+  [[nodiscard]] double turn_a(double theta) const { return angle_a - (1 - theta) * rate_a[2]; }
+  [[nodiscard]] double turn_b(double theta) const { return angle_b - (1 - theta) * rate_b[2]; }
+  [[nodiscard]] Vec2 offset(double theta) const {
+    return {between.x() - (1 - theta) * (rate_a[0] - rate_b[0]),
+            between.y() - (1 - theta) * (rate_a[1] - rate_b[1])};
+  }
+};
+
+bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
+                 const Dynamics& dynamics, double dt) {
+  std::swap(met_, before_);
+  met_.clear();
+  impulses_.clear();
+  const auto is_sudden = [&](int a, int b, double change) {
+    return std::abs(change) > kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  };
+  auto old = before_.begin();
+  const auto release = [&](int a, int b) {  // the pairs before (a, b), which touch no more
+    for (; old != before_.end() && std::tie(old->a, old->b) < std::tie(a, b); ++old) {
+      const int panels = is_sudden(old->a, old->b, old->length) ? kPanels : 1;
+      if (dt > 0) find_pair(old->a, old->b, panels, now, dynamics, dt);
+    }
+  };
+  for (const int p : touching) {
+    const auto [a, b] = pairs.pairs()[static_cast<size_t>(p)];
+    const PairIntegral& pair = pairs[static_cast<size_t>(p)];
+    const Met met{a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b};
+    met_.push_back(met);
+    release(a, b);
+    const bool known = old != before_.end() && old->a == a && old->b == b;
+    const bool same = known && old->inside_a == met.inside_a && old->inside_b == met.inside_b;
+    const bool sudden = is_sudden(a, b, met.length - (known ? old->length : 0));
+    if (known) ++old;
+    if (dt > 0 && (!same || sudden)) find_pair(a, b, sudden ? kPanels : 1, now, dynamics, dt);
+  }
+  release(surfaces_.rigid_count(), 0);
+  return !impulses_.empty();
+}
+
+std::array<double, 4> Onset::load(const Path& path, double theta) {
+  const PlacedPotential a = surfaces_.shapes().turn(path.a, path.turn_a(theta), turned_a_);
+  const PlacedPotential b = surfaces_.shapes().turn(path.b, path.turn_b(theta), turned_b_);
+  const PairIntegral pair = pair_integral(a, b, path.offset(theta), workspace_);
+  return {stiffness_ * pair.force.x(), stiffness_ * pair.force.y(), stiffness_ * pair.moment_a,
+          stiffness_ * pair.moment_b};
+}
+
+// Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
+// for the rotation of a step.
+void Onset::find_events(const Path& path) {
+  events_.clear();
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const PlacedPotential a0 = shapes.turn(path.a, path.turn_a(0), start_a_);
+  const PlacedPotential b0 = shapes.turn(path.b, path.turn_b(0), start_b_);
+  const PlacedPotential a1 = shapes.view(path.a);
+  const PlacedPotential b1 = shapes.view(path.b);
+  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1));
+  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1));
+  std::sort(events_.begin(), events_.end());
+}
+
+// Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
+void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+                           const PlacedPotential& y0, const PlacedPotential& y1,
+                           const Vec2& offset0, const Vec2& offset1) {
+  constexpr double kRound = 1e-9;
+  Box all;
+  for (int j = 0; j < y1.size; ++j) {
+    all.include(y0.x[j], y0.y[j]);
+    all.include(y1.x[j], y1.y[j]);
+  }
+  for (int i = 0; i < x1.size; ++i) {
+    const Vec2 p0(x0.x[i] + offset0.x(), x0.y[i] + offset0.y());
+    const Vec2 p1(x1.x[i] + offset1.x(), x1.y[i] + offset1.y());
+    Box path;
+    path.include(p0.x(), p0.y());
+    path.include(p1.x(), p1.y());
+    if (apart(path, all)) continue;
+    for (int j = 0; j < y1.size; ++j) {
+      const double h0 = y0.gx[j] * (p0.x() - y0.x[j]) + y0.gy[j] * (p0.y() - y0.y[j]);
+      const double h1 = y1.gx[j] * (p1.x() - y1.x[j]) + y1.gy[j] * (p1.y() - y1.y[j]);
+      if ((h0 < 0) == (h1 < 0)) continue;
+      const double theta = h0 / (h0 - h1);
+      const auto at = [&](const double* q0, const double* q1, int k) {
+        return q0[k] + theta * (q1[k] - q0[k]);
+      };
+      const Vec2 p = p0 + theta * (p1 - p0);
+      const Vec2 from(at(y0.x, y1.x, j), at(y0.y, y1.y, j));
+      const Vec2 edge = Vec2(at(y0.x, y1.x, j + 1), at(y0.y, y1.y, j + 1)) - from;
+      const double along = edge.dot(p - from) / edge.squaredNorm();
+      if (along > -kRound && along < 1 + kRound) events_.push_back(theta);
+    }
+  }
+}
+
+void Onset::find_pair(RigidIndex a, RigidIndex b, int panels, const Kinematics& now,
+                      const Dynamics& dynamics, double dt) {
+  const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
+  const auto step = [&](RigidIndex i) {
+    return std::array{dt * rate(i)[0], dt * rate(i)[1], dt * rate(i)[2]};
+  };
+  const Path path{
+      a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
+  find_events(path);
+  const int inside = find_onset_samples(events_, panels, samples_);
+  std::array<OnsetForces, 4> forces;  // Fx and Fy on a, moments on a and b
+  for (int i = 0; i < static_cast<int>(samples_.size()); ++i) {
+    const std::array<double, 4> f = load(path, samples_[i].theta);
+    for (size_t k = 0; k < 4; ++k) {
+      forces[k].add(samples_[i], f[k]);
+      if (i == 0) forces[k].first = f[k];
+      if (i + 1 == inside) forces[k].last = f[k];
+    }
+  }
+  std::array<double, 4> missing;
+  const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
+    OnsetRest rest(dt);
+    for (const size_t axis : {0, 1, 2}) {
+      const size_t k = axis < 2 ? axis : moment;
+      const size_t c = 3 * static_cast<size_t>(body) + axis;
+      OnsetForces f = forces[k];
+      const double own = axis < 2 ? sign : 1;
+      for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
+      rest.add(f, own * missing[k], dynamics.others(c, f), dynamics.inverse_mass[c],
+               now.pose_rate[c]);
+    }
+    return rest;
+  };
+  for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
+  OnsetRest rest = rest_of(a, 2, 1);
+  rest.add(rest_of(b, 3, -1));
+  const double share = rest.share();
+  for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
+  // Moments of forces at earlier positions do not balance at the end of the step. What is left over
+  // goes half and half to both bodies, so that the angular momentum is kept.
+  const double couple =
+      cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
+  missing[2] -= couple / 2;
+  missing[3] -= couple / 2;
+  impulses_.push_back({a, b, missing});
+}
+
+void Onset::add(double scale, std::span<double> forces) const {
+  for (const Impulse& i : impulses_) {
+    double* fa = &forces[3 * static_cast<size_t>(i.a)];
+    double* fb = &forces[3 * static_cast<size_t>(i.b)];
+    fa[0] += scale * i.mean[0];
+    fa[1] += scale * i.mean[1];
+    fa[2] += scale * i.mean[2];
+    fb[0] -= scale * i.mean[0];
+    fb[1] -= scale * i.mean[1];
+    fb[2] += scale * i.mean[3];
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,68 @@
+// Contacts of rigid bodies that begin or end within a step: see onset_rule.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "apothem/archive/archive.hpp"
+#include "apothem/contact/onset_rule.hpp"
+#include "apothem/contact/pair_integrals.hpp"
+
+namespace apothem {
+
+class Onset {
+ public:
+  /// `stiffness` is k_n times the thickness, N/m. `surfaces` must outlive this object.
+  Onset(const Surfaces& surfaces, double stiffness) : surfaces_(surfaces), stiffness_(stiffness) {}
+
+  /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
+  /// pairs whose vertices inside each other are not those of the step before. `touching` are the
+  /// pairs that touch now, ascending. With dt = 0 there is none. True if there is a J.
+  bool find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
+            const Dynamics& dynamics, double dt);
+  /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
+  void add(double scale, std::span<double> forces) const;
+
+  void fields(Archive& archive) { archive("met", met_); }
+
+ private:
+  /// A pair that touches: which vertices are inside the other polygon, and the length of the
+  /// boundaries inside, m.
+  struct Met {
+    int a, b;
+    std::uint64_t inside_a, inside_b;
+    double length;
+    void fields(Archive& archive) {
+      archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
+    }
+  };
+  struct Impulse {
+    int a, b;
+    std::array<double, 4> mean;  ///< J / dt, as `load`
+  };
+  /// Where the two polygons of a pair are within a step.
+  struct Path;
+
+  void find_pair(RigidIndex a, RigidIndex b, int panels, const Kinematics& now,
+                 const Dynamics& dynamics, double dt);
+  void find_events(const Path& path);
+  void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+                      const PlacedPotential& y0, const PlacedPotential& y1, const Vec2& offset0,
+                      const Vec2& offset1);
+  /// Force on a, and the moments on a and b about their mass centres.
+  std::array<double, 4> load(const Path& path, double theta);
+
+  const Surfaces& surfaces_;
+  double stiffness_;
+  std::vector<Met> met_, before_;
+  std::vector<Impulse> impulses_;
+  // Memory.
+  std::vector<double> events_;
+  std::vector<OnsetSample> samples_;
+  PlacedShapes::Turned turned_a_, turned_b_, start_a_, start_b_;
+  EdgeWorkspace workspace_;
+};
+
+}  // namespace apothem

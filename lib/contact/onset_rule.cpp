@@ -1,0 +1,123 @@
+#include "apothem/contact/onset_rule.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
+constexpr std::array kSlope{-25. / 3, 48. / 3, -36. / 3, 16. / 3, -3. / 3};
+constexpr double kShortest = .05;  // part of a step that is long enough for a slope
+constexpr double kBeyond = .05;    // of a step: where the slope is taken otherwise
+
+// Where other forces turn the bodies back within the step, the power of the mean force says little:
+// this part of them counts against it.
+constexpr double kOthers = .25;
+constexpr double kLargestRest = .5;  // parts of the slopes' term of J that the rest may come to
+
+// x^2 y / (x^2 + y^2): x^2/y, but finite where y is small.
+double bounded_ratio(double x, double y) {
+  const double scale = x * x + y * y;
+  return scale > 0 ? x * x * y / scale : 0;
+}
+
+}  // namespace
+
+int find_onset_samples(std::span<const double> events, int panels,
+                       std::vector<OnsetSample>& samples) {
+  samples.assign(1, {0});
+  double from = 0, first_part = 0, last_part = 0;
+  const auto integrate_until = [&](double until) {
+    const double w = (until - from) / panels;
+    if (!(w > 0)) return;
+    if (from == 0) first_part = w;
+    last_part = w;
+    for (int panel = 0; panel < panels; ++panel) {
+      samples.back().mean += w * kBoole[0];
+      for (size_t k = 1; k < 5; ++k) {
+        samples.push_back({from + (panel + static_cast<double>(k) / 4) * w, w * kBoole[k]});
+      }
+    }
+    from = samples.back().theta = until;
+  };
+  for (const double event : events) integrate_until(event);
+  integrate_until(1);
+  const size_t count = samples.size();
+
+  // Each slope uses the samples of the panel at its end of the step, if this is long enough.
+  for (size_t k = 0; k < 5; ++k) {
+    const double beyond = static_cast<double>(k) * kBeyond / 4;
+    if (first_part > kShortest) {
+      samples[k].start_slope = kSlope[k] / first_part;
+    } else {
+      samples.push_back({-beyond, 0, -kSlope[k] / kBeyond, 0});
+    }
+    if (last_part > kShortest) {
+      samples[count - 1 - k].end_slope = -kSlope[k] / last_part;
+    } else {
+      samples.push_back({1 + beyond, 0, 0, kSlope[k] / kBeyond});
+    }
+  }
+  return static_cast<int>(count);
+}
+
+void OnsetRest::add(const OnsetForces& f, double missing, const OtherForces& others,
+                    double inverse_mass, double velocity) {
+  const double first = f.first + others.first;
+  const double last = f.last + others.last;
+  const double p0 = -dt_ * first / 2;
+  const double p1 = dt_ * (last / 2 + missing);
+  const double d0 = inverse_mass * p0;
+  const double d1 = inverse_mass * p1;
+  const double change = others.last - others.first;
+  energy_ += (p1 * d1 - p0 * d0) / 2 -
+             dt_ / 6 * ((f.end_slope + change) * d1 - (f.start_slope + change) * d0) -
+             dt_ * dt_ / 24 * inverse_mass * (last * last - first * first);
+  const double h = dt_ * inverse_mass;
+  first_.along += f.start_slope * velocity;
+  first_.aside += f.start_slope * d0;
+  first_.pull += h * f.start_slope * first;
+  last_.along += f.end_slope * velocity;
+  last_.aside += f.end_slope * d1;
+  last_.pull += h * f.end_slope * last;
+  mean_ += inverse_mass * f.mean * f.mean;
+  slopes_ += inverse_mass * (f.start_slope * f.start_slope + f.end_slope * f.end_slope);
+  power_ += f.mean * (velocity + d1) - h / 6 * f.mean * (f.end_slope + change);
+  gain_ += h * std::abs(f.mean) *
+           (std::abs(f.mean) + kOthers * std::max(std::abs(others.first), std::abs(others.last)));
+}
+
+void OnsetRest::End::add(const End& other) {
+  along += other.along;
+  aside += other.aside;
+  pull += other.pull;
+}
+
+void OnsetRest::add(const OnsetRest& other) {
+  energy_ += other.energy_;
+  first_.add(other.first_);
+  last_.add(other.last_);
+  mean_ += other.mean_;
+  slopes_ += other.slopes_;
+  power_ += other.power_;
+  gain_ += other.gain_;
+}
+
+double OnsetRest::End::energy() const {
+  return -bounded_ratio(aside, along) / 12 + bounded_ratio(pull, along) / 48;
+}
+
+double OnsetRest::share() const {
+  const double energy = energy_ + dt_ * (last_.energy() - first_.energy());
+  // Where the bodies are about to turn back, no impulse along the force changes the energy.
+  const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);
+  if (!(scale > 0 && mean_ > 0)) return 0;
+  const double once = -energy * power_ / scale;
+  const double twice = -(energy + dt_ * gain_ / 2 * once * once) * power_ / scale;
+  const double most = kLargestRest / 12 * std::sqrt(slopes_ / mean_);
+  return std::clamp(twice, -most, most);
+}
+
+}  // namespace apothem

@@ -1,0 +1,356 @@
+#include "apothem/contact/outline_onset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace apothem {
+namespace {
+
+// As kSudden for rigid bodies (onset.cpp), of the smaller r of the two.
+constexpr double kSuddenLength = .1;
+constexpr double kRoundOff = 1e-9;
+
+// Sums of these tell sets of vertices apart.
+std::uint64_t scrambled(int vertex) {
+  std::uint64_t z = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 31)) * 0xbf58476d1ce4e5b9ULL;
+  return z ^ (z >> 29);
+}
+
+}  // namespace
+
+struct OutlineOnset::Step {
+  const Kinematics& now;
+  const Dynamics& dynamics;
+  double dt;
+};
+
+void OutlineOnset::find_met(std::span<const EdgeFaceContact> contacts) {
+  const Outlines& o = outlines_;
+  met_.clear();
+  for (const EdgeFaceContact& c : contacts) {
+    const auto [a, b] = std::minmax({o.body[c.edge], o.body[c.face]});
+    if (met_.empty() || met_.back().a != a || met_.back().b != b) met_.push_back({a, b, 0, 0});
+    if (c.piece.from == 0) met_.back().inside += scrambled(c.edge);
+    met_.back().length += (c.piece.to - c.piece.from) * o.length[c.edge];
+  }
+  const auto pair = [](const Met& m) { return std::pair(m.a, m.b); };
+  std::ranges::stable_sort(met_, {}, pair);
+  size_t last = 0;
+  for (size_t i = 1; i < met_.size(); ++i) {
+    if (pair(met_[i]) == pair(met_[last])) {
+      met_[last].inside += met_[i].inside;
+      met_[last].length += met_[i].length;
+    } else {
+      met_[++last] = met_[i];
+    }
+  }
+  met_.resize(std::min(met_.size(), last + 1));
+}
+
+bool OutlineOnset::find(std::span<const EdgeFace> candidates,
+                        std::span<const EdgeFaceContact> contacts, const Kinematics& now,
+                        const Dynamics& dynamics, double dt) {
+  std::swap(met_, before_);
+  on_nodes_.clear(), on_rigid_.clear();
+  find_met(contacts);
+  if (!(dt > 0)) return false;
+  const Step step{now, dynamics, dt};
+  auto old = before_.begin();
+  const auto release = [&](int a, int b) {  // the pairs before (a, b), which touch no more
+    for (; old != before_.end() && std::tie(old->a, old->b) < std::tie(a, b); ++old) {
+      find_pair(*old, 1, candidates, step);
+    }
+  };
+  for (const Met& m : met_) {
+    release(m.a, m.b);
+    const bool known = old != before_.end() && old->a == m.a && old->b == m.b;
+    const double change = std::abs(m.length - (known ? old->length : 0));
+    const bool sudden = change > kSuddenLength * std::min(outlines_.bodies[m.a].reference,
+                                                          outlines_.bodies[m.b].reference);
+    if (!known || old->inside != m.inside || sudden) {
+      find_pair(m, sudden ? 2 : 1, candidates, step);
+    }
+    if (known) ++old;
+  }
+  release(std::numeric_limits<int>::max(), 0);
+  return !on_nodes_.empty();
+}
+
+void OutlineOnset::find_pair(const Met& pair, int panels, std::span<const EdgeFace> candidates,
+                             const Step& step) {
+  take_near(pair.a, pair.b, candidates);
+  if (near_.empty()) return;
+  coordinates_.clear();
+  const Side a = take_side(pair.a, step);
+  const Side b = take_side(pair.b, step);
+  find_events(step);
+  const int inside = find_onset_samples(events_, panels, samples_);
+  for (int i = 0; i < static_cast<int>(samples_.size()); ++i) {
+    for (const Side& side : {a, b}) place(side.body, step, samples_[i].theta);
+    find_forces();
+    forces_.clear();
+    for (const Side& side : {a, b}) add_forces(side, step, samples_[i].theta);
+    for (size_t c = 0; c < coordinates_.size(); ++c) {
+      OnsetForces& f = coordinates_[c].force;
+      f.add(samples_[i], forces_[c]);
+      if (i == 0) f.first = forces_[c];
+      if (i + 1 == inside) f.last = forces_[c];
+    }
+  }
+  OnsetRest rest_a(step.dt), rest_b(step.dt);
+  for (size_t i = 0; i < coordinates_.size(); ++i) {
+    Coordinate& c = coordinates_[i];
+    c.missing = c.force.missing();
+    (i < b.coordinates ? rest_a : rest_b)
+        .add(c.force, c.missing, step.dynamics.others(c.index, c.force),
+             step.dynamics.inverse_mass[c.index], c.velocity);
+  }
+  rest_a.add(rest_b);
+  const double share = rest_a.share();
+  for (Coordinate& c : coordinates_) c.missing += share * c.force.mean;
+  balance(a, b);
+  keep(a);
+  keep(b);
+}
+
+// The candidates of the two bodies; candidates ascend by edge, and so by the body of the edge.
+void OutlineOnset::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates) {
+  const Outlines& o = outlines_;
+  near_.clear(), ends_.clear(), corners_.clear();
+  const auto take = [&](BodyIndex edges, BodyIndex faces) {
+    const auto first = std::ranges::lower_bound(candidates, o.bodies[edges].first, {},
+                                                [](const EdgeFace& c) { return c.edge; });
+    for (auto c = first; c != candidates.end() && c->edge < o.bodies[edges].end; ++c) {
+      if (o.body[c->face] == faces) near_.push_back(*c);
+    }
+  };
+  take(a, b);
+  take(b, a);
+  for (const auto& [e, f] : near_) {
+    for (const int i : {e, o.next[e], f, o.next[f]}) ends_.push_back(i);
+    for (const int i : {o.previous[f], o.next[o.next[f]]}) corners_.push_back(i);
+  }
+  const auto tidy = [](std::vector<int>& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  tidy(ends_);
+  corners_.insert(corners_.end(), ends_.begin(), ends_.end());
+  tidy(corners_);
+  for (std::vector<double>* v : {&x_, &y_, &fx_, &fy_}) v->resize(static_cast<size_t>(o.size()));
+  start_.resize(static_cast<size_t>(o.size()));
+}
+
+OutlineOnset::Side OutlineOnset::take_side(BodyIndex body, const Step& step) {
+  const Outlines& o = outlines_;
+  const auto at = [&](int vertex) {
+    return static_cast<size_t>(std::ranges::lower_bound(ends_, vertex) - ends_.begin());
+  };
+  const Side side{body, at(o.bodies[body].first), at(o.bodies[body].end), coordinates_.size()};
+  if (o.bodies[body].is_rigid()) {
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t c = 3 * static_cast<size_t>(o.bodies[body].rigid) + k;
+      coordinates_.push_back({c, step.now.pose_rate[c]});
+    }
+    return side;
+  }
+  for (size_t i = side.first_end; i < side.end; ++i) {
+    for (size_t axis = 0; axis < 2; ++axis) {
+      const size_t c = 2 * static_cast<size_t>(o.node[ends_[i]]) + axis;
+      coordinates_.push_back({step.now.pose_rate.size() + c, step.now.node_velocity[c]});
+    }
+  }
+  return side;
+}
+
+// Moves the corners of a body to a place of the path.
+void OutlineOnset::place(BodyIndex b, const Step& step, double theta) {
+  const Outlines& o = outlines_;
+  const Outlines::Body& body = o.bodies[b];
+  const double back = (1 - theta) * step.dt;
+  const auto first = std::ranges::lower_bound(corners_, body.first);
+  const auto each = [&](auto&& move) {
+    for (auto i = first; i != corners_.end() && *i < body.end; ++i) move(*i);
+  };
+  if (!body.is_rigid()) {
+    each([&](int i) {
+      const double* v = &step.now.node_velocity[2 * static_cast<size_t>(o.node[i])];
+      x_[i] = o.x[i] - back * v[0];
+      y_[i] = o.y[i] - back * v[1];
+    });
+    return;
+  }
+  const double* v = &step.now.pose_rate[3 * static_cast<size_t>(body.rigid)];
+  const double c = std::cos(back * v[2]), s = std::sin(back * v[2]);
+  each([&](int i) {
+    const double rx = o.x[i] - body.cx, ry = o.y[i] - body.cy;
+    x_[i] = body.cx - back * v[0] + (c * rx + s * ry);
+    y_[i] = body.cy - back * v[1] + (c * ry - s * rx);
+  });
+}
+
+// Where a vertex of one outline crosses an edge of the other one: heights are linear in theta, but
+// for small deformations and rotations.
+void OutlineOnset::find_events(const Step& step) {
+  const Outlines& o = outlines_;
+  const auto place_all = [&](double theta) {
+    place(o.body[near_.front().edge], step, theta);
+    place(o.body[near_.front().face], step, theta);
+  };
+  place_all(0);
+  for (const int i : ends_) start_[i] = point(i);
+  place_all(1);
+  events_.clear();
+  for (const auto& [e, f] : near_) {
+    const int g = o.next[f];
+    const double h0 = cross(start_[g] - start_[f], start_[e] - start_[f]);
+    const double h1 = cross(point(g) - point(f), point(e) - point(f));
+    if ((h0 < 0) == (h1 < 0)) continue;
+    const double theta = h0 / (h0 - h1);
+    const auto at = [&](int i) { return Vec2(start_[i] + theta * (point(i) - start_[i])); };
+    const Vec2 edge = at(g) - at(f);
+    const double along = edge.dot(at(e) - at(f)) / edge.squaredNorm();
+    if (along > -kRoundOff && along < 1 + kRoundOff) events_.push_back(theta);
+  }
+  std::ranges::sort(events_);
+}
+
+CollarFace<double> OutlineOnset::face(int i) const {
+  const Outlines& o = outlines_;
+  const int p = o.previous[i], j = o.next[i];
+  const auto tangent = [&](int k) { return Vec2((point(o.next[k]) - point(k)).normalized()); };
+  const Vec2 before = tangent(p), own = tangent(i), after = tangent(j);
+  const Mitre<double> a(before.x(), before.y(), own.x(), own.y());
+  const Mitre<double> b(own.x(), own.y(), after.x(), after.y());
+  return {x_[i], y_[i], x_[j], y_[j], own.x(),    own.y(),    (point(j) - point(i)).norm(),
+          a.x,   a.y,   b.x,   b.y,   o.depth[i], o.depth[p], o.depth[j]};
+}
+
+// As OutlineKernel::evaluate, of the near edges and faces.
+void OutlineOnset::find_forces() {
+  const Outlines& o = outlines_;
+  for (const int i : ends_) fx_[i] = fy_[i] = 0;
+  const auto push = [&](int i, const Vec2& inward, double force) {
+    fx_[i] += force * inward.x();
+    fy_[i] += force * inward.y();
+  };
+  CollarPiece<double> piece;
+  for (const auto& [e, f] : near_) {
+    const int q = o.next[e];
+    const Vec2 base = point(o.next[f]) - point(f);
+    if (cross(base, point(e) - point(f)) < 0 && cross(base, point(q) - point(f)) < 0) continue;
+    const CollarFace<double> face_f = face(f);
+    if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece)) continue;
+    const Vec2 edge = point(q) - point(e);
+    const double k = slope_[f];
+    const Vec2 from_edge = k * Vec2(-edge.y(), edge.x());
+    push(e, from_edge, piece.sum - piece.first);
+    push(q, from_edge, piece.first);
+    const Vec2 from_face = k * Vec2(-face_f.ty, face_f.tx);
+    const double along = piece.along / face_f.length;
+    push(f, from_face, piece.area - along);
+    push(o.next[f], from_face, along);
+  }
+}
+
+// Appends the forces on the coordinates of a body.
+void OutlineOnset::add_forces(const Side& side, const Step& step, double theta) {
+  const Outlines::Body& body = outlines_.bodies[side.body];
+  if (!body.is_rigid()) {
+    for (size_t i = side.first_end; i < side.end; ++i) {
+      forces_.push_back(fx_[ends_[i]]);
+      forces_.push_back(fy_[ends_[i]]);
+    }
+    return;
+  }
+  const double back = (1 - theta) * step.dt;
+  const double* v = &step.now.pose_rate[3 * static_cast<size_t>(body.rigid)];
+  const Vec2 centre(body.cx - back * v[0], body.cy - back * v[1]);
+  Vec2 force = Vec2::Zero();
+  double moment = 0;
+  for (size_t i = side.first_end; i < side.end; ++i) {
+    const Vec2 f(fx_[ends_[i]], fy_[ends_[i]]);
+    force += f;
+    moment += cross(point(ends_[i]) - centre, f);
+  }
+  forces_.insert(forces_.end(), {force.x(), force.y(), moment});
+}
+
+// Moments of forces at earlier positions do not balance at the end of the step. What is left over
+// goes half and half to both bodies, so that the angular momentum is kept.
+void OutlineOnset::balance(const Side& a, const Side& b) {
+  const double rest = moment(a) + moment(b);
+  turn(a, -rest / 2);
+  turn(b, -rest / 2);
+}
+
+// Of what is missing, about the first end, where the bodies are at the end of the step.
+double OutlineOnset::moment(const Side& side) const {
+  const Outlines& o = outlines_;
+  const Outlines::Body& body = o.bodies[side.body];
+  const Vec2 origin = o.point(ends_.front());
+  const Coordinate* c = &coordinates_[side.coordinates];
+  if (body.is_rigid()) {
+    const Vec2 centre(body.cx, body.cy);
+    return cross(centre - origin, Vec2(c[0].missing, c[1].missing)) + c[2].missing;
+  }
+  double sum = 0;
+  for (size_t i = side.first_end; i < side.end; ++i, c += 2) {
+    sum += cross(o.point(ends_[i]) - origin, Vec2(c[0].missing, c[1].missing));
+  }
+  return sum;
+}
+
+// Adds a moment: on a mesh, the smallest forces on the ends that have one already.
+void OutlineOnset::turn(const Side& side, double moment) {
+  const Outlines& o = outlines_;
+  Coordinate* const first = &coordinates_[side.coordinates];
+  if (o.bodies[side.body].is_rigid()) {
+    first[2].missing += moment;
+    return;
+  }
+  const auto each = [&](auto&& f) {
+    Coordinate* c = first;
+    for (size_t i = side.first_end; i < side.end; ++i, c += 2) {
+      if (c[0].missing != 0 || c[1].missing != 0) f(o.point(ends_[i]), c[0], c[1]);
+    }
+  };
+  Vec2 centre = Vec2::Zero();
+  double count = 0, spread = 0;
+  each([&](const Vec2& p, Coordinate&, Coordinate&) { centre += p, ++count; });
+  if (count == 0) return;
+  centre /= count;
+  each([&](const Vec2& p, Coordinate&, Coordinate&) { spread += (p - centre).squaredNorm(); });
+  if (!(spread > 0)) return;
+  each([&](const Vec2& p, Coordinate& x, Coordinate& y) {
+    const Vec2 arm = (p - centre) * (moment / spread);
+    x.missing -= arm.y();
+    y.missing += arm.x();
+  });
+}
+
+void OutlineOnset::keep(const Side& side) {
+  const Outlines& o = outlines_;
+  const Coordinate* c = &coordinates_[side.coordinates];
+  if (o.bodies[side.body].is_rigid()) {
+    for (size_t k = 0; k < 3; ++k) {
+      on_rigid_.push_back({3 * static_cast<size_t>(o.bodies[side.body].rigid) + k, c[k].missing});
+    }
+    return;
+  }
+  for (size_t i = side.first_end; i < side.end; ++i) {
+    for (size_t k = 0; k < 2; ++k) {
+      on_nodes_.push_back({2 * static_cast<size_t>(o.node[ends_[i]]) + k, (c++)->missing});
+    }
+  }
+}
+
+void OutlineOnset::add(double scale, const ForceViews& forces) const {
+  for (const Impulse& i : on_nodes_) forces.nodes[i.coordinate] += scale * i.mean;
+  for (const Impulse& i : on_rigid_) forces.rigid[i.coordinate] += scale * i.mean;
+}
+
+}  // namespace apothem

@@ -1,0 +1,94 @@
+#include "apothem/dynamics/step_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/dynamics/unstable.hpp"
+
+namespace apothem {
+namespace {
+
+// The bound counts the short flanks of a flat contact as well, which do not press: a step may
+// exceed it by a little.
+constexpr double kOvershoot = 1.05;
+constexpr std::int64_t kPatience = 512;
+constexpr std::int64_t kSoon = 8;  // times the patience
+constexpr size_t kMostChanges = 1000;
+
+}  // namespace
+
+StepControl::StepControl(const Model& model, const TimeSettings& time, const StepBounds& bounds,
+                         int frames, bool node_contact)
+    : model_(model),
+      automatic_(!time.fixed_step),
+      choice_(choose_step(model, time, bounds, frames, node_contact)),
+      patience_(kPatience) {
+  safety_ = choice_.safety;
+  changes_.shortest = choice_.step;
+}
+
+void StepControl::advance(State& state) {
+  ++state.step;
+  ++part_;
+  state.time = base_time_ + static_cast<double>(state.step - base_step_) * choice_.step;
+}
+
+void StepControl::follow(const State& state, std::span<const double> lambda) {
+  const auto worst = std::ranges::max_element(lambda);
+  if (worst == lambda.end()) return;
+  const double largest = kOvershoot * (automatic_ ? safety_ : 1);
+  const double rate = choice_.step * choice_.step * *worst;  // 4 (step / limit)^2
+  if (rate > 4 * largest * largest) {
+    shorten(state, 2 / std::sqrt(*worst), static_cast<RigidIndex>(worst - lambda.begin()));
+  } else if (halvings_ > 0) {
+    const bool soft = 4 * rate <= 4 * safety_ * safety_;  // for twice the step
+    soft_ = soft ? soft_ + 1 : 0;
+    if (soft_ >= patience_ && part_ % 2 == 0) lengthen(state);
+  }
+}
+
+void StepControl::shorten(const State& state, double limit, RigidIndex body) {
+  const std::string& name = model_.bodies[static_cast<size_t>(body)].name;
+  if (!automatic_) {
+    throw Unstable(
+        fmt::format("the step of {} s is above the stability limit of {:.6g} s of the "
+                    "contacts of body \"{}\" {}; give a smaller time.step or \"auto\"",
+                    choice_.step, limit, name, at_time(state)));
+  }
+  if (state.step - lengthened_ < kSoon * patience_) patience_ *= 2;
+  double size = choice_.step;
+  for (; size > kOvershoot * safety_ * limit; size /= 2) ++halvings_, part_ *= 2;
+  ++changes_.shortened;
+  change(state, size, body);
+  choice_.stability = limit;
+  choice_.limit = {limit, fmt::format("contacts of \"{}\" {}", name, at_time(state))};
+}
+
+void StepControl::lengthen(const State& state) {
+  --halvings_, part_ /= 2;
+  lengthened_ = state.step;
+  ++changes_.lengthened;
+  change(state, 2 * choice_.step, -1);
+}
+
+void StepControl::change(const State& state, double size, RigidIndex body) {
+  choice_.step = size;
+  base_time_ = state.time;
+  base_step_ = state.step;
+  soft_ = 0;
+  changes_.shortest = std::min(changes_.shortest, size);
+  if (changes_.first.size() < kMostChanges) {
+    changes_.first.push_back({state.time, state.step, size, body});
+  }
+}
+
+void StepControl::fields(Archive& archive) {
+  archive("size", choice_.step)("limit", choice_.limit.step)("limited_by", choice_.limit.reason)(
+      "stability_limit", choice_.stability);
+  archive("base_time", base_time_)("base_step", base_step_)("halvings", halvings_)("part", part_);
+  archive("soft", soft_)("patience", patience_)("lengthened", lengthened_)("changes", changes_);
+}
+
+}  // namespace apothem
