@@ -12,7 +12,9 @@ namespace {
 // such a part of an inradius within a step, as where a body lands nearly flat, the force is not
 // smooth even if no vertex enters or leaves.
 constexpr double kSudden = .03;
-constexpr int kPanels = 8;  // of the samples then
+// Panels of the samples then: many where it changes by such a part of itself.
+constexpr int kPanels = 8, kFewPanels = 2;
+constexpr double kMuch = .2;
 
 }  // namespace
 
@@ -53,9 +55,15 @@ bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, cons
     release(a, b);
     const bool known = old != before_.end() && old->a == a && old->b == b;
     const bool same = known && old->inside_a == met.inside_a && old->inside_b == met.inside_b;
-    const bool sudden = is_sudden(a, b, met.length - (known ? old->length : 0));
+    const double change = std::abs(met.length - (known ? old->length : 0));
+    const bool sudden = is_sudden(a, b, change);
     if (known) ++old;
-    if (dt > 0 && (!same || sudden)) find_pair(a, b, sudden ? kPanels : 1, now, dynamics, dt);
+    if (!(dt > 0) || (same && !sudden)) continue;
+    find_pair(a, b,
+              !sudden                       ? 1
+              : change > kMuch * met.length ? kPanels
+                                            : kFewPanels,
+              now, dynamics, dt);
   }
   release(surfaces_.rigid_count(), 0);
   return !impulses_.empty();
