@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 namespace apothem {
 namespace {
 
-// The stiffness of a pair grows with the boundary of one inside the other. Where this changes by
-// such a part of an inradius within a step, as where a body lands nearly flat, the force is not
-// smooth even if no vertex enters or leaves.
-constexpr double kSudden = .03;
-// Panels of the samples then: many where it changes by such a part of itself.
-constexpr int kPanels = 8, kFewPanels = 2;
-constexpr double kMuch = .2;
+constexpr double kSudden = .03;  // change of the boundary inside, of an inradius
 
 }  // namespace
 
@@ -34,38 +27,20 @@ struct Onset::Path {
 
 bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
                  const Dynamics& dynamics, double dt) {
-  std::swap(met_, before_);
-  met_.clear();
-  impulses_.clear();
-  const auto is_sudden = [&](int a, int b, double change) {
-    return std::abs(change) > kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
-  };
-  auto old = before_.begin();
-  const auto release = [&](int a, int b) {  // the pairs before (a, b), which touch no more
-    for (; old != before_.end() && std::tie(old->a, old->b) < std::tie(a, b); ++old) {
-      const int panels = is_sudden(old->a, old->b, old->length) ? kPanels : 1;
-      if (dt > 0) find_pair(old->a, old->b, panels, now, dynamics, dt);
-    }
-  };
+  std::vector<TouchingPair>& now_touching = watch_.begin_step();
   for (const int p : touching) {
     const auto [a, b] = pairs.pairs()[static_cast<size_t>(p)];
     const PairIntegral& pair = pairs[static_cast<size_t>(p)];
-    const Met met{a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b};
-    met_.push_back(met);
-    release(a, b);
-    const bool known = old != before_.end() && old->a == a && old->b == b;
-    const bool same = known && old->inside_a == met.inside_a && old->inside_b == met.inside_b;
-    const double change = std::abs(met.length - (known ? old->length : 0));
-    const bool sudden = is_sudden(a, b, change);
-    if (known) ++old;
-    if (!(dt > 0) || (same && !sudden)) continue;
-    find_pair(a, b,
-              !sudden                       ? 1
-              : change > kMuch * met.length ? kPanels
-                                            : kFewPanels,
-              now, dynamics, dt);
+    now_touching.push_back(
+        {a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
   }
-  release(surfaces_.rigid_count(), 0);
+  impulses_.clear();
+  if (!(dt > 0)) return false;
+  watch_.compare(
+      [&](RigidIndex a, RigidIndex b) {
+        return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+      },
+      [&](RigidIndex a, RigidIndex b, int panels) { find_pair(a, b, panels, now, dynamics, dt); });
   return !impulses_.empty();
 }
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
 #include "apothem/contact/onset_rule.hpp"
+#include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 
 namespace apothem {
@@ -18,26 +18,17 @@ class Onset {
   Onset(const Surfaces& surfaces, double stiffness) : surfaces_(surfaces), stiffness_(stiffness) {}
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
-  /// pairs whose vertices inside each other are not those of the step before. `touching` are the
-  /// pairs that touch now, ascending. With dt = 0 there is none. True if there is a J.
+  /// pairs whose vertices inside each other are not those of the step before, or of which much more
+  /// or less boundary is inside. `touching` are the pairs that touch now, ascending. With dt = 0
+  /// there is none. True if there is a J.
   bool find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
             const Dynamics& dynamics, double dt);
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
-  void fields(Archive& archive) { archive("met", met_); }
+  void fields(Archive& archive) { watch_.fields(archive); }
 
  private:
-  /// A pair that touches: which vertices are inside the other polygon, and the length of the
-  /// boundaries inside, m.
-  struct Met {
-    int a, b;
-    std::uint64_t inside_a, inside_b;
-    double length;
-    void fields(Archive& archive) {
-      archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
-    }
-  };
   struct Impulse {
     int a, b;
     std::array<double, 4> mean;  ///< J / dt, as `load`
@@ -56,7 +47,7 @@ class Onset {
 
   const Surfaces& surfaces_;
   double stiffness_;
-  std::vector<Met> met_, before_;
+  OnsetWatch watch_;
   std::vector<Impulse> impulses_;
   // Memory.
   std::vector<double> events_;

@@ -115,7 +115,7 @@ double OnsetRest::share() const {
   const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);
   if (!(scale > 0 && mean_ > 0)) return 0;
   const double once = -energy * power_ / scale;
-  const double twice = -(energy + dt_ * gain_ / 2 * once * once) * power_ / scale;
+  const double twice = -(energy + dt_ * dt_ * mean_ / 2 * once * once) * power_ / scale;
   const double most = kLargestRest / 12 * std::sqrt(slopes_ / mean_);
   return std::clamp(twice, -most, most);
 }

@@ -1,5 +1,5 @@
 // The impulse that velocity Verlet misses in a step in which a contact begins or ends
-// (docs/theory.md, Time stepping).
+// (docs/theory.md, "Contacts that begin or end within a step").
 //
 // Velocity Verlet sums impulses by the trapezoid rule. Where the force F of a pair of bodies has a
 // kink within a step of h, because a vertex enters or leaves the other body, the sum is wrong in
@@ -103,10 +103,10 @@ class OnsetRest {
   double dt_;
   double energy_ = 0;  // R without what follows from the stiffness, J
   End first_, last_;
-  double mean_ = 0,
-         slopes_ = 0;  // squares of the mean force and of the slopes over the masses, W/s
+  double mean_ = 0;    // square of the mean force over the masses, W/s
+  double slopes_ = 0;  // squares of both slopes over the masses, W/s
   double power_ = 0;   // of the mean force, W
-  double gain_ = 0;    // of this power by the mean force in a step, W
+  double gain_ = 0;    // what the forces may change of this power in a step, W
 };
 
 }  // namespace apothem

@@ -9,25 +9,13 @@
 
 #include <vector>
 
+#include "apothem/contact/edge_face.hpp"
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/friction_table.hpp"
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/outlines.hpp"
-#include "apothem/geometry/integrals/collar.hpp"
 
 namespace apothem {
-
-/// An edge of one outline that may meet a face of another.
-struct EdgeFace {
-  std::int32_t edge, face;
-  auto operator<=>(const EdgeFace&) const = default;
-};
-
-/// One that does.
-struct EdgeFaceContact {
-  int edge, face;
-  CollarPiece<double> piece;
-};
 
 class OutlineFriction {
  public:

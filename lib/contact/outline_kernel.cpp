@@ -115,25 +115,22 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   }
 }
 
-// The edge gets the pressure against its outward normal, and the face gives way along its inward
-// normal: both along the inward normals, on the two ends.
 void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>& p,
                                 std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   const auto [e, f] = pair;
-  const double k = slope_[f], on_edge = k * o.length[e];
-  ends_[2 * e] += on_edge * (p.sum - p.first);
-  ends_[2 * e + 1] += on_edge * p.first;
-  const double b = k * p.along / o.length[f];
-  ends_[2 * f] += k * p.area - b;
-  ends_[2 * f + 1] += b;
+  const EdgeFaceForces force = edge_face_forces(p, slope_[f], o.length[e], o.length[f]);
+  ends_[2 * e] += force.edge_start;
+  ends_[2 * e + 1] += force.edge_end;
+  ends_[2 * f] += force.face_start;
+  ends_[2 * f + 1] += force.face_end;
 
   areas_[f] += p.area;
   const double share = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
   if (!(p.deepest <= 0)) {
     contacts_.emplace_back(e, f, p);
     contacts.push_back({outline_kernel, e, f, p.deepest, p.deepest * depth_ratio(o.face(f)), share,
-                        on_edge * (p.to - p.from)});
+                        slope_[f] * o.length[e] * (p.to - p.from)});
   }
 }
 

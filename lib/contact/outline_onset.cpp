@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <tuple>
+#include <functional>
 
 namespace apothem {
 namespace {
 
-// As kSudden for rigid bodies (onset.cpp), of the smaller r of the two.
-constexpr double kSuddenLength = .1;
+constexpr double kSuddenLength = .1;  // change of the boundary inside, of the smaller r
 constexpr double kRoundOff = 1e-9;
 
 // Sums of these tell sets of vertices apart.
@@ -27,65 +25,54 @@ struct OutlineOnset::Step {
   double dt;
 };
 
-void OutlineOnset::find_met(std::span<const EdgeFaceContact> contacts) {
+// One entry for each run of contacts of a pair, then one for each pair.
+void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts) {
   const Outlines& o = outlines_;
-  met_.clear();
+  std::vector<TouchingPair>& list = watch_.begin_step();
   for (const EdgeFaceContact& c : contacts) {
     const auto [a, b] = std::minmax({o.body[c.edge], o.body[c.face]});
-    if (met_.empty() || met_.back().a != a || met_.back().b != b) met_.push_back({a, b, 0, 0});
-    if (c.piece.from == 0) met_.back().inside += scrambled(c.edge);
-    met_.back().length += (c.piece.to - c.piece.from) * o.length[c.edge];
+    const TouchingPair pair{a, b, 0, 0, 0};
+    if (list.empty() || !list.back().same_pair(pair)) list.push_back(pair);
+    if (c.piece.from == 0) list.back().inside_a += scrambled(c.edge);
+    list.back().length += (c.piece.to - c.piece.from) * o.length[c.edge];
   }
-  const auto pair = [](const Met& m) { return std::pair(m.a, m.b); };
-  std::ranges::stable_sort(met_, {}, pair);
+  std::ranges::sort(list, std::less<>());
   size_t last = 0;
-  for (size_t i = 1; i < met_.size(); ++i) {
-    if (pair(met_[i]) == pair(met_[last])) {
-      met_[last].inside += met_[i].inside;
-      met_[last].length += met_[i].length;
+  for (size_t i = 1; i < list.size(); ++i) {
+    if (list[i].same_pair(list[last])) {
+      list[last].inside_a += list[i].inside_a;
+      list[last].length += list[i].length;
     } else {
-      met_[++last] = met_[i];
+      list[++last] = list[i];
     }
   }
-  met_.resize(std::min(met_.size(), last + 1));
+  list.resize(std::min(list.size(), last + 1));
 }
 
 bool OutlineOnset::find(std::span<const EdgeFace> candidates,
                         std::span<const EdgeFaceContact> contacts, const Kinematics& now,
                         const Dynamics& dynamics, double dt) {
-  std::swap(met_, before_);
+  find_touching(contacts);
   on_nodes_.clear(), on_rigid_.clear();
-  find_met(contacts);
   if (!(dt > 0)) return false;
-  const Step step{now, dynamics, dt};
-  auto old = before_.begin();
-  const auto release = [&](int a, int b) {  // the pairs before (a, b), which touch no more
-    for (; old != before_.end() && std::tie(old->a, old->b) < std::tie(a, b); ++old) {
-      find_pair(*old, 1, candidates, step);
-    }
-  };
-  for (const Met& m : met_) {
-    release(m.a, m.b);
-    const bool known = old != before_.end() && old->a == m.a && old->b == m.b;
-    const double change = std::abs(m.length - (known ? old->length : 0));
-    const bool sudden = change > kSuddenLength * std::min(outlines_.bodies[m.a].reference,
-                                                          outlines_.bodies[m.b].reference);
-    if (!known || old->inside != m.inside || sudden) {
-      find_pair(m, sudden ? 2 : 1, candidates, step);
-    }
-    if (known) ++old;
-  }
-  release(std::numeric_limits<int>::max(), 0);
+  const std::vector<Outlines::Body>& bodies = outlines_.bodies;
+  watch_.compare(
+      [&](BodyIndex a, BodyIndex b) {
+        return kSuddenLength * std::min(bodies[a].reference, bodies[b].reference);
+      },
+      [&](BodyIndex a, BodyIndex b, int panels) {
+        find_pair(a, b, panels, candidates, {now, dynamics, dt});
+      });
   return !on_nodes_.empty();
 }
 
-void OutlineOnset::find_pair(const Met& pair, int panels, std::span<const EdgeFace> candidates,
-                             const Step& step) {
-  take_near(pair.a, pair.b, candidates);
+void OutlineOnset::find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
+                             std::span<const EdgeFace> candidates, const Step& step) {
+  take_near(body_a, body_b, candidates);
   if (near_.empty()) return;
   coordinates_.clear();
-  const Side a = take_side(pair.a, step);
-  const Side b = take_side(pair.b, step);
+  const Side a = take_side(body_a, step);
+  const Side b = take_side(body_b, step);
   find_events(step);
   const int inside = find_onset_samples(events_, panels, samples_);
   for (int i = 0; i < static_cast<int>(samples_.size()); ++i) {
@@ -229,7 +216,7 @@ CollarFace<double> OutlineOnset::face(int i) const {
           a.x,   a.y,   b.x,   b.y,   o.depth[i], o.depth[p], o.depth[j]};
 }
 
-// As OutlineKernel::evaluate, of the near edges and faces.
+// Of the near edges and faces, where the corners are.
 void OutlineOnset::find_forces() {
   const Outlines& o = outlines_;
   for (const int i : ends_) fx_[i] = fy_[i] = 0;
@@ -245,14 +232,14 @@ void OutlineOnset::find_forces() {
     const CollarFace<double> face_f = face(f);
     if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece)) continue;
     const Vec2 edge = point(q) - point(e);
-    const double k = slope_[f];
-    const Vec2 from_edge = k * Vec2(-edge.y(), edge.x());
-    push(e, from_edge, piece.sum - piece.first);
-    push(q, from_edge, piece.first);
-    const Vec2 from_face = k * Vec2(-face_f.ty, face_f.tx);
-    const double along = piece.along / face_f.length;
-    push(f, from_face, piece.area - along);
-    push(o.next[f], from_face, along);
+    const double length = edge.norm();
+    const EdgeFaceForces force = edge_face_forces(piece, slope_[f], length, face_f.length);
+    const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length;
+    push(e, from_edge, force.edge_start);
+    push(q, from_edge, force.edge_end);
+    const Vec2 from_face(-face_f.ty, face_f.tx);
+    push(f, from_face, force.face_start);
+    push(o.next[f], from_face, force.face_end);
   }
 }
 

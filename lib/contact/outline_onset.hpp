@@ -2,14 +2,14 @@
 // pair of bodies is that on the vertices of both outlines, all at the same samples.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
+#include "apothem/contact/edge_face.hpp"
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/onset_rule.hpp"
-#include "apothem/contact/outline_friction.hpp"
+#include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/outlines.hpp"
 
 namespace apothem {
@@ -21,25 +21,17 @@ class OutlineOnset {
       : outlines_(outlines), slope_(slope) {}
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
-  /// pairs of bodies whose vertices inside each other are not those of the step before. `contacts`
-  /// are those of now, `candidates` those of the last search, both ascending. With dt = 0 there is
-  /// none. True if there is a J.
+  /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
+  /// much more or less boundary is inside. `contacts` are those of now, `candidates` those of the
+  /// last search, both ascending. With dt = 0 there is none. True if there is a J.
   bool find(std::span<const EdgeFace> candidates, std::span<const EdgeFaceContact> contacts,
             const Kinematics& now, const Dynamics& dynamics, double dt);
   /// Adds J / dt of the last `find`, times `scale`.
   void add(double scale, const ForceViews& forces) const;
 
-  void fields(Archive& archive) { archive("met", met_); }
+  void fields(Archive& archive) { watch_.fields(archive); }
 
  private:
-  /// Two bodies that touch: a sum over the vertices of one inside the other, and the length of the
-  /// boundaries inside, m.
-  struct Met {
-    int a, b;
-    std::uint64_t inside;
-    double length;
-    void fields(Archive& archive) { archive("a", a)("b", b)("inside", inside)("length", length); }
-  };
   /// A coordinate of a node or of a rigid body.
   struct Coordinate {
     size_t index;     ///< in the order of a state
@@ -59,9 +51,9 @@ class OutlineOnset {
     size_t first_end, end, coordinates;
   };
 
-  void find_met(std::span<const EdgeFaceContact> contacts);
-  void find_pair(const Met& pair, int panels, std::span<const EdgeFace> candidates,
-                 const Step& step);
+  void find_touching(std::span<const EdgeFaceContact> contacts);
+  void find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
+                 std::span<const EdgeFace> candidates, const Step& step);
   void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);
   Side take_side(BodyIndex body, const Step& step);
   void find_events(const Step& step);
@@ -77,7 +69,7 @@ class OutlineOnset {
 
   const Outlines& outlines_;
   const std::vector<double>& slope_;
-  std::vector<Met> met_, before_;
+  OnsetWatch watch_;
   std::vector<Impulse> on_nodes_, on_rigid_;
   // Of the pair at hand.
   std::vector<EdgeFace> near_;

@@ -47,7 +47,7 @@ struct StepChoice {
 
 /// Parts of the limits of stability that keep the energy error of an impact below `accuracy` of its
 /// energy: fits to the worst landings, nearly flat ones of squares and flat ones of meshed blocks
-/// (docs/verification.md, Time steps).
+/// (docs/verification.md, "Contacts that begin or end within a step").
 double contact_safety(double accuracy);
 double element_safety(double accuracy);
 

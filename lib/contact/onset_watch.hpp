@@ -1,0 +1,78 @@
+// Which pairs have begun or ended to touch within a step, so that their impulses need a correction
+// (onset_rule.hpp). The same for rigid bodies and for meshes.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "apothem/archive/archive.hpp"
+
+namespace apothem {
+
+/// A pair that touches: which vertices are inside the partner, as numbers that differ where the
+/// sets do, and the length of the boundaries inside, m.
+struct TouchingPair {
+  int a, b;
+  std::uint64_t inside_a, inside_b;
+  double length;
+
+  [[nodiscard]] bool same_pair(const TouchingPair& other) const {
+    return a == other.a && b == other.b;
+  }
+  [[nodiscard]] bool same_vertices(const TouchingPair& other) const {
+    return inside_a == other.inside_a && inside_b == other.inside_b;
+  }
+  bool operator<(const TouchingPair& other) const {
+    return std::tie(a, b) < std::tie(other.a, other.b);
+  }
+  void fields(Archive& archive) {
+    archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
+  }
+};
+
+class OnsetWatch {
+ public:
+  /// What touched becomes what touched before; the empty list is to be filled, ascending.
+  std::vector<TouchingPair>& begin_step() {
+    std::swap(now_, before_);
+    now_.clear();
+    return now_;
+  }
+
+  /// Calls changed(a, b, panels), ascending, for every pair whose vertices inside each other have
+  /// changed. The stiffness of a pair grows with the boundary of one inside the other: where this
+  /// changes by more than sudden(a, b), m, within a step, as where a body lands nearly flat, the
+  /// force is not smooth even if no vertex enters or leaves. `panels` of the samples: more where it
+  /// changes by much of itself.
+  template <class Sudden, class Changed>
+  void compare(const Sudden& sudden, const Changed& changed) const {
+    auto old = before_.begin();
+    const auto judge = [&](const TouchingPair& pair, bool same, double change) {
+      if (change > sudden(pair.a, pair.b)) {
+        changed(pair.a, pair.b, change > kMuch * pair.length ? kPanels : kFewPanels);
+      } else if (!same) {
+        changed(pair.a, pair.b, 1);
+      }
+    };
+    for (const TouchingPair& pair : now_) {
+      for (; old != before_.end() && *old < pair; ++old) judge(*old, false, old->length);
+      const bool known = old != before_.end() && old->same_pair(pair);
+      judge(pair, known && old->same_vertices(pair),
+            std::abs(pair.length - (known ? old->length : 0)));
+      if (known) ++old;
+    }
+    for (; old != before_.end(); ++old) judge(*old, false, old->length);
+  }
+
+  void fields(Archive& archive) { archive("touching", now_); }
+
+ private:
+  static constexpr int kPanels = 8, kFewPanels = 2;
+  static constexpr double kMuch = .2;
+
+  std::vector<TouchingPair> now_, before_;
+};
+
+}  // namespace apothem
