@@ -28,14 +28,14 @@ struct Onset::Path {
 bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
                  const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
+  impulses_.clear();
+  if (!(dt > 0)) return false;
   for (const int p : touching) {
     const auto [a, b] = pairs.pairs()[static_cast<size_t>(p)];
     const PairIntegral& pair = pairs[static_cast<size_t>(p)];
     now_touching.push_back(
         {a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
   }
-  impulses_.clear();
-  if (!(dt > 0)) return false;
   watch_.compare(
       [&](RigidIndex a, RigidIndex b) {
         return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
@@ -86,8 +86,8 @@ void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
     for (int j = 0; j < y1.size; ++j) {
       const double h0 = y0.gx[j] * (p0.x() - y0.x[j]) + y0.gy[j] * (p0.y() - y0.y[j]);
       const double h1 = y1.gx[j] * (p1.x() - y1.x[j]) + y1.gy[j] * (p1.y() - y1.y[j]);
-      if ((h0 < 0) == (h1 < 0)) continue;
-      const double theta = h0 / (h0 - h1);
+      const double theta = crossing(h0, h1);
+      if (theta < 0) continue;
       const auto at = [&](const double* q0, const double* q1, int k) {
         return q0[k] + theta * (q1[k] - q0[k]);
       };

@@ -9,8 +9,9 @@ namespace {
 
 constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 constexpr std::array kSlope{-25. / 3, 48. / 3, -36. / 3, 16. / 3, -3. / 3};
-constexpr double kShortest = .05;  // part of a step that is long enough for a slope
-constexpr double kBeyond = .05;    // of a step: where the slope is taken otherwise
+// Slopes need a part of a step without kinks: this one at least, which leaves 11 digits of them.
+constexpr double kShortest = 1e-3;
+constexpr int kFewPanels = 2;
 
 // Where other forces turn the bodies back within the step, the power of the mean force says little:
 // this part of them counts against it.
@@ -28,11 +29,10 @@ double bounded_ratio(double x, double y) {
 int find_onset_samples(std::span<const double> events, int panels,
                        std::vector<OnsetSample>& samples) {
   samples.assign(1, {0});
-  double from = 0, first_part = 0, last_part = 0;
+  double from = 0, last_part = 0;
   const auto integrate_until = [&](double until) {
     const double w = (until - from) / panels;
     if (!(w > 0)) return;
-    if (from == 0) first_part = w;
     last_part = w;
     for (int panel = 0; panel < panels; ++panel) {
       samples.back().mean += w * kBoole[0];
@@ -46,18 +46,25 @@ int find_onset_samples(std::span<const double> events, int panels,
   integrate_until(1);
   const size_t count = samples.size();
 
-  // Each slope uses the samples of the panel at its end of the step, if this is long enough.
+  // Each slope uses the samples of the panel at its end of the step, if this is long enough. A kink
+  // right at the start, as where two bodies touch at first, counts to this step, as one right at
+  // the end does: so this step and the one before take the same slope. Where there are many panels
+  // the force may bend at once, and the slopes take samples of their own.
+  const double first_part = (events.empty() ? 1 : events.front()) / panels;
+  const bool own = panels > kFewPanels;
   for (size_t k = 0; k < 5; ++k) {
-    const double beyond = static_cast<double>(k) * kBeyond / 4;
-    if (first_part > kShortest) {
+    const double theta = static_cast<double>(k) * kShortest / 4;
+    if (first_part > kShortest && !own) {
       samples[k].start_slope = kSlope[k] / first_part;
     } else {
-      samples.push_back({-beyond, 0, -kSlope[k] / kBeyond, 0});
+      const double sign = first_part > kShortest ? 1 : -1;
+      samples.push_back({sign * theta, 0, sign * kSlope[k] / kShortest, 0});
     }
-    if (last_part > kShortest) {
+    if (last_part > kShortest && !own) {
       samples[count - 1 - k].end_slope = -kSlope[k] / last_part;
     } else {
-      samples.push_back({1 + beyond, 0, 0, kSlope[k] / kBeyond});
+      const double sign = last_part > kShortest ? 1 : -1;
+      samples.push_back({1 - sign * theta, 0, 0, -sign * kSlope[k] / kShortest});
     }
   }
   return static_cast<int>(count);

@@ -21,6 +21,7 @@
 // D^T / (h v.D), the stiffness along the path.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,15 @@ struct OnsetSample {
   double theta;
   double mean = 0, start_slope = 0, end_slope = 0;
 };
+
+/// Where in a step, 0 to 1, a height that is `h0` at its start and `h1` at its end changes its
+/// sign; negative if it does not. A vertex that is on an edge at the start but for round-off, as
+/// where a run starts with two bodies that touch, crosses it there.
+inline double crossing(double h0, double h1) {
+  constexpr double kRoundOff = 1e-9;
+  if (std::abs(h0) <= kRoundOff * std::abs(h1 - h0)) return h0 == h1 ? -1 : 0;
+  return (h0 < 0) == (h1 < 0) ? -1 : h0 / (h0 - h1);
+}
 
 /// Finds the samples for kinks at `events`, ascending and within the step: Boole's rule on `panels`
 /// equal parts between them, and slopes by differences of order 4 on the side of the nearest event

@@ -26,9 +26,9 @@ struct OutlineOnset::Step {
 };
 
 // One entry for each run of contacts of a pair, then one for each pair.
-void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts) {
+void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
+                                 std::vector<TouchingPair>& list) {
   const Outlines& o = outlines_;
-  std::vector<TouchingPair>& list = watch_.begin_step();
   for (const EdgeFaceContact& c : contacts) {
     const auto [a, b] = std::minmax({o.body[c.edge], o.body[c.face]});
     const TouchingPair pair{a, b, 0, 0, 0};
@@ -52,9 +52,10 @@ void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts) {
 bool OutlineOnset::find(std::span<const EdgeFace> candidates,
                         std::span<const EdgeFaceContact> contacts, const Kinematics& now,
                         const Dynamics& dynamics, double dt) {
-  find_touching(contacts);
+  std::vector<TouchingPair>& touching = watch_.begin_step();
   on_nodes_.clear(), on_rigid_.clear();
   if (!(dt > 0)) return false;
+  find_touching(contacts, touching);
   const std::vector<Outlines::Body>& bodies = outlines_.bodies;
   watch_.compare(
       [&](BodyIndex a, BodyIndex b) {
@@ -195,8 +196,8 @@ void OutlineOnset::find_events(const Step& step) {
     const int g = o.next[f];
     const double h0 = cross(start_[g] - start_[f], start_[e] - start_[f]);
     const double h1 = cross(point(g) - point(f), point(e) - point(f));
-    if ((h0 < 0) == (h1 < 0)) continue;
-    const double theta = h0 / (h0 - h1);
+    const double theta = crossing(h0, h1);
+    if (theta < 0) continue;
     const auto at = [&](int i) { return Vec2(start_[i] + theta * (point(i) - start_[i])); };
     const Vec2 edge = at(g) - at(f);
     const double along = edge.dot(at(e) - at(f)) / edge.squaredNorm();

@@ -23,7 +23,8 @@ class OutlineOnset {
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
   /// much more or less boundary is inside. `contacts` are those of now, `candidates` those of the
-  /// last search, both ascending. With dt = 0 there is none. True if there is a J.
+  /// last search, both ascending. True if there is a J. With dt = 0, at the start, there is none,
+  /// and what touches then is new in the first step.
   bool find(std::span<const EdgeFace> candidates, std::span<const EdgeFaceContact> contacts,
             const Kinematics& now, const Dynamics& dynamics, double dt);
   /// Adds J / dt of the last `find`, times `scale`.
@@ -51,7 +52,7 @@ class OutlineOnset {
     size_t first_end, end, coordinates;
   };
 
-  void find_touching(std::span<const EdgeFaceContact> contacts);
+  void find_touching(std::span<const EdgeFaceContact> contacts, std::vector<TouchingPair>& list);
   void find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
                  std::span<const EdgeFace> candidates, const Step& step);
   void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);

@@ -153,7 +153,7 @@ void require_progress(const StepChoice& choice, double end) {
 }  // namespace
 
 double contact_safety(double accuracy) {
-  return std::min(.12 * std::pow(accuracy / 1e-4, 1. / 5), kSmooth);
+  return std::min(.16 * std::pow(accuracy / 1e-4, 1. / 5), kSmooth);
 }
 
 double element_safety(double accuracy) {

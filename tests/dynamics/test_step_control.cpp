@@ -112,7 +112,7 @@ TEST_CASE("the accuracy chooses the step", "[step_control]") {
   const auto step = [](double accuracy) {
     return Controlled(TimeSettings{.end = 10, .accuracy = accuracy}).step();
   };
-  CHECK(step(1e-4) == Approx(.12 * kLimit).epsilon(.01));
+  CHECK(step(1e-4) == Approx(.16 * kLimit).epsilon(.01));
   CHECK(step(1e-3) > 1.5 * step(1e-4));
   CHECK(step(1e-6) < .5 * step(1e-4));
   CHECK(step(.1) <= .5 * kLimit);
