@@ -236,6 +236,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
       }
     }
     pair.breadth = rounded(high - low);
+    pair.middle = rounded((high + low) / 2 - across.dot(a.reference));
   }
   result.volume = {rounded(energy), rounded(area)};
   return result;

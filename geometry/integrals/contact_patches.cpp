@@ -305,6 +305,7 @@ class Splitter {
     for (size_t i = 0; i < patches.size(); ++i) {
       if (!(extents[i].high >= extents[i].low)) continue;  // no resultant force
       patches[i].breadth = extents[i].high - extents[i].low;
+      patches[i].middle = (extents[i].high + extents[i].low) / 2;
     }
   }
 

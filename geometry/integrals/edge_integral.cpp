@@ -54,8 +54,10 @@ PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2
       }
     };
     project(0, middle, 0);
-    project(middle, pieces.used(), nx * r.y() - ny * r.x());
+    const double shift = nx * r.y() - ny * r.x();
+    project(middle, pieces.used(), shift);
     pair.breadth = extent.high - extent.low;
+    pair.middle = (extent.high + extent.low) / 2 - shift;
   }
   return pair;
 }

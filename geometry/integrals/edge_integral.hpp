@@ -69,7 +69,9 @@ struct PairIntegral {
   /// the steepest slope, m; 0 if the slopes are not known. It is the distance from the boundary for
   /// the distance potential of convex polygons, and never more (see penetration.hpp).
   double depth = 0;
-  double breadth = 0;  ///< extent of the overlap across the force, m
+  /// Extent of the overlap along the tangent (-n_y, n_x), n the direction of the force, m.
+  double breadth = 0;
+  double middle = 0;  ///< the middle of this extent, along the tangent, m
   /// Which vertices of a lie inside b, and of b inside a: bit i mod 64 counts the vertices i,
   /// modulo 2. Needles leave them out.
   std::uint64_t inside_a = 0, inside_b = 0;

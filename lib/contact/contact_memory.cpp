@@ -66,10 +66,10 @@ void exchange(Spring& spring, bool per_edge, int edges_a, int edges_b) {
 }
 
 void exchange(PatchDamper& damper) {
-  damper.normal = -damper.normal;
-  damper.damping = -damper.damping;
-  std::swap(damper.moment_a, damper.moment_b);
-  std::swap(damper.damping_a, damper.damping_b);
+  for (PairForce* f : {&damper.elastic, &damper.damping}) {
+    f->force = -f->force;
+    std::swap(f->moment_a, f->moment_b);
+  }
 }
 
 std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionLaw law) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "apothem/archive/archive.hpp"
 #include "apothem/contact/kinematics.hpp"
@@ -22,56 +23,85 @@ inline Vec2 tangent_of(const Vec2& normal_force) {
 }
 
 /// How the two rigid bodies of a pair move.
+struct PairRate {
+  Vec2 velocity = Vec2::Zero();   ///< of the mass centre of a against that of b, m/s
+  double spin_a = 0, spin_b = 0;  ///< rad/s
+
+  PairRate operator-(const PairRate& other) const {
+    return {velocity - other.velocity, spin_a - other.spin_a, spin_b - other.spin_b};
+  }
+  void fields(Archive& archive) {
+    archive("velocity", velocity)("spin_a", spin_a)("spin_b", spin_b);
+  }
+};
+
+/// A force on the first body of a pair, with its moments about the two mass centres.
+struct PairForce {
+  Vec2 force = Vec2::Zero();          ///< N
+  double moment_a = 0, moment_b = 0;  ///< N m
+
+  [[nodiscard]] double power(const PairRate& rate) const {  ///< W
+    return force.dot(rate.velocity) + moment_a * rate.spin_a + moment_b * rate.spin_b;
+  }
+  PairForce& operator+=(const PairForce& other) {
+    force += other.force;
+    moment_a += other.moment_a;
+    moment_b += other.moment_b;
+    return *this;
+  }
+  friend PairForce operator*(double factor, const PairForce& f) {
+    return {factor * f.force, factor * f.moment_a, factor * f.moment_b};
+  }
+  /// Adds it to the forces on all rigid bodies: x, y and the moment of each.
+  void add_to(RigidIndex a, RigidIndex b, std::span<double> rigid) const {
+    double* fa = &rigid[3 * static_cast<size_t>(a)];
+    double* fb = &rigid[3 * static_cast<size_t>(b)];
+    fa[0] += force.x();
+    fa[1] += force.y();
+    fa[2] += moment_a;
+    fb[0] -= force.x();
+    fb[1] -= force.y();
+    fb[2] += moment_b;
+  }
+  void fields(Archive& archive) {
+    archive("force", force)("moment_a", moment_a)("moment_b", moment_b);
+  }
+};
+
+/// How the two rigid bodies of a pair move, and where they are.
 struct PairMotion {
   PairMotion(const Surfaces& surfaces, const Kinematics& now, RigidIndex a, RigidIndex b)
       : between(surfaces.between(a, b)) {
     const double* va = &now.pose_rate[3 * static_cast<size_t>(a)];
     const double* vb = &now.pose_rate[3 * static_cast<size_t>(b)];
-    velocity_a = {va[0], va[1]}, velocity_b = {vb[0], vb[1]};
-    spin_a = va[2], spin_b = vb[2];
+    rate = {{va[0] - vb[0], va[1] - vb[1]}, va[2], vb[2]};
   }
-  Vec2 velocity_a, velocity_b;  ///< of the mass centres, m/s
-  double spin_a, spin_b;        ///< rad/s
-  Vec2 between;                 ///< mass centre of a minus that of b, m
+  PairRate rate;
+  Vec2 between;  ///< mass centre of a minus that of b, m
 
   /// Velocity of a's material against b's at a point relative to a's mass centre, m/s.
   [[nodiscard]] Vec2 slip(const Vec2& point) const {
-    return velocity_a + cross(spin_a, point) - velocity_b - cross(spin_b, point + between);
-  }
-  /// Power of a force on a and its moments about the two mass centres, W.
-  [[nodiscard]] double power(const Vec2& force, double moment_a, double moment_b) const {
-    return force.dot(Vec2(velocity_a - velocity_b)) + moment_a * spin_a + moment_b * spin_b;
+    return rate.velocity + cross(rate.spin_a, point) - cross(rate.spin_b, point + between);
   }
 };
 
-/// What the damping of a patch remembers: its elastic force and its own, on the first body of the
-/// pair, with the moments about the two mass centres.
+/// What the damping of a patch remembers.
 struct PatchDamper {
-  Vec2 normal = Vec2::Zero();           ///< N
-  double moment_a = 0, moment_b = 0;    ///< N m
-  Vec2 damping = Vec2::Zero();          ///< N
-  double damping_a = 0, damping_b = 0;  ///< N m
+  PairForce elastic;  ///< the normal force
+  PairForce damping;  ///< its own force
 
   /// Adds a share of another one.
   void add(double share, const PatchDamper& other) {
-    normal += share * other.normal;
-    moment_a += share * other.moment_a;
-    moment_b += share * other.moment_b;
+    elastic += share * other.elastic;
     damping += share * other.damping;
-    damping_a += share * other.damping_a;
-    damping_b += share * other.damping_b;
   }
-  void fields(Archive& archive) {
-    archive("normal", normal)("moment_a", moment_a)("moment_b", moment_b)("damping", damping)(
-        "damping_a", damping_a)("damping_b", damping_b);
-  }
+  void fields(Archive& archive) { archive("elastic", elastic)("damping", damping); }
 };
 
 /// beta times the rate of the resultant and its moments, beta = 2 ratio/omega with the contact's
 /// present stiffness and the two bodies' mobility, and never so much that the contact would pull.
-/// With dt = 0 it keeps its force. `k`: normal stiffness times thickness, N/m. Returns the energy
-/// that it takes from the bodies, J.
-double damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
-            const PairIntegral& patch, const PairMotion& motion, double dt, PatchDamper& damper);
+/// With dt = 0 it keeps its force. `k`: normal stiffness times thickness, N/m.
+void damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
+          const PairIntegral& patch, const PairMotion& motion, double dt, PatchDamper& damper);
 
 }  // namespace apothem

@@ -7,7 +7,8 @@
 namespace apothem {
 namespace {
 
-constexpr double kSudden = .03;  // change of the boundary inside, of an inradius
+constexpr double kSudden = .03;    // change of the boundary inside, of an inradius
+constexpr double kAtFirst = 1e-9;  // a potential that is round-off where a run starts
 
 }  // namespace
 
@@ -28,14 +29,15 @@ struct Onset::Path {
 bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
                  const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
-  impulses_.clear();
-  if (!(dt > 0)) return false;
   for (const int p : touching) {
     const auto [a, b] = pairs.pairs()[static_cast<size_t>(p)];
     const PairIntegral& pair = pairs[static_cast<size_t>(p)];
+    if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
     now_touching.push_back(
         {a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
   }
+  impulses_.clear();
+  if (!(dt > 0)) return false;
   watch_.compare(
       [&](RigidIndex a, RigidIndex b) {
         return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));

@@ -38,7 +38,7 @@ struct OnsetSample {
 /// sign; negative if it does not. A vertex that is on an edge at the start but for round-off, as
 /// where a run starts with two bodies that touch, crosses it there.
 inline double crossing(double h0, double h1) {
-  constexpr double kRoundOff = 1e-9;
+  constexpr double kRoundOff = 1e-7;
   if (std::abs(h0) <= kRoundOff * std::abs(h1 - h0)) return h0 == h1 ? -1 : 0;
   return (h0 < 0) == (h1 < 0) ? -1 : h0 / (h0 - h1);
 }

@@ -69,7 +69,7 @@ class OnsetWatch {
   void fields(Archive& archive) { archive("touching", now_); }
 
  private:
-  static constexpr int kPanels = 8, kFewPanels = 2;
+  static constexpr int kPanels = 4, kFewPanels = 2;
   static constexpr double kMuch = .2;
 
   std::vector<TouchingPair> now_, before_;

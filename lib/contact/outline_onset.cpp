@@ -26,10 +26,11 @@ struct OutlineOnset::Step {
 };
 
 // One entry for each run of contacts of a pair, then one for each pair.
-void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
-                                 std::vector<TouchingPair>& list) {
+void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts, bool at_first) {
   const Outlines& o = outlines_;
+  std::vector<TouchingPair>& list = watch_.begin_step();
   for (const EdgeFaceContact& c : contacts) {
+    if (at_first && c.piece.deepest < kRoundOff * o.length[c.edge]) continue;
     const auto [a, b] = std::minmax({o.body[c.edge], o.body[c.face]});
     const TouchingPair pair{a, b, 0, 0, 0};
     if (list.empty() || !list.back().same_pair(pair)) list.push_back(pair);
@@ -52,10 +53,9 @@ void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
 bool OutlineOnset::find(std::span<const EdgeFace> candidates,
                         std::span<const EdgeFaceContact> contacts, const Kinematics& now,
                         const Dynamics& dynamics, double dt) {
-  std::vector<TouchingPair>& touching = watch_.begin_step();
+  find_touching(contacts, !(dt > 0));
   on_nodes_.clear(), on_rigid_.clear();
   if (!(dt > 0)) return false;
-  find_touching(contacts, touching);
   const std::vector<Outlines::Body>& bodies = outlines_.bodies;
   watch_.compare(
       [&](BodyIndex a, BodyIndex b) {

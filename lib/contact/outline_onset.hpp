@@ -52,7 +52,7 @@ class OutlineOnset {
     size_t first_end, end, coordinates;
   };
 
-  void find_touching(std::span<const EdgeFaceContact> contacts, std::vector<TouchingPair>& list);
+  void find_touching(std::span<const EdgeFaceContact> contacts, bool at_first);
   void find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
                  std::span<const EdgeFace> candidates, const Step& step);
   void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);

@@ -49,20 +49,36 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
     const auto pair = static_cast<size_t>(p);
     const auto [a, b] = pairs.pairs()[pair];
     release_until(a, b);
-    if (last != forces_before_.end() && last->a == a && last->b == b) ++last;
-    step_pair(pairs, pair, now, dt, memory);
+    const bool known = last != forces_before_.end() && last->a == a && last->b == b;
+    step_pair(pairs, pair, known ? &*last++ : nullptr, now, dt, memory);
   }
   release_until(std::numeric_limits<RigidIndex>::max(), 0);
+}
+
+// What damping takes from the bodies in a step. Velocity Verlet sums the work of a force G by the
+// trapezoid rule, along a path that bends within the step. With the accelerations of the bodies
+// against each other at both ends, the work on them is h^2/12 (G_1 - G_0) (a_0 + a_1) larger,
+// summed over a contact. The last one is known a step later, so that this part is of the step
+// before.
+void PatchTangential::book_damping(const TangentialForce* last, const TangentialForce& now,
+                                   const PairRate& rate, double dt, FrictionMemory& memory) {
+  double work = dt / 2 * now.damping.power(rate);
+  if (last) {
+    work += dt / 2 * last->damping.power(rate);
+    work += dt / 12 * last->change_of_damping.power(rate - last->rate_before);
+  }
+  memory.damp(-work);
 }
 
 // Of a pair that touches no more: in the first half of this step its last force has still acted.
 void PatchTangential::release(const TangentialForce& last, const Kinematics& now, double dt,
                               FrictionMemory& memory) const {
-  const PairMotion motion(surfaces_, now, last.a, last.b);
-  const double damping = motion.power(last.damping, last.damping_a, last.damping_b);
-  const double all = motion.power(last.force, last.moment_a, last.moment_b);
-  memory.damp(-dt / 2 * damping);
-  memory.lose(-dt / 2 * (all - damping));
+  const PairRate rate = PairMotion(surfaces_, now, last.a, last.b).rate;
+  memory.lose(-dt / 2 * (last.all.power(rate) - last.damping.power(rate)));
+  TangentialForce gone{last.a, last.b};
+  gone.follow(&last, rate, dt);
+  book_damping(&last, gone, rate, dt, memory);
+  book_damping(&gone, {}, rate, dt, memory);
 }
 
 void PatchTangential::History::fields(Archive& archive) {
@@ -82,8 +98,9 @@ const PatchTangential::PairHistory* PatchTangential::find_before(RigidIndex a, R
   return nullptr;
 }
 
-void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now,
-                                double dt, FrictionMemory& memory) {
+void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
+                                const TangentialForce* last, const Kinematics& now, double dt,
+                                FrictionMemory& memory) {
   const auto [a, b] = pairs.pairs()[pair];
   const Friction& friction = table_.between(a, b);
   const bool rough = friction.coefficient > 0, damped = law_.normal_damping > 0;
@@ -113,16 +130,16 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
               if (tangent == Vec2::Zero()) tangent = old.tangent;
               heir.force += share * old.force * tangent.dot(old.tangent);
             });
-    lose_by_inheritance(springs, friction.tangential_stiffness * thickness_, memory);
   }
-  TangentialForce total{.a = a, .b = b};
+  const double lost = memory.loss();
+  TangentialForce total{a, b};
   for (size_t j = 0; j < patches_.size(); ++j) {
     const PairIntegral& patch = patches_[j];
     if (damped) {
       PatchDamper& d = dampers_[j];
-      memory.damp(damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a, b,
-                       patch, motion, dt, d));
-      total.add_damping(d);
+      damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a, b, patch, motion,
+           dt, d);
+      total.add_damping(d.damping);
     }
     if (!rough || edgewise()) continue;
     const double error =
@@ -132,8 +149,15 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
     resultant(motion, dt, friction, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
               springs_[j], total, memory);
   }
+  if (rough && !edgewise() && !inherit_whole()) {
+    memory.lose(lost_by_balance(springs, last, total, motion.rate, dt) - (memory.loss() - lost));
+  }
   if (rough && edgewise()) {
     per_edge(motion, dt, friction, {polygon_kernel, a, b, 0}, springs, total, memory);
+  }
+  if (damped) {
+    total.follow(last, motion.rate, dt);
+    book_damping(last, total, motion.rate, dt, memory);
   }
   if (damped) now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
   now_.runs.insert(now_.runs.end(), runs_.begin(), runs_.end());
@@ -143,7 +167,7 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair, const K
 
 // What the patches before hand down to those of now: everything to the only heir, otherwise in
 // proportion to the normal forces of those that share boundary with it. Forces are neither invented
-// nor lost; the elastic energy that a merger of springs leaves over is dissipated.
+// nor lost.
 void PatchTangential::find_shares(const PairHistory* before) {
   const size_t heirs = patches_.size();
   ancestors_ = before ? static_cast<size_t>(before->patches) : 0;
@@ -161,6 +185,17 @@ void PatchTangential::find_shares(const PairHistory* before) {
   }
 }
 
+// True if every patch goes on alone, or there were none.
+bool PatchTangential::inherit_whole() const {
+  const size_t heirs = patches_.size();
+  if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return true;
+  if (ancestors_ != heirs) return false;
+  for (size_t i = 0; i < heirs; ++i) {
+    if (shares_[i * heirs + i] != 1) return false;
+  }
+  return true;
+}
+
 template <class T, class Add>
 void PatchTangential::inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const {
   now.assign(patches_.size(), {});
@@ -176,14 +211,18 @@ void PatchTangential::inherit(std::span<const T> before, std::vector<T>& now, Ad
   }
 }
 
-// Elastic energy that a split or a merger of patches leaves over.
-void PatchTangential::lose_by_inheritance(std::span<const Spring> before, double stiffness,
-                                          FrictionMemory& memory) const {
-  if (before.empty() || (before.size() == 1 && springs_.size() == 1)) return;
-  double left = 0;
-  for (const Spring& spring : before) left += spring.force * spring.force;
-  for (const Spring& spring : springs_) left -= spring.force * spring.force;
-  memory.lose(left / (2 * stiffness));
+// Where patches come, go, split or merge, springs do not know what they lose: what friction has
+// taken from the bodies and the springs do not store.
+double PatchTangential::lost_by_balance(std::span<const Spring> before, const TangentialForce* last,
+                                        const TangentialForce& now, const PairRate& rate,
+                                        double dt) const {
+  const auto power = [&](const TangentialForce& f) {
+    return f.all.power(rate) - f.damping.power(rate);
+  };
+  double lost = -dt / 2 * ((last ? power(*last) : 0) + power(now));
+  for (const Spring& spring : before) lost += spring.energy();
+  for (const Spring& spring : springs_) lost -= spring.energy();
+  return lost;
 }
 
 // The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
@@ -206,7 +245,7 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const Frict
   const Vec2 tangent = tangent_of(patch.force);
   const Vec2 point = loading_point(patch);
   Vec2 normal = law_.normal_stiffness * thickness_ * patch.force;
-  if (law_.normal_damping > 0) normal += dampers_[static_cast<size_t>(key.part)].damping;
+  if (law_.normal_damping > 0) normal += dampers_[static_cast<size_t>(key.part)].damping.force;
   const Vec2 velocity = motion.slip(point);
   double slip = velocity.dot(tangent);
   // The tangent is only as exact as the force: what it makes of an approach is no slip.
@@ -215,11 +254,7 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const Frict
                         friction.coefficient * normal.norm(), memory);
   spring.tangent = tangent;
   memory.keep(spring);
-  const Vec2 force = spring.force * tangent;
-  total.add(force, cross(point, force), -cross(point + motion.between, force));
-  total.stiffness += spring.stiffness;
-  total.arm = std::max({total.arm, std::abs(cross(point, tangent)),
-                        std::abs(cross(point + motion.between, tangent))});
+  total.add_spring(spring.force, spring.stiffness, tangent, point, motion.between);
 }
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
@@ -241,11 +276,7 @@ void PatchTangential::per_edge(const PairMotion& motion, double dt, const Fricti
                     friction.coefficient * law_.normal_stiffness * thickness_ * run.force.norm(),
                     memory);
     memory.keep({key, spring, stiffness, tangent, true});
-    const Vec2 force = spring * tangent;
-    total.add(force, cross(run.centre, force), -cross(run.centre + motion.between, force));
-    total.stiffness += stiffness;
-    total.arm = std::max({total.arm, std::abs(cross(run.centre, tangent)),
-                          std::abs(cross(run.centre + motion.between, tangent))});
+    total.add_spring(spring, stiffness, tangent, run.centre, motion.between);
   }
   while (old != before.end()) lost();
 }
@@ -262,7 +293,7 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
   }
   if (cursor.pair == now_.pairs.size() || order() != pair) return;
   for (size_t j = 0; law_.normal_damping > 0 && j < patches.size(); ++j) {
-    patches[j].damping += now_.dampers[cursor.damper + j].damping;
+    patches[j].damping += now_.dampers[cursor.damper + j].damping.force;
   }
   for (size_t i = 0; i < springs.size(); ++i) {
     const int patch = edgewise() ? runs[i].patch : springs[i].key.part;

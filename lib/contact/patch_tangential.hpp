@@ -11,35 +11,46 @@
 #include "apothem/contact/law.hpp"
 #include "apothem/contact/normal_damping.hpp"
 #include "apothem/contact/pair_integrals.hpp"
+#include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
 namespace apothem {
 
 /// Friction and damping of one pair; moments about the mass centres.
 struct TangentialForce {
-  RigidIndex a, b;
-  Vec2 force = Vec2::Zero();          ///< on a, N
-  double moment_a = 0, moment_b = 0;  ///< N m
-  double stiffness = 0;               ///< of the springs, N/m
-  double arm = 0;                     ///< largest lever of a spring about either mass centre, m
-  /// Of these the damping.
-  Vec2 damping = Vec2::Zero();
-  double damping_a = 0, damping_b = 0;
+  RigidIndex a = -1, b = -1;
+  PairForce all = {};
+  PairForce damping = {};                            ///< of this
+  PairForce change_of_damping = {};                  ///< in the last step
+  PairRate rate = {}, rate_before = {};              ///< in the last half step, and before it
+  BodyStiffness stiffness_a = {}, stiffness_b = {};  ///< of the springs
 
-  void add(const Vec2& on_a, double about_a, double about_b) {
-    force += on_a;
-    moment_a += about_a;
-    moment_b += about_b;
+  /// Adds the force of a spring at a point relative to the mass centre of a. `between`: mass centre
+  /// of a minus that of b, m.
+  void add_spring(double size, double stiffness, const Vec2& tangent, const Vec2& point,
+                  const Vec2& between) {
+    const double arm_a = cross(point, tangent), arm_b = -cross(point + between, tangent);
+    all += {size * tangent, size * arm_a, size * arm_b};
+    stiffness_a.add(stiffness, tangent, arm_a);
+    stiffness_b.add(stiffness, tangent, -arm_b);
   }
-  void add_damping(const PatchDamper& d) {
-    add(d.damping, d.damping_a, d.damping_b);
-    damping += d.damping;
-    damping_a += d.damping_a;
-    damping_b += d.damping_b;
+  /// Complete but for what has changed since the step before, if the pair has touched then. With dt
+  /// = 0 nothing has.
+  void follow(const TangentialForce* last, const PairRate& now, double dt) {
+    rate = rate_before = now;
+    if (!(dt > 0)) return;
+    change_of_damping = damping;
+    if (!last) return;
+    rate_before = last->rate;
+    change_of_damping += -1 * last->damping;
+  }
+  void add_damping(const PairForce& f) {
+    all += f;
+    damping += f;
   }
   void fields(Archive& archive) {
-    archive("a", a)("b", b)("force", force)("moment_a", moment_a)("moment_b", moment_b);
-    archive("damping", damping)("damping_a", damping_a)("damping_b", damping_b);
+    archive("a", a)("b", b)("all", all)("damping", damping)("change_of_damping", change_of_damping)(
+        "rate", rate)("rate_before", rate_before);
   }
 };
 
@@ -93,15 +104,19 @@ class PatchTangential {
   };
 
   [[nodiscard]] const PairHistory* find_before(RigidIndex a, RigidIndex b);
-  void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt,
-                 FrictionMemory& memory);
+  void step_pair(const PairIntegrals& pairs, size_t pair, const TangentialForce* last,
+                 const Kinematics& now, double dt, FrictionMemory& memory);
+  static void book_damping(const TangentialForce* last, const TangentialForce& now,
+                           const PairRate& rate, double dt, FrictionMemory& memory);
   void release(const TangentialForce& last, const Kinematics& now, double dt,
                FrictionMemory& memory) const;
   void find_shares(const PairHistory* before);
+  [[nodiscard]] bool inherit_whole() const;
   template <class T, class Add>
   void inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const;
-  void lose_by_inheritance(std::span<const Spring> before, double stiffness,
-                           FrictionMemory& memory) const;
+  [[nodiscard]] double lost_by_balance(std::span<const Spring> before, const TangentialForce* last,
+                                       const TangentialForce& now, const PairRate& rate,
+                                       double dt) const;
   void resultant(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
                  const PairIntegral& patch, double force_error, Spring& spring,
                  TangentialForce& total, FrictionMemory& memory) const;

@@ -64,6 +64,7 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 
 void PolygonKernel::add_normal(const ForceViews& forces) {
   largest_force_ = {};
+  body_stiffness_.assign(static_cast<size_t>(surfaces_.rigid_count()), {});
   auto spring =
       tangential_ ? tangential_->forces().begin() : std::vector<TangentialForce>::const_iterator{};
   for (size_t i = 0; i < touching_.size(); ++i) {
@@ -81,37 +82,55 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
     fb[1] -= fy;
     fb[2] += stiffness_ * pair.moment_b;
     const double force = std::sqrt(fx * fx + fy * fy);
-    TangentialForce springs;
+    const TangentialForce* springs = nullptr;
     if (tangential_ && spring != tangential_->forces().end() && spring->a == a && spring->b == b) {
-      springs = *spring++;
+      springs = &*spring++;
     }
     if (force > largest_force_.value) largest_force_ = {force, a, b};
-    // No lever is longer than the body; where pushes from two sides cancel, M/F says nothing.
-    const auto add_rate = [&](RigidIndex body, double moment) {
-      const double arm = force > 0 ? std::min(std::abs(stiffness_ * moment) / force,
-                                              surfaces_.shapes().radius(body))
-                                   : 0;
-      forces.lambda[body] +=
-          movers(a, b) * contact_rate(surfaces_.rigid(body).inverse_mass,
-                                      force > 0 ? contact_stiffness_[i] : 0, arm, pair.breadth,
-                                      springs.stiffness, springs.arm);
-    };
-    add_rate(a, pair.moment_a);
-    add_rate(b, pair.moment_b);
+    add_stiffness(pair, a, b, contact_stiffness_[i], springs);
+  }
+  find_rates(forces.lambda);
+}
+
+// The displacements of both bodies add: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
+void PolygonKernel::add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b,
+                                  double stiffness, const TangentialForce* springs) {
+  const double size = pair.force.norm();
+  // Of the pushes of the edges: 1 if all have one direction.
+  const double aligned = std::min(size / pair.weight, 1.);
+  const Vec2 normal = size > 0 ? Vec2(pair.force / size) : Vec2(1, 0);
+  const Vec2 tangent(-normal.y(), normal.x());
+  const double across = (1 - aligned * aligned) * stiffness;
+  const double times = surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
+  // Where the resultant acts says little: boundary that is hardly inside is as stiff as any other.
+  const Vec2 middle = pair.middle * tangent;
+  const auto add = [&](RigidIndex body, const Vec2& point, const Vec2& centre,
+                       const BodyStiffness* tangential) {
+    BodyStiffness sum;
+    sum.add(stiffness, normal, cross(point, normal));
+    sum.add(across, tangent, cross(centre, tangent));
+    sum.add_rotation(stiffness * pair.breadth * pair.breadth / 12);
+    if (tangential) sum.add(*tangential, 1);
+    body_stiffness_[static_cast<size_t>(body)].add(sum, times);
+  };
+  const Vec2 between = surfaces_.between(a, b);
+  add(a, middle, pair.centre, springs ? &springs->stiffness_a : nullptr);
+  add(b, middle + between, pair.centre + between, springs ? &springs->stiffness_b : nullptr);
+}
+
+// The largest one is exact, so that it does not shorten the step in vain.
+void PolygonKernel::find_rates(std::span<double> rates) {
+  double largest = 0;
+  for (size_t i = 0; i < body_stiffness_.size(); ++i) {
+    const std::array<double, 3>& w = surfaces_.rigid(static_cast<RigidIndex>(i)).inverse_mass;
+    double rate = body_stiffness_[i].rate_bound(w);
+    if (rate > largest) largest = std::max(largest, rate = body_stiffness_[i].rate(w));
+    rates[i] += rate;
   }
 }
 
 void PolygonKernel::add_tangential(const ForceViews& forces) const {
-  for (const TangentialForce& t : tangential_->forces()) {
-    double* fa = &forces.rigid[3 * static_cast<size_t>(t.a)];
-    double* fb = &forces.rigid[3 * static_cast<size_t>(t.b)];
-    fa[0] += t.force.x();
-    fa[1] += t.force.y();
-    fa[2] += t.moment_a;
-    fb[0] -= t.force.x();
-    fb[1] -= t.force.y();
-    fb[2] += t.moment_b;
-  }
+  for (const TangentialForce& t : tangential_->forces()) t.all.add_to(t.a, t.b, forces.rigid);
 }
 
 void PolygonKernel::add_records(const FrictionMemory& memory,

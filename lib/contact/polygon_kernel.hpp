@@ -8,6 +8,7 @@
 #include "apothem/contact/onset.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/patch_tangential.hpp"
+#include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
@@ -49,10 +50,9 @@ class PolygonKernel final : public Kernel {
  private:
   void add_normal(const ForceViews& forces);
   void add_tangential(const ForceViews& forces) const;
-  /// 2 if forces can move both bodies, else 1.
-  [[nodiscard]] double movers(RigidIndex a, RigidIndex b) const {
-    return surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
-  }
+  void add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b, double stiffness,
+                     const TangentialForce* springs);
+  void find_rates(std::span<double> rates);
 
   const Surfaces& surfaces_;
   double stiffness_;  // k_n times the thickness, N/m
@@ -61,6 +61,7 @@ class PolygonKernel final : public Kernel {
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   std::vector<int> touching_;                  // pairs
   std::vector<double> contact_stiffness_;      // of these, N/m
+  std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
   PairPeak largest_force_;
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;

@@ -7,9 +7,12 @@
 //   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
@@ -22,23 +25,39 @@ inline double strip_mobility(const std::array<double, 3>& inverse_mass, double a
   return mean + std::sqrt(std::max(mean * mean - translation * spread, 0.0));
 }
 
-/// A bound of lambda of one body, 1/s^2, with the normal stiffness `normal` at the lever arm `arm`
-/// over the breadth and tangential springs of the stiffness `tangential`, N/m, at most at the arm
-/// `tangential_arm`. The two act across each other: on the place of the body only the larger one
-/// counts.
-inline double contact_rate(const std::array<double, 3>& inverse_mass, double normal, double arm,
-                           double breadth, double tangential, double tangential_arm) {
-  const double inverse = std::max(inverse_mass[0], inverse_mass[1]);
-  const double moment = normal * arm, tangential_moment = tangential * tangential_arm;
-  const double translation = std::max(normal, tangential) * inverse;
-  const double rotation =
-      (moment * arm + normal * breadth * breadth / 12 + tangential_moment * tangential_arm) *
-      inverse_mass[2];
-  const double coupling =
-      (moment * moment + tangential_moment * tangential_moment) * inverse * inverse_mass[2];
-  const double half = (translation - rotation) / 2;
-  return (translation + rotation) / 2 + std::sqrt(half * half + coupling);
-}
+/// How the contacts of a rigid body resist its displacement (x, y) and rotation, N/m, N and N m.
+class BodyStiffness {
+ public:
+  /// A spring of the stiffness `k` (N/m) along a unit vector that has the lever `arm` (m).
+  void add(double k, const Vec2& direction, double arm) {
+    const double x = k * direction.x(), y = k * direction.y();
+    xx_ += x * direction.x();
+    xy_ += x * direction.y();
+    yy_ += y * direction.y();
+    xt_ += x * arm;
+    yt_ += y * arm;
+    tt_ += k * arm * arm;
+  }
+  /// Against rotation alone, N m.
+  void add_rotation(double k) { tt_ += k; }
+  void add(const BodyStiffness& other, double times) {
+    xx_ += times * other.xx_;
+    xy_ += times * other.xy_;
+    yy_ += times * other.yy_;
+    xt_ += times * other.xt_;
+    yt_ += times * other.yt_;
+    tt_ += times * other.tt_;
+  }
+  /// The largest eigenvalue of stiffness by inertia, 1/s^2, with the inverse masses 1/m, 1/m, 1/I.
+  [[nodiscard]] double rate(const std::array<double, 3>& inverse_mass) const;
+  /// Not less than `rate`, and faster.
+  [[nodiscard]] double rate_bound(const std::array<double, 3>& inverse_mass) const;
+
+ private:
+  [[nodiscard]] Eigen::Matrix3d over(const std::array<double, 3>& inverse_mass) const;
+
+  double xx_ = 0, xy_ = 0, yy_ = 0, xt_ = 0, yt_ = 0, tt_ = 0;
+};
 
 /// Bound of w^2, 1/s^2, for a boundary node of the mass `mass` (kg) with half of the edges at it as
 /// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (docs/theory.md, Step).

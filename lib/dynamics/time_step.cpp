@@ -14,7 +14,9 @@ namespace apothem {
 
 namespace {
 
-constexpr double kSmooth = .5;  // of the limit of stability, at most
+// Parts of the limit of stability, at most: of finite elements, and of rigid bodies.
+constexpr double kSmooth = .5;
+constexpr double kCoarsest = .6;
 
 // An edge that lies flat on another body.
 struct FlatEdge {
@@ -153,7 +155,7 @@ void require_progress(const StepChoice& choice, double end) {
 }  // namespace
 
 double contact_safety(double accuracy) {
-  return std::min(.16 * std::pow(accuracy / 1e-4, 1. / 5), kSmooth);
+  return std::min(.16 * std::pow(accuracy / 1e-4, 1. / 5), kCoarsest);
 }
 
 double element_safety(double accuracy) {

@@ -151,8 +151,13 @@ TEST_CASE("rigid bodies that land flat or nearly flat keep their energy in all p
   }
   const auto flat = [&](double height) { return falling(square, height); };
   CHECK(worst_phase(flat, plain()).error > 100 * worst_phase(flat, defaults()).error);
-  const auto sliding = [&](double height) { return falling(square, height, .5, .3); };
-  CHECK(worst_phase(sliding, defaults()).error < 1e-4);
+  for (const double spin : {.3, 1., 3.}) {
+    const auto sliding = [&](double height) { return falling(square, height, .5, spin); };
+    const auto wide = [&](double height) { return falling(bar, height, .5, spin); };
+    CAPTURE(spin);
+    CHECK(worst_phase(sliding, defaults()).error < 1e-4);
+    CHECK(worst_phase(wide, defaults()).error < 1e-4);
+  }
 }
 
 TEST_CASE("two vertices that leave in neighbouring steps are told apart", "[onset]") {

@@ -214,6 +214,7 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
       REQUIRE(std::abs(p.own_length_b - x.own_length_b) < 1e-10);
       if (x.force.norm() > 1e-2 * x.weight && x.weight > 1e-6) {
         REQUIRE(p.breadth == Approx(x.breadth).margin(1e-8));
+        REQUIRE(p.middle == Approx(x.middle).margin(1e-8));
         REQUIRE((loading_point(p) - loading_point(x)).norm() < 1e-6);
       }
     }
@@ -252,6 +253,7 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     REQUIRE(p.centre == whole.centre);
     REQUIRE(p.depth == whole.depth);
     REQUIRE(p.breadth == whole.breadth);
+    REQUIRE(p.middle == Approx(whole.middle).margin(1e-14));
     REQUIRE(worst_sum(s, whole, extent(a, b),
                       std::max(potential_a.steepest, potential_b.steepest)) < 50);
   }
