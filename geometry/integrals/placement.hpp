@@ -72,6 +72,11 @@ struct PlacedPair {
     pair.moment_a -= cross(centroid_a, pair.force);
     pair.moment_b += cross(centroid_b, pair.force);
     pair.centre -= centroid_a;
+    if constexpr (requires { pair.middle; }) {
+      if (const double size = pair.force.norm(); size > 0) {
+        pair.middle -= cross(pair.force, centroid_a) / size;
+      }
+    }
   }
 
  private:

@@ -89,7 +89,7 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
     if (force > largest_force_.value) largest_force_ = {force, a, b};
     add_stiffness(pair, a, b, contact_stiffness_[i], springs);
   }
-  find_rates(forces.lambda);
+  find_rates(forces.lambda, forces.lambda_limit);
 }
 
 // The displacements of both bodies add: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
@@ -118,13 +118,16 @@ void PolygonKernel::add_stiffness(const PairIntegral& pair, RigidIndex a, RigidI
   add(b, middle + between, pair.centre + between, springs ? &springs->stiffness_b : nullptr);
 }
 
-// The largest one is exact, so that it does not shorten the step in vain.
-void PolygonKernel::find_rates(std::span<double> rates) {
+// The largest one is exact above the limit, so that it does not shorten the step in vain.
+void PolygonKernel::find_rates(std::span<double> rates, double limit) {
   double largest = 0;
   for (size_t i = 0; i < body_stiffness_.size(); ++i) {
     const std::array<double, 3>& w = surfaces_.rigid(static_cast<RigidIndex>(i)).inverse_mass;
     double rate = body_stiffness_[i].rate_bound(w);
-    if (rate > largest) largest = std::max(largest, rate = body_stiffness_[i].rate(w));
+    if (rate > limit && rate > largest) {
+      rate = body_stiffness_[i].rate(w);
+      largest = std::max(largest, rate);
+    }
     rates[i] += rate;
   }
 }

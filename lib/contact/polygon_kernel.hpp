@@ -52,7 +52,7 @@ class PolygonKernel final : public Kernel {
   void add_tangential(const ForceViews& forces) const;
   void add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b, double stiffness,
                      const TangentialForce* springs);
-  void find_rates(std::span<double> rates);
+  void find_rates(std::span<double> rates, double limit);
 
   const Surfaces& surfaces_;
   double stiffness_;  // k_n times the thickness, N/m

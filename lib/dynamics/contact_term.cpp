@@ -178,8 +178,8 @@ void ContactTerm::add_forces(const Evaluation& now) {
   if (const auto fault = contacts_.fault()) refuse(*fault, state);
   contacts_.slide(kinematics, now.dt);
   now.clock.lap(Phase::contact);
-  contacts_.add_forces(
-      {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda});
+  contacts_.add_forces({state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda,
+                        now.lambda_limit});
   now.clock.lap(Phase::gather);
   if (now.trial) return;
   counts_.candidate_pairs += static_cast<std::int64_t>(contacts_.candidates());

@@ -85,7 +85,7 @@ double Equilibrium::ramp(double from, double until) const {
 void Equilibrium::find_forces(State& state) {
   std::ranges::fill(state.layout.of_rigid(state.f), 0.);
   Stopwatch off;
-  for (const auto& term : terms_) term->add_forces({state, state.v, 0, lambda_, off, true});
+  for (const auto& term : terms_) term->add_forces({state, state.v, 0, lambda_, off, 0, true});
   for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[first_ + c];
   for (size_t c = 0; c < weight_.size(); ++c) rest_[c] += weight_[c];
 }

@@ -111,7 +111,7 @@ void Simulation::take_step() {
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
   state_.f.swap(forces_);
-  find_forces(state_.v, dt);
+  find_forces(state_.v, dt, control_->largest_lambda());
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
@@ -129,10 +129,11 @@ void Simulation::damp(double h) {
   for (const auto& term : terms_) term->damp(state_, h, ledger_);
 }
 
-void Simulation::find_forces(std::span<const double> velocity, double dt) {
+void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
   std::fill(lambda_.begin(), lambda_.end(), 0.);
-  for (const auto& term : terms_) term->add_forces({state_, velocity, dt, lambda_, clock_});
+  for (const auto& term : terms_)
+    term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit});
 }
 
 // Contacts that begin or end within the step push in its second half as if they had pushed when

@@ -111,7 +111,7 @@ class Simulation {
   void take_step();
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
-  void find_forces(std::span<const double> velocity, double dt);
+  void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0);
   bool add_onsets(double dt);
   void settle();
   void watch();

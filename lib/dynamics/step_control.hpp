@@ -50,6 +50,8 @@ class StepControl {
   /// After a step, with the bound of stiffness over inertia of each rigid body's contacts, 1/s^2.
   /// Throws Unstable if a fixed step is above the limit.
   void follow(const State& state, std::span<const double> lambda);
+  /// The lambda above which `follow` would shorten the step, 1/s^2.
+  [[nodiscard]] double largest_lambda() const;
 
   void fields(Archive& archive);
 

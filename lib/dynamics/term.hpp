@@ -22,7 +22,8 @@ struct Evaluation {
   double dt;                         ///< s; 0: nothing has moved since the last evaluation
   std::span<double> lambda;  ///< of each rigid body: bound of stiffness / inertia, 1/s^2; to add to
   Stopwatch& clock;
-  bool trial = false;  ///< the static solver tries a state: nothing of it is recorded
+  double lambda_limit = 0;  ///< below this, twice the lambda is as good, 1/s^2
+  bool trial = false;       ///< the static solver tries a state: nothing of it is recorded
 };
 
 /// Bounds of the stiffness that acts on nodes, for the static solver.

@@ -306,6 +306,11 @@ TEST_CASE("work and precision of one bounce", "[onset]") {
   }
   row("square that slides and turns",
       [&](double height) { return falling(square, height, .5, .3); });
+  row("square, flat, damping ratio .3", [&](double height) {
+    Model model = falling(square, height);
+    model.contact.normal_damping = .3;
+    return model;
+  });
   row("star of 7 points", [&](double height) { return falling(test::star_ring(7, .5), height); });
   for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
     row(shape == ElementShape::triangle ? "block of 4 x 4 cells, T3, flat"

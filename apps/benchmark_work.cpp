@@ -1,0 +1,168 @@
+// Work and precision: the energy error of whole runs against their time, for some parts of the
+// stability limit, as velocity Verlet takes the steps ("plain") and with contacts that begin or end
+// within a step corrected. The number in a name is the part of the limit in thousandths.
+//
+//   apothem_benchmark --benchmark_filter=work/ --benchmark_out_format=csv
+//                     --benchmark_out=out/work.csv
+//   gnuplot docs/images/work-precision.gnuplot
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "apothem/dynamics/simulation.hpp"
+#include "apothem/scene/scene.hpp"
+#include "cases/samples.hpp"
+
+namespace {
+
+using namespace apothem;
+
+TimeSettings time_of(double end, double safety, bool corrected) {
+  return {.end = end, .safety = safety, .element_safety = safety, .onsets = corrected};
+}
+
+Model rigid_model(double stiffness) {
+  Model model;
+  model.materials = {{"rock", 2000}};
+  model.contact.normal_stiffness = stiffness;
+  return model;
+}
+
+void add(Model& model, const Polygon& polygon, const Vec2& velocity, double spin) {
+  RigidBody body;
+  body.name = std::to_string(model.bodies.size());
+  set_shape(body, polygon, model);
+  body.velocity = velocity, body.spin = spin;
+  model.bodies.push_back(body);
+}
+
+void add_wall(Model& model, double x0, double y0, double x1, double y1) {
+  add(model, samples::block(x0, y0, x1, y1), Vec2::Zero(), 0);
+  model.bodies.back().motion = Motion::fixed;
+}
+
+// A square falls on a floor, flat and nearly flat, from 16 heights: the largest error after the
+// separation, over the kinetic energy.
+double impact(double safety, bool corrected) {
+  double worst = 0, step = 0;
+  for (const double tilt : {0., 3e-4, 3e-3, .03}) {
+    for (int phase = 0; phase < 16; ++phase) {
+      Model model = rigid_model(2e8);
+      add_wall(model, -5, -1, 5, 0);
+      const double low = .5 * (std::cos(tilt) + std::sin(tilt));
+      add(model,
+          samples::shifted(samples::turned(samples::block(-.5, -.5, .5, .5), tilt),
+                           {0, low + .003 + phase * step / 16}),
+          {0, -1}, 0);
+      Simulation simulation(model, time_of(1, safety, corrected), 1, 1);
+      step = simulation.step_size();
+      const double kinetic = simulation.energies().kinetic;
+      bool touched = false;
+      for (int apart = 0; apart < 3;) {
+        simulation.step();
+        const bool touching = simulation.counts().touching_now > 0;
+        touched = touched || touching;
+        apart = touched && !touching ? apart + 1 : 0;
+      }
+      worst = std::max(worst, std::abs(simulation.energies().total_error) / kinetic);
+    }
+  }
+  return worst;
+}
+
+// 16 random polygons in a closed box, 300 impacts: the root of the mean squared error of an impact,
+// over the kinetic energy of a body.
+double gas(double safety, bool corrected) {
+  Model model = rigid_model(2e9);
+  const double side = 6.4;
+  add_wall(model, -1, -1, side + 1, 0), add_wall(model, -1, side, side + 1, side + 1);
+  add_wall(model, -1, 0, 0, side), add_wall(model, side, 0, side + 1, side);
+  samples::Random random(5);
+  for (int i = 0; i < 16; ++i) {
+    const Vec2 place(.8 + 1.6 * (i % 4), .8 + 1.6 * (i / 4));
+    const Polygon p = samples::scaled(samples::random_quad(random), .5);
+    const Vec2 velocity(random.uniform(-2, 2), random.uniform(-2, 2));
+    add(model, samples::shifted(p, place), velocity, random.uniform(-1, 1));
+  }
+  Simulation simulation(model, time_of(1e3, safety, corrected), 1, 1);
+  const double kinetic = simulation.energies().kinetic / 16;
+  int impacts = 0, counted = 0, before = 0;
+  double last = 0, squares = 0;
+  while (impacts < 300) {
+    simulation.step();
+    const int now = simulation.counts().touching_now;
+    impacts += std::max(0, now - before);
+    before = now;
+    if (now > 0 || impacts == counted) continue;
+    const double error = simulation.energies().total_error / kinetic;
+    squares += (error - last) * (error - last);
+    last = error, counted = impacts;
+  }
+  return std::sqrt(squares / counted);
+}
+
+// 100 quadrilaterals fall into a box and come to rest, with friction and normal damping: the error
+// over what is dissipated.
+double pack(double safety, bool corrected) {
+  Model model = rigid_model(2e8);
+  model.gravity = {0, -9.81};
+  model.contact.friction = {.5, 1.2e8};
+  model.contact.normal_damping = .3;
+  const double side = 12;
+  add_wall(model, -1, -1, side + 1, 0);
+  add_wall(model, -1, 0, 0, 3 * side), add_wall(model, side, 0, side + 1, 3 * side);
+  samples::Random random(7);
+  for (int i = 0; i < 100; ++i) {
+    const Vec2 place(.9 + 1.1 * (i % 10) + random.uniform(-.04, .04), .7 + 1.1 * (i / 10));
+    const Polygon p = samples::scaled(samples::random_quad(random), .5);
+    const double sideways = random.uniform(-.3, .3);
+    add(model, samples::shifted(p, place), {sideways, -1}, random.uniform(-1, 1));
+  }
+  Simulation simulation(model, time_of(1.5, safety, corrected), 1, 1);
+  while (simulation.state().time < 1.5) simulation.step();
+  const Energies e = simulation.energies();
+  return std::abs(e.total_error) / (e.friction_loss + e.damping_loss);
+}
+
+// A scene of the data folder: the largest error over the kinetic energy at the start.
+std::function<double(double, bool)> shipped(const std::string& name) {
+  return [name](double safety, bool corrected) {
+    const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/" + name + ".json");
+    Simulation simulation(scene.model, time_of(scene.time.end, safety, corrected), 1, 1);
+    const double kinetic = simulation.energies().kinetic;
+    double worst = 0;
+    for (int step = 0; simulation.state().time < scene.time.end; ++step) {
+      simulation.step();
+      if (step % 16 != 0) continue;
+      worst = std::max(worst, std::abs(simulation.energies().total_error) / kinetic);
+    }
+    return worst;
+  };
+}
+
+const bool kRegistered = [] {
+  const auto enter = [](const std::string& name, const std::function<double(double, bool)>& run,
+                        std::initializer_list<int> thousandths) {
+    for (const bool corrected : {false, true}) {
+      const std::string title = "work/" + name + (corrected ? "/corrected" : "/plain");
+      auto* b = benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) {
+        double error = 0;
+        for (auto _ : state) error = run(static_cast<double>(state.range(0)) / 1000, corrected);
+        state.counters["error"] = error;
+      });
+      for (const int part : thousandths) b->Arg(part);
+      b->Iterations(1)->Unit(benchmark::kMillisecond);
+    }
+  };
+  enter("impact", impact, {50, 80, 120, 160, 250, 400});
+  enter("gas", gas, {50, 80, 120, 160, 250, 400});
+  enter("pack", pack, {50, 80, 120, 160, 250, 400, 600});
+  enter("beam", shipped("impacted-beam-coarse"), {50, 100, 200, 400});
+  enter("discs", shipped("oblique-discs"), {50, 100, 200, 400});
+  return true;
+}();
+
+}  // namespace
