@@ -12,7 +12,8 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
     : surfaces_(surfaces),
       stiffness_(law.normal_stiffness * thickness),
       pairs_(surfaces, threads),
-      onset_(surfaces, stiffness_) {
+      onset_(surfaces, stiffness_),
+      body_stiffness_(static_cast<size_t>(surfaces.rigid_count())) {
   if (table.rough() || law.normal_damping > 0) {
     tangential_.emplace(surfaces, law, table, thickness);
   }
@@ -64,7 +65,6 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 
 void PolygonKernel::add_normal(const ForceViews& forces) {
   largest_force_ = {};
-  body_stiffness_.assign(static_cast<size_t>(surfaces_.rigid_count()), {});
   auto spring =
       tangential_ ? tangential_->forces().begin() : std::vector<TangentialForce>::const_iterator{};
   for (size_t i = 0; i < touching_.size(); ++i) {
@@ -118,17 +118,23 @@ void PolygonKernel::add_stiffness(const PairIntegral& pair, RigidIndex a, RigidI
   add(b, middle + between, pair.centre + between, springs ? &springs->stiffness_b : nullptr);
 }
 
-// The largest one is exact above the limit, so that it does not shorten the step in vain.
+// The largest one is exact above the limit, so that it does not shorten the step in vain. Takes the
+// stiffness of the bodies that touch, and leaves none for the next step.
 void PolygonKernel::find_rates(std::span<double> rates, double limit) {
   double largest = 0;
-  for (size_t i = 0; i < body_stiffness_.size(); ++i) {
-    const std::array<double, 3>& w = surfaces_.rigid(static_cast<RigidIndex>(i)).inverse_mass;
-    double rate = body_stiffness_[i].rate_bound(w);
-    if (rate > limit && rate > largest) {
-      rate = body_stiffness_[i].rate(w);
-      largest = std::max(largest, rate);
+  for (const int p : touching_) {
+    const BoxPair pair = pairs_.pairs()[static_cast<size_t>(p)];
+    for (const RigidIndex body : {pair.first, pair.second}) {
+      const std::array<double, 3>& w = surfaces_.rigid(body).inverse_mass;
+      BodyStiffness& stiffness = body_stiffness_[static_cast<size_t>(body)];
+      double rate = stiffness.rate_bound(w);
+      if (rate > limit && rate > largest) {
+        rate = stiffness.rate(w);
+        largest = std::max(largest, rate);
+      }
+      rates[static_cast<size_t>(body)] += rate;
+      stiffness = {};
     }
-    rates[i] += rate;
   }
 }
 
