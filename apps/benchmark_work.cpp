@@ -82,7 +82,8 @@ double gas(double safety, bool corrected) {
   add_wall(model, -1, 0, 0, side), add_wall(model, side, 0, side + 1, side);
   samples::Random random(5);
   for (int i = 0; i < 16; ++i) {
-    const Vec2 place(.8 + 1.6 * (i % 4), .8 + 1.6 * (i / 4));
+    const int column = i % 4, row = i / 4;
+    const Vec2 place(.8 + 1.6 * column, .8 + 1.6 * row);
     const Polygon p = samples::scaled(samples::random_quad(random), .5);
     const Vec2 velocity(random.uniform(-2, 2), random.uniform(-2, 2));
     add(model, samples::shifted(p, place), velocity, random.uniform(-1, 1));
@@ -116,7 +117,8 @@ double pack(double safety, bool corrected) {
   add_wall(model, -1, 0, 0, 3 * side), add_wall(model, side, 0, side + 1, 3 * side);
   samples::Random random(7);
   for (int i = 0; i < 100; ++i) {
-    const Vec2 place(.9 + 1.1 * (i % 10) + random.uniform(-.04, .04), .7 + 1.1 * (i / 10));
+    const int column = i % 10, row = i / 10;
+    const Vec2 place(.9 + 1.1 * column + random.uniform(-.04, .04), .7 + 1.1 * row);
     const Polygon p = samples::scaled(samples::random_quad(random), .5);
     const double sideways = random.uniform(-.3, .3);
     add(model, samples::shifted(p, place), {sideways, -1}, random.uniform(-1, 1));

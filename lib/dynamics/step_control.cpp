@@ -63,7 +63,11 @@ void StepControl::shorten(const State& state, double limit, RigidIndex body) {
   }
   if (state.step - lengthened_ < kSoon * patience_) patience_ *= 2;
   double size = choice_.step;
-  for (; size > kOvershoot * safety_ * limit; size /= 2) ++halvings_, part_ *= 2;
+  while (size > kOvershoot * safety_ * limit) {
+    size /= 2;
+    ++halvings_;
+    part_ *= 2;
+  }
   ++changes_.shortened;
   change(state, size, body);
   choice_.stability = limit;
