@@ -14,6 +14,7 @@
 
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/scene/scene.hpp"
+#include "cases/impacts.hpp"
 #include "cases/samples.hpp"
 
 namespace {
@@ -89,20 +90,7 @@ double gas(double safety, bool corrected) {
     add(model, samples::shifted(p, place), velocity, random.uniform(-1, 1));
   }
   Simulation simulation(model, time_of(1e3, safety, corrected), 1, 1);
-  const double kinetic = simulation.energies().kinetic / 16;
-  int impacts = 0, counted = 0, before = 0;
-  double last = 0, squares = 0;
-  while (impacts < 300) {
-    simulation.step();
-    const int now = simulation.counts().touching_now;
-    impacts += std::max(0, now - before);
-    before = now;
-    if (now > 0 || impacts == counted) continue;
-    const double error = simulation.energies().total_error / kinetic;
-    squares += (error - last) * (error - last);
-    last = error, counted = impacts;
-  }
-  return std::sqrt(squares / counted);
+  return samples::error_per_impact(simulation, 300, simulation.energies().kinetic / 16);
 }
 
 // 100 quadrilaterals fall into a box and come to rest, with friction and normal damping: the error

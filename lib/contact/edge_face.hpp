@@ -7,6 +7,7 @@
 #include "apothem/geometry/integrals/collar.hpp"
 
 namespace apothem {
+
 /// An edge of one outline that may meet a face of another.
 struct EdgeFace {
   std::int32_t edge, face;

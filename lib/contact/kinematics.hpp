@@ -21,7 +21,7 @@ struct ForceViews {
   std::span<double> nodes;  ///< x, y of each node, N
   /// Of each rigid body: bound of the stiffness of its contacts divided by its inertia, 1/s^2.
   std::span<double> lambda;
-  double lambda_limit = 0;  ///< below this, twice the lambda is as good, 1/s^2
+  double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
 };
 
 /// A body has a vertex that is not at a finite place.

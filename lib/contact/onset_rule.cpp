@@ -11,7 +11,6 @@ constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 constexpr std::array kSlope{-25. / 3, 48. / 3, -36. / 3, 16. / 3, -3. / 3};
 // Slopes need a part of a step without kinks: this one at least, which leaves 11 digits of them.
 constexpr double kShortest = 1e-3;
-constexpr int kFewPanels = 2;
 
 // Where other forces turn the bodies back within the step, the power of the mean force says little:
 // this part of them counts against it.
@@ -51,7 +50,7 @@ int find_onset_samples(std::span<const double> events, int panels,
   // the end does: so this step and the one before take the same slope. Where there are many panels
   // the force may bend at once, and the slopes take samples of their own.
   const double first_part = (events.empty() ? 1 : events.front()) / panels;
-  const bool own = panels > kFewPanels;
+  const bool own = panels >= kManyPanels;
   for (size_t k = 0; k < 5; ++k) {
     const double theta = static_cast<double>(k) * kShortest / 4;
     if (first_part > kShortest && !own) {

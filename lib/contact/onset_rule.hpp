@@ -43,6 +43,9 @@ inline double crossing(double h0, double h1) {
   return (h0 < 0) == (h1 < 0) ? -1 : h0 / (h0 - h1);
 }
 
+/// Panels of a part of a step in which the force is smooth, and in which it may bend at once.
+inline constexpr int kFewPanels = 2, kManyPanels = 4;
+
 /// Finds the samples for kinks at `events`, ascending and within the step: Boole's rule on `panels`
 /// equal parts between them, and slopes by differences of order 4 on the side of the nearest event
 /// that has no kink. Samples may lie a little beyond the step; the others come first, from theta =

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
+#include "apothem/contact/onset_rule.hpp"
 
 namespace apothem {
 
@@ -51,7 +52,7 @@ class OnsetWatch {
     auto old = before_.begin();
     const auto judge = [&](const TouchingPair& pair, bool same, double change) {
       if (change > sudden(pair.a, pair.b)) {
-        changed(pair.a, pair.b, change > kMuch * pair.length ? kPanels : kFewPanels);
+        changed(pair.a, pair.b, change > kMuch * pair.length ? kManyPanels : kFewPanels);
       } else if (!same) {
         changed(pair.a, pair.b, 1);
       }
@@ -69,7 +70,6 @@ class OnsetWatch {
   void fields(Archive& archive) { archive("touching", now_); }
 
  private:
-  static constexpr int kPanels = 4, kFewPanels = 2;
   static constexpr double kMuch = .2;
 
   std::vector<TouchingPair> now_, before_;

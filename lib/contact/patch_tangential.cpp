@@ -76,7 +76,7 @@ void PatchTangential::release(const TangentialForce& last, const Kinematics& now
   const PairRate rate = PairMotion(surfaces_, now, last.a, last.b).rate;
   memory.lose(-dt / 2 * (last.all.power(rate) - last.damping.power(rate)));
   TangentialForce gone{last.a, last.b};
-  gone.follow(&last, rate, dt);
+  gone.compare_with(&last, rate, dt);
   book_damping(&last, gone, rate, dt, memory);
   book_damping(&gone, {}, rate, dt, memory);
 }
@@ -156,10 +156,10 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
     per_edge(motion, dt, friction, {polygon_kernel, a, b, 0}, springs, total, memory);
   }
   if (damped) {
-    total.follow(last, motion.rate, dt);
+    total.compare_with(last, motion.rate, dt);
     book_damping(last, total, motion.rate, dt, memory);
+    now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
   }
-  if (damped) now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
   now_.runs.insert(now_.runs.end(), runs_.begin(), runs_.end());
   now_.pairs.push_back({a, b, static_cast<int>(patches_.size()), static_cast<int>(runs_.size())});
   forces_.push_back(total);

@@ -34,9 +34,9 @@ struct TangentialForce {
     stiffness_a.add(stiffness, tangent, arm_a);
     stiffness_b.add(stiffness, tangent, -arm_b);
   }
-  /// Complete but for what has changed since the step before, if the pair has touched then. With dt
-  /// = 0 nothing has.
-  void follow(const TangentialForce* last, const PairRate& now, double dt) {
+  /// Finds what has changed since the step before, in which the pair may have touched. With dt = 0
+  /// nothing has.
+  void compare_with(const TangentialForce* last, const PairRate& now, double dt) {
     rate = rate_before = now;
     if (!(dt > 0)) return;
     change_of_damping = damping;

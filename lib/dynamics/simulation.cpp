@@ -111,7 +111,7 @@ void Simulation::take_step() {
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
   state_.f.swap(forces_);
-  find_forces(state_.v, dt, control_->largest_lambda());
+  find_forces(state_.v, dt, control_->deciding_lambda());
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);

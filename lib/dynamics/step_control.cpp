@@ -38,18 +38,21 @@ void StepControl::advance(State& state) {
 void StepControl::follow(const State& state, std::span<const double> lambda) {
   const auto worst = std::ranges::max_element(lambda);
   if (worst == lambda.end()) return;
-  const double rate = choice_.step * choice_.step * *worst;  // 4 (step / limit)^2
   if (*worst > largest_lambda()) {
     shorten(state, 2 / std::sqrt(*worst), static_cast<RigidIndex>(worst - lambda.begin()));
   } else if (halvings_ > 0) {
-    const bool soft = 4 * rate <= 4 * safety_ * safety_;  // for twice the step
-    soft_ = soft ? soft_ + 1 : 0;
+    soft_ = *worst <= soft_lambda() ? soft_ + 1 : 0;
     if (soft_ >= patience_ && part_ % 2 == 0) lengthen(state);
   }
 }
 
 double StepControl::largest_lambda() const {
   const double frequency = 2 * kOvershoot * (automatic_ ? safety_ : 1) / choice_.step;
+  return frequency * frequency;
+}
+
+double StepControl::soft_lambda() const {
+  const double frequency = safety_ / choice_.step;
   return frequency * frequency;
 }
 

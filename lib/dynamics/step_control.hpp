@@ -50,12 +50,17 @@ class StepControl {
   /// After a step, with the bound of stiffness over inertia of each rigid body's contacts, 1/s^2.
   /// Throws Unstable if a fixed step is above the limit.
   void follow(const State& state, std::span<const double> lambda);
-  /// The lambda above which `follow` would shorten the step, 1/s^2.
-  [[nodiscard]] double largest_lambda() const;
+  /// The smallest lambda on which it depends what `follow` does, 1/s^2.
+  [[nodiscard]] double deciding_lambda() const {
+    return halvings_ > 0 ? soft_lambda() : largest_lambda();
+  }
 
   void fields(Archive& archive);
 
  private:
+  /// Above the one the step is shortened; up to the other one twice the step would do. 1/s^2.
+  [[nodiscard]] double largest_lambda() const;
+  [[nodiscard]] double soft_lambda() const;
   void shorten(const State& state, double limit, RigidIndex body);
   void lengthen(const State& state);
   void change(const State& state, double size, RigidIndex body);

@@ -22,7 +22,7 @@ struct Evaluation {
   double dt;                         ///< s; 0: nothing has moved since the last evaluation
   std::span<double> lambda;  ///< of each rigid body: bound of stiffness / inertia, 1/s^2; to add to
   Stopwatch& clock;
-  double lambda_limit = 0;  ///< below this, twice the lambda is as good, 1/s^2
+  double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
   bool trial = false;       ///< the static solver tries a state: nothing of it is recorded
 };
 
