@@ -28,8 +28,8 @@ struct Interface {
                              ElementShape::quadrilateral)),
         displacement(2 * (lower.nodes.size() + upper.nodes.size())),
         now{{}, displacement, {}, displacement},
-        contacts(law, 1, surfaces(law.surface == ContactSurface::body),
-                 FrictionTable(law, {0, 0}, 1), 1) {
+        contacts(law, 1, surfaces(law.surface == ContactSurface::body), PairTable(law, {0, 0}, 1),
+                 1) {
     for (size_t i = 0; i < displacement.size(); ++i)
       displacement[i] = .01 * std::sin(static_cast<double>(i));
     place();

@@ -99,7 +99,7 @@ double pack(double safety, bool corrected) {
   Model model = rigid_model(2e8);
   model.gravity = {0, -9.81};
   model.contact.friction = {.5, 1.2e8};
-  model.contact.normal_damping = .3;
+  model.contact.damping.normal = .3;
   const double side = 12;
   add_wall(model, -1, -1, side + 1, 0);
   add_wall(model, -1, 0, 0, 3 * side), add_wall(model, side, 0, side + 1, 3 * side);

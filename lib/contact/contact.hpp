@@ -1,6 +1,7 @@
 // A contact: where the boundaries of two bodies touch, as the kernels find it.
 #pragma once
 
+#include "apothem/archive/archive.hpp"
 #include "apothem/geometry/polygon/point.hpp"
 #include "apothem/mesh/indices.hpp"
 
@@ -36,6 +37,7 @@ struct ContactRecord {
 struct Resultant {
   Vec2 force = Vec2::Zero();  ///< N
   double moment = 0;          ///< N m
+  void fields(Archive& archive) { archive("force", force)("moment", moment); }
 };
 
 /// An edge of a boundary that takes part in contact of deformable bodies.

@@ -9,12 +9,12 @@
 
 namespace apothem {
 
-Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, FrictionTable table,
+Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, PairTable table,
                    int threads)
     : surfaces_(std::move(surfaces)),
       table_(std::move(table)),
       friction_law_(law.friction_law),
-      tangential_(table_.rough() || law.normal_damping > 0) {
+      tangential_(table_.rough() || table_.damped()) {
   std::array<bool, kernel_kinds> needed{};
   needed[polygon_kernel] = surfaces_.rigid_count() > 0;
   needed[element_kernel] = surfaces_.elements().size() > 0;
@@ -28,8 +28,9 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, F
         std::make_unique<ElementKernel>(surfaces_, law, table_, thickness, threads);
   }
   if (needed[outline_kernel]) {
-    kernels_[outline_kernel] = std::make_unique<OutlineKernel>(
-        surfaces_.outlines(), law.normal_stiffness, thickness, table_, threads);
+    kernels_[outline_kernel] =
+        std::make_unique<OutlineKernel>(surfaces_.outlines(), law.normal_stiffness, thickness,
+                                        table_, surfaces_.inverse_mass(), threads);
   }
 }
 

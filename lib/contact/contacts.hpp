@@ -15,9 +15,9 @@
 
 #include "apothem/contact/contact_memory.hpp"
 #include "apothem/contact/friction_memory.hpp"
-#include "apothem/contact/friction_table.hpp"
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/law.hpp"
+#include "apothem/contact/pair_table.hpp"
 #include "apothem/contact/search.hpp"
 #include "apothem/contact/surfaces.hpp"
 
@@ -32,7 +32,7 @@ struct Penetrations {
 class Contacts {
  public:
   /// `thickness` of the model in m.
-  Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, FrictionTable table,
+  Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, PairTable table,
            int threads);
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
@@ -83,6 +83,10 @@ class Contacts {
   /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_node_stiffness(std::span<double> stiffness) const;
+  /// See Kernel.
+  void limit_damping(double rate) {
+    each([&](Kernel& kernel) { kernel.limit_damping(rate); });
+  }
   /// The force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
   /// The sizes of the friction forces on each body, summed, N.
@@ -118,7 +122,7 @@ class Contacts {
   }
 
   Surfaces surfaces_;
-  FrictionTable table_;
+  PairTable table_;
   FrictionLaw friction_law_;
   Search search_;
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;

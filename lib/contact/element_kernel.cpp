@@ -12,14 +12,24 @@
 namespace apothem {
 
 ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
-                             const FrictionTable& table, double thickness, int threads)
+                             const PairTable& table, double thickness, int threads)
     : surfaces_(surfaces),
       table_(table),
-      stiffness_(law.normal_stiffness * thickness),
       thickness_(thickness),
       distribution_(law.distribution),
-      pairs_(surfaces, threads) {
-  tangential_.clear(static_cast<size_t>(surfaces.body_count()));
+      pairs_(surfaces, threads),
+      times_(table, surfaces.inverse_mass()) {
+  for (Forces* forces : {&tangential_, &damping_}) {
+    forces->clear(static_cast<size_t>(surfaces.body_count()));
+  }
+}
+
+void ElementKernel::take(std::span<const BoxPair> pairs) {
+  pairs_.take(pairs);
+  if (!table_.damped()) return;
+  std::vector<std::pair<BodyIndex, BodyIndex>> bodies;
+  for (const auto& [a, b] : pairs) bodies.emplace_back(surfaces_.body(a), surfaces_.body(b));
+  times_.take(bodies);
 }
 
 std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
@@ -38,14 +48,16 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
   for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
     if (!pairs_[p].touching()) continue;
     const auto [a, b] = pairs_.pairs()[p];
-    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness_));
+    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness(a, b)));
     // The potential measures the depth below borders that are not part of the body's boundary.
     contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(p)) {
       contacts.back().share = 1;  // nothing beyond is to be trusted
       return;
     }
+    const double contact_stiffness = contacts.back().stiffness;
     add_touch(p);
+    touches_.back().stiffness = contact_stiffness;
   }
 }
 
@@ -112,16 +124,17 @@ ContactFault ElementKernel::fault(const Contact& c) const {
 void ElementKernel::add_touch(size_t p) {
   const PairIntegral& pair = pairs_[p];
   const auto [a, b] = pairs_.pairs()[p];
-  const Vec2 force = stiffness_ * pair.force;
+  const double k = stiffness(a, b);
+  const Vec2 force = k * pair.force;
   Resultant& on_a = normal_.sums[surfaces_.body(a)];
   Resultant& on_b = normal_.sums[surfaces_.body(b)];
   on_a.force += force;
   on_b.force -= force;
-  if (surfaces_.is_rigid(a)) on_a.moment += stiffness_ * pair.moment_a;
-  if (surfaces_.is_rigid(b)) on_b.moment += stiffness_ * pair.moment_b;
+  if (surfaces_.is_rigid(a)) on_a.moment += k * pair.moment_a;
+  if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back({a, b, static_cast<int>(p), force, point, offset, stiffness_ * pair.weight});
+  touches_.push_back({a, b, static_cast<int>(p), force, point, offset, k * pair.weight, 0});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
     find_corners(i, at, of_a_);
     distribute(of_a_, f, normal_);
@@ -134,8 +147,8 @@ void ElementKernel::add_touch(size_t p) {
   const PlacedShapes& shapes = surfaces_.shapes();
   contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
   for (const BoundaryRun& run : runs_) {
-    add(a, stiffness_ * run.force, run.centre);
-    add(b, -stiffness_ * run.force, run.centre + offset);
+    add(a, k * run.force, run.centre);
+    add(b, -k * run.force, run.centre + offset);
   }
 }
 
@@ -171,56 +184,95 @@ Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners
   return sum;
 }
 
+void ElementKernel::find_times(double dt) {
+  times_.begin_step();
+  for (const Touch& t : touches_) {
+    DampingTimes::Pair& pair = times_.of(surfaces_.body(t.a), surfaces_.body(t.b));
+    pair.normal += t.stiffness;
+    pair.tangential += table_.between(pair.a, pair.b).friction.tangential_stiffness * thickness_;
+  }
+  times_.end_step(dt);
+}
+
 double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  if (!table_.rough()) return 0;
-  const double power_before = power(now);
+  if (!table_.rough() && !table_.damped()) return 0;
+  const double power_before = power(tangential_, now), damping_before = power(damping_, now);
   tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
+  // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
+  const bool dashpots = table_.damped() && dt > 0;
+  if (dashpots) {
+    damping_.clear(static_cast<size_t>(surfaces_.body_count()));
+    find_times(dt);
+  }
   for (Touch& t : touches_) {
-    const Friction& friction = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
-    if (!(friction.coefficient > 0)) continue;
-    const double normal = t.force.norm();
-    if (!(normal > kNoResultant * t.pressure)) continue;
-    const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
-    const Vec2 tangent = tangent_of(t.force);
+    const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
+    const Friction& friction = table_.between(body_a, body_b).friction;
+    const bool rough = friction.coefficient > 0;
+    const double size = t.force.norm();
+    if ((!rough && !dashpots) || !(size > kNoResultant * t.pressure)) continue;
+    const Vec2 tangent = tangent_of(t.force), normal = t.force / size;
     const Vec2 point_b = t.point + t.offset;
     find_corners(t.a, t.point, of_a_);
     find_corners(t.b, point_b, of_b_);
     const Vec2 rate = velocity_at(t.a, t.point, of_a_, now) - velocity_at(t.b, point_b, of_b_, now);
-    const double stiffness = friction.tangential_stiffness * thickness_;
-    const double force =
-        apothem::slide(before.empty() ? 0 : before[0].force, rate.dot(tangent) * dt, stiffness,
-                       friction.coefficient * normal);
-    memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});
-    t.friction = force * tangent;
-    const auto apply = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
-      Resultant& sum = tangential_.sums[surfaces_.body(i)];
-      sum.force += f;
-      if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
-      distribute(at, f, tangential_);
+    const auto apply = [&](const Vec2& force, Forces& to) {
+      const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+        Resultant& sum = to.sums[surfaces_.body(i)];
+        sum.force += f;
+        if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
+        distribute(at, f, to);
+      };
+      on(t.a, force, t.point, of_a_);
+      on(t.b, -force, point_b, of_b_);
     };
-    apply(t.a, t.friction, t.point, of_a_);
-    apply(t.b, -t.friction, point_b, of_b_);
+    double push = 0;
+    if (dashpots) {
+      const DampingTimes::Pair& pair = times_.of(body_a, body_b);
+      push = std::max(-pair.normal_time * t.stiffness * rate.dot(normal), -size);
+      t.damping = push * normal;
+    }
+    if (rough) {
+      const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
+      const double stiffness = friction.tangential_stiffness * thickness_;
+      const double slip = rate.dot(tangent), limit = friction.coefficient * (size + push);
+      const double force =
+          apothem::slide(before.empty() ? 0 : before[0].force, slip * dt, stiffness, limit);
+      memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});
+      t.friction = force * tangent;
+      apply(t.friction, tangential_);
+      if (dashpots) {
+        const double time = times_.of(body_a, body_b).tangential_time;
+        const double dashpot = std::clamp(force - time * stiffness * slip, -limit, limit) - force;
+        t.damping += dashpot * tangent;
+      }
+    }
+    if (dashpots) apply(t.damping, damping_);
   }
-  return dt / 2 * (power_before + power(now));
+  if (table_.damped()) memory.damp(-dt / 2 * (damping_before + power(damping_, now)));
+  return dt / 2 * (power_before + power(tangential_, now));
 }
 
-// Of the friction forces on the bodies, W.
-double ElementKernel::power(const Kinematics& now) const {
+// Of forces on the bodies, W.
+double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   double sum = 0;
-  for (const auto& [node, force] : tangential_.nodes) {
+  for (const auto& [node, force] : forces.nodes) {
     const double* v = &now.node_velocity[2 * static_cast<size_t>(node)];
     sum += force.x() * v[0] + force.y() * v[1];
   }
   for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
     const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
-    const Resultant& on = tangential_.sums[i];
+    const Resultant& on = forces.sums[i];
     sum += on.force.x() * v[0] + on.force.y() * v[1] + on.moment * v[2];
   }
   return sum;
 }
 
+void ElementKernel::fields(Archive& archive) {
+  if (table_.damped()) archive("damping_nodes", damping_.nodes)("damping_sums", damping_.sums);
+}
+
 void ElementKernel::add_forces(const ForceViews& forces) {
-  for (const Forces* part : {&normal_, &tangential_}) {
+  for (const Forces* part : {&normal_, &tangential_, &damping_}) {
     for (const auto& [node, force] : part->nodes) {
       forces.nodes[2 * static_cast<size_t>(node)] += force.x();
       forces.nodes[2 * static_cast<size_t>(node) + 1] += force.y();
@@ -228,9 +280,11 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
   for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
     double* f = &forces.rigid[3 * static_cast<size_t>(i)];
-    f[0] += normal_.sums[i].force.x() + tangential_.sums[i].force.x();
-    f[1] += normal_.sums[i].force.y() + tangential_.sums[i].force.y();
-    f[2] += normal_.sums[i].moment + tangential_.sums[i].moment;
+    for (const Forces* part : {&normal_, &tangential_, &damping_}) {
+      f[0] += part->sums[i].force.x();
+      f[1] += part->sums[i].force.y();
+      f[2] += part->sums[i].moment;
+    }
   }
 }
 
@@ -250,7 +304,8 @@ double ElementKernel::rate(std::span<const double> node_mass) const {
   for (const auto& [node, body, length] : surfaces_.elements().shares()) {
     const double mass = node_mass[node];
     if (!(mass > 0) || other[body] == 0) continue;
-    worst = std::max(worst, node_rate(stiffness_, slope[body] + other[body], length, mass));
+    worst = std::max(
+        worst, node_rate(table_.stiffest() * thickness_, slope[body] + other[body], length, mass));
   }
   return worst;
 }
@@ -332,7 +387,10 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
     sum.normal += t.force;
-    sum.tangential += t.friction;
+    const Vec2 normal = t.force / t.force.norm();
+    const Vec2 damping = t.damping.dot(normal) * normal;
+    sum.damping += damping;
+    sum.tangential += t.friction + (t.damping - damping);
     sum.point += pair.weight * (surfaces_.reference(t.a) + t.point);
     sum.penetration = find_penetration(t.a, t.b, sum.penetration, depths);
     sum.phi = std::max(sum.phi, pair.largest_phi);

@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/damping_times.hpp"
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
@@ -27,22 +27,24 @@ class ElementKernel final : public Kernel {
  public:
   /// `distribution` of the law: resultant or integrated; `thickness` in m. All must outlive this
   /// object.
-  ElementKernel(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+  ElementKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 double thickness, int threads);
 
-  void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
+  void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
+  void limit_damping(double rate) override { times_.limit(rate); }
+  void fields(Archive& archive) override;
 
-  [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
+  [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
-    return normal_.sums[body].force + tangential_.sums[body].force;
+    return normal_.sums[body].force + tangential_.sums[body].force + damping_.sums[body].force;
   }
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
@@ -57,11 +59,14 @@ class ElementKernel final : public Kernel {
     Vec2 point;                    ///< where it acts, relative to a's reference point, m
     Vec2 offset;                   ///< a's reference point minus b's, m
     double pressure;               ///< the sum of the sizes of what the force is the sum of, N
+    double stiffness;              ///< N/m
     Vec2 friction = Vec2::Zero();  ///< on a, N
+    Vec2 damping = Vec2::Zero();   ///< on a, N
   };
   struct NodeForce {
-    NodeIndex node;
-    Vec2 force;
+    NodeIndex node = 0;
+    Vec2 force = Vec2::Zero();
+    void fields(Archive& archive) { archive("node", node)("force", force); }
   };
   struct Forces {
     std::vector<NodeForce> nodes;
@@ -83,6 +88,10 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] Vec2 velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
                                  const Kinematics& now) const;
   static void distribute(const Corners& corners, const Vec2& force, Forces& to);
+  /// k_n times the thickness, N/m.
+  [[nodiscard]] double stiffness(SurfaceIndex a, SurfaceIndex b) const {
+    return table_.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness * thickness_;
+  }
   void add_touch(size_t pair);
   /// What looking for a penetration works in.
   struct Depths {
@@ -94,16 +103,18 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] bool outer(SurfaceIndex i, int edge) const;
   void add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const;
   double find_penetration(SurfaceIndex a, SurfaceIndex b, double floor, Depths& work) const;
-  [[nodiscard]] double power(const Kinematics& now) const;
+  [[nodiscard]] double power(const Forces& forces, const Kinematics& now) const;
+  void find_times(double dt);
   [[nodiscard]] std::vector<int> patches() const;
 
   const Surfaces& surfaces_;
-  const FrictionTable& table_;
-  double stiffness_, thickness_;  // k_n times the thickness, N/m; m
+  const PairTable& table_;
+  double thickness_;  // m
   ForceDistribution distribution_;
   PairIntegrals pairs_;
   std::vector<Touch> touches_;  // ascending
-  Forces normal_, tangential_;
+  Forces normal_, tangential_, damping_;
+  DampingTimes times_;
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;

@@ -72,6 +72,9 @@ class Kernel {
   [[nodiscard]] virtual double energy() const = 0;
   /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
   [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
+  /// Before the first step: `rate` is the largest of these of all nodes that contact can move. No
+  /// dashpot takes more than the speed of a node in a step.
+  virtual void limit_damping(double /*rate*/) {}
   /// Adds to each node near another body the same bound as a stiffness, N/m.
   virtual void add_node_stiffness(std::span<double> /*stiffness*/) const {}
 

@@ -9,15 +9,18 @@ bool matches(const ContactRule::Party& party, int body, int material) {
 
 }  // namespace
 
-Friction friction_between(const ContactLaw& law, int a, int material_a, int b, int material_b) {
-  Friction friction = law.friction;
+PairLaw law_between(const ContactLaw& law, int a, int material_a, int b, int material_b) {
+  PairLaw result{law.normal_stiffness, law.friction, law.damping};
   for (const ContactRule& rule : law.rules) {  // later rules win
     const auto [p, q] = rule.between;
     const bool straight = matches(p, a, material_a) && matches(q, b, material_b);
     const bool crossed = matches(p, b, material_b) && matches(q, a, material_a);
-    if (straight || crossed) friction = rule.friction;
+    if (!straight && !crossed) continue;
+    result.friction = rule.friction.value_or(result.friction);
+    result.damping = rule.damping.value_or(result.damping);
+    result.normal_stiffness = rule.normal_stiffness.value_or(result.normal_stiffness);
   }
-  return friction;
+  return result;
 }
 
 }  // namespace apothem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,20 @@ namespace apothem {
 struct Friction {
   double coefficient = 0;           ///< mu; 0: none
   double tangential_stiffness = 0;  ///< k_s, Pa
+};
+
+/// Viscous damping, as ratios of critical damping; 0: none.
+struct ContactDamping {
+  double normal = 0;
+  double tangential = 0;  ///< beside the friction spring, within Coulomb's limit
+  double bulk = 0;        ///< of the strains of bodies with a mesh; of the whole scene
+};
+
+/// What acts between two bodies.
+struct PairLaw {
+  double normal_stiffness = 0;  ///< k_n, Pa
+  Friction friction = {};
+  ContactDamping damping = {};
 };
 
 /// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
@@ -26,14 +41,16 @@ enum class ContactSurface { body, element };
 /// a pair of elements by the shape functions at its action point (Eq. 15).
 enum class ForceDistribution { variational, integrated, resultant };
 
-/// Friction between two parties, each a body or every body of a material.
+/// What is different between two parties, each a body or every body of a material.
 struct ContactRule {
   struct Party {
     bool is_body;
     int index;
   };
   std::array<Party, 2> between;
-  Friction friction;
+  std::optional<Friction> friction = {};
+  std::optional<ContactDamping> damping = {};
+  std::optional<double> normal_stiffness = {};  ///< Pa
 };
 
 struct ContactLaw {
@@ -43,16 +60,17 @@ struct ContactLaw {
   FrictionLaw friction_law = FrictionLaw::resultant;
   ContactSurface surface = ContactSurface::body;
   ForceDistribution distribution = ForceDistribution::variational;
-  std::vector<ContactRule> rules = {};  ///< instead of `friction`; later ones win
-  double normal_damping = 0;            ///< ratio of critical, of the normal force; 0: none
+  ContactDamping damping = {};
+  std::vector<ContactRule> rules = {};  ///< for pairs; later ones win
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
   bool accepts_overlaps = false;        ///< bodies may overlap deeply at the start
   /// Penetration over the inradius of a body above which the run warns.
   double penetration_warning = 0.01;
 };
 
-/// Between two bodies, given with their materials: the last rule that fits, or that of the scene.
-Friction friction_between(const ContactLaw& law, int a, int material_a, int b, int material_b);
+/// Between two bodies, given with their materials: of each part the last rule that fits, or that of
+/// the scene.
+PairLaw law_between(const ContactLaw& law, int a, int material_a, int b, int material_b);
 
 /// The friction laws a scene can name.
 struct NamedFrictionLaw {
@@ -85,18 +103,6 @@ inline constexpr std::array kDistributions{
     NamedDistribution{"variational", ForceDistribution::variational, ContactSurface::body},
     NamedDistribution{"resultant", ForceDistribution::resultant, ContactSurface::element},
     NamedDistribution{"integrated", ForceDistribution::integrated, ContactSurface::element},
-};
-
-/// The damping models a scene can name, each with its one number.
-struct NamedDamping {
-  std::string_view name;
-  std::string_view key;   ///< of the number
-  std::string_view unit;  ///< of the number
-  double ContactLaw::*value;
-};
-inline constexpr std::array kDampingModels{
-    NamedDamping{"normal_viscous", "ratio", "", &ContactLaw::normal_damping},
-    NamedDamping{"mass", "rate", "1/s", &ContactLaw::mass_damping},
 };
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// Normal viscous damping of a contact patch of two rigid bodies (docs/theory.md, Friction).
+// Viscous damping of a contact patch of two rigid bodies (docs/theory.md, Friction).
 #pragma once
 
 #include <array>
@@ -87,16 +87,25 @@ struct PairMotion {
 
 /// What the damping of a patch remembers.
 struct PatchDamper {
-  PairForce elastic;  ///< the normal force
-  PairForce damping;  ///< its own force
+  PairForce elastic;      ///< the normal force
+  PairForce damping;      ///< along the normal, its own force
+  double tangential = 0;  ///< and that beside the friction spring, along the tangent, N
 
   /// Adds a share of another one.
   void add(double share, const PatchDamper& other) {
     elastic += share * other.elastic;
     damping += share * other.damping;
+    tangential += share * other.tangential;
   }
-  void fields(Archive& archive) { archive("elastic", elastic)("damping", damping); }
+  void fields(Archive& archive) {
+    archive("elastic", elastic)("damping", damping)("tangential", tangential);
+  }
 };
+
+/// Time constant 2 ratio/omega of a dashpot beside a spring of the stiffness `k` (N/m) along the
+/// unit vector n through a point relative to the mass centre of a, s; 0 where nothing can move.
+double damping_time(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
+                    const Vec2& point, const Vec2& n, const PairMotion& motion);
 
 /// beta times the rate of the resultant and its moments, beta = 2 ratio/omega with the contact's
 /// present stiffness and the two bodies' mobility, and never so much that the contact would pull.

@@ -50,8 +50,8 @@ std::array<double, 4> Onset::load(const Path& path, double theta) {
   const PlacedPotential a = surfaces_.shapes().turn(path.a, path.turn_a(theta), turned_a_);
   const PlacedPotential b = surfaces_.shapes().turn(path.b, path.turn_b(theta), turned_b_);
   const PairIntegral pair = pair_integral(a, b, path.offset(theta), workspace_);
-  return {stiffness_ * pair.force.x(), stiffness_ * pair.force.y(), stiffness_ * pair.moment_a,
-          stiffness_ * pair.moment_b};
+  const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
+  return {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b};
 }
 
 // Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but

@@ -9,13 +9,15 @@
 #include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
+#include "apothem/contact/pair_table.hpp"
 
 namespace apothem {
 
 class Onset {
  public:
-  /// `stiffness` is k_n times the thickness, N/m. `surfaces` must outlive this object.
-  Onset(const Surfaces& surfaces, double stiffness) : surfaces_(surfaces), stiffness_(stiffness) {}
+  /// `thickness` in m. All must outlive this object.
+  Onset(const Surfaces& surfaces, const PairTable& table, double thickness)
+      : surfaces_(surfaces), table_(table), thickness_(thickness) {}
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs whose vertices inside each other are not those of the step before, or of which much more
@@ -47,7 +49,8 @@ class Onset {
   std::array<double, 4> load(const Path& path, double theta);
 
   const Surfaces& surfaces_;
-  double stiffness_;
+  const PairTable& table_;
+  double thickness_;
   OnsetWatch watch_;
   std::vector<Impulse> impulses_;
   // Memory.

@@ -22,7 +22,8 @@ double depth_ratio(const CollarFace<double>& face) {
 }  // namespace
 
 OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
-                             const FrictionTable& table, int threads)
+                             const PairTable& table, const std::vector<double>& inverse_mass,
+                             int threads)
     : outlines_(outlines),
       stiffness_(stiffness * thickness),
       thickness_(thickness),
@@ -33,10 +34,13 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double 
     slope_.resize(static_cast<size_t>(body.end), stiffness_ / body.reference);
   }
   fx_.resize(n), fy_.resize(n), ends_.resize(2 * n), areas_.resize(n);
-  if (table.rough()) friction_.emplace(outlines, table, slope_, thickness);
+  if (table.rough() || table.damped()) {
+    friction_.emplace(outlines, table, slope_, thickness, inverse_mass);
+  }
 }
 
 void OutlineKernel::take(std::span<const BoxPair> pairs) {
+  if (friction_) friction_->take(pairs);
   candidates_.clear();
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
@@ -196,7 +200,11 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
     }
   };
   add_to_nodes(fx_, fy_);
-  if (friction_) add_to_nodes(friction_->fx(), friction_->fy());
+  if (friction_) {
+    for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
+      if (!part->x.empty()) add_to_nodes(part->x, part->y);
+    }
+  }
   for (BodyIndex b = 0; b < static_cast<BodyIndex>(o.bodies.size()); ++b) {
     if (!o.bodies[b].is_rigid()) continue;
     const Resultant on = resultant(b);
@@ -222,9 +230,12 @@ Resultant OutlineKernel::sum(BodyIndex b, std::span<const double> fx,
 Resultant OutlineKernel::resultant(BodyIndex body) const {
   Resultant on = sum(body, fx_, fy_);
   if (!friction_) return on;
-  const Resultant tangential = sum(body, friction_->fx(), friction_->fy());
-  on.force += tangential.force;
-  on.moment += tangential.moment;
+  for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
+    if (part->x.empty()) continue;
+    const Resultant other = sum(body, part->x, part->y);
+    on.force += other.force;
+    on.moment += other.moment;
+  }
   return on;
 }
 
@@ -357,6 +368,8 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     if (friction_) {
       const double along = friction_->shares()[i];
       sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
+      const double push = own == sum.a ? -friction_->pushes()[i] : friction_->pushes()[i];
+      sum.damping += push * gives;
     }
   }
   for (size_t i = 0; i < found.size(); ++i) {

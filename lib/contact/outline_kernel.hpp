@@ -20,9 +20,10 @@ namespace apothem {
 
 class OutlineKernel final : public Kernel {
  public:
-  /// `stiffness`: k_n in Pa; `thickness` in m. All must outlive this object.
+  /// `stiffness`: k_n in Pa; `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive
+  /// this object.
   OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
-                const FrictionTable& table, int threads);
+                const PairTable& table, const std::vector<double>& inverse_mass, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
@@ -36,7 +37,13 @@ class OutlineKernel final : public Kernel {
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces);
   }
-  void fields(Archive& archive) override { archive("outline_onset", onset_); }
+  void fields(Archive& archive) override {
+    archive("outline_onset", onset_);
+    if (friction_) friction_->fields(archive);
+  }
+  void limit_damping(double rate) override {
+    if (friction_) friction_->limit_damping(rate);
+  }
 
   [[nodiscard]] double energy() const override;
   /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (docs/theory.md, Step) for nodes of

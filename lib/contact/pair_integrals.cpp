@@ -28,13 +28,14 @@ void PairIntegrals::evaluate() {
   });
 }
 
-double PairIntegrals::energy() const {
+double PairIntegrals::energy(const PairTable& table) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   double energy = 0;
   for (size_t p = 0; p < pairs_.size(); ++p) {
     if (!integrals_[p].touching()) continue;
     const auto [a, b] = pairs_[p];
-    energy += pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
+    const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
+    energy += k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
   }
   return energy;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apothem/contact/kernel.hpp"
+#include "apothem/contact/pair_table.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
 
@@ -28,8 +29,8 @@ class PairIntegrals {
   /// One for each pair, for unit stiffness; force on the first one, moments about the reference
   /// points.
   [[nodiscard]] const PairIntegral& operator[](size_t pair) const { return integrals_[pair]; }
-  /// Energy of all pairs for unit stiffness and thickness, m^2. Not for every step.
-  [[nodiscard]] double energy() const;
+  /// Energy of all pairs for unit thickness, N. Not for every step.
+  [[nodiscard]] double energy(const PairTable& table) const;
 
   /// The record of a pair; k is the normal stiffness times the thickness, N/m.
   [[nodiscard]] Contact contact(KernelKind kernel, size_t pair, double k) const;

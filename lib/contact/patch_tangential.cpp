@@ -29,8 +29,11 @@ static void describe(Archive& archive, BoundaryRun& run) {
 }
 
 PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law,
-                                 const FrictionTable& table, double thickness)
-    : surfaces_(surfaces), law_(law), table_(table), thickness_(thickness) {}
+                                 const PairTable& table, double thickness)
+    : surfaces_(surfaces),
+      per_edge_(law.friction_law == FrictionLaw::per_edge),
+      table_(table),
+      thickness_(thickness) {}
 
 void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
                             const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -102,8 +105,9 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
                                 const TangentialForce* last, const Kinematics& now, double dt,
                                 FrictionMemory& memory) {
   const auto [a, b] = pairs.pairs()[pair];
-  const Friction& friction = table_.between(a, b);
-  const bool rough = friction.coefficient > 0, damped = law_.normal_damping > 0;
+  const PairLaw& law = table_.between(a, b);
+  const bool rough = law.friction.coefficient > 0;
+  const bool damped = law.damping.normal > 0 || law.damping.tangential > 0;
   if (!rough && !damped) return;
   const PlacedShapes& shapes = surfaces_.shapes();
   const PairMotion motion(surfaces_, now, a, b);
@@ -137,7 +141,7 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
     const PairIntegral& patch = patches_[j];
     if (damped) {
       PatchDamper& d = dampers_[j];
-      damp(law_.normal_damping, law_.normal_stiffness * thickness_, surfaces_, a, b, patch, motion,
+      damp(law.damping.normal, law.normal_stiffness * thickness_, surfaces_, a, b, patch, motion,
            dt, d);
       total.add_damping(d.damping);
     }
@@ -146,18 +150,22 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
         kForceError * std::numeric_limits<double>::epsilon() *
         (shapes.radius(a) + shapes.radius(b)) *
         (patch.own_length_a * shapes.slope(b) + patch.own_length_b * shapes.slope(a));
-    resultant(motion, dt, friction, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
-              springs_[j], total, memory);
+    resultant(motion, dt, law, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
+              springs_[j], damped ? &dampers_[j] : nullptr, total, memory);
   }
   if (rough && !edgewise() && !inherit_whole()) {
     memory.lose(lost_by_balance(springs, last, total, motion.rate, dt) - (memory.loss() - lost));
   }
   if (rough && edgewise()) {
-    per_edge(motion, dt, friction, {polygon_kernel, a, b, 0}, springs, total, memory);
+    per_edge(motion, dt, law, {polygon_kernel, a, b, 0}, springs, total, memory);
   }
   if (damped) {
     total.compare_with(last, motion.rate, dt);
     book_damping(last, total, motion.rate, dt, memory);
+  } else {
+    dampers_.assign(patches_.size(), {});
+  }
+  if (table_.damped()) {
     now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
   }
   now_.runs.insert(now_.runs.end(), runs_.begin(), runs_.end());
@@ -228,41 +236,52 @@ double PatchTangential::lost_by_balance(std::span<const Spring> before, const Ta
 // The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
 // number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 // slip against b: the sign of Eq. 12 is a misprint.
-void PatchTangential::resultant(const PairMotion& motion, double dt, const Friction& friction,
+void PatchTangential::resultant(const PairMotion& motion, double dt, const PairLaw& law,
                                 SpringKey key, const PairIntegral& patch, double force_error,
-                                Spring& spring, TangentialForce& total,
+                                Spring& spring, PatchDamper* damper, TangentialForce& total,
                                 FrictionMemory& memory) const {
   spring.key = key;
-  spring.stiffness = friction.tangential_stiffness * thickness_;
+  spring.stiffness = law.friction.tangential_stiffness * thickness_;
   spring.accounted = true;
   const double size = patch.force.norm();
   if (!(size > kNoResultant * patch.weight)) {
     memory.lose(spring.energy());
     spring.force = 0;
+    if (damper) damper->tangential = 0;
     memory.keep(spring);
     return;
   }
   const Vec2 tangent = tangent_of(patch.force);
   const Vec2 point = loading_point(patch);
-  Vec2 normal = law_.normal_stiffness * thickness_ * patch.force;
-  if (law_.normal_damping > 0) normal += dampers_[static_cast<size_t>(key.part)].damping.force;
+  Vec2 normal = law.normal_stiffness * thickness_ * patch.force;
+  if (damper) normal += damper->damping.force;
   const Vec2 velocity = motion.slip(point);
   double slip = velocity.dot(tangent);
   // The tangent is only as exact as the force: what it makes of an approach is no slip.
   if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
-  spring.force = follow(spring.force, slip * dt, spring.stiffness,
-                        friction.coefficient * normal.norm(), memory);
+  const double limit = law.friction.coefficient * normal.norm();
+  spring.force = follow(spring.force, slip * dt, spring.stiffness, limit, memory);
   spring.tangent = tangent;
   memory.keep(spring);
   total.add_spring(spring.force, spring.stiffness, tangent, point, motion.between);
+  if (damper == nullptr || !(law.damping.tangential > 0)) return;
+  // A first look, perhaps with the memory of another run, keeps the force.
+  if (dt > 0) {
+    const double time = damping_time(law.damping.tangential, spring.stiffness, surfaces_, key.a,
+                                     key.b, point, tangent, motion);
+    const double both = spring.force - time * spring.stiffness * slip;
+    damper->tangential = std::clamp(both, -limit, limit) - spring.force;
+  }
+  total.add_damping({damper->tangential * tangent, damper->tangential * cross(point, tangent),
+                     -damper->tangential * cross(point + motion.between, tangent)});
 }
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
-void PatchTangential::per_edge(const PairMotion& motion, double dt, const Friction& friction,
+void PatchTangential::per_edge(const PairMotion& motion, double dt, const PairLaw& law,
                                SpringKey key, std::span<const Spring> before,
                                TangentialForce& total, FrictionMemory& memory) {
-  const double stiffness = friction.tangential_stiffness * thickness_;
+  const double stiffness = law.friction.tangential_stiffness * thickness_;
   const int edges_of_a = surfaces_.shapes().view(key.a).size;
   auto old = before.begin();
   const auto lost = [&] { memory.lose((old++)->energy()); };  // of an edge that is free again
@@ -273,7 +292,7 @@ void PatchTangential::per_edge(const PairMotion& motion, double dt, const Fricti
     if (old != before.end() && old->key == key) spring = (old++)->force;
     const Vec2 tangent = tangent_of(run.force);
     spring = follow(spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
-                    friction.coefficient * law_.normal_stiffness * thickness_ * run.force.norm(),
+                    law.friction.coefficient * law.normal_stiffness * thickness_ * run.force.norm(),
                     memory);
     memory.keep({key, spring, stiffness, tangent, true});
     total.add_spring(spring, stiffness, tangent, run.centre, motion.between);
@@ -292,8 +311,12 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
     cursor.damper += static_cast<size_t>(now_.pairs[cursor.pair++].patches);
   }
   if (cursor.pair == now_.pairs.size() || order() != pair) return;
-  for (size_t j = 0; law_.normal_damping > 0 && j < patches.size(); ++j) {
-    patches[j].damping += now_.dampers[cursor.damper + j].damping.force;
+  for (size_t j = 0; table_.damped() && j < patches.size(); ++j) {
+    const PatchDamper& damper = now_.dampers[cursor.damper + j];
+    patches[j].damping += damper.damping.force;
+    if (damper.tangential != 0) {
+      patches[j].tangential += damper.tangential * tangent_of(patches[j].normal);
+    }
   }
   for (size_t i = 0; i < springs.size(); ++i) {
     const int patch = edgewise() ? runs[i].patch : springs[i].key.part;

@@ -7,10 +7,10 @@
 
 #include <vector>
 
-#include "apothem/contact/friction_table.hpp"
 #include "apothem/contact/law.hpp"
 #include "apothem/contact/normal_damping.hpp"
 #include "apothem/contact/pair_integrals.hpp"
+#include "apothem/contact/pair_table.hpp"
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
@@ -57,7 +57,7 @@ struct TangentialForce {
 class PatchTangential {
  public:
   /// `thickness` in m.
-  PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+  PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                   double thickness);
 
   /// One step further: see Kernel::slide. `touching`: the pairs in contact. Books what friction
@@ -76,7 +76,7 @@ class PatchTangential {
   /// needed by the law per_edge.
   void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
               std::span<const Spring> springs, Cursor& cursor) const;
-  [[nodiscard]] bool edgewise() const { return law_.friction_law == FrictionLaw::per_edge; }
+  [[nodiscard]] bool edgewise() const { return per_edge_; }
 
   /// What a pair had in the step before; the lists of runs and dampers follow in this order.
   struct PairHistory {
@@ -87,7 +87,7 @@ class PatchTangential {
   struct History {
     std::vector<PairHistory> pairs;    ///< ascending
     std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
-    std::vector<PatchDamper> dampers;  ///< where there is damping
+    std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
     void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
     void fields(Archive& archive);
   };
@@ -117,15 +117,15 @@ class PatchTangential {
   [[nodiscard]] double lost_by_balance(std::span<const Spring> before, const TangentialForce* last,
                                        const TangentialForce& now, const PairRate& rate,
                                        double dt) const;
-  void resultant(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
-                 const PairIntegral& patch, double force_error, Spring& spring,
+  void resultant(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
+                 const PairIntegral& patch, double force_error, Spring& spring, PatchDamper* damper,
                  TangentialForce& total, FrictionMemory& memory) const;
-  void per_edge(const PairMotion& motion, double dt, const Friction& friction, SpringKey key,
+  void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
                 std::span<const Spring> before, TangentialForce& total, FrictionMemory& memory);
 
   const Surfaces& surfaces_;
-  const ContactLaw law_;
-  const FrictionTable& table_;
+  bool per_edge_;
+  const PairTable& table_;
   double thickness_;
   History now_, before_;
   Place place_;  // of the next pair of the step before

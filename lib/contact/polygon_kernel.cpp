@@ -8,13 +8,14 @@
 namespace apothem {
 
 PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
-                             const FrictionTable& table, double thickness, int threads)
+                             const PairTable& table, double thickness, int threads)
     : surfaces_(surfaces),
-      stiffness_(law.normal_stiffness * thickness),
+      table_(table),
+      thickness_(thickness),
       pairs_(surfaces, threads),
-      onset_(surfaces, stiffness_),
+      onset_(surfaces, table, thickness),
       body_stiffness_(static_cast<size_t>(surfaces.rigid_count())) {
-  if (table.rough() || law.normal_damping > 0) {
+  if (table.rough() || table.damped()) {
     tangential_.emplace(surfaces, law, table, thickness);
   }
 }
@@ -23,10 +24,13 @@ void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
   pairs_.evaluate();
   touching_.clear();
   contact_stiffness_.clear();
+  stiffness_.clear();
   for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
     const PairIntegral& pair = pairs_[p];
     if (!pair.touching()) continue;
-    contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, stiffness_));
+    const auto [a, b] = pairs_.pairs()[p];
+    stiffness_.push_back(stiffness(a, b));
+    contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, stiffness_.back()));
     touching_.push_back(static_cast<int>(p));
     contact_stiffness_.push_back(contacts.back().stiffness);
     if (pairs_.too_deep(p)) contacts.back().share = 1;
@@ -73,14 +77,15 @@ void PolygonKernel::add_normal(const ForceViews& forces) {
     const auto [a, b] = pairs_.pairs()[p];
     double* fa = &forces.rigid[3 * static_cast<size_t>(a)];
     double* fb = &forces.rigid[3 * static_cast<size_t>(b)];
-    const double fx = stiffness_ * pair.force.x();
-    const double fy = stiffness_ * pair.force.y();
+    const double k = stiffness_[i];
+    const double fx = k * pair.force.x();
+    const double fy = k * pair.force.y();
     fa[0] += fx;
     fa[1] += fy;
-    fa[2] += stiffness_ * pair.moment_a;
+    fa[2] += k * pair.moment_a;
     fb[0] -= fx;
     fb[1] -= fy;
-    fb[2] += stiffness_ * pair.moment_b;
+    fb[2] += k * pair.moment_b;
     const double force = std::sqrt(fx * fx + fy * fy);
     const TangentialForce* springs = nullptr;
     if (tangential_ && spring != tangential_->forces().end() && spring->a == a && spring->b == b) {
@@ -164,7 +169,8 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
     for (size_t i = 0; i < patches.size(); ++i) {
       const PairIntegral& patch = patches[i];
       records.push_back({a, b, surfaces_.reference(a) + loading_point(patch),
-                         stiffness_ * patch.force, Vec2::Zero(), deepest[i], patch.largest_phi});
+                         stiffness(a, b) * patch.force, Vec2::Zero(), deepest[i],
+                         patch.largest_phi});
     }
     if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs, cursor);
   }

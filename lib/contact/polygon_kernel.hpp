@@ -16,7 +16,7 @@ namespace apothem {
 class PolygonKernel final : public Kernel {
  public:
   /// `thickness` in m. All must outlive this object.
-  PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const FrictionTable& table,
+  PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 double thickness, int threads);
 
   void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
@@ -34,7 +34,7 @@ class PolygonKernel final : public Kernel {
   }
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
 
-  [[nodiscard]] double energy() const override { return stiffness_ * pairs_.energy(); }
+  [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
@@ -48,6 +48,10 @@ class PolygonKernel final : public Kernel {
   }
 
  private:
+  /// k_n times the thickness, N/m.
+  [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
+    return table_.between(a, b).normal_stiffness * thickness_;
+  }
   void add_normal(const ForceViews& forces);
   void add_tangential(const ForceViews& forces) const;
   void add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b, double stiffness,
@@ -55,12 +59,14 @@ class PolygonKernel final : public Kernel {
   void find_rates(std::span<double> rates, double limit);
 
   const Surfaces& surfaces_;
-  double stiffness_;  // k_n times the thickness, N/m
+  const PairTable& table_;
+  double thickness_;  // m
   PairIntegrals pairs_;
   Onset onset_;
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   std::vector<int> touching_;                  // pairs
-  std::vector<double> contact_stiffness_;      // of these, N/m
+  std::vector<double> stiffness_;              // k_n times the thickness of these, N/m
+  std::vector<double> contact_stiffness_;      // of their contacts, N/m
   std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
   PairPeak largest_force_;
   // Memory for penetrations.

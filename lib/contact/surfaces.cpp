@@ -11,17 +11,21 @@ void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   pose_.push_back({});
   if (rigid.moves) moving_.push_back(i);
   rigid_.push_back(rigid);
+  inverse_mass_.push_back(std::max(rigid.inverse_mass[0], rigid.inverse_mass[1]));
   if (collars_) outlines_.add_rigid(potential.vertices, i, 1 / potential.steepest);
 }
 
-void Surfaces::add_outline(const Mesh& mesh, NodeIndex first_node,
-                           std::optional<double> reference) {
+void Surfaces::add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,
+                           double inverse_mass) {
+  inverse_mass_.push_back(inverse_mass);
   outlines_.add_mesh(mesh, boundary(mesh), first_node, reference);
   kinds_.push_back(SurfaceKind::outline);
   bodies_.push_back(body_count_++);
 }
 
-void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice) {
+void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice,
+                            double inverse_mass) {
+  inverse_mass_.push_back(inverse_mass);
   elements_.add(mesh, boundary(mesh), first_node, body_count_, choice, shapes_);
   kinds_.resize(shapes_.size(), SurfaceKind::element);
   bodies_.resize(shapes_.size(), body_count_);

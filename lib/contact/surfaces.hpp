@@ -40,10 +40,12 @@ class Surfaces {
   /// Adds the polygon of the next rigid body. The potential is about its mass centre and must
   /// outlive this object.
   void add_polygon(const Potential& potential, const Rigid& rigid);
-  /// Adds the boundary of the next deformable body: see Outlines::add_mesh.
-  void add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference);
+  /// Adds the boundary of the next deformable body: see Outlines::add_mesh. `inverse_mass` in 1/kg.
+  void add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,
+                   double inverse_mass = 0);
   /// Adds the outermost elements of the next deformable body: see ElementSurfaces::add.
-  void add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice);
+  void add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice,
+                    double inverse_mass = 0);
 
   /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
   void place_all(const Kinematics& now);
@@ -59,6 +61,8 @@ class Surfaces {
   [[nodiscard]] const Rigid& rigid(RigidIndex i) const { return rigid_[i]; }
   /// True if forces can move the body of a surface.
   [[nodiscard]] bool responsive(SurfaceIndex i) const;
+  /// Of each body against a force through its mass centre, 1/kg; 0 where forces cannot move it.
+  [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   /// Largest inscribed circle of a polygon, or smallest length r of an element's potential, m.
   [[nodiscard]] double inradius(SurfaceIndex i) const;
   /// How far the box of a surface grows for the search, m.
@@ -89,6 +93,7 @@ class Surfaces {
   std::vector<SurfaceKind> kinds_;
   std::vector<BodyIndex> bodies_;
   int body_count_ = 0;
+  std::vector<double> inverse_mass_;
   std::vector<Rigid> rigid_;
   std::vector<RigidIndex> moving_;
   PlacedShapes shapes_;

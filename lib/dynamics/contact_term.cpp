@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "apothem/dynamics/fold_watch.hpp"
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/model/inradius.hpp"
+#include "apothem/model/pairs.hpp"
 
 namespace apothem {
 namespace {
@@ -24,13 +26,6 @@ double polygon_skin(const Model& model) {
     ++count;
   }
   return count > 0 ? kPolygonSkin * std::sqrt(area / count) : 0;
-}
-
-FrictionTable friction_table(const Model& model) {
-  std::vector<MaterialIndex> material;
-  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
-  for (BodyIndex i = 0; i < bodies; ++i) material.push_back(model.material_of(i));
-  return {model.contact, material, static_cast<int>(model.materials.size())};
 }
 
 }  // namespace
@@ -51,7 +46,14 @@ bool ContactTerm::touches_meshes(const Model& model) {
   return !model.deformables.empty() && needed(model);
 }
 
-Surfaces ContactTerm::surfaces_of(const Model& model) {
+Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& dofs) {
+  const std::vector<double> node_mass = dofs.free_node_mass();
+  const auto inverse_mass = [&](const DeformableBody& body) {
+    const auto first = node_mass.begin() + body.first_node;
+    const double mass =
+        std::accumulate(first, first + static_cast<std::ptrdiff_t>(body.mesh.nodes.size()), 0.);
+    return mass > 0 ? 1 / mass : 0;
+  };
   const bool meshes = !model.deformables.empty();
   const bool outlines = meshes && model.contact.surface == ContactSurface::body;
   Surfaces surfaces(polygon_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
@@ -64,11 +66,11 @@ Surfaces ContactTerm::surfaces_of(const Model& model) {
   if (choice.reference == PotentialChoice::Reference::length) reference = choice.length;
   for (const DeformableBody& body : model.deformables) {
     if (outlines) {
-      surfaces.add_outline(body.mesh, body.first_node, reference);
+      surfaces.add_outline(body.mesh, body.first_node, reference, inverse_mass(body));
       continue;
     }
     try {
-      surfaces.add_elements(body.mesh, body.first_node, choice);
+      surfaces.add_elements(body.mesh, body.first_node, choice, inverse_mass(body));
     } catch (const InvalidPolygon& error) {
       throw Unrunnable(fmt::format("elements of \"{}\" cannot have potentials of their own: {}; "
                                    "use another mesh or \"surface\": \"body\"",
@@ -83,7 +85,7 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
                          int threads)
     : model_(model),
       dofs_(dofs),
-      contacts_(model.contact, model.thickness, surfaces_of(model), friction_table(model),
+      contacts_(model.contact, model.thickness, surfaces_of(model, dofs), pair_table(model),
                 threads) {
   double inradius = HUGE_VAL;
   for (const RigidBody& body : model.bodies) inradius = std::min(inradius, body.inradius);
@@ -129,12 +131,14 @@ std::string ContactTerm::describe() const {
     text += law.surface == ContactSurface::body ? "; meshes by the potentials of their boundaries"
                                                 : "; meshes by the potentials of their elements";
   }
-  text += friction_table(model_).rough() ? fmt::format("; friction, mu = {:g}, {} rules by pair",
-                                                       law.friction.coefficient, law.rules.size())
-                                         : "; no friction";
-  if (law.normal_damping > 0) {
-    text += fmt::format("; normal viscous damping, ratio {:g}", law.normal_damping);
+  text += pair_table(model_).rough()
+              ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)
+              : "; no friction";
+  if (pair_table(model_).damped()) {
+    text += fmt::format("; viscous damping, ratios {:g} and {:g}", law.damping.normal,
+                        law.damping.tangential);
   }
+  if (!law.rules.empty()) text += fmt::format("; {} rules by pair", law.rules.size());
   return text;
 }
 
@@ -284,8 +288,10 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     if (!body.can_move()) continue;
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
-  const double rate =
-      std::sqrt(contacts_.node_rate(dofs_.free_node_mass()) + model_.stiffness() * rigid);
+  const double of_nodes = contacts_.node_rate(dofs_.free_node_mass());
+  contacts_.limit_damping(of_nodes);
+  const double stiffest = pair_table(model_).stiffest() * model_.thickness;
+  const double rate = std::sqrt(of_nodes + stiffest * rigid);
   bounds.nodes = {2 / std::hypot(2 / bounds.nodes.step, rate), "elements and their contacts"};
 }
 

@@ -60,7 +60,7 @@ class ContactTerm final : public Term {
   [[nodiscard]] const ContactCounts& counts() const { return counts_; }
 
  private:
-  static Surfaces surfaces_of(const Model& model);
+  static Surfaces surfaces_of(const Model& model, const DegreesOfFreedom& dofs);
   void refuse_buried(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);

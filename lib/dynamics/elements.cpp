@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/fem/spectrum.hpp"
+#include "apothem/model/inradius.hpp"
 
 namespace apothem {
 namespace {
@@ -14,12 +16,28 @@ namespace {
 // grow across the load, so that their area is a little more.
 constexpr double kSoftened = 0.65;
 
-std::vector<ElementSet> element_sets(const Model& model) {
+// Rayleigh's coefficient beta of each body, s: that of its material, and what gives oscillations
+// through its thickness, of the angular frequency c/(2 R) with the inradius R and the speed of
+// sound in a bar c, the ratio of the scene.
+std::vector<double> stiffness_damping(const Model& model) {
+  std::vector<double> beta;
+  for (size_t i = 0; i < model.deformables.size(); ++i) {
+    const Material& m = model.materials[model.deformables[i].material];
+    beta.push_back(m.stiffness_damping);
+    const double ratio = model.contact.damping.bulk;
+    if (!(ratio > 0)) continue;
+    const double inradius = inradius_of(model, static_cast<BodyIndex>(model.bodies.size() + i));
+    beta.back() += 4 * ratio * inradius * std::sqrt(m.density / m.elastic.young);
+  }
+  return beta;
+}
+
+std::vector<ElementSet> element_sets(const Model& model, const std::vector<double>& beta) {
   std::vector<ElementSet> sets;
   for (const DeformableBody& body : model.deformables) {
     const Material& m = model.materials[body.material];
     sets.push_back({body.element, &body.mesh, body.first_node, m.elastic, m.density,
-                    model.thickness, m.stiffness_damping});
+                    model.thickness, beta[sets.size()]});
   }
   return sets;
 }
@@ -27,7 +45,9 @@ std::vector<ElementSet> element_sets(const Model& model) {
 }  // namespace
 
 Elements::Elements(const Model& model, int threads)
-    : model_(model), elements_(element_sets(model), threads) {}
+    : model_(model),
+      stiffness_damping_(stiffness_damping(model)),
+      elements_(element_sets(model, stiffness_damping_), threads) {}
 
 void Elements::start(const DegreesOfFreedom& dofs, State& state) {
   find_limit(dofs, state);
@@ -38,19 +58,18 @@ void Elements::start(const DegreesOfFreedom& dofs, State& state) {
 
 std::string Elements::describe() const {
   std::string kinds;
-  bool damped = false;
   for (const DeformableBody& body : model_.deformables) {
     const Material& m = model_.materials[body.material];
-    damped = damped || m.stiffness_damping > 0;
     const std::string kind =
         fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
                     kElasticLaws[static_cast<size_t>(m.elastic.law)],
                     kPlanes[static_cast<size_t>(m.elastic.plane)]);
     if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
   }
-  return fmt::format("{} finite elements, {} nodes: {}{}", elements_.element_count(),
-                     elements_.node_count(), kinds,
-                     damped ? "; damping in proportion to the stiffness" : "");
+  return fmt::format(
+      "{} finite elements, {} nodes: {}{}", elements_.element_count(), elements_.node_count(),
+      kinds,
+      std::ranges::max(stiffness_damping_) > 0 ? "; damping in proportion to the stiffness" : "");
 }
 
 void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
@@ -62,12 +81,8 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
     return;
   }
   const double w = std::sqrt(lambda);
-  double beta = 0;
-  for (const DeformableBody& body : model_.deformables) {
-    beta = std::max(beta, model_.materials[body.material].stiffness_damping);
-  }
   // Damping lags behind by half a step (T. Belytschko et al. 2014, Sec. 6.2).
-  const double ratio = beta * w / 2;
+  const double ratio = std::ranges::max(stiffness_damping_) * w / 2;
   limit_ = {2 / (w * (std::sqrt(1 + ratio * ratio) + ratio)),
             ratio > 0 ? "elements and their damping" : "elements"};
 }

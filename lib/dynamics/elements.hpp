@@ -40,6 +40,7 @@ class Elements final : public Term {
   void find_limit(const DegreesOfFreedom& dofs, const State& state);
 
   const Model& model_;
+  std::vector<double> stiffness_damping_;  // of each body, s
   FiniteElements elements_;
   StepLimit limit_;
   double summed_damping_loss_ = 0;  // J

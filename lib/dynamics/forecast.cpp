@@ -6,6 +6,7 @@
 
 #include "apothem/mesh/measure.hpp"
 #include "apothem/model/inradius.hpp"
+#include "apothem/model/pairs.hpp"
 
 namespace apothem {
 namespace {
@@ -38,6 +39,7 @@ class Blocks {
     for (const Block& b : blocks_) {
       if (b.free) top = std::min(top, b.top), bottom = std::max(bottom, b.bottom);
     }
+    const double softest = pair_table(model_).softest();
     std::array<double, 2> flattest{HUGE_VAL, HUGE_VAL};  // the two smallest slopes
     for (const double slope : slopes) {
       if (slope < flattest[1]) flattest[1] = std::max(slope, flattest[0]);
@@ -52,9 +54,9 @@ class Blocks {
       const Block& b = blocks_[i];
       if (!b.free) continue;
       const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
-      const double stiffness = model_.contact.normal_stiffness * (slopes[i] + partner);  // Pa/m
+      const double stiffness = softest * (slopes[i] + partner);  // Pa/m
       const double sine = std::isfinite(b.tangent) ? b.tangent / std::hypot(1, b.tangent) : 1;
-      const double at_corner = model_.contact.normal_stiffness * (partner + sine * slopes[i]);
+      const double at_corner = softest * (partner + sine * slopes[i]);
       note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
       const double v = std::hypot(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
       const double energy = b.mass / model_.thickness * v * v / 2;  // J/m

@@ -9,6 +9,7 @@
 
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/model/pairs.hpp"
 
 namespace apothem {
 
@@ -79,10 +80,11 @@ StepLimit contact_step_limit(const Model& model) {
     any.mobility = std::max(any.mobility, all.back().mobility);
     any.slope = std::max(any.slope, all.back().slope);
   }
+  const PairTable table = pair_table(model);
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
   const auto bound = [&](int i) {
     const FlatEdges& f = all[i];
-    return f.longest * (f.mobility + any.mobility) * (f.slope + any.slope);
+    return table.stiffest() * f.longest * (f.mobility + any.mobility) * (f.slope + any.slope);
   };
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
@@ -95,7 +97,7 @@ StepLimit contact_step_limit(const Model& model) {
     for (size_t l = k + 1; l < order.size(); ++l) {
       const int j = order[l];
       if (!model.bodies[i].can_move() && !model.bodies[j].can_move()) continue;
-      const double lambda = flat_contact(all[i], all[j]);
+      const double lambda = flat_contact(all[i], all[j]) * table.between(i, j).normal_stiffness;
       if (lambda > worst) {
         worst = lambda;
         pair = {std::min(i, j), std::max(i, j)};
@@ -103,7 +105,7 @@ StepLimit contact_step_limit(const Model& model) {
     }
   }
   if (worst <= 0) return {std::numeric_limits<double>::infinity(), "no contact can occur"};
-  return {2 / std::sqrt(model.stiffness() * worst),
+  return {2 / std::sqrt(model.thickness * worst),
           "contact of " + quoted(model.bodies[pair[0]].name) + " with " +
               quoted(model.bodies[pair[1]].name)};
 }

@@ -8,6 +8,9 @@
 namespace apothem {
 namespace {
 
+// Blocks that stick rest with it; with a third of it some creep (docs/verification.md, Rest).
+constexpr double kBulkDamping = .1;
+
 // The entry of a table of names that a scene chooses.
 template <class Table>
 const auto& chosen(const JsonReader& in, const JsonValue& value, const Table& table) {
@@ -48,7 +51,6 @@ void ContactReader::read(const JsonValue& value) {
     law.penetration_warning = in_.positive(*v, "");
   }
   pairs_ = object.optional("pairs");
-  if (pairs_) features_.add(Feature::friction_of_pairs, pairs_);
   const JsonValue* surface_value = object.optional("surface");
   surface(surface_value, object.optional("distribution"));
   if (const JsonValue* v = object.optional("overlaps")) {
@@ -108,17 +110,51 @@ void ContactReader::friction_law(const JsonValue& value) {
   }
 }
 
+// One model, or a list of them.
 void ContactReader::damping(const JsonValue& value) {
   features_.add(Feature::contact_damping, &value);
+  if (value.type != JsonValue::Type::array) return damping_model(value);
+  for (const JsonValue& model : in_.array(value)) damping_model(model);
+}
+
+void ContactReader::damping_model(const JsonValue& value) {
   JsonObject object(in_, value);
-  const NamedDamping& model =
-      chosen(in_, object.required("model", "normal_viscous or mass"), kDampingModels);
-  const std::string key(model.key);
-  const std::string unit(model.unit);
-  model_.contact.*model.value =
-      in_.positive(object.required(key, "a positive number " + unit), unit);
+  ContactLaw& law = model_.contact;
+  const JsonValue& name = object.required("model", "viscous, normal_viscous or mass");
+  const size_t model = in_.choice(name, {"viscous", "normal_viscous", "mass"});
+  const bool known = model == 2 ? law.mass_damping > 0 : law.damping.normal > 0;
+  if (known) in_.fail(name, "is damping of a kind that is given already");
+  if (model == 2) {
+    law.mass_damping = in_.positive(object.required("rate", "a positive number in 1/s"), "1/s");
+  } else {
+    law.damping = dashpots(object, model == 0, true);
+    if (model == 0) {
+      const JsonValue* bulk = object.optional("bulk");
+      law.damping.bulk = bulk ? in_.number(*bulk, "") : kBulkDamping;
+      if (!(law.damping.bulk >= 0)) in_.fail(*bulk, "must be 0 or more");
+    }
+  }
   object.finish();
-  if (model_.contact.normal_damping > 0) features_.add(Feature::normal_viscous_damping, &value);
+}
+
+// `viscous` takes one ratio for both directions, or [normal, tangential]. A rule for a pair may say
+// that there is none.
+ContactDamping ContactReader::dashpots(JsonObject& object, bool tangential, bool of_scene) {
+  const JsonValue& value =
+      object.required("ratio", tangential ? "a ratio of critical damping, or [normal, tangential]"
+                                          : "a ratio of critical damping");
+  const auto ratio = [&](const JsonValue& v) {
+    if (of_scene) return in_.positive(v, "");
+    const double number = in_.number(v, "");
+    if (!(number >= 0)) in_.fail(v, "must be 0 or more");
+    return number;
+  };
+  if (!tangential) return {ratio(value), 0, 0};
+  features_.add(Feature::viscous_damping, &value);
+  if (value.type != JsonValue::Type::array) return {ratio(value), ratio(value), 0};
+  const std::vector<JsonValue>& both = in_.array(value);
+  if (both.size() != 2) in_.fail(value, "must be a number or [normal, tangential]");
+  return {ratio(both[0]), ratio(both[1]), 0};
 }
 
 // With which surface bodies with a mesh touch, and how the contact forces reach their nodes. Either
@@ -148,8 +184,26 @@ void ContactReader::read_pairs() {
     if (names.size() != 2) in_.fail(between, "must hold two names of materials or bodies");
     const ContactRule::Party a = party(names[0]);
     const ContactRule::Party b = party(names[1]);
-    const Friction rule = friction(object.required("friction", "{\"coefficient\": ...}"), false);
-    model_.contact.rules.push_back({{a, b}, rule});
+    ContactRule rule{{a, b}};
+    if (const JsonValue* v = object.optional("friction")) {
+      features_.add(Feature::friction_of_pairs, v);
+      rule.friction = friction(*v, false);
+    }
+    if (const JsonValue* v = object.optional("damping")) {
+      features_.add(Feature::contact_damping, v);
+      JsonObject dashpot(in_, *v);
+      const size_t model = in_.choice(dashpot.required("model", "viscous or normal_viscous"),
+                                      {"viscous", "normal_viscous"});
+      rule.damping = dashpots(dashpot, model == 0, false);
+      dashpot.finish();
+    }
+    if (const JsonValue* v = object.optional("normal_stiffness")) {
+      rule.normal_stiffness = in_.positive(*v, "Pa");
+    }
+    if (!rule.friction && !rule.damping && !rule.normal_stiffness) {
+      in_.fail(value, "must give \"friction\", \"damping\" or \"normal_stiffness\"");
+    }
+    model_.contact.rules.push_back(rule);
     object.finish();
   }
 }

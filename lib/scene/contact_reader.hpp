@@ -27,6 +27,8 @@ class ContactReader {
   Friction friction(const JsonValue& value, bool of_scene);
   void friction_law(const JsonValue& value);
   void damping(const JsonValue& value);
+  void damping_model(const JsonValue& value);
+  ContactDamping dashpots(JsonObject& object, bool tangential, bool of_scene);
   void surface(const JsonValue* surface, const JsonValue* distribution);
   [[nodiscard]] ContactRule::Party party(const JsonValue& value) const;
 

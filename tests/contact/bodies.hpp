@@ -105,7 +105,7 @@ struct Bodies {
     int count = 0;
     for (const MaterialIndex m : materials) count = std::max(count, m + 1);
     contacts = std::make_unique<Contacts>(law, thickness, std::move(*surfaces),
-                                          FrictionTable(law, materials, count), threads);
+                                          PairTable(law, materials, count), threads);
     surfaces.reset();
     displacement.resize(2 * static_cast<size_t>(nodes));
     node_velocity.resize(displacement.size());

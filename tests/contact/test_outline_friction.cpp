@@ -134,7 +134,7 @@ TEST_CASE("friction gives back no more than it was given", "[outline_friction][c
 
 TEST_CASE("bodies without friction cost and feel none", "[outline_friction][contact]") {
   ContactLaw law = law_of(1, {.5, 1});  // of each material on itself
-  law.rules = {{{{{false, 0}, {false, 1}}}, {0, 0}}};
+  law.rules = {{{{{false, 0}, {false, 1}}}, Friction{}}};
   samples::Random random(33);
   std::optional<OutlinePair> pair;
   while (!(pair = random_pair(random, 8, .6, law, {0, 1}))) {

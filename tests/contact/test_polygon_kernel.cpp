@@ -14,7 +14,7 @@ namespace {
 ContactLaw rough_law(FrictionLaw friction_law, double damping) {
   ContactLaw law = law_of(3, {.6, 2});
   law.friction_law = friction_law;
-  law.normal_damping = damping;
+  law.damping.normal = damping;
   return law;
 }
 

@@ -135,7 +135,7 @@ TEST_CASE("friction of a pair overrides that of the scene, and is in the records
           rectangle_mesh({.5, .2}, {5, 2}, {side - .25, -1e-5}, ElementShape::quadrilateral),
           ElementKind::quad4, {1, 0});
     }
-    model.contact.rules = {{{{{true, 0}, {true, 2}}}, {0, 0}}};  // floor and "smooth"
+    model.contact.rules = {{{{{true, 0}, {true, 2}}}, Friction{}}};  // floor and "smooth"
     TimeSettings time;
     time.end = 1;
     Simulation simulation(model, time, 1, 1);

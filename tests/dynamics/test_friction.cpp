@@ -1,7 +1,7 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
-#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/pair_table.hpp"
 #include "archive/saved.hpp"
 #include "friction_models.hpp"
 #include "term_of.hpp"
@@ -77,7 +77,7 @@ TEST_CASE("a block starts to slide at atan(mu)", "[friction]") {
   const double coefficient = .5;
   for (const auto& [share, slides] : {std::pair(.999, false), std::pair(1.001, true)}) {
     Model model = incline(std::atan(coefficient) * share, coefficient, 0, 1.25e9);
-    model.contact.normal_damping = .3;
+    model.contact.damping.normal = .3;
     Simulation simulation(model, {.end = 1}, 1, 1);
     const double early = speed_after(simulation, .5);
     const double late = speed_after(simulation, 1);
@@ -94,7 +94,7 @@ TEST_CASE("a block starts to slide at atan(mu)", "[friction]") {
 TEST_CASE("normal damping keeps the momenta of free bodies", "[friction]") {
   for (const double coefficient : {0., .4}) {
     Model model = collision(coefficient);
-    model.contact.normal_damping = .3;
+    model.contact.damping.normal = .3;
     Simulation simulation(model, {.end = 1}, 1, 1);
     while (simulation.state().time < 1) simulation.step();
     const Momenta p = simulation.momenta();
@@ -226,14 +226,14 @@ TEST_CASE("friction by pair, and none where nobody asks for it", "[friction]") {
     return (2 - speed_after(simulation, .1)) / simulation.state().time;
   };
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .8 * std::cos(.3))).epsilon(1e-6));
-  model.contact.rules.push_back({{{{true, 1}, {false, 0}}}, {.1, 1.25e9}});
+  model.contact.rules.push_back({{{{true, 1}, {false, 0}}}, Friction{.1, 1.25e9}});
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .1 * std::cos(.3))).epsilon(1e-6));
-  model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, {.2, 1e9}});
+  model.contact.rules.push_back({{{{true, 0}, {true, 1}}}, Friction{.2, 1e9}});
   CHECK(slowing() == Approx(kG * (std::sin(.3) + .2 * std::cos(.3))).epsilon(1e-6));
 
   for (const double coefficient : {0., .1}) {
     const ContactLaw law = make_model(coefficient).contact;
-    CHECK(FrictionTable(law, {0, 0}, 1).rough() == (coefficient > 0));
+    CHECK(PairTable(law, {0, 0}, 1).rough() == (coefficient > 0));
   }
 }
 
@@ -255,7 +255,7 @@ TEST_CASE("the ledger of friction and normal damping closes in a landing", "[fri
   // A block that lands nearly flat and turns: the energy error over the kinetic energy.
   const auto error = [](double friction, double damping, double safety) {
     Model model = incline(0, friction, .2, 1.25e9);
-    model.contact.normal_damping = damping;
+    model.contact.damping.normal = damping;
     model.bodies[1].position.y() += 1e-4;
     model.bodies[1].velocity = {.2, -1};
     model.bodies[1].spin = 1;
@@ -296,7 +296,7 @@ TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bod
                         {block, .3, .2, FrictionLaw::per_edge, 1}}) {
     Model model = make_model(c.friction);
     model.gravity = {-3, -kG};
-    model.contact.normal_damping = c.damping;
+    model.contact.damping.normal = c.damping;
     model.contact.friction_law = c.law;
     add(model, "slope", samples::block(-10, -1, 20, 0), Motion::fixed);
     add(model, "block", c.block);
@@ -338,7 +338,7 @@ TEST_CASE("contacts are recorded patch by patch, and their forces sum to the bod
 TEST_CASE("the damping ratio is that of the contact's own oscillation", "[friction]") {
   for (const double ratio : {.02, .1}) {
     Model model = incline(0, 0, 0, 1.25e9);
-    model.contact.normal_damping = ratio;
+    model.contact.damping.normal = ratio;
     model.bodies[1].held = {true, false, true};
     const RigidBody& block = model.bodies[1];
     // Pressure of a flat contact of width w: k_n d (w/r_slope + w/r_block).

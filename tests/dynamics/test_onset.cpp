@@ -185,7 +185,7 @@ TEST_CASE("damped feet that land and leave one after the other lose what the led
   const Ring feet{{-.5, 0}, {-.3, 0}, {-.3, .3}, {.2, .3}, {.2, 0}, {.6, 0}, {.6, .6}, {-.5, .6}};
   const auto model_at = [&](double height) {
     Model model = falling(feet, height, 0, .1);
-    model.contact.normal_damping = .1;
+    model.contact.damping.normal = .1;
     return model;
   };
   const Bounce b = worst_phase(model_at, defaults());
@@ -310,7 +310,7 @@ TEST_CASE("work and precision of one bounce", "[onset]") {
       [&](double height) { return falling(square, height, .5, .3); });
   row("square, flat, damping ratio .3", [&](double height) {
     Model model = falling(square, height);
-    model.contact.normal_damping = .3;
+    model.contact.damping.normal = .3;
     return model;
   });
   row("star of 7 points", [&](double height) { return falling(test::star_ring(7, .5), height); });

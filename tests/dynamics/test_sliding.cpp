@@ -109,7 +109,7 @@ TEST_CASE("blocks of any shape slip at atan(mu) on tilted slopes", "[friction]")
       const double angle = std::atan(coefficient) * share;
       INFO(coefficient << ", " << block.vertices().size() << " vertices, " << share);
       Model model = tilted(angle, coefficient, 0, block);
-      model.contact.normal_damping = .3;
+      model.contact.damping.normal = .3;
       // What can rest does so from the start; the other one slides when its landing is over.
       Simulation simulation(model, {.end = .4, .settled = !slides}, 1, 1);
       while (simulation.state().time < .2) simulation.step();

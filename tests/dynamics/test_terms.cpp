@@ -121,7 +121,7 @@ TEST_CASE("a rigid body alone needs no term", "[terms]") {
   // It has nothing to rub against.
   Model rough = rigid_bodies(1);
   rough.contact.friction = {.3, 1e9};
-  rough.contact.normal_damping = .1;
+  rough.contact.damping.normal = .1;
   CHECK(terms_of(rough).empty());
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("two rigid bodies need contact only, with friction and without", "[ter
   Model model = rigid_bodies(2);
   CHECK(terms_of(model) == Names{"contact"});
   model.contact.friction = {.3, 1e9};
-  model.contact.normal_damping = .1;
+  model.contact.damping.normal = .1;
   CHECK(terms_of(model) == Names{"contact"});
 }
 
@@ -187,10 +187,10 @@ TEST_CASE("contact says how it is rough and damped", "[terms]") {
   };
   CHECK(text() == "contact of 2 surfaces, distance potential, k_n = 2e+10 Pa; no friction");
   model.contact.friction = {.3, 1e9};
-  model.contact.normal_damping = .1;
+  model.contact.damping.normal = .1;
   CHECK(text() ==
-        "contact of 2 surfaces, distance potential, k_n = 2e+10 Pa; friction, mu = 0.3, 0 rules by "
-        "pair; normal viscous damping, ratio 0.1");
+        "contact of 2 surfaces, distance potential, k_n = 2e+10 Pa; friction, mu = 0.3; "
+        "viscous damping, ratios 0.1 and 0");
 }
 
 TEST_CASE("a term of one's own is asked in the order of the step", "[terms]") {

@@ -62,6 +62,8 @@ struct FeatureTrial {
 using F = Feature;
 const char* const kMotion = R"({ "velocity": [[0, 1, 0]] })";
 const char* const kMassDamping = R"({ "model": "mass", "rate": 1 })";
+const char* const kSmoothPair =
+    R"([ { "between": ["floor", "block"], "friction": { "coefficient": 0 } } ])";
 const std::vector<FeatureTrial> kTrials{
     {F::field,
      F::area_potential,
@@ -173,7 +175,11 @@ const std::vector<FeatureTrial> kTrials{
      kStatic,
      {{"/contact/friction", R"({ "coefficient": 1, "tangential_stiffness": 1e9 })"}},
      "/contact/friction"},
-    {F::friction_of_pairs, F::static_run, kStatic, {{"/contact/pairs", "[]"}}, "/contact/pairs"},
+    {F::friction_of_pairs,
+     F::static_run,
+     kStatic,
+     {{"/contact/pairs", kSmoothPair}},
+     "/contact/pairs/0/friction"},
     {F::element_surface,
      F::static_run,
      kStatic,
@@ -192,12 +198,13 @@ const std::vector<FeatureTrial> kTrials{
        R"({ "coefficient": 1, "tangential_stiffness": 1e9, "law": "resultant" })"},
       {"/contact/friction/law", "\"per_edge\""}},
      "/contact/friction/law"},
-    {F::normal_viscous_damping,
-     F::mesh_in_every_contact,
-     kMeshed,
-     {{"/contact/damping", kMassDamping},
-      {"/contact/damping", R"({ "model": "normal_viscous", "ratio": 0.1 })"}},
-     "/contact/damping"},
+    {F::viscous_damping,
+     F::per_edge_friction,
+     kRigid,
+     {{"/contact/friction",
+       R"({ "coefficient": 1, "tangential_stiffness": 1e9, "law": "per_edge" })"},
+      {"/contact/damping", R"({ "model": "viscous", "ratio": 0.1 })"}},
+     "/contact/damping/ratio"},
     {F::area_potential,
      F::outline_in_every_contact,
      kMeshed,
@@ -286,7 +293,6 @@ TEST_CASE("an unsupported pair is called so, with a remedy", "[scene]") {
 TEST_CASE("what is for rigid bodies only may stand where two of them can meet", "[scene]") {
   for (const Change& change :
        {Change{"/contact/potential", "\"area\""},
-        {"/contact/damping", R"({ "model": "normal_viscous", "ratio": 0.1 })"},
         {"/contact/friction",
          R"({ "coefficient": 1, "tangential_stiffness": 1e9, "law": "per_edge" })"}}) {
     INFO(change.pointer);

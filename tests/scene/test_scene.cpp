@@ -111,7 +111,7 @@ const std::vector<Broken> kBroken{
      "\"resultant\" needs \"surface\": \"element\"", false},
     {"\"reference\": \"roof\"", "\"surface\": \"element\", \"distribution\": \"variational\"",
      ":5: /contact/distribution", "\"variational\" needs \"surface\": \"body\"", false},
-    {"\"reference\": \"roof\"", "\"damping\": { \"model\": \"viscous\" }",
+    {"\"reference\": \"roof\"", "\"damping\": { \"model\": \"sticky\" }",
      ":5: /contact/damping/model", "unknown choice"},
     {"\"reference\": \"roof\"", "\"damping\": { \"model\": \"mass\", \"ratio\": 1 }",
      ":5: /contact/damping", "\"rate\"", false},
@@ -235,16 +235,12 @@ const std::vector<Broken> kBrokenMeshed{
      "\"coefficient\": 0.5, \"tangential_stiffness\": 1 } },\n  \"bodies\"",
      ":3: /contact/friction/law", "rigid bodies only", false},
     {"  \"bodies\"",
-     "  \"contact\": { \"normal_stiffness\": 1, \"damping\": { \"model\": \"normal_viscous\", "
-     "\"ratio\": 0.1 } },\n  \"bodies\"",
-     ":3: /contact/damping", "between rigid bodies only", false},
-    {"  \"bodies\"",
      "  \"contact\": { \"normal_stiffness\": 1, \"potential\": \"area\" },\n  \"bodies\"",
      ":3: /contact/potential", "use \"distance\"", false},
     {"  \"bodies\"",
      "  \"contact\": { \"normal_stiffness\": 1, \"pairs\": [ { \"between\": [\"rock\", \"beam\"], "
-     "\"friction\": { \"coefficient\": 0 }, \"normal_stiffness\": 2 } ] },\n  \"bodies\"",
-     ":3: /contact/pairs/0/normal_stiffness", "unknown key", false},
+     "\"friction\": { \"coefficient\": 0 }, \"reference\": 2 } ] },\n  \"bodies\"",
+     ":3: /contact/pairs/0/reference", "unknown key", false},
     {"\"time\": { \"end\": 1 }", "\"time\": { \"end\": 1, \"start\": \"settled\" }",
      ":10: /time/start", "rigid bodies only", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
@@ -496,7 +492,7 @@ TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
        "\"contact\": { \"normal_stiffness\": 1e9, \"pairs\": [ { \"between\": [\"rock\", "
        "\"rock\"], "
        "\"friction\": { \"coefficient\": 0 } } ] }, \"bodies\": [",
-       "/contact/pairs: is not supported yet in a static run"},
+       "/contact/pairs/0/friction: is not supported yet in a static run"},
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"surface\": \"element\" }, \"bodies\": [",
        "/contact/surface: is not supported yet in a static run"},

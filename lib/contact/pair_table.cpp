@@ -1,9 +1,11 @@
-#include "apothem/contact/friction_table.hpp"
+#include "apothem/contact/pair_table.hpp"
+
+#include <algorithm>
 
 namespace apothem {
 
-FrictionTable::FrictionTable(const ContactLaw& law, const std::vector<MaterialIndex>& material,
-                             int materials) {
+PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& material,
+                     int materials) {
   std::vector<char> named(material.size());
   for (const ContactRule& rule : law.rules) {
     for (const ContactRule::Party& party : rule.between) {
@@ -21,8 +23,12 @@ FrictionTable::FrictionTable(const ContactLaw& law, const std::vector<MaterialIn
   kinds_ = first.size();
   for (const BodyIndex a : first) {
     for (const BodyIndex b : first) {
-      table_.push_back(friction_between(law, a, material[a], b, material[b]));
-      rough_ = rough_ || table_.back().coefficient > 0;
+      table_.push_back(law_between(law, a, material[a], b, material[b]));
+      const PairLaw& pair = table_.back();
+      rough_ = rough_ || pair.friction.coefficient > 0;
+      damped_ = damped_ || pair.damping.normal > 0 || pair.damping.tangential > 0;
+      stiffest_ = std::max(stiffest_, pair.normal_stiffness);
+      softest_ = std::min(softest_, pair.normal_stiffness);
     }
   }
 }

@@ -1,0 +1,37 @@
+// The contact law between any two bodies of a scene.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "apothem/contact/law.hpp"
+#include "apothem/mesh/indices.hpp"
+
+namespace apothem {
+
+class PairTable {
+ public:
+  /// `material` of each body, `materials` how many there are. Bodies of one material share a row,
+  /// unless a rule names them.
+  PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& material, int materials);
+
+  [[nodiscard]] const PairLaw& between(BodyIndex a, BodyIndex b) const {
+    return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
+  }
+  /// True if there is friction between any two bodies.
+  [[nodiscard]] bool rough() const { return rough_; }
+  /// True if there is viscous damping between any two bodies.
+  [[nodiscard]] bool damped() const { return damped_; }
+  /// The largest and the smallest normal stiffness between any two bodies, Pa.
+  [[nodiscard]] double stiffest() const { return stiffest_; }
+  [[nodiscard]] double softest() const { return softest_; }
+
+ private:
+  std::vector<int> kind_;  // of each body
+  size_t kinds_ = 0;
+  std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
+  bool rough_ = false, damped_ = false;
+  double stiffest_ = 0, softest_ = HUGE_VAL;
+};
+
+}  // namespace apothem
