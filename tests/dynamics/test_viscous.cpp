@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "archive/saved.hpp"
 #include "dynamics/surface_models.hpp"
@@ -112,6 +114,9 @@ TEST_CASE("what should stick rests on a slope, and slides beyond its limit", "[v
     CHECK((momentum() - before) / (simulation.state().time - since) ==
           Approx(expected).epsilon(.02));
   } else {
+    if (long_run()) {
+      fmt::print("{}: rest {:.1e} m/s\n", static_cast<int>(kind), std::abs(momentum()));
+    }
     CHECK(std::abs(momentum()) < 1e-6);
     CHECK(simulation.energies().kinetic < 1e-9);
   }
