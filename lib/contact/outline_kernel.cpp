@@ -10,7 +10,9 @@ namespace apothem {
 namespace {
 
 constexpr double kCandidateTime = 40;  // ns
-constexpr double kRound = 1e-9;        // more than the round-off of an area, relative
+constexpr double kInsideTop = 2;       // share of a contact that is not with a face
+constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth, unless the body is
+                                       // squeezed to less than the collar
 
 // A bound of the distance from the boundary over the height in a face, which reaches beyond the end
 // of its edge at a reflex vertex.
@@ -27,12 +29,13 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double 
       stiffness_(stiffness * thickness),
       thickness_(thickness),
       threads_(threads),
+      plateaus_(outlines),
       onset_(outlines, slope_) {
   const auto n = static_cast<size_t>(outlines.size());
   for (const Outlines::Body& body : outlines.bodies) {
     slope_.resize(static_cast<size_t>(body.end), stiffness_ / body.reference);
   }
-  fx_.resize(n), fy_.resize(n), ends_.resize(2 * n), areas_.resize(n);
+  fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
   if (table.rough()) friction_.emplace(outlines, table, slope_, thickness);
 }
 
@@ -43,6 +46,7 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
     find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
+  plateaus_.take(pairs);
 }
 
 // Edges of a, faces of b: sweep along the longer side of the common region.
@@ -82,31 +86,32 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
 
 void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
-  const size_t first = contacts.size();
   contacts_.clear();
   std::fill(ends_.begin(), ends_.end(), 0.);
-  std::fill(areas_.begin(), areas_.end(), 0.);
+  plateaus_.begin();
   const int count = static_cast<int>(candidates_.size());
-  const auto find_piece = [&](int c, CollarPiece<double>& piece) {
+  const auto find = [&](int c, Met& found) {
     const auto [e, f] = candidates_[c];
     const int q = o.next[e];
-    return collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece);
+    found.top.count = 0;
+    found.met = collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], found.piece, found.top);
+  };
+  const auto use = [&](int c, const Met& found) {
+    if (!found.met) return;
+    add_contact(candidates_[c], found.piece, contacts);
+    plateaus_.add(candidates_[c], found.top);
   };
   if (!threads_.worth(count, kCandidateTime)) {
-    CollarPiece<double> piece;
-    for (int c = 0; c < count; ++c) {
-      if (find_piece(c, piece)) add_contact(candidates_[c], piece, contacts);
-    }
+    Met found;
+    for (int c = 0; c < count; ++c) find(c, found), use(c, found);
   } else {
-    pieces_.resize(count), met_.resize(count);
+    met_.resize(count);
     threads_.chunks(count, kCandidateTime, [&](int begin, int end, int) {
-      for (int c = begin; c < end; ++c) met_[c] = find_piece(c, pieces_[c]);
+      for (int c = begin; c < end; ++c) find(c, met_[c]);
     });
-    for (int c = 0; c < count; ++c) {
-      if (met_[c]) add_contact(candidates_[c], pieces_[c], contacts);
-    }
+    for (int c = 0; c < count; ++c) use(c, met_[c]);
   }
-  find_complements(std::span(contacts).subspan(first));
+  add_plateaus(contacts);
   for (int i = 0; i < o.size(); ++i) {
     const int p = o.previous[i];
     const double own = ends_[2 * i], before = ends_[2 * p + 1];
@@ -125,21 +130,31 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   ends_[2 * f] += force.face_start;
   ends_[2 * f + 1] += force.face_end;
 
-  areas_[f] += p.area;
-  const double share = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
   if (!(p.deepest <= 0)) {
+    const double surely = std::min(p.deepest, kSurelyDepth * o.depth[f]);
     contacts_.emplace_back(e, f, p);
-    contacts.push_back({outline_kernel, e, f, p.deepest, p.deepest * depth_ratio(o.face(f)), share,
+    contacts.push_back({outline_kernel, e, f, surely, p.deepest * depth_ratio(o.face(f)),
+                        std::min(1., p.deepest / o.depth[f]),
                         slope_[f] * o.length[e] * (p.to - p.from)});
   }
 }
 
-// Where a body contains the end of a collar without its outline crossing it, Green's theorem has
-// taken the complement: such contacts are beyond the collar as well.
-void OutlineKernel::find_complements(std::span<Contact> contacts) const {
+// An edge inside the top of a body is a contact with that body, and has the first face of its
+// outline for it.
+void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
-  for (Contact& c : contacts) {
-    if (areas_[c.b] < -kRound * o.length[c.b] * o.depth[c.b]) c.share = 1;
+  plateaus_.evaluate();
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = o.bodies[on.in].first;
+    const double force = slope_[f] * o.depth[f] * o.length[on.edge];
+    ends_[2 * on.edge] += force * (on.sum - on.first);
+    ends_[2 * on.edge + 1] += force * on.first;
+    contacts.push_back({outline_kernel, on.edge, f, 0, HUGE_VAL, kInsideTop, 0});
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    const double end = slope_[on.face] * on.moment.along / o.length[on.face];
+    ends_[2 * on.face] += slope_[on.face] * on.moment.area - end;
+    ends_[2 * on.face + 1] += end;
   }
 }
 
@@ -157,29 +172,26 @@ void OutlineKernel::add_boundary(BodyIndex b, BoundaryDistance& boundary) const 
   }
 }
 
-double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
+double OutlineKernel::deepest_in(int edge, double from, double to, double floor,
                                  BoundaryDistance& boundary) const {
-  const Vec2 start = outlines_.point(c.edge);
-  const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
-  return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
+  const Vec2 start = outlines_.point(edge);
+  const Vec2 along = outlines_.point(outlines_.next[edge]) - start;
+  return boundary.largest(start + from * along, start + to * along, floor);
 }
 
 double OutlineKernel::penetration(const Contact& c, double floor) {
   boundary_.clear();
   add_boundary(outlines_.body[c.b], boundary_);
-  return deepest_in(edge_face(c), floor, boundary_);
-}
-
-ContactFault OutlineKernel::fault(const Contact& c) const {
-  const Outlines& o = outlines_;
-  const CollarPiece<double>& piece = edge_face(c).piece;
-  const double u = (piece.from + piece.to) / 2;
-  return {ContactFault::Kind::collar,
-          o.body[c.a],
-          o.body[c.b],
-          o.point(c.a) + u * (o.point(o.next[c.a]) - o.point(c.a)),
-          0,
-          o.depth[c.b]};
+  if (c.share <= 1) {
+    const CollarPiece<double>& piece = edge_face(c).piece;
+    return deepest_in(c.a, piece.from, piece.to, floor, boundary_);
+  }
+  double deepest = floor;
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    if (on.edge != c.a || on.in != outlines_.body[c.b]) continue;
+    deepest = deepest_in(on.edge, on.from, on.to, deepest, boundary_);
+  }
+  return deepest;
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -231,6 +243,13 @@ Resultant OutlineKernel::resultant(BodyIndex body) const {
 double OutlineKernel::energy() const {
   double sum = 0;
   for (const EdgeFaceContact& c : contacts_) sum += slope_[c.face] * c.piece.height;
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = outlines_.bodies[on.in].first;
+    sum += slope_[f] * outlines_.depth[f] * on.swept;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    sum += slope_[on.face] * (on.moment.height + outlines_.depth[on.face] * on.swept);
+  }
   return sum;
 }
 
@@ -286,6 +305,13 @@ void OutlineKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
       record[k].traction -= friction_->shares()[i] / (o.length[k] * thickness_);
     }
   }
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = o.bodies[on.in].first;
+    record[on.edge].pressure += slope_[f] * o.depth[f] / thickness_ * on.sum;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    record[on.face].pressure += slope_[on.face] / thickness_ * on.moment.area / o.length[on.face];
+  }
 }
 
 // The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
@@ -327,21 +353,76 @@ std::vector<int> OutlineKernel::patches() const {
   return groups.numbers(keys);
 }
 
+// Each edge and face inside a top belongs to the patch of a contact of its own, or else to that of
+// the last one before it along the outline, or else to the first one of both bodies.
+void OutlineKernel::add_plateau_records(std::span<const int> patch, std::vector<PatchSum>& found,
+                                        std::vector<BoundaryDistance>& boundaries) const {
+  const Outlines& o = outlines_;
+  int last = -1;
+  BodyIndex last_own = -1, last_in = -1;
+  const auto patch_of = [&](int own, BodyIndex in, bool edge) {
+    int first = -1;
+    for (size_t i = 0; i < contacts_.size(); ++i) {
+      const auto [e, f] = edge ? std::pair(contacts_[i].edge, contacts_[i].face)
+                               : std::pair(contacts_[i].face, contacts_[i].edge);
+      if (e == own && o.body[f] == in) return patch[i];
+      if (first < 0 && std::minmax(o.body[e], o.body[f]) == std::minmax(o.body[own], in)) {
+        first = patch[i];
+      }
+    }
+    if (last >= 0 && last_own == o.body[own] && last_in == in) return last;
+    if (first >= 0) return first;
+    for (size_t i = 0; i < found.size(); ++i) {
+      const ContactRecord& r = found[i].record;
+      if (std::minmax(r.a, r.b) == std::minmax(o.body[own], in)) return static_cast<int>(i);
+    }
+    found.emplace_back();
+    std::tie(found.back().record.a, found.back().record.b) = std::minmax(o.body[own], in);
+    return static_cast<int>(found.size()) - 1;
+  };
+  const auto sum_of = [&](int own, BodyIndex in, bool edge) -> PatchSum& {
+    last = patch_of(own, in, edge);
+    last_own = o.body[own], last_in = in;
+    return found[static_cast<size_t>(last)];
+  };
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    PatchSum& sum = sum_of(on.edge, on.in, true);
+    const int f = o.bodies[on.in].first;
+    const double force = slope_[f] * o.depth[f] * on.sum * o.length[on.edge];
+    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
+    if (o.body[on.edge] == sum.record.a) sum.record.normal += force * inward;
+    const double u = on.sum > 0 ? on.first / on.sum : 0;
+    const Vec2 start = o.point(on.edge);
+    sum.record.point += force * (start + u * (o.point(o.next[on.edge]) - start));
+    sum.weight += force;
+    sum.deepest = std::max(sum.deepest, o.depth[f]);
+    BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
+    if (boundary.empty()) add_boundary(on.in, boundary);
+    sum.record.penetration = deepest_in(on.edge, on.from, on.to, sum.record.penetration, boundary);
+  }
+  last = -1;
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    PatchSum& sum = sum_of(on.face, on.in, false);
+    if (o.body[on.face] != sum.record.a) continue;
+    sum.record.normal += slope_[on.face] * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
+  }
+}
+
 void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
                                 std::vector<ContactRecord>& records) const {
   const Outlines& o = outlines_;
   const std::vector<int> patch = patches();
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<ContactRecord> found(static_cast<size_t>(count));
-  std::vector<double> weights(found.size()), deepest(found.size());
+  std::vector<PatchSum> found(static_cast<size_t>(count));
   std::vector<BoundaryDistance> boundaries(o.bodies.size());
   for (size_t i = 0; i < contacts_.size(); ++i) {
     const auto& [edge, face, p] = contacts_[i];
-    ContactRecord& sum = found[static_cast<size_t>(patch[i])];
+    PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
+    ContactRecord& sum = of_patch.record;
     const BodyIndex own = o.body[edge];
     BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
     if (boundary.empty()) add_boundary(o.body[face], boundary);
-    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
+    sum.penetration = deepest_in(edge, p.from, p.to, sum.penetration, boundary);
     std::tie(sum.a, sum.b) = std::minmax(own, o.body[face]);
     const double force = slope_[face] * p.sum * o.length[edge];
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
@@ -351,20 +432,22 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     sum.normal += own == sum.a ? Vec2(force * inward) : Vec2(area * gives);
     const double u = p.sum > 0 ? p.first / p.sum : 0;
     sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
-    weights[static_cast<size_t>(patch[i])] += force;
-    double& deep = deepest[static_cast<size_t>(patch[i])];
-    deep = std::max(deep, p.deepest);
+    of_patch.weight += force;
+    of_patch.deepest = std::max(of_patch.deepest, p.deepest);
     if (friction_) {
       const double along = friction_->shares()[i];
       sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
     }
   }
-  for (size_t i = 0; i < found.size(); ++i) {
-    ContactRecord& sum = found[i];
-    if (weights[i] > 0) sum.point /= weights[i];
-    sum.phi = deepest[i] * std::max(o.bodies[sum.a].slope(), o.bodies[sum.b].slope());
+  add_plateau_records(patch, found, boundaries);
+  std::ranges::stable_sort(
+      found, {}, [](const PatchSum& sum) { return std::pair(sum.record.a, sum.record.b); });
+  for (PatchSum& sum : found) {
+    if (sum.weight > 0) sum.record.point /= sum.weight;
+    const BodyIndex a = sum.record.a, b = sum.record.b;
+    sum.record.phi = sum.deepest * std::max(o.bodies[a].slope(), o.bodies[b].slope());
+    records.push_back(sum.record);
   }
-  records.insert(records.end(), found.begin(), found.end());
 }
 
 }  // namespace apothem

@@ -29,8 +29,9 @@ std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
       const bool rigid = o.bodies[o.body[e]].is_rigid() && o.bodies[o.body[f]].is_rigid();
       if (o.body[e] == o.body[f] || rigid) continue;
       CollarPiece<double> piece;
+      CollarCrossings<double> top;
       const int q = o.next[e];
-      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece) && piece.deepest > 0)
+      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, top) && piece.deepest > 0)
         pairs.emplace(e, f);
     }
   }

@@ -42,8 +42,9 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, const double* depths)
                                    a.x,    a.y,    b.x,    b.y,    depths[i], depths[p], depths[q]};
     for (size_t e = 0; e < m; ++e) {
       CollarPiece<Complex> piece;
+      CollarCrossings<Complex> top;
       const size_t g = (e + 1) % m;
-      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece)) sum += piece.height;
+      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, top)) sum += piece.height;
     }
   }
   return sum;
@@ -278,10 +279,11 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
 
 TEST_CASE("NaN is never a miss", "[collar]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .5, .5};
+  const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .4};
   CollarPiece<double> piece;
-  CHECK(collar_piece(face, nan, .1, .5, .1, piece));
-  CHECK(collar_piece(face, .5, .1, .5, nan, piece));
+  CollarCrossings<double> top;
+  CHECK(collar_piece(face, nan, .1, .5, .1, piece, top));
+  CHECK(collar_piece(face, .5, .1, .5, nan, piece, top));
   CHECK(std::isnan(piece.sum));
-  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece));
+  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, top));
 }
