@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/spatial/groups.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 constexpr double kCandidateTime = 40;  // ns
 constexpr double kInsideTop = 2;       // share of a contact that is not with a face
-constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth, unless the body is
-                                       // squeezed to less than the collar
+constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth in a plain face,
+                                       // unless the body is squeezed to less than the collar
 
 // A bound of the distance from the boundary over the height in a face, which reaches beyond the end
 // of its edge at a reflex vertex.
@@ -131,7 +132,7 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   ends_[2 * f + 1] += force.face_end;
 
   if (!(p.deepest <= 0)) {
-    const double surely = std::min(p.deepest, kSurelyDepth * o.depth[f]);
+    const double surely = is_depth(f, p) ? p.deepest : 0;
     contacts_.emplace_back(e, f, p);
     contacts.push_back({outline_kernel, e, f, surely, p.deepest * depth_ratio(o.face(f)),
                         std::min(1., p.deepest / o.depth[f]),
@@ -155,6 +156,7 @@ void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
     const double end = slope_[on.face] * on.moment.along / o.length[on.face];
     ends_[2 * on.face] += slope_[on.face] * on.moment.area - end;
     ends_[2 * on.face + 1] += end;
+    contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
 
@@ -172,26 +174,50 @@ void OutlineKernel::add_boundary(BodyIndex b, BoundaryDistance& boundary) const 
   }
 }
 
-double OutlineKernel::deepest_in(int edge, double from, double to, double floor,
+// False if the height in a face need not be a depth, or the piece may even be outside the body,
+// because faces overlap there.
+bool OutlineKernel::is_depth(int face, const CollarPiece<double>& piece) const {
+  return piece.deepest <= std::min(outlines_.plain[face], kSurelyDepth * outlines_.depth[face]);
+}
+
+double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
                                  BoundaryDistance& boundary) const {
-  const Vec2 start = outlines_.point(edge);
-  const Vec2 along = outlines_.point(outlines_.next[edge]) - start;
-  return boundary.largest(start + from * along, start + to * along, floor);
+  if (!is_depth(c.face, c.piece))
+    return deepest_inside(c.edge, outlines_.body[c.face], floor, boundary);
+  const Vec2 start = outlines_.point(c.edge);
+  const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
+  return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
+}
+
+// Of all parts of an edge that are inside a body.
+double OutlineKernel::deepest_inside(int edge, BodyIndex in, double floor,
+                                     BoundaryDistance& boundary) const {
+  const Outlines& o = outlines_;
+  const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
+  std::vector<double> ends{0, 1};
+  const Outlines::Body& body = o.bodies[in];
+  for (int i = body.first; i < body.end; ++i) {
+    const Vec2 from = o.point(i) - start, to = o.point(o.next[i]) - start;
+    const double p = cross(along, from), q = cross(along, to);
+    if ((p > 0) == (q > 0)) continue;
+    const Vec2 place = from + p / (p - q) * (to - from);
+    ends.push_back(std::clamp(place.dot(along) / along.squaredNorm(), 0., 1.));
+  }
+  std::ranges::sort(ends);
+  double deepest = floor;
+  for (size_t i = 1; i < ends.size(); ++i) {
+    if (!(ends[i] > ends[i - 1])) continue;
+    const Vec2 from = start + ends[i - 1] * along, to = start + ends[i] * along;
+    if (o.winding((from + to) / 2, in) != 0) deepest = boundary.largest(from, to, deepest);
+  }
+  return deepest;
 }
 
 double OutlineKernel::penetration(const Contact& c, double floor) {
   boundary_.clear();
   add_boundary(outlines_.body[c.b], boundary_);
-  if (c.share <= 1) {
-    const CollarPiece<double>& piece = edge_face(c).piece;
-    return deepest_in(c.a, piece.from, piece.to, floor, boundary_);
-  }
-  double deepest = floor;
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    if (on.edge != c.a || on.in != outlines_.body[c.b]) continue;
-    deepest = deepest_in(on.edge, on.from, on.to, deepest, boundary_);
-  }
-  return deepest;
+  return c.share <= 1 ? deepest_in(edge_face(c), floor, boundary_)
+                      : deepest_inside(c.a, outlines_.body[c.b], floor, boundary_);
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -315,7 +341,7 @@ void OutlineKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
 }
 
 // The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
-// outline.
+// outline, or goes on inside the top.
 std::vector<int> OutlineKernel::patches() const {
   const Outlines& o = outlines_;
   const auto from = [&](int edge, int face) {
@@ -324,88 +350,69 @@ std::vector<int> OutlineKernel::patches() const {
                               return std::pair(c.edge, c.face) < key;
                             });
   };
-  Groups groups(contacts_.size());
+  const std::vector<OutlinePlateaus::Edge>& edges = plateaus_.edges();
+  const std::vector<OutlinePlateaus::Face>& faces = plateaus_.faces();
+  const int first_edge = static_cast<int>(contacts_.size());
+  const int first_face = first_edge + static_cast<int>(edges.size());
+  Groups groups(contacts_.size() + edges.size() + faces.size());
   std::vector<std::pair<int, int>> keys;
-  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+  const auto each = [&](int edge, BodyIndex in, auto&& f) {
+    const Outlines::Body& body = o.bodies[in];
+    for (auto it = from(edge, body.first);
+         it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
+      f(static_cast<int>(it - contacts_.begin()));
+    }
+  };
+  for (int i = 0; i < first_edge; ++i) {
     const EdgeFaceContact& c = contacts_[i];
     keys.push_back(std::minmax(o.body[c.edge], o.body[c.face]));
-    const auto join = [&](auto other) {
-      groups.join(i, static_cast<int>(other - contacts_.begin()));
-    };
     const auto back = from(c.face, c.edge);
-    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) join(back);
-    const Outlines::Body& body = o.bodies[o.body[c.face]];
-    const auto each = [&](int edge, auto&& goes_on) {
-      for (auto it = from(edge, body.first);
-           it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
-        if (goes_on(*it)) join(it);
+    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) {
+      groups.join(i, static_cast<int>(back - contacts_.begin()));
+    }
+    each(c.edge, o.body[c.face], [&](int k) {
+      const EdgeFaceContact& d = contacts_[k];
+      if ((d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
+          d.piece.from <= c.piece.to && c.piece.from <= d.piece.to) {
+        groups.join(i, k);
       }
-    };
-    const bool to_end = c.piece.to >= 1;
-    each(c.edge, [&](const EdgeFaceContact& d) {
-      return (d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
-             d.piece.from <= c.piece.to && c.piece.from <= d.piece.to;
     });
-    if (to_end) {
-      each(o.next[c.edge], [](const EdgeFaceContact& d) { return d.piece.from <= 0; });
+    if (c.piece.to >= 1) {
+      each(o.next[c.edge], o.body[c.face], [&](int k) {
+        if (contacts_[k].piece.from <= 0) groups.join(i, k);
+      });
+    }
+  }
+  // Inside tops: by the numbers of edges and faces, and the body they are in.
+  std::map<std::pair<int, BodyIndex>, int> edge_at, face_at;
+  for (int i = first_edge; i < first_face; ++i) {
+    const OutlinePlateaus::Edge& on = edges[i - first_edge];
+    keys.push_back(std::minmax(o.body[on.edge], on.in));
+    edge_at[{on.edge, on.in}] = i;
+    each(on.edge, on.in, [&](int k) { groups.join(i, k); });
+  }
+  for (size_t k = 0; k < faces.size(); ++k) {
+    const OutlinePlateaus::Face& on = faces[k];
+    keys.push_back(std::minmax(o.body[on.face], on.in));
+    face_at[{on.face, on.in}] = first_face + static_cast<int>(k);
+  }
+  const auto join_at = [&](const auto& at, int i, int number, BodyIndex in) {
+    if (const auto it = at.find({number, in}); it != at.end()) groups.join(i, it->second);
+  };
+  for (int i = first_edge; i < first_face; ++i) {
+    const OutlinePlateaus::Edge& on = edges[i - first_edge];
+    join_at(edge_at, i, o.next[on.edge], on.in);
+    join_at(face_at, i, on.edge, on.in);
+  }
+  for (size_t k = 0; k < faces.size(); ++k) {
+    join_at(face_at, first_face + static_cast<int>(k), o.next[faces[k].face], faces[k].in);
+  }
+  if (!face_at.empty()) {
+    for (int i = 0; i < first_edge; ++i) {
+      join_at(face_at, i, contacts_[i].face, o.body[contacts_[i].edge]);
     }
   }
   return groups.numbers(keys);
-}
-
-// Each edge and face inside a top belongs to the patch of a contact of its own, or else to that of
-// the last one before it along the outline, or else to the first one of both bodies.
-void OutlineKernel::add_plateau_records(std::span<const int> patch, std::vector<PatchSum>& found,
-                                        std::vector<BoundaryDistance>& boundaries) const {
-  const Outlines& o = outlines_;
-  int last = -1;
-  BodyIndex last_own = -1, last_in = -1;
-  const auto patch_of = [&](int own, BodyIndex in, bool edge) {
-    int first = -1;
-    for (size_t i = 0; i < contacts_.size(); ++i) {
-      const auto [e, f] = edge ? std::pair(contacts_[i].edge, contacts_[i].face)
-                               : std::pair(contacts_[i].face, contacts_[i].edge);
-      if (e == own && o.body[f] == in) return patch[i];
-      if (first < 0 && std::minmax(o.body[e], o.body[f]) == std::minmax(o.body[own], in)) {
-        first = patch[i];
-      }
-    }
-    if (last >= 0 && last_own == o.body[own] && last_in == in) return last;
-    if (first >= 0) return first;
-    for (size_t i = 0; i < found.size(); ++i) {
-      const ContactRecord& r = found[i].record;
-      if (std::minmax(r.a, r.b) == std::minmax(o.body[own], in)) return static_cast<int>(i);
-    }
-    found.emplace_back();
-    std::tie(found.back().record.a, found.back().record.b) = std::minmax(o.body[own], in);
-    return static_cast<int>(found.size()) - 1;
-  };
-  const auto sum_of = [&](int own, BodyIndex in, bool edge) -> PatchSum& {
-    last = patch_of(own, in, edge);
-    last_own = o.body[own], last_in = in;
-    return found[static_cast<size_t>(last)];
-  };
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    PatchSum& sum = sum_of(on.edge, on.in, true);
-    const int f = o.bodies[on.in].first;
-    const double force = slope_[f] * o.depth[f] * on.sum * o.length[on.edge];
-    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
-    if (o.body[on.edge] == sum.record.a) sum.record.normal += force * inward;
-    const double u = on.sum > 0 ? on.first / on.sum : 0;
-    const Vec2 start = o.point(on.edge);
-    sum.record.point += force * (start + u * (o.point(o.next[on.edge]) - start));
-    sum.weight += force;
-    sum.deepest = std::max(sum.deepest, o.depth[f]);
-    BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
-    if (boundary.empty()) add_boundary(on.in, boundary);
-    sum.record.penetration = deepest_in(on.edge, on.from, on.to, sum.record.penetration, boundary);
-  }
-  last = -1;
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    PatchSum& sum = sum_of(on.face, on.in, false);
-    if (o.body[on.face] != sum.record.a) continue;
-    sum.record.normal += slope_[on.face] * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
-  }
 }
 
 void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
@@ -422,7 +429,7 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     const BodyIndex own = o.body[edge];
     BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
     if (boundary.empty()) add_boundary(o.body[face], boundary);
-    sum.penetration = deepest_in(edge, p.from, p.to, sum.penetration, boundary);
+    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
     std::tie(sum.a, sum.b) = std::minmax(own, o.body[face]);
     const double force = slope_[face] * p.sum * o.length[edge];
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
@@ -439,9 +446,30 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
       sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
     }
   }
-  add_plateau_records(patch, found, boundaries);
-  std::ranges::stable_sort(
-      found, {}, [](const PatchSum& sum) { return std::pair(sum.record.a, sum.record.b); });
+  size_t next = contacts_.size();
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
+    ContactRecord& sum = of_patch.record;
+    std::tie(sum.a, sum.b) = std::minmax(o.body[on.edge], on.in);
+    const int f = o.bodies[on.in].first;
+    const double force = slope_[f] * o.depth[f] * on.sum * o.length[on.edge];
+    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
+    if (o.body[on.edge] == sum.a) sum.normal += force * inward;
+    const double u = on.sum > 0 ? on.first / on.sum : 0;
+    const Vec2 start = o.point(on.edge);
+    sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
+    of_patch.weight += force;
+    of_patch.deepest = std::max(of_patch.deepest, o.depth[f]);
+    BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
+    if (boundary.empty()) add_boundary(on.in, boundary);
+    sum.penetration = deepest_inside(on.edge, on.in, sum.penetration, boundary);
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    ContactRecord& sum = found[static_cast<size_t>(patch[next++])].record;
+    std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
+    if (o.body[on.face] != sum.a) continue;
+    sum.normal += slope_[on.face] * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
+  }
   for (PatchSum& sum : found) {
     if (sum.weight > 0) sum.record.point /= sum.weight;
     const BodyIndex a = sum.record.a, b = sum.record.b;

@@ -56,13 +56,13 @@ class OutlineKernel final : public Kernel {
     ContactRecord record;
     double weight = 0, deepest = 0;
   };
-  void add_plateau_records(std::span<const int> patch, std::vector<PatchSum>& found,
-                           std::vector<BoundaryDistance>& boundaries) const;
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   void add_boundary(BodyIndex body, BoundaryDistance& boundary) const;
-  /// The deepest point of the part of an edge between `from` and `to`.
-  [[nodiscard]] double deepest_in(int edge, double from, double to, double floor,
+  [[nodiscard]] bool is_depth(int face, const CollarPiece<double>& piece) const;
+  [[nodiscard]] double deepest_in(const EdgeFaceContact& contact, double floor,
                                   BoundaryDistance& boundary) const;
+  [[nodiscard]] double deepest_inside(int edge, BodyIndex in, double floor,
+                                      BoundaryDistance& boundary) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
@@ -70,7 +70,8 @@ class OutlineKernel final : public Kernel {
   void add_plateaus(std::vector<Contact>& contacts);
   [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
                               std::span<const double> fy) const;
-  /// The number of each contact's patch; ascending pairs of bodies. Not for every step.
+  /// The number of the patch of each contact, then of each edge and each face of the plateaus;
+  /// ascending pairs of bodies. Not for every step.
   [[nodiscard]] std::vector<int> patches() const;
 
   const Outlines& outlines_;

@@ -7,8 +7,7 @@
 namespace apothem {
 namespace {
 
-constexpr int kTrials = 16;      // vertices of a line that are tried as its base
-constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+constexpr int kTrials = 16;  // vertices of a line that are tried as its base
 
 }  // namespace
 
@@ -64,26 +63,9 @@ OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool 
     for (int j = body.first; far && j < body.end; ++j) {
       far = apart(box, top ? o.edge_boxes[j] : box_of(o.top(j), o.top(o.next[j])));
     }
-    bool clear = true;
-    if (far) return {index, i, winding(place, other, !top, clear), true};
+    if (far) return {index, i, o.winding(place, other, !top), true};
   }
   return {index, loop.first, 0, false};
-}
-
-// Of an outline, or of its top, around a point; `clear` becomes false if round-off might decide.
-int OutlinePlateaus::winding(const Vec2& p, BodyIndex body, bool of_top, bool& clear) const {
-  const Outlines& o = outlines_;
-  int sum = 0;
-  for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
-    const Vec2 a = (of_top ? o.top(i) : o.point(i)) - p;
-    const Vec2 b = (of_top ? o.top(o.next[i]) : o.point(o.next[i])) - p;
-    const bool up = b.y() > 0;
-    if ((a.y() > 0) == up) continue;
-    const double side = cross(a, b);
-    if (std::abs(side) < kClear * o.depth[i] * (b - a).norm()) clear = false;
-    if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
-  }
-  return sum;
 }
 
 void OutlinePlateaus::settle(Base& base, BodyIndex other, bool top) const {
@@ -92,7 +74,7 @@ void OutlinePlateaus::settle(Base& base, BodyIndex other, bool top) const {
   for (base.vertex = loop.first; base.vertex < loop.end; ++base.vertex) {
     bool clear = true;
     const Vec2 place = top ? o.top(base.vertex) : o.point(base.vertex);
-    base.winding = winding(place, other, !top, clear);
+    base.winding = o.winding(place, other, !top, &clear);
     if (clear) return;
   }
   base.vertex = loop.end - 1;
@@ -139,18 +121,15 @@ void OutlinePlateaus::find_edges(const Pair& pair, std::span<const Crossing> cro
     int w = base.winding, e = base.vertex;
     do {
       const int q = o.next[e];
-      Edge found{e, pair.faces, 0, 1, static_cast<double>(w), w / 2., 0};
+      Edge found{e, pair.faces, static_cast<double>(w), w / 2., 0};
       if (at_[e] >= 0) {
-        double low = w == 0 ? 1 : 0, high = 0;
         for (size_t c = static_cast<size_t>(at_[e]); c < crossings.size() && crossings[c].edge == e;
              ++c) {
           const auto& [u, tau, sign] = crossings[c].at;
           w += sign;
           found.sum += sign * (1 - u);
           found.first += sign * (1 - u * u) / 2;
-          low = std::min(low, u), high = std::max(high, u);
         }
-        found.from = low, found.to = w == 0 ? high : 1;
       }
       if (at_[e] >= 0 || w != 0) {
         found.swept = cross(o.point(e) - origin, o.point(q) - origin) / 2 * found.sum;

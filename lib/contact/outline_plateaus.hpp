@@ -19,7 +19,6 @@ class OutlinePlateaus {
   struct Edge {
     int edge;
     BodyIndex in;       ///< the body
-    double from, to;    ///< the part of the edge, in u; what lies between may be outside in places
     double sum, first;  ///< INT W du and INT W u du, with the winding number W of the top
     double swept;       ///< part of the area inside both, m^2
   };
@@ -68,7 +67,6 @@ class OutlinePlateaus {
 
   void add_pair(BodyIndex edges, BodyIndex faces);
   [[nodiscard]] Base base_of(int loop, BodyIndex other, bool top) const;
-  [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top, bool& clear) const;
   void settle(Base& base, BodyIndex other, bool top) const;
   void find_edges(const Pair& pair, std::span<const Crossing> crossings);
   void find_faces(const Pair& pair, std::span<Crossing> crossings);

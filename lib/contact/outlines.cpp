@@ -8,23 +8,35 @@
 namespace apothem {
 namespace {
 
+constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
   box.include(other.x1, other.y1);
 }
 
-// Collars of opposite sides must not reach through the body when it is squeezed. Half of the
-// smallest inradius at the boundary is a quarter of the thickness of one row of squares: more is
-// never needed.
-double collar_depth(const Mesh& mesh, const Boundary& boundary, double reference) {
+// The area over the length of the boundary, m: no more than the inradius of the body.
+double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
+  double area = 0, length = 0;
+  for (const std::vector<Vec2>& ring : rings) {
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& next = ring[i + 1 == ring.size() ? 0 : i + 1];
+      area += cross(ring[i] - ring[0], next - ring[0]) / 2;
+      length += (next - ring[i]).norm();
+    }
+  }
+  return area / length;
+}
+
+// The smallest thickness of a body, m, or `most` if it is nowhere thinner.
+double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
   std::vector<std::vector<Vec2>> rings;
   for (const BoundaryLoop& loop : boundary.loops) {
     std::vector<Vec2>& ring = rings.emplace_back();
     for (const int n : loop.nodes) ring.push_back(mesh.nodes[n]);
   }
-  const double thickness =
-      smallest_thickness(rings, std::min(4 * reference, 2 * mesh_inradius(mesh, boundary)));
-  return std::min(reference, std::max(thickness / 4, boundary_inradius(mesh, boundary) / 2));
+  if (least_inradius(rings) < most / 2) most = std::min(most, 2 * mesh_inradius(mesh, boundary));
+  return smallest_thickness(rings, most);
 }
 
 }  // namespace
@@ -42,8 +54,16 @@ void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex fi
     }
     add_loop(places, nodes);
   }
-  const double r = reference ? *reference : boundary_inradius(mesh, boundary);
-  close_body({first, size(), -1, r, collar_depth(mesh, boundary, r)});
+  if (reference) {
+    const double thickness = thickness_of(mesh, boundary, 2 * *reference);
+    close_body({first, size(), -1, *reference, thickness / 2});
+    return;
+  }
+  // The collars of opposite sides must not reach through a body that is squeezed to half. A row of
+  // squares is four times half its r thick: less is never needed.
+  const double r = boundary_inradius(mesh, boundary);
+  const double thickness = thickness_of(mesh, boundary, 4 * r);
+  close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
 }
 
 void Outlines::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
@@ -174,6 +194,20 @@ void Outlines::prepare_search() {
     include(body_boxes[body[i]], edge_boxes[i]);
     include(body_boxes[body[i]], face_boxes[i]);
   }
+}
+
+int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+  int sum = 0;
+  for (int i = bodies[b].first; i < bodies[b].end; ++i) {
+    const Vec2 from = (of_top ? top(i) : point(i)) - p;
+    const Vec2 to = (of_top ? top(next[i]) : point(next[i])) - p;
+    const bool up = to.y() > 0;
+    if ((from.y() > 0) == up) continue;
+    const double side = cross(from, to);
+    if (clear && std::abs(side) < kClear * depth[i] * (to - from).norm()) *clear = false;
+    if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
+  }
+  return sum;
 }
 
 // Looks for edges of a body that cross.

@@ -85,6 +85,11 @@ class Outlines {
   };
   [[nodiscard]] const std::optional<SelfContact>& self_contact() const { return self_contact_; }
 
+  /// How often the outline of a body, or the top of its collar, goes round a point. `clear`, if
+  /// given, becomes false where round-off might decide.
+  [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
+                            bool* clear = nullptr) const;
+
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
   /// Half the length of the two edges at a vertex, m.
   [[nodiscard]] double share(int vertex) const {

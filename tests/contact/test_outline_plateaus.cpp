@@ -76,8 +76,8 @@ Number closed_form(const Ring<Number>& c, const Ring<Number>& t, double depth) {
                            mx[i],  my[i],  mx[q],  my[q],  depth, 0}
             .with_plain();
     const double around = winding_of(real_c, real_top[i]);
-    sum += around * (collar_cell(face).height +
-                     depth * swept(top.x[i], top.y[i], top.x[q], top.y[q]));
+    sum +=
+        around * (collar_cell(face).height + depth * swept(top.x[i], top.y[i], top.x[q], top.y[q]));
     for (size_t e = 0; e < c.size(); ++e) {
       CollarPiece<Number> piece;
       CollarCrossings<Number> crossings;
