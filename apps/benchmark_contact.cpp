@@ -74,18 +74,20 @@ void collar_edge_face(benchmark::State& state) {
   std::vector<Pair> pairs;
   while (pairs.size() < 256) {
     const double alpha = random.uniform(-.2, .2), beta = random.uniform(-.2, .2);
-    Pair pair{{0, 0, 1, 0, 1, 0, 1, alpha, 1, beta, 1, .5, .5, .5},
+    Pair pair{{0, 0, 1, 0, 1, 0, 1, alpha, 1, beta, 1, .5, .4},
               {random.uniform(0, 1.5), random.uniform(-.1, .2)},
               {random.uniform(-.5, 1), random.uniform(-.1, .2)}};
     CollarPiece<double> piece;
-    if (collar_piece(pair.face, pair.p.x(), pair.p.y(), pair.q.x(), pair.q.y(), piece))
+    CollarCrossings<double> top;
+    if (collar_piece(pair.face, pair.p.x(), pair.p.y(), pair.q.x(), pair.q.y(), piece, top))
       pairs.push_back(pair);
   }
   for (auto _ : state) {
     for (const Pair& pair : pairs) {
       CollarPiece<double> piece;
+      CollarCrossings<double> top;
       benchmark::DoNotOptimize(
-          collar_piece(pair.face, pair.p.x(), pair.p.y(), pair.q.x(), pair.q.y(), piece));
+          collar_piece(pair.face, pair.p.x(), pair.p.y(), pair.q.x(), pair.q.y(), piece, top));
       benchmark::DoNotOptimize(piece);
     }
   }

@@ -1,14 +1,22 @@
 // The collar of an outline: its roof near the surface, as a function of the outline's vertices. One
-// edge of another outline against one face of the collar, in closed form (docs/theory.md, Contact).
+// edge of another outline against one cell of the collar, in closed form (docs/theory.md, Contact).
 //
-// A face belongs to the edge a->b, with the inside on its left. In its coordinates tau along the
-// edge and h inwards it is {0 <= h <= depth} between the bisectors {v + h m} at its ends, and h is
-// the roof. Nothing is integrated above the depth: the caller must notice `beyond`.
+// A cell belongs to the edge a->b, with the inside on its left. In its coordinates tau along the
+// edge and h inwards it lies in 0 <= h <= depth between the bisectors {v + h m} at its ends. Above
+// the height at which these cross, the cell counts negatively. The upper sides of all cells form
+// the top of the collar, a closed line. With the sign s of each cell and the winding number w of
+// the top, the depth below the surface is
+//
+//   SUM s h + depth w,
+//
+// which is continuous everywhere and the depth of the plateau inside the top.
 //
 // For any number type; comparisons look at the real part, so that a complex step gives derivatives.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -30,6 +38,16 @@ struct Mitre {
   }
 };
 
+/// Height at which a face between bisectors of these slopes shrinks to a point.
+inline double collar_event(double length, double alpha, double beta) {
+  return alpha > beta ? length / (alpha - beta) : std::numeric_limits<double>::infinity();
+}
+
+/// The height up to which an edge needs no look at the top of a cell or at its negative part.
+inline double plain_depth(double depth, double event) {
+  return std::min(depth, event) * (1 - 1e-9);
+}
+
 template <class Number>
 struct CollarFace {
   Number ax, ay, bx, by;
@@ -38,48 +56,207 @@ struct CollarFace {
   Number max, may;  ///< bisector at a
   Number mbx, mby;  ///< bisector at b
   double depth;     ///< of the collar
-  double depth_a;   ///< and of the neighbour behind a,
-  double depth_b;   ///< behind b
+  double plain;     ///< up to here, and a little more, the cell is positive: see plain_depth
+
+  /// The same face with its plain part.
+  [[nodiscard]] CollarFace with_plain() const {
+    CollarFace face = *this;
+    face.plain =
+        plain_depth(depth, collar_event(real_part(length), real_part(alpha()), real_part(beta())));
+    return face;
+  }
 
   /// Slopes d tau / d h of the bisectors.
   [[nodiscard]] Number alpha() const { return max * tx + may * ty; }
   [[nodiscard]] Number beta() const { return mbx * tx + mby * ty; }
 };
 
-/// Height at which a face between bisectors of these slopes shrinks to a point.
-inline double collar_event(double length, double alpha, double beta) {
-  return alpha > beta ? length / (alpha - beta) : std::numeric_limits<double>::infinity();
-}
-
 /// What the edge P->Q = {P + u (Q - P)} contributes.
 template <class Number>
 struct CollarPiece {
-  Number from, to;    ///< the part of the edge in the face, in u
-  Number sum, first;  ///< INT h du and INT h u du over it
-  /// Parts of INT dA, INT tau dA and INT h dA over the face inside the outline of P->Q.
+  Number from, to;    ///< the part of the edge in the cell, in u
+  Number sum, first;  ///< INT s h du and INT s h u du over it
+  /// Parts of INT s dA, INT s tau dA and INT s h dA over the cell inside the outline of P->Q, as
+  /// far as that outline does not contain the top.
   Number area, along, height;
   double deepest;  ///< largest h, m
-  bool beyond;     ///< it crosses the end of the collar, here or into a neighbour
 };
 
-/// False if the edge misses the face. Both faces at a bisector see the same sign and the same
+/// Where an edge crosses the top of a cell.
+template <class Number>
+struct CollarCrossing {
+  Number u;    ///< on the edge
+  Number tau;  ///< on the top
+  /// The winding number of the top changes by this along the edge, and that of the edge's outline
+  /// by the opposite along the top.
+  int sign;
+};
+template <class Number>
+struct CollarCrossings {
+  int count = 0;
+  std::array<CollarCrossing<Number>, 2> at;
+};
+
+namespace detail {
+
+// One edge and one cell.
+template <class Number>
+struct CollarClip {
+  const CollarFace<Number>& f;
+  Number ex, ey;  // the edge
+  Number tp, dt;  // tau at P, and its change along the edge
+  CollarPiece<Number>& piece;
+
+  // Contributions of a part of the edge between heights h1 and h2, by Green's theorem.
+  void add(const Number& lo, const Number& hi, const Number& h1, const Number& h2, double sign) {
+    const Number d = sign * (hi - lo);
+    const Number t1 = tp + lo * dt, t2 = tp + hi * dt;
+    piece.sum += d * (h1 + h2) / 2.;
+    piece.first += d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) / 6.;
+    piece.area += -d * dt * (h1 + h2) / 2.;
+    piece.along += -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) / 6.;
+    piece.height += -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / 6.;
+    piece.deepest = std::max({piece.deepest, real_part(h1), real_part(h2)});
+  }
+  // The same along a bisector from the base to the height h.
+  void along_a(const Number& h, double sign) {
+    const Number slope = f.alpha(), s = sign * slope * h * h;
+    piece.area += s / 2.;
+    piece.along += s * slope * h / 3.;
+    piece.height += s * h / 6.;
+  }
+  void along_b(const Number& h, double sign) {
+    const Number slope = f.beta(), s = sign * slope * h * h;
+    piece.area -= s / 2.;
+    piece.along -= s * (f.length / 2. + slope * h / 3.);
+    piece.height -= s * h / 6.;
+  }
+};
+
+// Signs and heights that an edge has in a cell: at its ends P and Q, against the lines of the base
+// and of the bisectors at a and b.
+template <class Number>
+struct CollarSides {
+  Number pax, pay, hp, hq, ap, aq, bp, bq;
+};
+
+// An edge that may cross the top of the cell or its negative part. All decisions are signs that
+// neighbouring cells and edges share to the last bit, so that the crossings of a closed line with
+// the top add up to nothing.
+template <class Number>
+inline bool deep_collar_piece(const CollarFace<Number>& f, const CollarSides<Number>& side,
+                              const Number& px, const Number& py, const Number& qx,
+                              const Number& qy, CollarPiece<Number>& piece,
+                              CollarCrossings<Number>& top) {
+  struct Cut {
+    Number u, h;
+    bool above, below;
+  };
+  const auto cut = [&](const Number& u, const Number& h) {
+    return Cut{u, h, real_part(h) > f.depth, real_part(h) < 0};
+  };
+  const auto& [pax, pay, hp, hq, ap, aq, bp, bq] = side;
+  const auto inside = [](const Number& x) { return !(real_part(x) < 0); };
+  const bool pa = inside(ap), qa = inside(aq), pb = inside(bp), qb = inside(bq);
+  const Number all = hp + hq + ap + aq + bp + bq;
+  const bool finite = real_part(all) == real_part(all);
+  if (finite && pa == qa && pb == qb && pa == pb) return false;
+  const double above = f.depth * (1 + 1e-9);
+  if (real_part(hp) > above && real_part(hq) > above) return false;
+
+  const Number ex = qx - px, ey = qy - py;
+  detail::CollarClip<Number> clip{f, ex, ey, f.tx * pax + f.ty * pay, f.tx * ex + f.ty * ey, piece};
+  bool found = !finite;
+  piece = {};
+  if (!finite) {
+    piece.from = piece.to = piece.sum = piece.first = all;
+    piece.area = piece.along = piece.height = all;
+    piece.deepest = real_part(all);
+  }
+  // On a bisector the height is that of the crossing, for both cells the same, and between those of
+  // the feet of P and Q.
+  const auto on_bisector = [&](const Number& x, const Number& y, const Number& mx,
+                               const Number& my) -> Number {
+    const Number h = (x * ey - y * ex) / (mx * ey - my * ex);
+    const Number m2 = mx * mx + my * my;
+    const Number p = (x * mx + y * my) / m2, q = p + (ex * mx + ey * my) / m2;
+    const bool up = real_part(p) < real_part(q);
+    const Number &low = up ? p : q, &high = up ? q : p;
+    return real_part(h) < real_part(low) ? low : real_part(h) > real_part(high) ? high : h;
+  };
+  const auto part = [&](const Cut& start, const Cut& end, int sign) {
+    if (sign == 0 || (start.above && end.above) || (start.below && end.below)) return;
+    const Number d = end.u - start.u, dh = end.h - start.h;
+    const auto at = [&](double level) -> Number { return start.u + d * ((level - start.h) / dh); };
+    Number lo = start.u, hi = end.u, h1 = start.h, h2 = end.h;
+    const auto cross = [&](const Number& u, int change) {
+      if (top.count < 2)
+        top.at[static_cast<size_t>(top.count++)] = {u, clip.tp + u * clip.dt, change};
+    };
+    if (start.below) lo = at(0), h1 = 0;
+    if (end.below) hi = at(0), h2 = 0;
+    if (start.above) lo = at(f.depth), h1 = f.depth, cross(lo, -sign);
+    if (end.above) hi = at(f.depth), h2 = f.depth, cross(hi, sign);
+    if (!found || real_part(lo) < real_part(piece.from)) piece.from = lo;
+    if (!found || real_part(hi) > real_part(piece.to)) piece.to = hi;
+    found = true;
+    clip.add(lo, hi, h1, h2, sign);
+  };
+
+  const Cut p = cut(0., hp), q = cut(1., hq);
+  Cut a = p, b = p;
+  if (pa != qa) {
+    a = cut(ap / (ap - aq), on_bisector(pax, pay, f.max, f.may));
+    if (!a.above && !a.below) clip.along_a(a.h, qa ? -1 : 1);
+  }
+  if (pb != qb) {
+    b = cut(bp / (bp - bq), on_bisector(px - f.bx, py - f.by, f.mbx, f.mby));
+    if (!b.above && !b.below) clip.along_b(b.h, qb ? -1 : 1);
+  }
+  const auto sign = [](bool in_a, bool in_b) {
+    return static_cast<int>(in_a) - static_cast<int>(in_b);
+  };
+  if (pa == qa && pb == qb) {
+    part(p, q, sign(pa, pb));
+  } else if (pb == qb) {
+    part(p, a, sign(pa, pb)), part(a, q, sign(qa, pb));
+  } else if (pa == qa) {
+    part(p, b, sign(pa, pb)), part(b, q, sign(pa, qb));
+  } else {
+    const bool a_first = real_part(a.u) < real_part(b.u);
+    const Cut &one = a_first ? a : b, &other = a_first ? b : a;
+    part(p, one, sign(pa, pb));
+    part(one, other, a_first ? sign(qa, pb) : sign(pa, qb));
+    part(other, q, sign(qa, qb));
+  }
+  return found;
+}
+
+}  // namespace detail
+
+/// False if the edge misses the cell. Both cells at a bisector see the same sign and the same
 /// crossing of it, to the last bit: an edge near a bisector, or on it, is in one of them only.
+/// Crossings of the top are appended to `top`.
 template <class Number>
 inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
-                         const Number& qx, const Number& qy, CollarPiece<Number>& piece) {
+                         const Number& qx, const Number& qy, CollarPiece<Number>& piece,
+                         CollarCrossings<Number>& top) {
   const auto negative = [](const Number& x) { return real_part(x) < 0; };
   const Number pax = px - f.ax, pay = py - f.ay, qax = qx - f.ax, qay = qy - f.ay;
   const Number hp = f.tx * pay - f.ty * pax, hq = f.tx * qay - f.ty * qax;
   // Written so that NaN is never a miss.
   if (negative(hp) && negative(hq)) return false;
   const Number ap = pax * f.may - pay * f.max, aq = qax * f.may - qay * f.max;
-  if (negative(ap) && negative(aq)) return false;
   const Number bp = (px - f.bx) * f.mby - (py - f.by) * f.mbx;
   const Number bq = (qx - f.bx) * f.mby - (qy - f.by) * f.mbx;
+  if (!(real_part(hp) <= f.plain && real_part(hq) <= f.plain)) {
+    return detail::deep_collar_piece(f, {pax, pay, hp, hq, ap, aq, bp, bq}, px, py, qx, qy, piece,
+                                     top);
+  }
+  if (negative(ap) && negative(aq)) return false;
   if (real_part(bp) >= 0 && real_part(bq) >= 0) return false;
-  if (real_part(hp) > f.depth && real_part(hq) > f.depth) return false;
 
-  enum class End { vertex, base, a, b, top };
+  enum class End { vertex, base, a, b };
   Number lo = 0, hi = 1;
   End in = End::vertex, out = End::vertex;
   const auto clip = [&](const Number& p, const Number& q, bool p_out, bool q_out, End end) {
@@ -91,52 +268,55 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
   clip(hp, hq, negative(hp), negative(hq), End::base);
   clip(ap, aq, negative(ap), negative(aq), End::a);
   clip(bp, bq, !negative(bp), !negative(bq), End::b);
-  clip(hp - f.depth, hq - f.depth, real_part(hp) > f.depth, real_part(hq) > f.depth, End::top);
   // A piece without length still crosses a bisector.
   if (real_part(lo) > real_part(hi)) return false;
 
-  const Number dh = hq - hp, d = hi - lo;
+  const Number dh = hq - hp;
   const Number ex = qx - px, ey = qy - py;
-  // On a bisector the height is that of the crossing, for both faces the same.
+  // On a bisector the height is that of the crossing, for both cells the same.
   const auto height = [&](const Number& u, End end) -> Number {
     if (end == End::a) return (pax * ey - pay * ex) / (f.max * ey - f.may * ex);
     if (end == End::b) return ((px - f.bx) * ey - (py - f.by) * ex) / (f.mbx * ey - f.mby * ex);
     return hp + u * dh;
   };
   const Number h1 = height(lo, in), h2 = height(hi, out);
-  const Number tp = f.tx * pax + f.ty * pay;
-  const Number dt = f.tx * ex + f.ty * ey;
-  const Number t1 = tp + lo * dt, t2 = tp + hi * dt;
+  piece = {};
   piece.from = lo, piece.to = hi;
-  piece.sum = d * (h1 + h2) / 2.;
-  piece.first = d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) / 6.;
-  // Green's theorem along the piece, and along the bisectors down to the base.
-  piece.area = -d * dt * (h1 + h2) / 2.;
-  piece.along = -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) / 6.;
-  piece.height = -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / 6.;
-  const auto along_a = [&](const Number& h, double sign) {
-    const Number slope = f.alpha(), s = sign * slope * h * h;
-    piece.area += s / 2.;
-    piece.along += s * slope * h / 3.;
-    piece.height += s * h / 6.;
-  };
-  const auto along_b = [&](const Number& h, double sign) {
-    const Number slope = f.beta(), s = sign * slope * h * h;
-    piece.area -= s / 2.;
-    piece.along -= s * (f.length / 2. + slope * h / 3.);
-    piece.height -= s * h / 6.;
-  };
-  if (in == End::a) along_a(h1, -1);
-  if (out == End::a) along_a(h2, 1);
-  if (in == End::b) along_b(h1, 1);
-  if (out == End::b) along_b(h2, -1);
   piece.deepest = std::max(real_part(h1), real_part(h2));
-  const auto leaves_collar = [&](End end, const Number& h) {
-    return end == End::top || (end == End::a && real_part(h) > f.depth_a) ||
-           (end == End::b && real_part(h) > f.depth_b);
-  };
-  piece.beyond = leaves_collar(in, h1) || leaves_collar(out, h2);
+  detail::CollarClip<Number> clipped{f,    ex, ey, f.tx * pax + f.ty * pay, f.tx * ex + f.ty * ey,
+                                     piece};
+  clipped.add(lo, hi, h1, h2, 1);
+  if (in == End::a) clipped.along_a(h1, -1);
+  if (out == End::a) clipped.along_a(h2, 1);
+  if (in == End::b) clipped.along_b(h1, 1);
+  if (out == End::b) clipped.along_b(h2, -1);
   return true;
+}
+
+/// Where an outline contains the top of a cell, Green's theorem goes along it as well. INT s dA,
+/// INT s tau dA and INT s h dA
+template <class Number>
+struct CollarMoments {
+  Number area, along, height;
+};
+/// over the whole cell, for an outline around all of it,
+template <class Number>
+inline CollarMoments<Number> collar_cell(const CollarFace<Number>& f) {
+  const Number a = f.alpha(), b = f.beta(), &l = f.length;
+  const double h = f.depth;
+  return {h * (l + (b - a) * h / 2.), h * (l * (l + b * h) + (b - a) * (b + a) * h * h / 3.) / 2.,
+          h * h * (l / 2. + (b - a) * h / 3.)};
+}
+/// and, of the way along the top from tau to the end at b and down the bisector there, for an
+/// outline that contains this part of the top.
+template <class Number>
+inline CollarMoments<Number> collar_rest(const CollarFace<Number>& f, const Number& tau) {
+  const Number b = f.beta(), &l = f.length;
+  const double h = f.depth;
+  const Number end = l + b * h;
+  return {h * (end - tau) - b * h * h / 2.,
+          h * (end * end - tau * tau) / 2. - b * h * h * (l / 2. + b * h / 3.),
+          h * h * ((end - tau) / 2. - b * h / 6.)};
 }
 
 }  // namespace apothem

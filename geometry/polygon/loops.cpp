@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
 
@@ -29,6 +30,89 @@ std::optional<Vec2> deep_vertex(const Loops& a, const Loops& b, double reach) {
     }
   }
   return {};
+}
+
+namespace {
+
+constexpr double kParallel = 5 * M_PI / 180;  // sides at a smaller angle do not form a wedge
+constexpr double kWedge = .4;  // of the thickness over the boundary between, in a straight wedge
+constexpr double kRound = 1. / 3;  // of the boundary between: less is not a round end
+
+// An edge of one of the lines, with the length and the turning of its line up to its start.
+struct RingEdge {
+  Vec2 start, edge;
+  size_t ring;
+  double before, turned;
+};
+
+// True if the boundary between both ends of a way across of the length t is that of a wedge or of a
+// round end. `between`: its length; `turning`: the angle by which it turns.
+bool tapers(double t, double between, double turning) {
+  const double angle = M_PI - turning;
+  return t >= between * (angle > kParallel ? kWedge * std::tan(angle / 2) : kRound);
+}
+
+}  // namespace
+
+double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double most) {
+  std::vector<RingEdge> edges;
+  std::vector<double> length(rings.size()), turning_round(rings.size());
+  for (size_t r = 0; r < rings.size(); ++r) {
+    const std::vector<Vec2>& ring = rings[r];
+    double turned = 0;
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 edge = ring[(i + 1) % ring.size()] - ring[i];
+      if (i > 0) {
+        const Vec2& last = edges.back().edge;
+        turned += std::atan2(cross(last, edge), last.dot(edge));
+      }
+      edges.push_back({ring[i], edge, r, length[r], turned});
+      length[r] += edge.norm();
+    }
+    const Vec2 &last = edges.back().edge, &first = edges[edges.size() - ring.size()].edge;
+    turning_round[r] = turned + std::atan2(cross(last, first), last.dot(first));
+  }
+  std::vector<Box> boxes;
+  for (const RingEdge& e : edges) {
+    const Vec2 inwards = most * Vec2(-e.edge.y(), e.edge.x()).normalized();
+    Box box;
+    for (const Vec2& p : {e.start, Vec2(e.start + e.edge)}) {
+      box.include(p.x(), p.y());
+      box.include(p.x() + inwards.x(), p.y() + inwards.y());
+    }
+    boxes.push_back(box);
+  }
+  std::vector<BoxPair> pairs;
+  BoxGrid().find_pairs(boxes, pairs);
+  double smallest = most;
+  const auto look = [&](const RingEdge& e, const RingEdge& f) {
+    const Vec2 inwards = Vec2(-e.edge.y(), e.edge.x()).normalized();
+    const double closing = cross(f.edge, inwards);
+    if (!(closing < 0)) return;  // only edges that look the other way
+    for (const double u : {.02, .5, .98}) {
+      const Vec2 from = e.start + u * e.edge - f.start;
+      const double t = -cross(f.edge, from) / closing;
+      if (!(t > 0 && t < smallest)) continue;
+      const double v = (from + t * inwards).dot(f.edge) / f.edge.squaredNorm();
+      if (v < 0 || v > 1) continue;
+      if (e.ring == f.ring) {
+        const double ahead = f.before + v * f.edge.norm() - e.before - u * e.edge.norm();
+        const double turning = f.turned - e.turned;
+        const double size = std::abs(ahead), whole = length[e.ring];
+        // The shorter way round.
+        const bool direct = size <= whole - size;
+        const double along = ahead > 0 ? turning : -turning;
+        const double round = turning_round[e.ring];
+        if (tapers(t, direct ? size : whole - size, direct ? along : round - along)) continue;
+      }
+      smallest = t;
+    }
+  };
+  for (const auto& [i, j] : pairs) {
+    const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
+    look(edges[a], edges[b]), look(edges[b], edges[a]);
+  }
+  return smallest;
 }
 
 }  // namespace apothem

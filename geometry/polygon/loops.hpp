@@ -20,4 +20,9 @@ double distance(const Loops& loops, const Vec2& point);
 /// A vertex of `a` that lies inside `b`, farther than `reach` (m) from its lines, if there is one.
 std::optional<Vec2> deep_vertex(const Loops& a, const Loops& b, double reach);
 
+/// The smallest thickness of the region, m, or `most` if it is nowhere thinner: the length of a way
+/// from an edge straight inwards to another edge. Where this grows in proportion to the length of
+/// the boundary between both ends, as in a wedge or a round end, it is not counted.
+double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double most);
+
 }  // namespace apothem

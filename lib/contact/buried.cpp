@@ -9,8 +9,7 @@ std::optional<Buried> find_buried(const Outlines& o) {
   std::vector<Box> boxes;
   for (const Outlines::Body& body : o.bodies) {
     Loops& of_body = loops.emplace_back();
-    reach.push_back(
-        *std::max_element(&o.cap[body.first], &o.cap[body.first] + (body.end - body.first)));
+    reach.push_back(body.depth);
     for (int i = body.first, first = i; i < body.end; first = i) {
       std::vector<Vec2>& ring = of_body.rings.emplace_back();
       do {

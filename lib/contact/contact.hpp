@@ -17,7 +17,7 @@ struct Contact {
   int a, b;
   double depth;      ///< the penetration is at least this, m, and
   double at_most;    ///< at most this, m; where both are equal it is known
-  double share;      ///< of the depth at which the potential ends; 1 or more: beyond
+  double share;      ///< of the depth at which the potential ends; 1 or more: there or beyond
   double stiffness;  ///< bound of the change of the force over the depth, N/m (docs/theory.md,
                      ///< Normal contact)
 };

@@ -19,12 +19,10 @@ namespace apothem {
 /// Two bodies that are deeper in each other than their potentials reach, so that the forces are not
 /// to be trusted, or an element out of the range of its method.
 struct ContactFault {
-  enum class Kind { singular_area, centre, collar, element, not_convex, self_contact };
+  enum class Kind { singular_area, centre, element, not_convex, self_contact };
   Kind kind;
   BodyIndex a, b;             ///< a is in b where that makes a difference
   Vec2 place = Vec2::Zero();  ///< m
-  double depth = 0;           ///< m
-  double limit = 0;           ///< m
 };
 
 /// A largest value and the two bodies it is of.
@@ -47,8 +45,9 @@ class Kernel {
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.
   [[nodiscard]] virtual double penetration(const Contact& contact, double floor) = 0;
-  /// Where and why one of its contacts, with a share of 1 or more, is out of range.
-  [[nodiscard]] virtual ContactFault fault(const Contact& contact) const = 0;
+  /// Where and why one of its contacts, with a share of 1 or more, is out of range. Outlines have
+  /// no such contacts: beyond a collar the potential is constant.
+  [[nodiscard]] virtual ContactFault fault(const Contact& /*contact*/) const { return {}; }
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =
   /// 0 the springs keep their forces. Returns the work on the bodies since the last call, J, of
   /// springs that are not accounted (friction_memory.hpp).

@@ -13,11 +13,13 @@
 namespace apothem {
 
 /// A pair that touches: which vertices are inside the partner, as numbers that differ where the
-/// sets do, and the length of the boundaries inside, m.
+/// sets do, the length of the boundaries inside, m, and whether the bodies are so deep in each
+/// other that the force does not follow from the edges near surfaces alone.
 struct TouchingPair {
   int a, b;
   std::uint64_t inside_a, inside_b;
   double length;
+  bool deep = false;
 
   [[nodiscard]] bool same_pair(const TouchingPair& other) const {
     return a == other.a && b == other.b;
@@ -29,7 +31,8 @@ struct TouchingPair {
     return std::tie(a, b) < std::tie(other.a, other.b);
   }
   void fields(Archive& archive) {
-    archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
+    archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length)("deep",
+                                                                                          deep);
   }
 };
 
@@ -46,11 +49,13 @@ class OnsetWatch {
   /// changed. The stiffness of a pair grows with the boundary of one inside the other: where this
   /// changes by more than sudden(a, b), m, within a step, as where a body lands nearly flat, the
   /// force is not smooth even if no vertex enters or leaves. `panels` of the samples: more where it
-  /// changes by much of itself.
+  /// changes by much of itself. Steps that begin or end with the bodies deep in each other are left
+  /// as they are.
   template <class Sudden, class Changed>
   void compare(const Sudden& sudden, const Changed& changed) const {
     auto old = before_.begin();
     const auto judge = [&](const TouchingPair& pair, bool same, double change) {
+      if (pair.deep) return;
       if (change > sudden(pair.a, pair.b)) {
         changed(pair.a, pair.b, change > kMuch * pair.length ? kManyPanels : kFewPanels);
       } else if (!same) {
@@ -60,8 +65,10 @@ class OnsetWatch {
     for (const TouchingPair& pair : now_) {
       for (; old != before_.end() && *old < pair; ++old) judge(*old, false, old->length);
       const bool known = old != before_.end() && old->same_pair(pair);
-      judge(pair, known && old->same_vertices(pair),
-            std::abs(pair.length - (known ? old->length : 0)));
+      if (!known || !old->deep) {
+        judge(pair, known && old->same_vertices(pair),
+              std::abs(pair.length - (known ? old->length : 0)));
+      }
       if (known) ++old;
     }
     for (; old != before_.end(); ++old) judge(*old, false, old->length);

@@ -75,7 +75,7 @@ void OutlineFriction::damp_normal(const EdgeFaceContact& c, double time, double&
   const Outlines& o = outlines_;
   const int p = c.edge, q = o.next[p], a = c.face, b = o.next[a];
   const double from = c.piece.from, part = c.piece.to - from;
-  if (!(part > 0)) return;
+  if (!(part > 0 && c.piece.sum > 0)) return;
   const double tx = o.tx[a], ty = o.ty[a];
   const double middle = from + part / 2, mean = c.piece.sum / part;  // of u, and of the depth
   const double rise = 12 * (c.piece.first - middle * c.piece.sum) / (part * part * part);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/spatial/groups.hpp"
@@ -10,7 +11,9 @@ namespace apothem {
 namespace {
 
 constexpr double kCandidateTime = 40;  // ns
-constexpr double kRound = 1e-9;        // more than the round-off of an area, relative
+constexpr double kInsideTop = 2;       // share of a contact that is not with a face
+constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth in a plain face,
+                                       // unless the body is squeezed to less than the collar
 
 // A bound of the distance from the boundary over the height in a face, which reaches beyond the end
 // of its edge at a reflex vertex.
@@ -28,12 +31,13 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double 
       stiffness_(stiffness * thickness),
       thickness_(thickness),
       threads_(threads),
+      plateaus_(outlines),
       onset_(outlines, slope_) {
   const auto n = static_cast<size_t>(outlines.size());
   for (const Outlines::Body& body : outlines.bodies) {
     slope_.resize(static_cast<size_t>(body.end), stiffness_ / body.reference);
   }
-  fx_.resize(n), fy_.resize(n), ends_.resize(2 * n), areas_.resize(n);
+  fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
   if (table.rough() || table.damped()) {
     friction_.emplace(outlines, table, slope_, thickness, inverse_mass);
   }
@@ -47,6 +51,7 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
     find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
+  plateaus_.take(pairs);
 }
 
 // Edges of a, faces of b: sweep along the longer side of the common region.
@@ -86,31 +91,32 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
 
 void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
-  const size_t first = contacts.size();
   contacts_.clear();
   std::fill(ends_.begin(), ends_.end(), 0.);
-  std::fill(areas_.begin(), areas_.end(), 0.);
+  plateaus_.begin();
   const int count = static_cast<int>(candidates_.size());
-  const auto find_piece = [&](int c, CollarPiece<double>& piece) {
+  const auto find = [&](int c, Met& found) {
     const auto [e, f] = candidates_[c];
     const int q = o.next[e];
-    return collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece);
+    found.top.count = 0;
+    found.met = collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], found.piece, found.top);
+  };
+  const auto use = [&](int c, const Met& found) {
+    if (!found.met) return;
+    add_contact(candidates_[c], found.piece, contacts);
+    plateaus_.add(candidates_[c], found.top);
   };
   if (!threads_.worth(count, kCandidateTime)) {
-    CollarPiece<double> piece;
-    for (int c = 0; c < count; ++c) {
-      if (find_piece(c, piece)) add_contact(candidates_[c], piece, contacts);
-    }
+    Met found;
+    for (int c = 0; c < count; ++c) find(c, found), use(c, found);
   } else {
-    pieces_.resize(count), met_.resize(count);
+    met_.resize(count);
     threads_.chunks(count, kCandidateTime, [&](int begin, int end, int) {
-      for (int c = begin; c < end; ++c) met_[c] = find_piece(c, pieces_[c]);
+      for (int c = begin; c < end; ++c) find(c, met_[c]);
     });
-    for (int c = 0; c < count; ++c) {
-      if (met_[c]) add_contact(candidates_[c], pieces_[c], contacts);
-    }
+    for (int c = 0; c < count; ++c) use(c, met_[c]);
   }
-  find_complements(std::span(contacts).subspan(first));
+  add_plateaus(contacts);
   for (int i = 0; i < o.size(); ++i) {
     const int p = o.previous[i];
     const double own = ends_[2 * i], before = ends_[2 * p + 1];
@@ -129,21 +135,32 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   ends_[2 * f] += force.face_start;
   ends_[2 * f + 1] += force.face_end;
 
-  areas_[f] += p.area;
-  const double share = p.beyond ? 1 : std::min(1., p.deepest / o.depth[f]);
   if (!(p.deepest <= 0)) {
+    const double surely = is_depth(f, p) ? p.deepest : 0;
     contacts_.emplace_back(e, f, p);
-    contacts.push_back({outline_kernel, e, f, p.deepest, p.deepest * depth_ratio(o.face(f)), share,
+    contacts.push_back({outline_kernel, e, f, surely, p.deepest * depth_ratio(o.face(f)),
+                        std::min(1., p.deepest / o.depth[f]),
                         slope_[f] * o.length[e] * (p.to - p.from)});
   }
 }
 
-// Where a body contains the end of a collar without its outline crossing it, Green's theorem has
-// taken the complement: such contacts are beyond the collar as well.
-void OutlineKernel::find_complements(std::span<Contact> contacts) const {
+// An edge inside the top of a body is a contact with that body, and has the first face of its
+// outline for it.
+void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
-  for (Contact& c : contacts) {
-    if (areas_[c.b] < -kRound * o.length[c.b] * o.depth[c.b]) c.share = 1;
+  plateaus_.evaluate();
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = o.bodies[on.in].first;
+    const double force = slope_[f] * o.depth[f] * o.length[on.edge];
+    ends_[2 * on.edge] += force * (on.sum - on.first);
+    ends_[2 * on.edge + 1] += force * on.first;
+    contacts.push_back({outline_kernel, on.edge, f, 0, HUGE_VAL, kInsideTop, 0});
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    const double end = slope_[on.face] * on.moment.along / o.length[on.face];
+    ends_[2 * on.face] += slope_[on.face] * on.moment.area - end;
+    ends_[2 * on.face + 1] += end;
+    contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
 
@@ -161,29 +178,50 @@ void OutlineKernel::add_boundary(BodyIndex b, BoundaryDistance& boundary) const 
   }
 }
 
+// False if the height in a face need not be a depth, or the piece may even be outside the body,
+// because faces overlap there.
+bool OutlineKernel::is_depth(int face, const CollarPiece<double>& piece) const {
+  return piece.deepest <= std::min(outlines_.plain[face], kSurelyDepth * outlines_.depth[face]);
+}
+
 double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
                                  BoundaryDistance& boundary) const {
+  if (!is_depth(c.face, c.piece))
+    return deepest_inside(c.edge, outlines_.body[c.face], floor, boundary);
   const Vec2 start = outlines_.point(c.edge);
   const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
   return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
 }
 
+// Of all parts of an edge that are inside a body.
+double OutlineKernel::deepest_inside(int edge, BodyIndex in, double floor,
+                                     BoundaryDistance& boundary) const {
+  const Outlines& o = outlines_;
+  const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
+  std::vector<double> ends{0, 1};
+  const Outlines::Body& body = o.bodies[in];
+  for (int i = body.first; i < body.end; ++i) {
+    const Vec2 from = o.point(i) - start, to = o.point(o.next[i]) - start;
+    const double p = cross(along, from), q = cross(along, to);
+    if ((p > 0) == (q > 0)) continue;
+    const Vec2 place = from + p / (p - q) * (to - from);
+    ends.push_back(std::clamp(place.dot(along) / along.squaredNorm(), 0., 1.));
+  }
+  std::ranges::sort(ends);
+  double deepest = floor;
+  for (size_t i = 1; i < ends.size(); ++i) {
+    if (!(ends[i] > ends[i - 1])) continue;
+    const Vec2 from = start + ends[i - 1] * along, to = start + ends[i] * along;
+    if (o.winding((from + to) / 2, in) != 0) deepest = boundary.largest(from, to, deepest);
+  }
+  return deepest;
+}
+
 double OutlineKernel::penetration(const Contact& c, double floor) {
   boundary_.clear();
   add_boundary(outlines_.body[c.b], boundary_);
-  return deepest_in(edge_face(c), floor, boundary_);
-}
-
-ContactFault OutlineKernel::fault(const Contact& c) const {
-  const Outlines& o = outlines_;
-  const CollarPiece<double>& piece = edge_face(c).piece;
-  const double u = (piece.from + piece.to) / 2;
-  return {ContactFault::Kind::collar,
-          o.body[c.a],
-          o.body[c.b],
-          o.point(c.a) + u * (o.point(o.next[c.a]) - o.point(c.a)),
-          0,
-          o.depth[c.b]};
+  return c.share <= 1 ? deepest_in(edge_face(c), floor, boundary_)
+                      : deepest_inside(c.a, outlines_.body[c.b], floor, boundary_);
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -242,6 +280,13 @@ Resultant OutlineKernel::resultant(BodyIndex body) const {
 double OutlineKernel::energy() const {
   double sum = 0;
   for (const EdgeFaceContact& c : contacts_) sum += slope_[c.face] * c.piece.height;
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = outlines_.bodies[on.in].first;
+    sum += slope_[f] * outlines_.depth[f] * on.swept;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    sum += slope_[on.face] * (on.moment.height + outlines_.depth[on.face] * on.swept);
+  }
   return sum;
 }
 
@@ -297,10 +342,17 @@ void OutlineKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
       record[k].traction -= friction_->shares()[i] / (o.length[k] * thickness_);
     }
   }
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const int f = o.bodies[on.in].first;
+    record[on.edge].pressure += slope_[f] * o.depth[f] / thickness_ * on.sum;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    record[on.face].pressure += slope_[on.face] / thickness_ * on.moment.area / o.length[on.face];
+  }
 }
 
 // The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
-// outline.
+// outline, or goes on inside the top.
 std::vector<int> OutlineKernel::patches() const {
   const Outlines& o = outlines_;
   const auto from = [&](int edge, int face) {
@@ -309,30 +361,66 @@ std::vector<int> OutlineKernel::patches() const {
                               return std::pair(c.edge, c.face) < key;
                             });
   };
-  Groups groups(contacts_.size());
+  const std::vector<OutlinePlateaus::Edge>& edges = plateaus_.edges();
+  const std::vector<OutlinePlateaus::Face>& faces = plateaus_.faces();
+  const int first_edge = static_cast<int>(contacts_.size());
+  const int first_face = first_edge + static_cast<int>(edges.size());
+  Groups groups(contacts_.size() + edges.size() + faces.size());
   std::vector<std::pair<int, int>> keys;
-  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+  const auto each = [&](int edge, BodyIndex in, auto&& f) {
+    const Outlines::Body& body = o.bodies[in];
+    for (auto it = from(edge, body.first);
+         it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
+      f(static_cast<int>(it - contacts_.begin()));
+    }
+  };
+  for (int i = 0; i < first_edge; ++i) {
     const EdgeFaceContact& c = contacts_[i];
     keys.push_back(std::minmax(o.body[c.edge], o.body[c.face]));
-    const auto join = [&](auto other) {
-      groups.join(i, static_cast<int>(other - contacts_.begin()));
-    };
     const auto back = from(c.face, c.edge);
-    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) join(back);
-    const Outlines::Body& body = o.bodies[o.body[c.face]];
-    const auto each = [&](int edge, auto&& goes_on) {
-      for (auto it = from(edge, body.first);
-           it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
-        if (goes_on(*it)) join(it);
+    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) {
+      groups.join(i, static_cast<int>(back - contacts_.begin()));
+    }
+    each(c.edge, o.body[c.face], [&](int k) {
+      const EdgeFaceContact& d = contacts_[k];
+      if ((d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
+          d.piece.from <= c.piece.to && c.piece.from <= d.piece.to) {
+        groups.join(i, k);
       }
-    };
-    const bool to_end = c.piece.to >= 1;
-    each(c.edge, [&](const EdgeFaceContact& d) {
-      return (d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
-             d.piece.from <= c.piece.to && c.piece.from <= d.piece.to;
     });
-    if (to_end) {
-      each(o.next[c.edge], [](const EdgeFaceContact& d) { return d.piece.from <= 0; });
+    if (c.piece.to >= 1) {
+      each(o.next[c.edge], o.body[c.face], [&](int k) {
+        if (contacts_[k].piece.from <= 0) groups.join(i, k);
+      });
+    }
+  }
+  // Inside tops: by the numbers of edges and faces, and the body they are in.
+  std::map<std::pair<int, BodyIndex>, int> edge_at, face_at;
+  for (int i = first_edge; i < first_face; ++i) {
+    const OutlinePlateaus::Edge& on = edges[i - first_edge];
+    keys.push_back(std::minmax(o.body[on.edge], on.in));
+    edge_at[{on.edge, on.in}] = i;
+    each(on.edge, on.in, [&](int k) { groups.join(i, k); });
+  }
+  for (size_t k = 0; k < faces.size(); ++k) {
+    const OutlinePlateaus::Face& on = faces[k];
+    keys.push_back(std::minmax(o.body[on.face], on.in));
+    face_at[{on.face, on.in}] = first_face + static_cast<int>(k);
+  }
+  const auto join_at = [&](const auto& at, int i, int number, BodyIndex in) {
+    if (const auto it = at.find({number, in}); it != at.end()) groups.join(i, it->second);
+  };
+  for (int i = first_edge; i < first_face; ++i) {
+    const OutlinePlateaus::Edge& on = edges[i - first_edge];
+    join_at(edge_at, i, o.next[on.edge], on.in);
+    join_at(face_at, i, on.edge, on.in);
+  }
+  for (size_t k = 0; k < faces.size(); ++k) {
+    join_at(face_at, first_face + static_cast<int>(k), o.next[faces[k].face], faces[k].in);
+  }
+  if (!face_at.empty()) {
+    for (int i = 0; i < first_edge; ++i) {
+      join_at(face_at, i, contacts_[i].face, o.body[contacts_[i].edge]);
     }
   }
   return groups.numbers(keys);
@@ -343,12 +431,12 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
   const Outlines& o = outlines_;
   const std::vector<int> patch = patches();
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<ContactRecord> found(static_cast<size_t>(count));
-  std::vector<double> weights(found.size()), deepest(found.size());
+  std::vector<PatchSum> found(static_cast<size_t>(count));
   std::vector<BoundaryDistance> boundaries(o.bodies.size());
   for (size_t i = 0; i < contacts_.size(); ++i) {
     const auto& [edge, face, p] = contacts_[i];
-    ContactRecord& sum = found[static_cast<size_t>(patch[i])];
+    PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
+    ContactRecord& sum = of_patch.record;
     const BodyIndex own = o.body[edge];
     BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
     if (boundary.empty()) add_boundary(o.body[face], boundary);
@@ -362,9 +450,8 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     sum.normal += own == sum.a ? Vec2(force * inward) : Vec2(area * gives);
     const double u = p.sum > 0 ? p.first / p.sum : 0;
     sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
-    weights[static_cast<size_t>(patch[i])] += force;
-    double& deep = deepest[static_cast<size_t>(patch[i])];
-    deep = std::max(deep, p.deepest);
+    of_patch.weight += force;
+    of_patch.deepest = std::max(of_patch.deepest, p.deepest);
     if (friction_) {
       const double along = friction_->shares()[i];
       sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
@@ -372,12 +459,36 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
       sum.damping += push * gives;
     }
   }
-  for (size_t i = 0; i < found.size(); ++i) {
-    ContactRecord& sum = found[i];
-    if (weights[i] > 0) sum.point /= weights[i];
-    sum.phi = deepest[i] * std::max(o.bodies[sum.a].slope(), o.bodies[sum.b].slope());
+  size_t next = contacts_.size();
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
+    ContactRecord& sum = of_patch.record;
+    std::tie(sum.a, sum.b) = std::minmax(o.body[on.edge], on.in);
+    const int f = o.bodies[on.in].first;
+    const double force = slope_[f] * o.depth[f] * on.sum * o.length[on.edge];
+    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
+    if (o.body[on.edge] == sum.a) sum.normal += force * inward;
+    const double u = on.sum > 0 ? on.first / on.sum : 0;
+    const Vec2 start = o.point(on.edge);
+    sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
+    of_patch.weight += force;
+    of_patch.deepest = std::max(of_patch.deepest, o.depth[f]);
+    BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
+    if (boundary.empty()) add_boundary(on.in, boundary);
+    sum.penetration = deepest_inside(on.edge, on.in, sum.penetration, boundary);
   }
-  records.insert(records.end(), found.begin(), found.end());
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    ContactRecord& sum = found[static_cast<size_t>(patch[next++])].record;
+    std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
+    if (o.body[on.face] != sum.a) continue;
+    sum.normal += slope_[on.face] * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
+  }
+  for (PatchSum& sum : found) {
+    if (sum.weight > 0) sum.record.point /= sum.weight;
+    const BodyIndex a = sum.record.a, b = sum.record.b;
+    sum.record.phi = sum.deepest * std::max(o.bodies[a].slope(), o.bodies[b].slope());
+    records.push_back(sum.record);
+  }
 }
 
 }  // namespace apothem

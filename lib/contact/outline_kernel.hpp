@@ -3,8 +3,9 @@
 //
 //   E = k_n SUM over pairs of bodies  INT over the overlap  (h_a/r_a + h_b/r_b) dA
 //
-// with the depth h below each body's own surface. Every term is a sum over (edge of one outline) x
-// (face of the other's collar); only the vertices of the outlines get forces.
+// with the depth h below each body's own surface, which is limited to that of its collar. Every
+// term is a sum over (edge of one outline) x (face of the other's collar) and what lies inside the
+// tops of collars; only the vertices of the outlines get forces.
 #pragma once
 
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/outline_friction.hpp"
 #include "apothem/contact/outline_onset.hpp"
+#include "apothem/contact/outline_plateaus.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
@@ -28,11 +30,10 @@ class OutlineKernel final : public Kernel {
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
-  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
-    return onset_.find(candidates_, contacts_, now, dynamics, dt);
+    return onset_.find(candidates_, contacts_, plateaus_, now, dynamics, dt);
   }
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces);
@@ -57,18 +58,27 @@ class OutlineKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
+  /// A contact patch while it is summed.
+  struct PatchSum {
+    ContactRecord record;
+    double weight = 0, deepest = 0;
+  };
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   void add_boundary(BodyIndex body, BoundaryDistance& boundary) const;
+  [[nodiscard]] bool is_depth(int face, const CollarPiece<double>& piece) const;
   [[nodiscard]] double deepest_in(const EdgeFaceContact& contact, double floor,
                                   BoundaryDistance& boundary) const;
+  [[nodiscard]] double deepest_inside(int edge, BodyIndex in, double floor,
+                                      BoundaryDistance& boundary) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
                    std::vector<Contact>& contacts);
-  void find_complements(std::span<Contact> contacts) const;
+  void add_plateaus(std::vector<Contact>& contacts);
   [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
                               std::span<const double> fy) const;
-  /// The number of each contact's patch; ascending pairs of bodies. Not for every step.
+  /// The number of the patch of each contact, then of each edge and each face of the plateaus;
+  /// ascending pairs of bodies. Not for every step.
   [[nodiscard]] std::vector<int> patches() const;
 
   const Outlines& outlines_;
@@ -77,13 +87,17 @@ class OutlineKernel final : public Kernel {
   std::optional<OutlineFriction> friction_;  // only where there is friction
   std::vector<EdgeFace> candidates_;
   std::vector<int> near_edges_, near_faces_;
-  std::vector<CollarPiece<double>> pieces_;  // of the candidates, with several threads
-  std::vector<char> met_;
+  struct Met {
+    CollarPiece<double> piece;
+    CollarCrossings<double> top;
+    bool met;
+  };
+  std::vector<Met> met_;  // of the candidates, with several threads
   std::vector<EdgeFaceContact> contacts_;
   std::vector<double> slope_;    // k_n thickness / r of each edge's face, N/m^2
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
-  std::vector<double> areas_;    // of the overlap over each edge, m^2
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
+  OutlinePlateaus plateaus_;
   OutlineOnset onset_;
   BoundaryDistance boundary_;  // memory for penetrations
 };

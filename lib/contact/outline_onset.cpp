@@ -26,7 +26,8 @@ struct OutlineOnset::Step {
 };
 
 // One entry for each run of contacts of a pair, then one for each pair.
-void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts, bool at_first) {
+void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
+                                 const OutlinePlateaus& plateaus, bool at_first) {
   const Outlines& o = outlines_;
   std::vector<TouchingPair>& list = watch_.begin_step();
   for (const EdgeFaceContact& c : contacts) {
@@ -37,12 +38,20 @@ void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts, bool
     if (c.piece.from == 0) list.back().inside_a += scrambled(c.edge);
     list.back().length += (c.piece.to - c.piece.from) * o.length[c.edge];
   }
+  const auto add_deep = [&](int own, BodyIndex in) {
+    const auto [a, b] = std::minmax(o.body[own], in);
+    const TouchingPair pair{a, b, 0, 0, 0, true};
+    if (list.empty() || !list.back().same_pair(pair) || !list.back().deep) list.push_back(pair);
+  };
+  for (const OutlinePlateaus::Edge& on : plateaus.edges()) add_deep(on.edge, on.in);
+  for (const OutlinePlateaus::Face& on : plateaus.faces()) add_deep(on.face, on.in);
   std::ranges::sort(list, std::less<>());
   size_t last = 0;
   for (size_t i = 1; i < list.size(); ++i) {
     if (list[i].same_pair(list[last])) {
       list[last].inside_a += list[i].inside_a;
       list[last].length += list[i].length;
+      list[last].deep = list[last].deep || list[i].deep;
     } else {
       list[++last] = list[i];
     }
@@ -51,9 +60,9 @@ void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts, bool
 }
 
 bool OutlineOnset::find(std::span<const EdgeFace> candidates,
-                        std::span<const EdgeFaceContact> contacts, const Kinematics& now,
-                        const Dynamics& dynamics, double dt) {
-  find_touching(contacts, !(dt > 0));
+                        std::span<const EdgeFaceContact> contacts, const OutlinePlateaus& plateaus,
+                        const Kinematics& now, const Dynamics& dynamics, double dt) {
+  find_touching(contacts, plateaus, !(dt > 0));
   on_nodes_.clear(), on_rigid_.clear();
   if (!(dt > 0)) return false;
   const std::vector<Outlines::Body>& bodies = outlines_.bodies;
@@ -213,8 +222,10 @@ CollarFace<double> OutlineOnset::face(int i) const {
   const Vec2 before = tangent(p), own = tangent(i), after = tangent(j);
   const Mitre<double> a(before.x(), before.y(), own.x(), own.y());
   const Mitre<double> b(own.x(), own.y(), after.x(), after.y());
-  return {x_[i], y_[i], x_[j], y_[j], own.x(),    own.y(),    (point(j) - point(i)).norm(),
-          a.x,   a.y,   b.x,   b.y,   o.depth[i], o.depth[p], o.depth[j]};
+  const CollarFace<double> face{
+      x_[i], y_[i], x_[j], y_[j], own.x(),    own.y(), (point(j) - point(i)).norm(),
+      a.x,   a.y,   b.x,   b.y,   o.depth[i], 0};
+  return face.with_plain();
 }
 
 // Of the near edges and faces, where the corners are.
@@ -227,11 +238,12 @@ void OutlineOnset::find_forces() {
   };
   CollarPiece<double> piece;
   for (const auto& [e, f] : near_) {
+    CollarCrossings<double> top;
     const int q = o.next[e];
     const Vec2 base = point(o.next[f]) - point(f);
     if (cross(base, point(e) - point(f)) < 0 && cross(base, point(q) - point(f)) < 0) continue;
     const CollarFace<double> face_f = face(f);
-    if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece)) continue;
+    if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece, top)) continue;
     const Vec2 edge = point(q) - point(e);
     const double length = edge.norm();
     const EdgeFaceForces force = edge_face_forces(piece, slope_[f], length, face_f.length);

@@ -10,6 +10,7 @@
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/onset_watch.hpp"
+#include "apothem/contact/outline_plateaus.hpp"
 #include "apothem/contact/outlines.hpp"
 
 namespace apothem {
@@ -24,9 +25,10 @@ class OutlineOnset {
   /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
   /// much more or less boundary is inside. `contacts` are those of now, `candidates` those of the
   /// last search, both ascending. True if there is a J. With dt = 0, at the start, there is none,
-  /// and what touches then is new in the first step.
+  /// and what touches then is new in the first step. Pairs with `plateaus` are left as they are.
   bool find(std::span<const EdgeFace> candidates, std::span<const EdgeFaceContact> contacts,
-            const Kinematics& now, const Dynamics& dynamics, double dt);
+            const OutlinePlateaus& plateaus, const Kinematics& now, const Dynamics& dynamics,
+            double dt);
   /// Adds J / dt of the last `find`, times `scale`.
   void add(double scale, const ForceViews& forces) const;
 
@@ -52,7 +54,8 @@ class OutlineOnset {
     size_t first_end, end, coordinates;
   };
 
-  void find_touching(std::span<const EdgeFaceContact> contacts, bool at_first);
+  void find_touching(std::span<const EdgeFaceContact> contacts, const OutlinePlateaus& plateaus,
+                     bool at_first);
   void find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
                  std::span<const EdgeFace> candidates, const Step& step);
   void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);

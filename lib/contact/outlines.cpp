@@ -2,14 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "apothem/geometry/polygon/loops.hpp"
 
 namespace apothem {
 namespace {
 
+constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
   box.include(other.x1, other.y1);
+}
+
+// The area over the length of the boundary, m: no more than the inradius of the body.
+double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
+  double area = 0, length = 0;
+  for (const std::vector<Vec2>& ring : rings) {
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& next = ring[i + 1 == ring.size() ? 0 : i + 1];
+      area += cross(ring[i] - ring[0], next - ring[0]) / 2;
+      length += (next - ring[i]).norm();
+    }
+  }
+  return area / length;
+}
+
+// The smallest thickness of a body, m, or `most` if it is nowhere thinner.
+double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
+  std::vector<std::vector<Vec2>> rings;
+  for (const BoundaryLoop& loop : boundary.loops) {
+    std::vector<Vec2>& ring = rings.emplace_back();
+    for (const int n : loop.nodes) ring.push_back(mesh.nodes[n]);
+  }
+  if (least_inradius(rings) < most / 2) most = std::min(most, 2 * mesh_inradius(mesh, boundary));
+  return smallest_thickness(rings, most);
 }
 
 }  // namespace
@@ -17,7 +44,6 @@ void include(Box& box, const Box& other) {
 void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                         std::optional<double> reference) {
   const int first = size();
-  double r = std::numeric_limits<double>::infinity();
   std::vector<Vec2> places;
   std::vector<NodeIndex> nodes;
   for (const BoundaryLoop& loop : boundary.loops) {
@@ -26,25 +52,30 @@ void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex fi
       places.push_back(mesh.nodes[n]);
       nodes.push_back(first_node + n);
     }
-    const std::vector<double> caps =
-        reference ? std::vector<double>(nodes.size(), *reference) : inradii(mesh, loop);
-    r = std::min(r, *std::min_element(caps.begin(), caps.end()));
-    add_loop(places, nodes, caps);
+    add_loop(places, nodes);
   }
-  close_body({first, size(), -1, r});
+  if (reference) {
+    const double thickness = thickness_of(mesh, boundary, 2 * *reference);
+    close_body({first, size(), -1, *reference, thickness / 2});
+    return;
+  }
+  // The collars of opposite sides must not reach through a body that is squeezed to half. A row of
+  // squares is four times half its r thick: less is never needed.
+  const double r = boundary_inradius(mesh, boundary);
+  const double thickness = thickness_of(mesh, boundary, 4 * r);
+  close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
 }
 
 void Outlines::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
   const int first = size();
-  add_loop(vertices, {}, std::vector<double>(vertices.size(), reference));
-  close_body({first, size(), rigid, reference});
+  add_loop(vertices, {});
+  close_body({first, size(), rigid, reference,
+              std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2)});
 }
 
-void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes,
-                        std::span<const double> caps) {
+void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
   const int first = size();
   const int n = static_cast<int>(places.size());
-  cap.insert(cap.end(), caps.begin(), caps.end());
   for (int i = 0; i < n; ++i) {
     x0_.push_back(places[i].x());
     y0_.push_back(places[i].y());
@@ -54,20 +85,20 @@ void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeInd
     body.push_back(static_cast<BodyIndex>(bodies.size()));
   }
   x.resize(x0_.size()), y.resize(x0_.size());
+  loops.push_back({first, size(), static_cast<BodyIndex>(bodies.size())});
 }
 
 void Outlines::close_body(const Body& added) {
   bodies.push_back(added);
   const size_t n = x.size();
-  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &depth, &events_}) v->resize(n);
-  clearance.insert(clearance.end(), cap.begin() + added.first, cap.end());
+  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
+  depth.resize(n, added.depth);
   forget();
 }
 
 void Outlines::place(const Kinematics& now, const PlacedShapes& polygons) {
   move(now, polygons);
   find_edges();
-  find_depths();
 }
 
 void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
@@ -107,22 +138,11 @@ void Outlines::find_edges() {
     const Mitre<double> m(tx[p], ty[p], tx[i], ty[i]);
     mx[i] = m.x, my[i] = m.y;
   }
-}
-
-// An edge's face ends where it shrinks to a point or another front arrives, there or at a
-// neighbour; the second neighbours count as well because events follow each other.
-void Outlines::find_depths() {
-  const int n = size();
   for (int i = 0; i < n; ++i) {
     const int j = next[i];
     const double alpha = mx[i] * tx[i] + my[i] * ty[i];
     const double beta = mx[j] * tx[i] + my[j] * ty[i];
-    events_[i] = std::min(clearance[i], collar_event(length[i], alpha, beta));
-  }
-  for (int i = 0; i < n; ++i) {
-    const int p = previous[i], q = next[i];
-    depth[i] =
-        std::min({events_[previous[p]], events_[p], events_[i], events_[q], events_[next[q]]});
+    plain[i] = plain_depth(depth[i], collar_event(length[i], alpha, beta));
   }
 }
 
@@ -162,14 +182,11 @@ bool Outlines::stale() const {
 
 void Outlines::prepare_search() {
   self_contact_.reset();
-  find_boxes(0);
   const int count = static_cast<int>(bodies.size());
-  for (BodyIndex b = 0; b < count; ++b) {
-    if (!bodies[b].is_rigid() || b >= measured_) find_clearance(b);
-  }
-  measured_ = count;
-  find_depths();
   find_boxes(skin_ / 2);
+  for (BodyIndex b = 0; b < count; ++b) {
+    if (!bodies[b].is_rigid()) find_crossing(b);
+  }
   kept_.clear();
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
@@ -179,44 +196,35 @@ void Outlines::prepare_search() {
   }
 }
 
-// The time at which the inward-moving front of an edge f meets a vertex v of the same body that
-// moves along its bisector: h_f(v) / (1 - m_v . n_f), if v arrives within the front. Also finds
-// edges that cross.
-void Outlines::find_clearance(BodyIndex b) {
-  const Body& own = bodies[b];
-  // A vertex and a front come within the cap of each other from farther away than twice the cap,
-  // the more so the sharper the reflex corner: here from three times the larger cap of the two, no
-  // cap being smaller than r.
-  near_boxes_.clear();
-  for (int i = own.first; i < own.end; ++i) {
-    clearance[i] = cap[i];
-    near_boxes_.push_back(edge_boxes[i].grown(3 * cap[i] - 1.5 * own.reference));
+int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+  int sum = 0;
+  for (int i = bodies[b].first; i < bodies[b].end; ++i) {
+    const Vec2 from = (of_top ? top(i) : point(i)) - p;
+    const Vec2 to = (of_top ? top(next[i]) : point(next[i])) - p;
+    const bool up = to.y() > 0;
+    if ((from.y() > 0) == up) continue;
+    const double side = cross(from, to);
+    if (clear && std::abs(side) < kClear * depth[i] * (to - from).norm()) *clear = false;
+    if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
   }
+  return sum;
+}
+
+// Looks for edges of a body that cross.
+void Outlines::find_crossing(BodyIndex b) {
+  const Body& own = bodies[b];
+  near_boxes_.assign(edge_boxes.begin() + own.first, edge_boxes.begin() + own.end);
   grid_.find_pairs(near_boxes_, near_pairs_);
-  const auto meet = [&](int v, int f) {  // vertex v, front f
-    if (f == v || f == previous[v]) return;
-    const double px = x[v] - x[f], py = y[v] - y[f];
-    const double h = tx[f] * py - ty[f] * px;
-    const double closing = 1 - (tx[f] * my[v] - ty[f] * mx[v]);
-    if (!(h > 0) || !(closing > 0)) return;
-    const double time = h / closing;
-    if (time >= std::max({clearance[f], clearance[v], clearance[previous[v]]})) return;
-    const CollarFace<double> front = face(f);
-    const double tau = tx[f] * (px + time * mx[v]) + ty[f] * (py + time * my[v]) - front.length / 2;
-    const double left = front.alpha() * time, right = front.beta() * time;
-    if (tau < left - front.length || tau > right + front.length) return;
-    for (const int k : {f, v, previous[v]}) clearance[k] = std::min(clearance[k], time);
-  };
   const auto side = [&](int e, int v) { return tx[e] * (y[v] - y[e]) - ty[e] * (x[v] - x[e]); };
   for (auto [i, j] : near_pairs_) {
     i += own.first, j += own.first;
     const int in = next[i], jn = next[j];
-    meet(i, j), meet(in, j), meet(j, i), meet(jn, i);
-    if (i == jn || j == in || self_contact_) continue;
+    if (i == jn || j == in) continue;
     const double p = side(i, j), q = side(i, jn);
     if (p * q < 0 && side(j, i) * side(j, in) < 0) {
       const double u = p / (p - q);
       self_contact_ = {b, {x[j] + u * (x[jn] - x[j]), y[j] + u * (y[jn] - y[j])}};
+      return;
     }
   }
 }

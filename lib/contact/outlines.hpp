@@ -1,8 +1,9 @@
 // The outlines of bodies with the collars of their potentials (docs/theory.md, Contact).
 //
 // An outline is the boundary of a body: the closed lines around a mesh, or the polygon of a rigid
-// body that may touch a mesh. The collar is the part of the outline's roof near the surface. Every
-// edge has one face of it, which ends where the faces around it change their shape. The vertices of
+// body that may touch a mesh. The collar is the part of the outline's roof near the surface, up to
+// a depth that is the same all around a body and does not follow the deformation. Every edge has
+// one face of it. The upper sides of the faces form the top, closed lines as well. The vertices of
 // all outlines form one list; edge i leads from vertex i to vertex next[i].
 #pragma once
 
@@ -27,6 +28,7 @@ class Outlines {
     int first, end;         ///< the vertices of the body
     RigidIndex rigid;       ///< -1 if the body is deformable
     double reference;       ///< r of its potential, m; it does not follow the deformation
+    double depth;           ///< of its collar, m; nor does this
     double cx = 0, cy = 0;  ///< mass centre of a rigid body, m
 
     [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
@@ -36,28 +38,33 @@ class Outlines {
   std::vector<BodyIndex> body;      ///< of each vertex
   std::vector<int> next, previous;  ///< vertices around each vertex
   std::vector<NodeIndex> node;      ///< of each vertex; -1 on a rigid body
-  std::vector<double> cap;          ///< largest depth of the collar at each edge, m
-  std::vector<double> x, y;         ///< present place of each vertex, m
-  std::vector<double> mx, my;       ///< direction of the bisector at each vertex
-  std::vector<double> tx, ty;       ///< unit tangent of each edge
-  std::vector<double> length;       ///< of each edge, m
-  std::vector<double> clearance;    ///< height at which the fronts of other edges arrive, m
-  std::vector<double> depth;        ///< of the collar at each edge, m
-  std::vector<Box> edge_boxes;      ///< of the edges at the last search, grown by half the skin
-  std::vector<Box> face_boxes;      ///< of the faces, likewise
-  std::vector<Box> body_boxes;      ///< of the edges and faces of each body, likewise
+  /// The vertices of a closed line of a body.
+  struct Loop {
+    int first, end;
+    BodyIndex body;
+  };
+  std::vector<Loop> loops;      ///< ascending
+  std::vector<double> x, y;     ///< present place of each vertex, m
+  std::vector<double> mx, my;   ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;   ///< unit tangent of each edge
+  std::vector<double> length;   ///< of each edge, m
+  std::vector<double> depth;    ///< of the collar at each edge: that of the body, m
+  std::vector<double> plain;    ///< of each face (geometry/integrals/collar.hpp), m
+  std::vector<Box> edge_boxes;  ///< of the edges at the last search, grown by half the skin
+  std::vector<Box> face_boxes;  ///< of the faces, likewise
+  std::vector<Box> body_boxes;  ///< of the edges and faces of each body, likewise
 
   /// `skin`: how far corners of edges and faces may move between two searches, twice over, m.
   explicit Outlines(double skin = 0) : skin_(skin) {}
 
-  /// Adds the outline of a mesh whose node 0 has the number `first_node`. The collar of an edge is
-  /// at most as deep as the inradius of its element, and r is the smallest of these inradii; with
-  /// `reference` (m) both have that value.
+  /// Adds the outline of a mesh whose node 0 has the number `first_node`. r is the smallest
+  /// inradius of the elements at its boundary, or `reference` (m). The collar has the depth r, or
+  /// less where the body is thin: see collar_depth.
   void add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                 std::optional<double> reference = {});
 
   /// Adds the polygon of a rigid body, counter-clockwise about the mass centre; `reference`: its r
-  /// in m.
+  /// in m. The collar has the depth r, or half the smallest thickness.
   void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
 
   /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those
@@ -68,8 +75,7 @@ class Outlines {
   [[nodiscard]] bool stale() const;
   /// Has the next look find the outlines stale.
   void forget() { kept_.clear(); }
-  /// Renews the clearances and depths of the collars, which follow from all edges of a body, and
-  /// the boxes for the search.
+  /// Renews the boxes for the search.
   void prepare_search();
 
   /// Two edges of one body that cross, noticed at the last search.
@@ -79,6 +85,11 @@ class Outlines {
   };
   [[nodiscard]] const std::optional<SelfContact>& self_contact() const { return self_contact_; }
 
+  /// How often the outline of a body, or the top of its collar, goes round a point. `clear`, if
+  /// given, becomes false where round-off might decide.
+  [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
+                            bool* clear = nullptr) const;
+
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
   /// Half the length of the two edges at a vertex, m.
   [[nodiscard]] double share(int vertex) const {
@@ -87,40 +98,28 @@ class Outlines {
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {
     const int j = next[i];
-    return {x[i],
-            y[i],
-            x[j],
-            y[j],
-            tx[i],
-            ty[i],
-            length[i],
-            mx[i],
-            my[i],
-            mx[j],
-            my[j],
-            depth[i],
-            depth[previous[i]],
-            depth[j]};
+    return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],   length[i],
+            mx[i], my[i], mx[j], my[j], depth[i], plain[i]};
   }
+  /// By how much the boxes are grown, m.
+  [[nodiscard]] double growth() const { return skin_ / 2; }
+  /// The vertex of the top over a vertex.
+  [[nodiscard]] Vec2 top(int i) const { return {x[i] + depth[i] * mx[i], y[i] + depth[i] * my[i]}; }
 
  private:
-  void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes,
-                std::span<const double> caps);
+  void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
   void move(const Kinematics& now, const PlacedShapes& polygons);
   void find_edges();
-  void find_depths();
   void find_boxes(double growth);
-  void find_clearance(BodyIndex body);
+  void find_crossing(BodyIndex body);
   /// x, y of the start of an edge and of both upper ends of its face.
   using Corners = std::array<double, 6>;
   [[nodiscard]] Corners corners(int edge) const;
 
   double skin_;
   std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
-  std::vector<double> events_;   // height at which each face changes its shape
   std::vector<Corners> kept_;    // of the last search
-  int measured_ = 0;             // bodies before this one have clearances, if they are rigid
   BoxGrid grid_;
   std::vector<Box> near_boxes_;
   std::vector<BoxPair> near_pairs_;

@@ -211,9 +211,7 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   const std::string& a = name(fault.a);
   const std::string& b = name(fault.b);
   std::string what = fmt::format("bodies \"{}\" and \"{}\" overlap ", a, b);
-  std::string limit, advice =
-                         "the contact is too soft for this load; raise "
-                         "contact.normal_stiffness";
+  std::string advice = "the contact is too soft for this load; raise contact.normal_stiffness";
   switch (fault.kind) {
     case Kind::singular_area:
       what += "up to the singular area of one of them (phi = 1)";
@@ -228,17 +226,13 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
       what += "at an element that is no longer convex and cannot keep its potential";
       advice = "reduce the load or time.safety, or use \"surface\": \"body\"";
       break;
-    default:
-      what = fmt::format("\"{}\" is {:.3g} m deep in \"{}\"", a, fault.depth, b);
-      limit = fmt::format(", where its potential near the surface ends at {:.3g} m", fault.limit);
-      advice =
-          "the contact is too soft for this load or the part too thin; raise "
-          "contact.normal_stiffness";
+    case Kind::self_contact:
+      break;
   }
   if (state.step == 0) advice = "move them apart";
   const BodyIndex last = std::max(fault.a, fault.b);
-  throw Unstable(fmt::format("{} at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}){}: {}", what,
-                             world.x(), world.y(), state.time, state.step, limit, advice),
+  throw Unstable(fmt::format("{} at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}): {}", what,
+                             world.x(), world.y(), state.time, state.step, advice),
                  last < static_cast<BodyIndex>(model_.bodies.size()) ? last : -1);
 }
 

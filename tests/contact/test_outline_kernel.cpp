@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "apothem/geometry/polygon/loops.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
 
@@ -16,6 +16,7 @@ std::set<std::pair<int, int>> touching(const Contacts& contacts) {
   std::set<std::pair<int, int>> pairs;
   for (const Contact& c : contacts.contacts()) {
     REQUIRE(c.kernel == outline_kernel);
+    if (c.share > 1) continue;  // inside a top
     pairs.emplace(c.a, c.b);
   }
   return pairs;
@@ -29,8 +30,9 @@ std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
       const bool rigid = o.bodies[o.body[e]].is_rigid() && o.bodies[o.body[f]].is_rigid();
       if (o.body[e] == o.body[f] || rigid) continue;
       CollarPiece<double> piece;
+      CollarCrossings<double> top;
       const int q = o.next[e];
-      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece) && piece.deepest > 0)
+      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, top) && piece.deepest > 0)
         pairs.emplace(e, f);
     }
   }
@@ -84,7 +86,7 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
   };
   Bodies bodies = pair();
   std::vector<double>& u = bodies.displacement;
-  int touched = 0, apart = 0;
+  int touched = 0, apart = 0, deep = 0;
   for (int step = 0; step < 2000; ++step) {
     // The second body goes round the first one; its corners swing as well.
     const double t = .003 * step;
@@ -100,15 +102,15 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
     fresh.displacement = u;
     fresh.evaluate();
     fresh.find_forces();
-    // Where a collar ends is measured at a search.
-    if (std::max(deepest_share(*bodies.contacts), deepest_share(*fresh.contacts)) > .5) continue;
     REQUIRE(touching(*bodies.contacts) == touching(*fresh.contacts));
     REQUIRE(bodies.contacts->energy() == fresh.contacts->energy());
     REQUIRE((bodies.node_force == fresh.node_force));
+    deep += deepest_share(*fresh.contacts) > 1;
     (fresh.contacts->contacts().empty() ? apart : touched)++;
   }
   CHECK(touched > 200);
   CHECK(apart > 200);
+  CHECK(deep > 100);
   CHECK(bodies.contacts->searches() < 1000);
 }
 
@@ -133,6 +135,15 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
     bodies.evaluate();
     const double share = deepest_share(*bodies.contacts);
     if (!(share > .02) || share > .98) continue;
+    // Only where the collars are the roofs.
+    std::vector<double> first = first_nodes(a.vertices());
+    for (const double h : first_nodes(b.vertices())) first.push_back(h);
+    const Outlines& o = bodies.contacts->surfaces().outlines();
+    if (std::ranges::any_of(bodies.contacts->contacts(), [&](const Contact& c) {
+          return c.share * o.depth[c.b] > first[c.b];
+        })) {
+      continue;
+    }
     ++pairs;
     bodies.find_forces();
     const PairResult edge = edge_method(moved, make_potential(moved), b, potential_b);
@@ -208,68 +219,62 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   CHECK(bodies.contacts->node_rate(mass) < bound / 1e8);
 }
 
-TEST_CASE("the collar ends where fronts meet", "[outline_kernel][contact]") {
-  const auto depths = [](const std::vector<Vec2>& ring) {
-    Bodies bodies(law_of(1), .01);
-    bodies.add_ring(ring, 10);
-    bodies.join();
-    bodies.place();
-    return bodies.contacts->surfaces().outlines().depth;
+TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
+          "[outline_kernel][contact]") {
+  const auto depth_of = [](const Mesh& mesh, std::optional<double> reference = {}) {
+    Outlines outlines;
+    outlines.add_mesh(mesh, boundary(mesh), 0, reference);
+    return outlines.bodies[0].depth;
   };
-  // Half of a bar's thickness, however fine its edges; and its inradius where that is less.
-  for (const int parts : {1, 3}) {
-    for (const double h : depths(split(samples::block(0, 0, 4, .5).vertices(), parts))) {
-      CHECK(h <= .25 + 1e-15);
-      if (parts == 1) CHECK(h == Approx(.25));
-    }
+  const auto bar = [](double height, int rows, ElementShape shape) {
+    return rectangle_mesh({2, height}, {20, rows}, {0, 0}, shape);
+  };
+  for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
+    // One row of elements: a quarter of its thickness; two rows or more: r.
+    CHECK(depth_of(bar(.1, 1, shape)) == Approx(std::min(.025, depth_of(bar(.2, 2, shape)))));
+    const Mesh two = bar(.2, 2, shape);
+    CHECK(depth_of(two) == Approx(boundary_inradius(two, boundary(two))));
   }
-  // Where CGAL's skeleton has its first node over an edge, the collar has ended.
-  samples::Random random(24);
-  for (int i = 0; i < scaled(200); ++i) {
-    const Polygon polygon = samples::random_star_shaped(random, random.integer(4, 12), .5);
-    Skeleton skeleton;
-    try {
-      skeleton = straight_skeleton(polygon);
-    } catch (const SkeletonFailure&) {
-      continue;
-    }
-    const std::vector<double> depth = depths(polygon.vertices());
-    for (int e = 0; e < polygon.size(); ++e) {
-      double first = 10;
-      for (const int node : skeleton.faces[e]) {
-        if (node >= polygon.size()) first = std::min(first, skeleton.nodes[node].height);
-      }
-      CAPTURE(i, e);
-      CHECK(depth[e] <= first * (1 + 1e-9));
-    }
-  }
+  // Fins count, wedges and round ends do not.
+  const std::vector<Vec2> comb{{0, 0}, {3, 0}, {3, 2}, {2.8, 2}, {2.8, 1}, {1, 1}, {1, 3}, {0, 3}};
+  CHECK(depth_of(one_element(comb), .2) == Approx(.1));
+  CHECK(smallest_thickness({comb}, 9) == Approx(.2));
+  const std::vector<Vec2> wedge{{0, 0}, {3, -.3}, {3, .3}};
+  CHECK(smallest_thickness({split(wedge, 9)}, 9) == 9);
+  std::vector<Vec2> round;
+  for (int i = 0; i < 60; ++i) round.push_back(samples::turned({1, 0}, M_PI / 30 * i));
+  CHECK(smallest_thickness({round}, 9) == 9);
+  // A ring is as thick as its wall.
+  std::vector<Vec2> hole;
+  for (int i = 0; i < 60; ++i) hole.push_back(samples::turned({.8, 0}, -M_PI / 30 * i));
+  CHECK(smallest_thickness({round, hole}, 9) == Approx(.2).epsilon(.01));
+  // A given r, and a rigid body: half of its thickness.
+  CHECK(depth_of(bar(1, 10, ElementShape::quadrilateral), .2) == .2);
+  Outlines outlines;
+  outlines.add_rigid(comb, 0, .4);
+  CHECK(outlines.bodies[0].depth == Approx(.1));
+  outlines.add_rigid(samples::block(0, 0, 4, 1).vertices(), 1, .5);
+  CHECK(outlines.bodies[1].depth == .5);
 }
 
-TEST_CASE("a body pushed through the collar is noticed", "[outline_kernel][contact]") {
-  const std::vector<Vec2> bar = split(samples::block(-2, -.5, 2, 0).vertices(), 8);
-  for (const double d : {.1, .24, .26, .4, .49, .51, .8}) {
-    const OutlinePair pair(bar, {{.05, -d}, {1.05, 1 - d}, {-.95, 1 - d}}, .25, .4);
+TEST_CASE("a body pushed through the collar meets a constant pressure there",
+          "[outline_kernel][contact]") {
+  const std::vector<Vec2> bar = split(samples::block(-2, -1, 2, 0).vertices(), 8);
+  // A stamp between two nodes of the bar; both have collars of 1/8.
+  for (const double d : {.1, .2, .4, .7}) {
+    const OutlinePair pair(bar, split(samples::block(-.8, -d, .7, 2).vertices(), 4), .125, .125);
     CAPTURE(d);
-    const double share = deepest_share(*pair.contacts);
-    CHECK((share < 1) == (d < .25));
-    if (d < .25) CHECK(share == Approx(d / .25));
-    const std::optional<ContactFault> fault = pair.contacts->fault();
-    CHECK(fault.has_value() == (d > .25));
-    if (!fault) continue;
-    CHECK(fault->kind == ContactFault::Kind::collar);
-    CHECK(fault->a + fault->b == 1);
-    CHECK(fault->limit > 0);
-  }
-}
-
-TEST_CASE("a body that has swallowed the end of a collar is noticed", "[outline_kernel][contact]") {
-  const std::vector<Vec2> block = samples::block(-2, -4, 2, 0).vertices();
-  // The top of the triangle's collar is at (0, y + 1).
-  for (const double y : {-.3, -.8, -.95, -1.05, -1.2, -1.4}) {
-    const OutlinePair pair(block, {{0, y}, {.866, y + 1.5}, {-.866, y + 1.5}}, 2, 1);
-    CAPTURE(y);
-    CHECK((deepest_share(*pair.contacts) < 1) == (y > -1));
-    CHECK(pair.contacts->fault().has_value() == (y < -1));
+    CHECK((deepest_share(*pair.contacts) > 1) == (d > .125));
+    CHECK_FALSE(pair.contacts->fault());
+    // On the stamp, and on the bar, whose edges go into the sides of the stamp as well.
+    const double h = std::min(d, .125);
+    CHECK(pair.on(1).force.y() == Approx(1.5 * h / .125 + (1.5 * h - h * h) / .125).epsilon(1e-12));
+    CHECK(largest_penetration(*pair.contacts) == Approx(std::min(d, .75)).epsilon(1e-9));
+    const std::vector<ContactRecord> records = pair.contacts->records();
+    REQUIRE(records.size() == 1);
+    CHECK((records[0].normal - pair.on(0).force).norm() < 1e-12);
+    CHECK(records[0].penetration == Approx(std::min(d, .75)).epsilon(1e-9));
+    CHECK(records[0].phi == Approx(h / .125));
   }
 }
 

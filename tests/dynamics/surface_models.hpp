@@ -69,6 +69,7 @@ struct Result {
   double energy = 0;    // largest error over the initial kinetic energy
   double momentum = 0;  // largest error over the first body's momentum
   bool touched = false;
+  double penetration = 0;  // largest, m
   Energies last;
 };
 
@@ -90,6 +91,7 @@ inline Result collide(const Model& model, double safety, double end, int threads
     }
     result.touched = result.touched || result.last.contact > 0;
   }
+  result.penetration = simulation.extremes().penetration.value;
   return result;
 }
 
