@@ -1,6 +1,7 @@
 #include "apothem/contact/outline_friction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apothem/contact/kernel.hpp"
 
@@ -32,7 +33,7 @@ SpringKey key_of(const Outlines& o, const EdgeFaceContact& c) {
 
 }  // namespace
 
-void OutlineFriction::find_velocities(const Kinematics& now) {
+void OutlineFriction::find_velocities(const Kinematics& now, double dt) {
   const Outlines& o = outlines_;
   vx_.resize(o.size()), vy_.resize(o.size());
   for (const Outlines::Body& body : o.bodies) {
@@ -41,6 +42,12 @@ void OutlineFriction::find_velocities(const Kinematics& now) {
         const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
         vx_[i] = v[0] - v[2] * (o.y[i] - body.cy);
         vy_[i] = v[1] + v[2] * (o.x[i] - body.cx);
+        if (!now.finite) continue;
+        // From where the vertex was, along the chord of its arc.
+        const double angle = v[2] * dt, half = std::sin(angle / 2);
+        const double turned = std::sin(angle) / dt - v[2], drawn = 2 * half * half / dt;
+        vx_[i] += drawn * (o.x[i] - body.cx) - turned * (o.y[i] - body.cy);
+        vy_[i] += drawn * (o.y[i] - body.cy) + turned * (o.x[i] - body.cx);
       } else {
         vx_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i])];
         vy_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i]) + 1];
@@ -52,9 +59,9 @@ void OutlineFriction::find_velocities(const Kinematics& now) {
 double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, const Kinematics& now,
                               double dt, FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  find_velocities(now);
-  fx_.resize(o.size()), fy_.resize(o.size());
-  const double power_before = power();
+  find_velocities(now, dt);
+  fx_.swap(fx_before_), fy_.swap(fy_before_);
+  const double power_before = power(fx_before_, fy_before_);
   fx_.assign(o.size(), 0), fy_.assign(o.size(), 0);
   shares_.assign(contacts.size(), 0);
   for (size_t first = 0, end; first < contacts.size(); first = end) {
@@ -66,22 +73,30 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
     if (!(friction.coefficient > 0)) continue;
 
     Spring spring{key};
-    double normal = 0, rate = 0;
+    double normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
     for (size_t i = first; i < end; ++i) {
       const EdgeFaceContact& c = contacts[i];
       const double weight = slope_[c.face] * o.length[c.edge];
+      const double length = (c.piece.to - c.piece.from) * o.length[c.edge];
       normal += weight * c.piece.sum;
-      spring.stiffness += friction.tangential_stiffness * thickness_ / o.bodies[other].reference *
-                          (c.piece.to - c.piece.from) * o.length[c.edge];
+      spring.stiffness +=
+          friction.tangential_stiffness * thickness_ / o.bodies[other].reference * length;
       const SlipRate k = slip_rate(o, c, weight);
       const int p = c.edge, q = o.next[p], a = c.face, b = o.next[a];
       const double x = k.p * vx_[p] + k.q * vx_[q] + k.a * vx_[a] + k.b * vx_[b];
       const double y = k.p * vy_[p] + k.q * vy_[q] + k.a * vy_[a] + k.b * vy_[b];
       rate += o.tx[a] * x + o.ty[a] * y +
               k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
+      approach += o.tx[a] * y - o.ty[a] * x;
+      width += length;
+      depth += c.piece.sum * o.length[c.edge];
     }
     const std::span<const Spring> before = memory.before(key.law, key.a, key.b);
     if (!(normal > 0)) continue;
+    // Contact that has closed within a long step: what came before is no slip.
+    if (now.finite && before.empty() && approach / normal * dt > depth / width) {
+      rate *= depth / width / (approach / normal * dt);
+    }
     // New contact joins without a slip of its own; contact that ends takes its share along.
     const double force =
         before.empty() ? 0 : before[0].force * std::min(1., spring.stiffness / before[0].stiffness);
@@ -94,7 +109,7 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
       shares_[i] = spring.force * (slope_[c.face] * o.length[c.edge] * c.piece.sum) / normal;
     }
   }
-  return dt / 2 * (power_before + power());
+  return dt / 2 * (power_before + power(fx_, fy_));
 }
 
 // The friction force times the coefficients of the slip rate.
@@ -110,9 +125,9 @@ void OutlineFriction::apply(const EdgeFaceContact& c, double weight) {
 }
 
 // Of the forces on the bodies, W.
-double OutlineFriction::power() const {
+double OutlineFriction::power(const std::vector<double>& fx, const std::vector<double>& fy) const {
   double sum = 0;
-  for (size_t i = 0; i < fx_.size(); ++i) sum += fx_[i] * vx_[i] + fy_[i] * vy_[i];
+  for (size_t i = 0; i < fx.size(); ++i) sum += fx[i] * vx_[i] + fy[i] * vy_[i];
   return sum;
 }
 

@@ -30,6 +30,12 @@ class OutlineFriction {
   double slide(const std::vector<EdgeFaceContact>& contacts, const Kinematics& now, double dt,
                FrictionMemory& memory);
 
+  /// Takes back the last slide.
+  void undo_slide() {
+    fx_.swap(fx_before_);
+    fy_.swap(fy_before_);
+  }
+
   /// Forces on the vertices of the outlines, N.
   [[nodiscard]] const std::vector<double>& fx() const { return fx_; }
   [[nodiscard]] const std::vector<double>& fy() const { return fy_; }
@@ -37,8 +43,8 @@ class OutlineFriction {
   [[nodiscard]] const std::vector<double>& shares() const { return shares_; }
 
  private:
-  void find_velocities(const Kinematics& now);
-  [[nodiscard]] double power() const;
+  void find_velocities(const Kinematics& now, double dt);
+  [[nodiscard]] double power(const std::vector<double>& fx, const std::vector<double>& fy) const;
   void apply(const EdgeFaceContact& contact, double weight);
 
   const Outlines& outlines_;
@@ -46,6 +52,7 @@ class OutlineFriction {
   const std::vector<double>& slope_;
   double thickness_;
   std::vector<double> vx_, vy_, fx_, fy_;  // of the vertices
+  std::vector<double> fx_before_, fy_before_;
   std::vector<double> shares_;
 };
 

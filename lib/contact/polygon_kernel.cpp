@@ -142,6 +142,14 @@ void PolygonKernel::add_tangential(const ForceViews& forces) const {
   for (const TangentialForce& t : tangential_->forces()) t.all.add_to(t.a, t.b, forces.rigid);
 }
 
+void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
+  for (const int p : touching_) {
+    const double size = stiffness_ * pairs_[static_cast<size_t>(p)].force.norm();
+    of_bodies[static_cast<size_t>(pairs_.pairs()[static_cast<size_t>(p)].first)] += size;
+    of_bodies[static_cast<size_t>(pairs_.pairs()[static_cast<size_t>(p)].second)] += size;
+  }
+}
+
 void PolygonKernel::add_records(const FrictionMemory& memory,
                                 std::vector<ContactRecord>& records) const {
   PatchTangential::Cursor cursor;

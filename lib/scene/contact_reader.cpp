@@ -40,7 +40,6 @@ void ContactReader::read(const JsonValue& value) {
   if (const JsonValue* v = object.optional("field")) field(*v);
   if (const JsonValue* v = object.optional("reference")) reference(*v);
   if (const JsonValue* v = object.optional("friction")) {
-    features_.add(Feature::friction, v);
     law.friction = friction(*v, true);
   }
   if (const JsonValue* v = object.optional("damping")) damping(*v);
@@ -48,7 +47,6 @@ void ContactReader::read(const JsonValue& value) {
     law.penetration_warning = in_.positive(*v, "");
   }
   pairs_ = object.optional("pairs");
-  if (pairs_) features_.add(Feature::friction_of_pairs, pairs_);
   const JsonValue* surface_value = object.optional("surface");
   surface(surface_value, object.optional("distribution"));
   if (const JsonValue* v = object.optional("overlaps")) {
