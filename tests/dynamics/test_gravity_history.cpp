@@ -40,7 +40,7 @@ TEST_CASE("a body falls as gravity grows", "[gravity]") {
   CHECK(e.gravity == Approx(m * (-kG * kG / 6 - moved)).epsilon(1e-5));
   CHECK(e.external_work < -.3 * e.kinetic);
   run_until(simulation, 2.5);
-  check(.5, 1. / 6 + .5 - 1.5 / 6 + .75 * .5 - .5 * .125);
+  check(.5, 1. / 6 + .5 + .5 - 1.5 / 6 + .75 * .5 - .5 * .125);
   e = simulation.energies();
   CHECK(std::abs(e.total_error) < 1e-6 * e.kinetic);
   const Momenta p = simulation.momenta();
@@ -57,6 +57,7 @@ TEST_CASE("ledgers close where gravity changes while bodies touch", "[gravity]")
   add(model, "block", flat_block());
   TimeSettings time;
   time.end = .05;
+  time.safety = .02;
   Simulation simulation(model, time, 1, 1);
   run_until(simulation, time.end);
   const Energies e = simulation.energies();
@@ -80,6 +81,7 @@ TEST_CASE("constant gravity by a history is the same gravity, and meshes feel it
   model.gravity *= 2;
   TimeSettings time;
   time.end = 5e-4;
+  time.element_safety = .05;
   Simulation one(model, time, 1, 1), two(same, time, 1, 1);
   run_until(one, time.end);
   run_until(two, time.end);
@@ -91,7 +93,7 @@ TEST_CASE("constant gravity by a history is the same gravity, and meshes feel it
   run_until(growing, time.end);
   const Energies e = growing.energies();
   CHECK(e.strain > 0);
-  CHECK(std::abs(e.total_error) < 1e-4 * e.strain);
+  CHECK(std::abs(e.total_error) < 1e-4 * e.kinetic);
   CHECK(std::abs(growing.momenta().y_error) < 1e-9 * std::abs(growing.momenta().y));
 }
 

@@ -70,10 +70,10 @@ void number_nodes(Model& model) {
 }
 
 constexpr double kWeight = 1e7;  // N
-constexpr double kPull = 6e-3;   // m
+constexpr double kPull = 12e-3;  // m
 constexpr double kFriction = .5;
 
-// A block of 1 m x 0.5 m on a floor 1 m thick, pressed with a weight and pulled at its right side.
+// A block of 1 m x 0.1 m on a floor 1 m thick, pressed with a weight and pulled at its right side.
 Model pulled_block(double spring) {
   Model model;
   model.materials = {
@@ -83,10 +83,10 @@ Model pulled_block(double spring) {
   add(model, "floor", samples::block(-2, -1, 3, 0), Motion::fixed);
   DeformableBody block;
   block.name = "block";
-  block.mesh = rectangle_mesh({1, .5}, {10, 5}, {0, 0}, ElementShape::quadrilateral);
+  block.mesh = rectangle_mesh({1, .1}, {20, 2}, {0, 0}, ElementShape::quadrilateral);
   block.supports = {{nodes_where(block.mesh, {.x = 1}), {true, false}, {}}};
   block.supports[0].motion = then_along({0, 0}, {kPull, 0});
-  block.dead_loads = {on_side(block, {.y = .5}, {0, -kWeight})};
+  block.dead_loads = {on_side(block, {.y = .1}, {0, -kWeight})};
   model.deformables = {block};
   return model;
 }
@@ -94,28 +94,27 @@ Model pulled_block(double spring) {
 }  // namespace
 
 TEST_CASE("a block is pulled until it slides", "[static_friction]") {
-  constexpr double kSpring = 8e7;
+  constexpr double kSpring = 2e7;
   const Model model = pulled_block(kSpring);
   const TimeSettings time = load_steps(24, 2);
   Simulation simulation(model, time, 24, 1);
   run_load_steps(simulation, time, 1, 12);
   CHECK(simulation.contact_forces()[1].fy == Approx(kWeight).epsilon(1e-5));
-  CHECK(std::abs(simulation.contact_forces()[1].fx) < 1e-3 * kFriction * kWeight);
   const double before = simulation.contact_forces()[1].fx;
   // Edges of the block slide on the floor and those of the floor on the block: the springs of both
   // lie under a rod.
-  const double springs = kSpring * (1 / .5 + 1 / .05), rod = kModulus / (1 - .04) * .5;
+  const double springs = kSpring * (1 / .5 + 1 / .025), rod = kModulus / (1 - .04) * .1;
   const double theory = std::sqrt(springs * rod) * std::tanh(std::sqrt(springs / rod));
   run_load_steps(simulation, time, 13, 14);
   const double pull = (before - simulation.contact_forces()[1].fx) / (kPull / 6);
   INFO("stiffness " << pull << " of " << theory << ", springs alone " << springs);
   CHECK(pull == Approx(theory).epsilon(.01));
-  CHECK(theory < .96 * springs);
+  CHECK(theory < .9 * springs);
   run_load_steps(simulation, time, 15, 22);
-  CHECK(-simulation.contact_forces()[1].fx == Approx(kFriction * kWeight).epsilon(1e-6));
+  CHECK(-simulation.contact_forces()[1].fx == Approx(kFriction * kWeight).epsilon(1e-5));
   const double lost = simulation.energies().friction_loss;
   run_load_steps(simulation, time, 23, 24);
-  CHECK(-simulation.contact_forces()[1].fx == Approx(kFriction * kWeight).epsilon(1e-6));
+  CHECK(-simulation.contact_forces()[1].fx == Approx(kFriction * kWeight).epsilon(1e-5));
   const Energies e = simulation.energies();
   CHECK(e.friction_loss - lost == Approx(kFriction * kWeight * kPull / 6).epsilon(1e-4));
   CHECK(std::abs(e.total_error) < .01 * e.friction_loss);
@@ -143,12 +142,13 @@ TEST_CASE("the path of the relaxation leaves no trace in the springs", "[static_
   const double now = simulation.state().time;
   const State state = simulation.state();
   int looks = 0;
-  CHECK_FALSE(simulation.balance(2, [&] { return ++looks == 700; }).complete);
+  CHECK_FALSE(simulation.balance(2, [&] { return ++looks == 100; }).complete);
   CHECK(simulation.state().x == state.x);
   CHECK(traction() == tractions);
   CHECK(simulation.energies().friction_loss == lost);
   simulation.balance(now);
-  const double largest = *std::max_element(tractions.begin(), tractions.end());
+  double largest = 0;
+  for (const double t : tractions) largest = std::max(largest, std::abs(t));
   CHECK(largest > 0);
   for (size_t i = 0; i < tractions.size(); ++i) {
     CHECK(std::abs(traction()[i] - tractions[i]) < 1e-6 * largest);
@@ -221,12 +221,13 @@ TEST_CASE("the force that drives a wedge", "[static_friction]") {
 
 namespace {
 
-// Cattaneo (1938) and Mindlin (1949): two equal cylinders, pressed and then sheared.
+// Cattaneo (1938) and Mindlin (1949): two equal cylinders, pressed and then sheared. Tractions are
+// means over two neighbouring edges: that is what a node feels.
 struct Sheared {
-  double load_ratio;      // T / (mu N)
-  double stick, theory;   // half-width of the zone without slip over that of the contact
-  double worst;           // error of the mean traction on an edge, over the largest traction
-  double worst_pressure;  // error of the mean pressure on an edge, over the peak
+  double load_ratio;     // T / (mu N)
+  double stick, theory;  // half-width of the zone without slip over that of the contact
+  double traction;       // root mean square error over that of theory's traction
+  double pressure;       // the same
   std::int64_t iterations;
 };
 
@@ -238,8 +239,7 @@ double ellipse(double x, double a) {
 
 // Half discs of radius 1. `pressed`: about the half-width, over the radius; `cells` over it;
 // `sheared`: the displacement aside, over that across.
-Sheared cylinders(double pressed, int cells, double stiffness, double coefficient, double sheared,
-                  int steps) {
+Sheared cylinders(double pressed, int cells, double coefficient, double sheared, int steps) {
   const Elastic elastic{ElasticLaw::st_venant_kirchhoff, Plane::strain, kModulus, .2};
   const double modulus = kModulus / 2 / (1 - elastic.poisson * elastic.poisson);
   constexpr double kRadius = .5;  // of both together
@@ -257,8 +257,8 @@ Sheared cylinders(double pressed, int cells, double stiffness, double coefficien
   upper.supports[0].motion = then_along({0, -depth}, {sheared * depth, 0});
   Model model;
   model.materials = {{"rock", 2000, elastic}};
-  model.contact.normal_stiffness = stiffness * kModulus;
-  model.contact.friction = {coefficient, stiffness * kModulus};
+  model.contact.normal_stiffness = 10 * kModulus;
+  model.contact.friction = {coefficient, kModulus};
   model.deformables = {lower, upper};
   number_nodes(model);
   const TimeSettings time = load_steps(2 * steps, 2, 1e-6);
@@ -274,33 +274,41 @@ Sheared cylinders(double pressed, int cells, double stiffness, double coefficien
   const double a = std::sqrt(4 * normal * kRadius / (std::numbers::pi * modulus));
   const double peak = std::sqrt(normal * modulus / (std::numbers::pi * kRadius));
   const double c = result.theory * a;
-  std::vector<SurfaceRecord> edges;
-  double centre = 0, sum = 0;
+  struct Edge {
+    double from, to, pressure, traction;
+  };
+  std::vector<Edge> edges;
+  double centre = 0;
   for (const SurfaceRecord& s : simulation.surfaces()) {
-    if (s.body != 0) continue;
-    edges.push_back(s);
-    const double force = s.pressure * (s.to - s.from).norm();
-    sum += force;
-    centre += force * (s.from.x() + s.to.x()) / 2;
+    if (s.body != 0 || s.from.y() < -.1) continue;  // of the straight side
+    const auto [left, right] = std::minmax(s.from.x(), s.to.x());
+    edges.push_back({left, right, s.pressure, std::abs(s.traction)});
+    centre += s.pressure * (right - left) * (left + right) / 2 / normal;
   }
-  centre /= sum;
-  double largest = 0;
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& e, const Edge& f) { return e.from < f.from; });
+  double error[2]{}, size[2]{};
   std::vector<std::pair<double, double>> points;
-  for (const SurfaceRecord& s : edges) {
-    const double x = s.from.x() - centre, y = s.to.x() - centre;
+  for (size_t i = 0; i + 1 < edges.size(); ++i) {
+    const Edge &e = edges[i], &f = edges[i + 1];
+    const double x = e.from - centre, y = f.to - centre;
+    const auto both = [&](double of_e, double of_f) {
+      return (of_e * (e.to - e.from) + of_f * (f.to - f.from)) / (y - x);
+    };
     const auto mean = [&](double half) { return (ellipse(y, half) - ellipse(x, half)) / (y - x); };
-    const double p = peak * mean(a);
-    const double q = coefficient * (p - peak * result.theory * mean(c));
-    largest = std::max(largest, q);
-    result.worst = std::max(result.worst, std::abs(std::abs(s.traction) - q));
-    result.worst_pressure = std::max(result.worst_pressure, std::abs(s.pressure - p) / peak);
+    const double p = both(e.pressure, f.pressure), q = both(e.traction, f.traction);
+    const double exact_p = peak * mean(a);
+    const double exact_q = coefficient * (exact_p - peak * result.theory * mean(c));
+    error[0] += (p - exact_p) * (p - exact_p), size[0] += exact_p * exact_p;
+    error[1] += (q - exact_q) * (q - exact_q), size[1] += exact_q * exact_q;
     // What is missing to slip is an ellipse over the zone that sticks.
-    const double missing = coefficient * s.pressure - std::abs(s.traction);
+    const double missing = coefficient * p - q, place = e.to - centre;
     if (missing > .2 * coefficient * peak * result.theory) {
-      points.emplace_back((x + y) * (x + y) / 4, missing * missing);
+      points.emplace_back(place * place, missing * missing);
     }
   }
-  result.worst /= largest;
+  result.pressure = std::sqrt(error[0] / size[0]);
+  result.traction = std::sqrt(error[1] / size[1]);
   MatrixXd line(points.size(), 2);
   VectorXd height(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
@@ -320,23 +328,23 @@ TEST_CASE("Cattaneo and Mindlin: two cylinders, pressed and sheared", "[static_f
     double pressed;
     int cells;
     double sheared;
-    double error;  // of the traction
+    double stick, traction;  // errors
     bool lengthy;
   };
-  for (const Case& c : {Case{.025, 10, .15, .03, false}, Case{.0125, 15, .1, .03, true},
-                        Case{.0125, 15, .17, .03, true}}) {
+  for (const Case& c : {Case{.025, 10, .2, .02, .05, false}, Case{.0125, 25, .1, .01, .03, true},
+                        Case{.0125, 25, .2, .01, .03, true}}) {
     if (c.lengthy && !long_run()) continue;
-    const Sheared found = cylinders(c.pressed, c.cells, 10, .3, c.sheared, 6);
+    const Sheared found = cylinders(c.pressed, c.cells, .3, c.sheared, c.lengthy ? 6 : 3);
     const std::string text = fmt::format(
-        "a/R {}, {} cells over a: T/(mu N) {:.4f}, c/a {:.4f} of {:.4f}, worst error of q {:.4f}, "
-        "of p {:.4f}, {} steps of relaxation\n",
-        2 * c.pressed, c.cells, found.load_ratio, found.stick, found.theory, found.worst,
-        found.worst_pressure, found.iterations);
+        "a/R {}, {} cells over a: T/(mu N) {:.4f}, c/a {:.4f} of {:.4f}, error of q {:.4f}, of p "
+        "{:.4f}, {} steps of relaxation\n",
+        2 * c.pressed, c.cells, found.load_ratio, found.stick, found.theory, found.traction,
+        found.pressure, found.iterations);
     if (long_run()) fmt::print("{}", text);
     INFO(text);
     CHECK(found.load_ratio > .3);
     CHECK(found.load_ratio < .9);
-    CHECK(found.stick == Approx(found.theory).epsilon(.02));
-    CHECK(found.worst < c.error);
+    CHECK(found.stick == Approx(found.theory).epsilon(c.stick));
+    CHECK(found.traction < c.traction);
   }
 }

@@ -45,6 +45,7 @@ const char* const kBlock =
 TEST_CASE("a run that begins with another's state goes on as that one would", "[run][from]") {
   for (const NamedScene& named : rubbing_scenes()) {
     INFO(named.name);
+    if (named.name == std::string("gravity that grows")) continue;  // the history begins anew
     const Folder folder;
     const double step = Run(scene_of(folder, named.text), {}).simulation().step_size();
     const std::string fixed = "time.step=" + Json(step).dump();
@@ -244,6 +245,11 @@ const char* const kPull = R"(, "velocity": [[0, 0, 0], [1, 0, 0], [1.000001, 4e-
 const char* const kFirstPull = R"(, "velocity": [[0, 4e-4, 0]])";
 const char* const kRamp = R"(, "history": [[0, 0], [1, 1]])";
 
+std::vector<double> of_nodes(const State& state) {
+  const std::span<const double> x = state.layout.of_nodes(state.x);
+  return {x.begin(), x.end()};
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0;
   for (const double v : values) most = std::max(most, std::abs(v));
@@ -273,7 +279,7 @@ TEST_CASE("a static run goes on where another one has ended, with its friction",
   CHECK(one.fx < -1e6);
   CHECK(other.fx == Approx(one.fx).epsilon(1e-5));
   CHECK(other.friction == Approx(one.friction).epsilon(1e-5));
-  CHECK(apart(whole.state().x, second.state().x) < 1e-5);
+  CHECK(apart(of_nodes(whole.state()), of_nodes(second.state())) < 1e-5);
   // The load stands from the start, and its work is that of the second part.
   const Energies e = second.simulation().energies(), all = whole.simulation().energies();
   const double before = first.simulation().energies().external_work;
@@ -304,10 +310,10 @@ TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from
              {.folder = folder / "second", .from = folder / "first"});
   CHECK(largest(second.state().v) == 0);
   CHECK(second.simulation().contact_forces()[1].fx == Approx(rubs.fx).epsilon(1e-9));
-  const std::vector<double> start = second.state().x;
+  const std::vector<double> start = of_nodes(second.state());
   const double strain = second.simulation().energies().strain;
   REQUIRE(second.run() == Run::Status::done);
-  CHECK(apart(start, second.state().x) < 1e-6);
+  CHECK(apart(start, of_nodes(second.state())) < 1e-6);
   CHECK(second.simulation().energies().kinetic < 1e-12 * strain);
   CHECK(second.simulation().contact_forces()[1].fx == Approx(rubs.fx).epsilon(1e-5));
   // Without its springs it would jump.
@@ -321,7 +327,7 @@ TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from
   Run third(scene_of(folder, pulled_block("", "", R"({ "end": 2e-3 })")),
             {.folder = folder / "third", .from = folder / "first"});
   third.run();
-  CHECK(apart(start, third.state().x) > 1e-2);
+  CHECK(apart(start, of_nodes(third.state())) > 1e-2);
 }
 
 TEST_CASE("a static run begins with the state of a dynamic one, at rest", "[run][from]") {
