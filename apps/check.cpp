@@ -113,7 +113,13 @@ int check_command(const CheckOptions& options) {
   say("name", model.name);
   say_bodies(model);
   if (model.gravity != Vec2::Zero()) {
-    say("gravity", fmt::format("[{:g}, {:g}] m/s^2", model.gravity.x(), model.gravity.y()));
+    std::string factors;
+    for (const LoadHistory::Point& p : model.gravity_history.points) {
+      factors +=
+          fmt::format("{}{:g} at {:g} s", factors.empty() ? ", times " : ", ", p.factor, p.time);
+    }
+    say("gravity",
+        fmt::format("[{:g}, {:g}] m/s^2{}", model.gravity.x(), model.gravity.y(), factors));
   }
   say_step(scene, *simulation);
   if (estimates.trial) say_run_time(scene, *simulation, *estimates.trial);

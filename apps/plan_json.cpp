@@ -142,6 +142,9 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
             {"bodies", bodies(model)},
             {"elements", elements},
             {"nodes", model.node_count()}};
+  for (const LoadHistory::Point& p : model.gravity_history.points) {
+    json["gravity_history"].push_back({p.time, p.factor});
+  }
   if (scene.time.statics) {
     json["load_steps"] = scene.time.load_steps;
     json["tolerance"] = scene.time.tolerance;

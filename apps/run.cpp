@@ -80,7 +80,7 @@ void print_load_step(const Run& run) {
              "load step {} of {}: {} steps of relaxation, residual {:.2g}, sum of forces {:.2g} on "
              "\"{}\"\n",
              run.state().step, run.scene().time.load_steps, step.iterations, step.residual,
-             step.imbalance, run.scene().model.deformables[step.worst].name);
+             step.imbalance, run.scene().model.name_of(step.worst));
 }
 
 void print_summary(const Run& run) {
@@ -112,12 +112,13 @@ void print_summary(const Run& run) {
       extremes.energy_error);
   if (!run.load_steps().empty()) {
     const LoadStep& last = run.load_steps().back();
-    const auto worst =
-        static_cast<size_t>(std::max_element(last.off.begin(), last.off.end()) - last.off.begin());
+    const auto worst = static_cast<BodyIndex>(std::max_element(last.off.begin(), last.off.end()) -
+                                              last.off.begin());
     fmt::print(
         "force balance: of all bodies \"{}\" is farthest from it, by {:.3g} N, {:.2g} of the "
         "load\n",
-        scene.model.deformables[worst].name, last.off[worst], imbalance_of_load(last, worst));
+        scene.model.name_of(worst), last.off[worst],
+        imbalance_of_load(last, static_cast<size_t>(worst)));
   }
   for (size_t i = 0; i < run.outcomes().size(); ++i) {
     const Expectation& e = scene.expectations[i];

@@ -66,10 +66,24 @@ std::optional<ContactFault> Contacts::fault() const {
 
 void Contacts::slide(const Kinematics& now, double dt) {
   if (!tangential_) return;
+  tried_ = false;
   memory_.begin_step();
   double work = 0;
   each([&](Kernel& kernel) { work += kernel.slide(now, dt, memory_); });
   memory_.end_step(work);
+}
+
+void Contacts::try_slide(const Kinematics& now, double dt) {
+  drop_trial();
+  slide(now, dt);
+  tried_ = tangential_;
+}
+
+void Contacts::drop_trial() {
+  if (!tried_) return;
+  tried_ = false;
+  memory_.undo_step();
+  each([](Kernel& kernel) { kernel.undo_slide(); });
 }
 
 void Contacts::add_forces(const ForceViews& forces) {
@@ -150,14 +164,18 @@ double Contacts::node_rate(std::span<const double> node_mass) const {
   return rate;
 }
 
-void Contacts::add_node_stiffness(std::span<double> stiffness) const {
-  each([&](const Kernel& kernel) { kernel.add_node_stiffness(stiffness); });
+void Contacts::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
+  each([&](const Kernel& kernel) { kernel.add_stiffness(nodes, rigid); });
 }
 
 Vec2 Contacts::force_on(BodyIndex body) const {
   Vec2 force = Vec2::Zero();
   each([&](const Kernel& kernel) { force += kernel.force_on(body); });
   return force;
+}
+
+void Contacts::add_force_sizes(std::span<double> of_bodies) const {
+  each([&](const Kernel& kernel) { kernel.add_force_sizes(of_bodies); });
 }
 
 std::vector<double> Contacts::friction_sizes() const {

@@ -49,6 +49,10 @@ class Contacts {
   /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18:
   /// the full-step ones would pump energy in). With dt = 0 the springs keep their forces.
   void slide(const Kinematics& now, double dt);
+  /// The same for a state that is tried: the next slide begins where this one has begun.
+  void try_slide(const Kinematics& now, double dt);
+  /// Contacts remember what they did before the last slide that was tried.
+  void drop_trial();
   void add_forces(const ForceViews& forces);
 
   /// Ascending within a kernel.
@@ -82,13 +86,15 @@ class Contacts {
 
   /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
-  void add_node_stiffness(std::span<double> stiffness) const;
+  void add_stiffness(std::span<double> nodes, std::span<double> rigid) const;
   /// See Kernel.
   void limit_damping(double rate) {
     each([&](Kernel& kernel) { kernel.limit_damping(rate); });
   }
   /// The force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
+  /// Adds the sizes of the normal forces on each body, N.
+  void add_force_sizes(std::span<double> of_bodies) const;
   /// The sizes of the friction forces on each body, summed, N.
   [[nodiscard]] std::vector<double> friction_sizes() const;
   /// One for each contact patch.
@@ -130,6 +136,7 @@ class Contacts {
   bool tangential_;  // there is friction or damping
   std::vector<Contact> contacts_;
   FrictionMemory memory_;
+  bool tried_ = false;  // the last slide was a trial
   std::int64_t searches_ = 0;
 };
 

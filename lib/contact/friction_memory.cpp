@@ -10,7 +10,16 @@ void FrictionMemory::begin_step() {
   now_.clear();
   next_ = 0;
   balanced_before_ = balanced_;
+  sums_before_ = {energy_, balanced_, loss_, damping_loss_};
   energy_ = balanced_ = 0;
+}
+
+void FrictionMemory::undo_step() {
+  std::swap(now_, before_);
+  energy_ = sums_before_.energy;
+  balanced_ = sums_before_.balanced;
+  loss_ = sums_before_.loss;
+  damping_loss_ = sums_before_.damping_loss;
 }
 
 // A spring whose contact is over.

@@ -56,6 +56,8 @@ class FrictionMemory {
  public:
   /// The springs of this step become those of the step before.
   void begin_step();
+  /// Takes back the last step, with all that has been lost in it: that step can be made anew.
+  void undo_step();
   /// The springs that a pair had in the step before, in the order of their parts; empty if it is
   /// new. Pairs must be asked for in ascending order.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
@@ -100,6 +102,10 @@ class FrictionMemory {
   double energy_ = 0;                          // of all springs, J
   double balanced_ = 0, balanced_before_ = 0;  // of those that are not accounted, J
   double loss_ = 0, damping_loss_ = 0;         // J
+  struct Sums {
+    double energy = 0, balanced = 0, loss = 0, damping_loss = 0;
+  };
+  Sums sums_before_;  // of the step before
 };
 
 }  // namespace apothem

@@ -52,6 +52,9 @@ class Kernel {
   /// 0 the springs keep their forces. Returns the work on the bodies since the last call, J, of
   /// springs that are not accounted (friction_memory.hpp).
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
+  /// Takes back the last slide, whose step the memory takes back. Only kernels that the static
+  /// solver meets need it.
+  virtual void undo_slide() {}
   /// After the memory has been restored: finds the forces of friction again that the next slide
   /// needs.
   virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
@@ -74,12 +77,16 @@ class Kernel {
   /// Before the first step: `rate` is the largest of these of all nodes that contact can move. No
   /// dashpot takes more than the speed of a node in a step.
   virtual void limit_damping(double /*rate*/) {}
-  /// Adds to each node near another body the same bound as a stiffness, N/m.
-  virtual void add_node_stiffness(std::span<double> /*stiffness*/) const {}
+  /// Adds to each node near another body the same bound as a stiffness, N/m, and to x, y and angle
+  /// of each rigid body what nodes near it have, N/m and N m.
+  virtual void add_stiffness(std::span<double> /*nodes*/, std::span<double> /*rigid*/) const {}
 
   [[nodiscard]] virtual size_t candidates() const = 0;
   /// The force on a deformable body, N.
   [[nodiscard]] virtual Vec2 force_on(BodyIndex /*body*/) const { return Vec2::Zero(); }
+  /// Adds the sizes of the normal forces in its contacts to both bodies, N. Not known to all
+  /// kernels.
+  virtual void add_force_sizes(std::span<double> /*of_bodies*/) const {}
   /// Appends one record for each contact patch; ascending pairs of bodies.
   virtual void add_records(const FrictionMemory& memory,
                            std::vector<ContactRecord>& records) const = 0;

@@ -14,6 +14,8 @@ struct Kinematics {
   std::span<const double> displacement;   ///< x, y of each node, m
   std::span<const double> pose_rate;      ///< m/s, m/s, rad/s of each rigid body
   std::span<const double> node_velocity;  ///< x, y of each node, m/s
+  /// The rates are differences from earlier places: bodies may have turned by finite angles.
+  bool finite = false;
 };
 
 struct ForceViews {

@@ -40,7 +40,7 @@ OutlineFriction::SlipRate OutlineFriction::slip_rate(const EdgeFaceContact& c,
   return {sum - first, first, b - sum, -b, couple};
 }
 
-void OutlineFriction::find_velocities(const Kinematics& now) {
+void OutlineFriction::find_velocities(const Kinematics& now, double dt) {
   const Outlines& o = outlines_;
   vx_.resize(o.size()), vy_.resize(o.size());
   for (const Outlines::Body& body : o.bodies) {
@@ -49,6 +49,12 @@ void OutlineFriction::find_velocities(const Kinematics& now) {
         const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
         vx_[i] = v[0] - v[2] * (o.y[i] - body.cy);
         vy_[i] = v[1] + v[2] * (o.x[i] - body.cx);
+        if (!now.finite) continue;
+        // From where the vertex was, along the chord of its arc.
+        const double angle = v[2] * dt, half = std::sin(angle / 2);
+        const double turned = std::sin(angle) / dt - v[2], drawn = 2 * half * half / dt;
+        vx_[i] += drawn * (o.x[i] - body.cx) - turned * (o.y[i] - body.cy);
+        vy_[i] += drawn * (o.y[i] - body.cy) + turned * (o.x[i] - body.cx);
       } else {
         vx_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i])];
         vy_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i]) + 1];
@@ -102,10 +108,11 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
                               double dt, FrictionMemory& memory) {
   const Outlines& o = outlines_;
   const bool damped = table_.damped();
-  find_velocities(now);
+  find_velocities(now, dt);
   const auto n = static_cast<size_t>(o.size());
   for (VertexForces* forces : {&friction_, &damping_}) forces->x.resize(n), forces->y.resize(n);
-  const double power_before = power(friction_), damping_before = power(damping_);
+  std::swap(friction_, friction_before_);
+  const double power_before = power(friction_before_), damping_before = power(damping_);
   friction_.x.assign(n, 0), friction_.y.assign(n, 0);
   // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
   const bool dashpots = damped && dt > 0;
@@ -130,10 +137,11 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
     if (!(friction.coefficient > 0)) continue;
 
     Spring spring{key};
-    double normal = 0, rate = 0;
+    double normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
     for (size_t i = first; i < end; ++i) {
       const EdgeFaceContact& c = contacts[i];
       const double weight = slope_[c.face] * o.length[c.edge];
+      const double length = (c.piece.to - c.piece.from) * o.length[c.edge];
       normal += weight * c.piece.sum;
       spring.stiffness += spring_stiffness(o, c, friction, thickness_);
       const SlipRate k = slip_rate(c, weight);
@@ -142,9 +150,16 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
       const double y = k.p * vy_[p] + k.q * vy_[q] + k.a * vy_[a] + k.b * vy_[b];
       rate += o.tx[a] * x + o.ty[a] * y +
               k.couple * (o.tx[a] * (vy_[b] - vy_[a]) - o.ty[a] * (vx_[b] - vx_[a]));
+      approach += o.tx[a] * y - o.ty[a] * x;
+      width += length;
+      depth += c.piece.sum * o.length[c.edge];
     }
     const std::span<const Spring> before = memory.before(key.law, key.a, key.b);
     if (!(normal > 0)) continue;
+    // Contact that has closed within a long step: what came before is no slip.
+    if (now.finite && before.empty() && approach / normal * dt > depth / width) {
+      rate *= depth / width / (approach / normal * dt);
+    }
     // New contact joins without a slip of its own; contact that ends takes its share along.
     const double force =
         before.empty() ? 0 : before[0].force * std::min(1., spring.stiffness / before[0].stiffness);

@@ -48,6 +48,9 @@ class OutlineFriction {
   void fields(Archive& archive) {
     if (table_.damped()) archive("damping_x", damping_.x)("damping_y", damping_.y);
   }
+  /// Takes back the last slide of a scene without damping.
+  void undo_slide() { std::swap(friction_, friction_before_);
+  }
 
   /// Forces on the vertices of the outlines, N.
   struct VertexForces {
@@ -64,7 +67,8 @@ class OutlineFriction {
  private:
   /// Pressure-weighted coefficients of a slip rate: see the implementation.
   struct SlipRate;
-  void find_velocities(const Kinematics& now);
+
+  void find_velocities(const Kinematics& now, double dt);
   [[nodiscard]] double power(const VertexForces& forces) const;
   void find_times(const std::vector<EdgeFaceContact>& contacts, double dt);
   void damp_normal(const EdgeFaceContact& contact, double time, double& push);
@@ -77,7 +81,7 @@ class OutlineFriction {
   double thickness_;
   DampingTimes times_;
   std::vector<double> vx_, vy_;  // of the vertices
-  VertexForces friction_, damping_;
+  VertexForces friction_, friction_before_, damping_;
   std::vector<double> shares_, pushes_;
 };
 

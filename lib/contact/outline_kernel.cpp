@@ -30,6 +30,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double 
     : outlines_(outlines),
       stiffness_(stiffness * thickness),
       thickness_(thickness),
+      table_(table),
       threads_(threads),
       plateaus_(outlines),
       onset_(outlines, slope_) {
@@ -277,6 +278,14 @@ Resultant OutlineKernel::resultant(BodyIndex body) const {
   return on;
 }
 
+void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
+  for (const EdgeFaceContact& c : contacts_) {
+    const double size = slope_[c.face] * c.piece.sum * outlines_.length[c.edge];
+    of_bodies[outlines_.body[c.edge]] += size;
+    of_bodies[outlines_.body[c.face]] += size;
+  }
+}
+
 double OutlineKernel::energy() const {
   double sum = 0;
   for (const EdgeFaceContact& c : contacts_) sum += slope_[c.face] * c.piece.height;
@@ -314,17 +323,40 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
   return worst;
 }
 
-void OutlineKernel::add_node_stiffness(std::span<double> stiffness) const {
+void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
   const Outlines& o = outlines_;
-  std::vector<double> slope(o.size(), 0);  // of each vertex: 1/r_c + 1/r_t
+  std::vector<double> slope(o.size(), 0);       // of each vertex: 1/r_c + 1/r_t
+  std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m
+  std::vector<std::pair<BodyIndex, int>> met;   // rigid bodies and vertices of meshes near them
   for (const EdgeFace& c : candidates_) {
-    const double both = o.bodies[o.body[c.edge]].slope() + o.bodies[o.body[c.face]].slope();
+    const BodyIndex own = o.body[c.edge], other = o.body[c.face];
+    const double both = o.bodies[own].slope() + o.bodies[other].slope();
+    const Friction& f = table_.between(own, other).friction;
+    const double spring = f.coefficient > 0 ? f.tangential_stiffness * thickness_ : 0;
     for (const int i : {c.edge, o.next[c.edge], c.face, o.next[c.face]}) {
       slope[i] = std::max(slope[i], both);
+      tangential[i] = std::max(tangential[i], spring);
+      const BodyIndex partner = o.body[i] == own ? other : own;
+      if (o.bodies[partner].is_rigid() && o.node[i] >= 0) met.emplace_back(partner, i);
     }
   }
+  // Springs pull along the contact, potentials push across it.
+  const auto of_vertex = [&](int i) {
+    return node_rate(stiffness_ + tangential[i], slope[i], o.share(i));
+  };
   for (int i = 0; i < o.size(); ++i) {
-    if (o.node[i] >= 0) stiffness[o.node[i]] += node_rate(stiffness_, slope[i], o.share(i));
+    if (o.node[i] >= 0) nodes[o.node[i]] += of_vertex(i);
+  }
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  for (const auto& [b, i] : met) {
+    // Displacement and rotation add: k (x + r theta)^2 <= 2 k (x^2 + r^2 theta^2).
+    const double stiffness = 2 * of_vertex(i);
+    const double x = o.x[i] - o.bodies[b].cx, y = o.y[i] - o.bodies[b].cy;
+    double* const of_body = &rigid[3 * static_cast<size_t>(o.bodies[b].rigid)];
+    of_body[0] += stiffness;
+    of_body[1] += stiffness;
+    of_body[2] += stiffness * (x * x + y * y);
   }
 }
 

@@ -31,6 +31,9 @@ class OutlineKernel final : public Kernel {
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void undo_slide() override {
+    if (friction_) friction_->undo_slide();
+  }
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
     return onset_.find(candidates_, contacts_, plateaus_, now, dynamics, dt);
@@ -50,9 +53,10 @@ class OutlineKernel final : public Kernel {
   /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (docs/theory.md, Step) for nodes of
   /// these masses in kg (0 where held). Needs placed outlines.
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
-  void add_node_stiffness(std::span<double> stiffness) const override;
+  void add_stiffness(std::span<double> nodes, std::span<double> rigid) const override;
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
+  void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
@@ -83,6 +87,7 @@ class OutlineKernel final : public Kernel {
 
   const Outlines& outlines_;
   double stiffness_, thickness_;  // k_n times the thickness, N/m; m
+  const PairTable& table_;
   Threads threads_;
   std::optional<OutlineFriction> friction_;  // only where there is friction
   std::vector<EdgeFace> candidates_;

@@ -20,6 +20,16 @@ double follow(double force, double slip, double stiffness, double limit, Frictio
   return next;
 }
 
+// The part of a long step after which a patch that is new has closed: its mean depth over the
+// approach. `slopes`: the sum of its lengths, each times the slope of the other potential.
+double closed_share(const PairMotion& motion, const PairIntegral& patch, double slopes, double dt) {
+  const double size = patch.force.norm();
+  if (!(size > 0)) return 1;
+  const double approach = -motion.slip(loading_point(patch)).dot(patch.force) / size * dt;
+  const double depth = size / slopes;
+  return approach > depth ? depth / approach : 1;
+}
+
 }  // namespace
 
 // What matching patches needs of a run; the next step makes the rest anew.
@@ -146,11 +156,13 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
       total.add_damping(d.damping);
     }
     if (!rough || edgewise()) continue;
-    const double error =
-        kForceError * std::numeric_limits<double>::epsilon() *
-        (shapes.radius(a) + shapes.radius(b)) *
-        (patch.own_length_a * shapes.slope(b) + patch.own_length_b * shapes.slope(a));
-    resultant(motion, dt, law, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
+    const double slopes =
+        patch.own_length_a * shapes.slope(b) + patch.own_length_b * shapes.slope(a);
+    const double error = kForceError * std::numeric_limits<double>::epsilon() *
+                         (shapes.radius(a) + shapes.radius(b)) * slopes;
+    const double closed =
+        now.finite && ancestors_ == 0 ? closed_share(motion, patch, slopes, dt) : 1;
+    resultant(motion, closed * dt, law, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
               springs_[j], damped ? &dampers_[j] : nullptr, total, memory);
   }
   if (rough && !edgewise() && !inherit_whole()) {

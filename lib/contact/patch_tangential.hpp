@@ -65,6 +65,12 @@ class PatchTangential {
   void slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
              double dt, FrictionMemory& memory);
 
+  /// Takes back the last slide.
+  void undo_slide() {
+    std::swap(now_, before_);
+    std::swap(forces_, forces_before_);
+  }
+
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
 

@@ -147,6 +147,15 @@ void PolygonKernel::add_tangential(const ForceViews& forces) const {
   for (const TangentialForce& t : tangential_->forces()) t.all.add_to(t.a, t.b, forces.rigid);
 }
 
+void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
+  for (size_t i = 0; i < touching_.size(); ++i) {
+    const auto p = static_cast<size_t>(touching_[i]);
+    const double size = stiffness_[i] * pairs_[p].force.norm();
+    of_bodies[static_cast<size_t>(pairs_.pairs()[p].first)] += size;
+    of_bodies[static_cast<size_t>(pairs_.pairs()[p].second)] += size;
+  }
+}
+
 void PolygonKernel::add_records(const FrictionMemory& memory,
                                 std::vector<ContactRecord>& records) const {
   PatchTangential::Cursor cursor;

@@ -24,6 +24,9 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void undo_slide() override {
+    if (tangential_) tangential_->undo_slide();
+  }
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
@@ -36,6 +39,7 @@ class PolygonKernel final : public Kernel {
 
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
+  void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
   /// Takes over what the patches of another simulation remember.

@@ -167,7 +167,8 @@ void ContactTerm::check_drift(const State& state, double dt) {
 
 void ContactTerm::add_forces(const Evaluation& now) {
   State& state = now.state;
-  const Kinematics kinematics = state.kinematics(now.velocity);
+  Kinematics kinematics = state.kinematics(now.velocity);
+  kinematics.finite = now.trial;
   try {
     contacts_.place(kinematics);
   } catch (const NotFinite& error) {
@@ -180,7 +181,11 @@ void ContactTerm::add_forces(const Evaluation& now) {
   now.clock.lap(Phase::search);
   contacts_.evaluate();
   if (const auto fault = contacts_.fault()) refuse(*fault, state);
-  contacts_.slide(kinematics, now.dt);
+  if (now.trial) {
+    contacts_.try_slide(kinematics, now.dt);
+  } else {
+    contacts_.slide(kinematics, now.dt);
+  }
   now.clock.lap(Phase::contact);
   contacts_.add_forces({state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda,
                         now.lambda_limit});

@@ -40,7 +40,14 @@ class ContactTerm final : public Term {
   void start_load_step() override { contacts_.forget_search(); }
   [[nodiscard]] std::int64_t revision() const override { return contacts_.searches(); }
   void add_stiffness(const State& /*state*/, NodeStiffness& stiffness) override {
-    contacts_.add_node_stiffness(stiffness.contact);
+    contacts_.add_stiffness(stiffness.contact, stiffness.rigid);
+  }
+  void drop_trial(const State& state) override {
+    contacts_.drop_trial();
+    refresh(state);
+  }
+  void add_force_sizes(std::span<double> of_bodies) const override {
+    contacts_.add_force_sizes(of_bodies);
   }
   [[nodiscard]] Vec2 force_on(DeformableIndex body) const override {
     return contacts_.force_on(contacts_.surfaces().rigid_count() + body);

@@ -80,6 +80,22 @@ void DegreesOfFreedom::add_supports(const DeformableBody& body) {
   }
 }
 
+void DegreesOfFreedom::scale_gravity(double factor) {
+  if (factor == gravity_factor_) return;
+  if (full_weight_.empty()) {
+    full_acceleration_ = acceleration_;
+    full_weight_ = weight_;
+    full_weight_at_start_ = weight_at_start_;
+  }
+  gravity_factor_ = factor;
+  for (size_t c = 0; c < weight_.size(); ++c) {
+    acceleration_[c] = factor * full_acceleration_[c];
+    weight_[c] = factor * full_weight_[c];
+  }
+  const Impulse& full = full_weight_at_start_;
+  weight_at_start_ = {factor * full.x, factor * full.y, factor * full.angular};
+}
+
 State DegreesOfFreedom::start() const {
   State state(layout_);
   for (RigidIndex i = 0; i < layout_.rigid_bodies; ++i) {
@@ -192,13 +208,14 @@ double DegreesOfFreedom::kinetic(const State& state) const {
   return sum;
 }
 
-double DegreesOfFreedom::gravity_energy(const State& state) const {
+double DegreesOfFreedom::full_gravity_energy(const State& state) const {
+  const std::vector<double>& weight = full_weight_.empty() ? weight_ : full_weight_;
   double sum = 0;
   const size_t rigid = layout_.node(0);
-  for (size_t c = 0; c < weight_.size(); ++c) {
+  for (size_t c = 0; c < weight.size(); ++c) {
     // What rounding keeps out of the position counts: the fall may be far smaller than the height.
     const double moved = displaced_.empty() ? state.x[c] : state.x[c] - displaced_[c];
-    sum -= weight_[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : moved);
+    sum -= weight[c] * (c < rigid ? (state.x[c] - start_[c]) + state.remainder[c] : moved);
   }
   return sum;
 }

@@ -59,6 +59,8 @@ class DegreesOfFreedom {
   [[nodiscard]] bool can_move(size_t coordinate) const { return inverse_mass_[coordinate] > 0; }
   /// kg and kg m^2 of every coordinate.
   [[nodiscard]] double mass(size_t coordinate) const { return mass_[coordinate]; }
+  /// Gravity becomes `factor` times that of the model.
+  void scale_gravity(double factor);
   /// Of gravity on coordinates that can move, m/s^2; empty without gravity.
   [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
   /// The same as forces, N; empty without gravity.
@@ -70,8 +72,12 @@ class DegreesOfFreedom {
 
   /// Kinetic energy of what forces can move, J.
   [[nodiscard]] double kinetic(const State& state) const;
-  /// Potential energy of gravity, zero at time 0, J.
-  [[nodiscard]] double gravity_energy(const State& state) const;
+  /// Potential energy in gravity as it is now, zero where the bodies were at time 0, J.
+  [[nodiscard]] double gravity_energy(const State& state) const {
+    return gravity_factor_ * full_gravity_energy(state);
+  }
+  /// The same in the gravity of the model, at factor 1.
+  [[nodiscard]] double full_gravity_energy(const State& state) const;
   [[nodiscard]] Impulse momentum(const State& state) const;
   /// Of an impulse J on one coordinate (N s, or N m s).
   [[nodiscard]] Impulse impulse(const State& state, size_t coordinate, double j) const;
@@ -96,6 +102,10 @@ class DegreesOfFreedom {
   std::array<std::vector<Held>, 3> held_;  // along x, along y, angles
   std::vector<Driven> driven_;
   Impulse weight_at_start_;  // of gravity; its torque of nodes only, in the meshes as given
+  double gravity_factor_ = 1;
+  /// At factor 1; empty while gravity has never been scaled.
+  std::vector<double> full_acceleration_, full_weight_;
+  Impulse full_weight_at_start_;
 };
 
 }  // namespace apothem

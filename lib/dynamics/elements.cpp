@@ -92,7 +92,7 @@ void Elements::add_forces(const Evaluation& now) {
   const Layout& layout = state.layout;
   const double power =
       elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v), layout.of_nodes(state.f));
-  if (now.dt > 0) {
+  if (now.dt > 0 && !now.trial) {
     damping_power_ = power;
     summed_damping_loss_ += now.dt * power;
   }

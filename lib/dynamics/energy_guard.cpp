@@ -21,7 +21,7 @@ double round_off(const Model& model) {
     for (const Vec2& v : body.potential.vertices) {
       scene.include(body.position.x() + v.x(), body.position.y() + v.y());
     }
-    if (body.motion == Motion::free) weight += body.mass * model.gravity.norm();
+    if (body.motion == Motion::free) weight += body.mass * model.strongest_gravity();
   }
   for (const DeformableBody& body : model.deformables) {
     for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());

@@ -4,7 +4,9 @@
 // stability limit 1 or more: every node then moves as fast as its own stiffness allows. Loads,
 // supports and prescribed bodies move to their new places over the first steps. A little damping in
 // proportion to the stiffness is needed besides: stopped every two steps, a mode whose period is
-// four steps, as those of stiff contacts are, would ring on and stop all others too early.
+// four steps, as those of stiff contacts are, would ring on and stop all others too early. Rigid
+// bodies are held by their contacts only, whose stiffness changes: their scaled masses follow it at
+// once where it grows.
 
 #include "apothem/dynamics/equilibrium.hpp"
 
@@ -22,13 +24,15 @@ namespace {
 constexpr double kMass = 1.1 / 4;
 constexpr double kStep = 0.75;
 constexpr double kLag = 0.1;      // of the force's change over a step, added to it: -K v times kLag
-constexpr double kStride = 0.02;  // of the shortest edge, per step: no contact is jumped over
+constexpr double kStride = 0.02;  // of the shortest length, per step: no contact is jumped over
 constexpr double kNoise =
     4 * std::numeric_limits<double>::epsilon();  // of places and displacements
 constexpr double kFar = 100;                     // of the scene's size: there a body is lost
 constexpr int kCheckedEvery = 10;
 constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
+constexpr double kLeast = 1e-3;     // of a rigid body's mass if it lay flat on another one
+constexpr double kSlide = 1;        // s; of a velocity, saturates every spring
 constexpr std::int64_t kMostSteps = 300'000;
 
 }  // namespace
@@ -40,23 +44,34 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       terms_(terms),
       tolerance_(tolerance),
       first_(dofs.layout().node(0)),
-      shortest_edge_(HUGE_VAL),
+      shortest_(HUGE_VAL),
       lambda_(model.bodies.size()),
-      body_loads_(model.deformables.size()) {
-  const size_t n = dofs.layout().size() - first_;
+      body_loads_(model.bodies.size() + model.deformables.size()) {
+  const size_t n = dofs.layout().size();
   for (std::vector<double>* v :
-       {&stiffness_.elastic, &mass_, &inverse_, &rest_, &drive_, &velocity_, &outside_}) {
+       {&mass_, &inverse_, &rest_, &last_, &drive_, &velocity_, &displacement_}) {
     v->assign(n, 0);
   }
-  stiffness_.contact.assign(n / 2, 0);
-  if (!dofs.weight().empty()) {
-    const std::span<const double> weight = dofs.layout().of_nodes(dofs.weight());
-    weight_.assign(weight.begin(), weight.end());
-  }
+  stiffness_.elastic.assign(n - first_, 0);
+  stiffness_.contact.assign((n - first_) / 2, 0);
+  stiffness_.rigid.assign(first_, 0);
+  outside_.assign(n - first_, 0);
   Box scene;
   for (const DeformableBody& body : model.deformables) {
-    shortest_edge_ = std::min(shortest_edge_, mesh_quality(body.mesh).shortest_edge);
+    shortest_ = std::min(shortest_, mesh_quality(body.mesh).shortest_edge);
     for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
+  }
+  for (const RigidBody& body : model.bodies) {
+    double radius = 0, longest = 0;
+    const std::vector<Vec2>& vertices = body.potential.vertices;
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      radius = std::max(radius, vertices[i].norm());
+      longest = std::max(longest, (vertices[(i + 1) % vertices.size()] - vertices[i]).norm());
+      scene.include(body.position.x() + vertices[i].x(), body.position.y() + vertices[i].y());
+    }
+    radius_.push_back(radius);
+    least_.push_back(kLeast * kMass * 2 * model.stiffness() * body.potential.steepest * longest);
+    if (body.motion == Motion::free) shortest_ = std::min(shortest_, body.inradius);
   }
   far_ = kFar * scene.extent();
 }
@@ -70,34 +85,57 @@ double Equilibrium::ramp(double from, double until) const {
     longest = std::max(longest, std::abs(d.motion->displacement(until)[axis] -
                                          d.motion->displacement(from)[axis]));
   }
-  for (const RigidBody& body : model_.bodies) {
+  for (size_t i = 0; i < model_.bodies.size(); ++i) {
+    const RigidBody& body = model_.bodies[i];
     if (body.motion != Motion::prescribed) continue;
-    double radius = 0;
-    for (const Vec2& v : body.potential.vertices) radius = std::max(radius, v.norm());
     const std::array<double, 3> a = body.history.displacement(from);
     const std::array<double, 3> b = body.history.displacement(until);
-    longest =
-        std::max(longest, std::hypot(b[0] - a[0], b[1] - a[1]) + radius * std::abs(b[2] - a[2]));
+    longest = std::max(longest,
+                       std::hypot(b[0] - a[0], b[1] - a[1]) + radius_[i] * std::abs(b[2] - a[2]));
   }
-  return std::max(kRamp, std::ceil(longest / (kStride * shortest_edge_)));
+  return std::max(kRamp, std::ceil(longest / (kStride * shortest_)));
 }
 
-void Equilibrium::find_forces(State& state) {
+// Friction follows the displacements since the start of the load step, in one step of 1 s.
+void Equilibrium::find_forces(State& state, const State& before, double sliding) {
   std::ranges::fill(state.layout.of_rigid(state.f), 0.);
+  std::fill(lambda_.begin(), lambda_.end(), 0.);
+  for (size_t c = 0; c < displacement_.size(); ++c) {
+    displacement_[c] = state.x[c] - before.x[c] + sliding * before.v[c];
+  }
   Stopwatch off;
-  for (const auto& term : terms_) term->add_forces({state, state.v, 0, lambda_, off, 0, true});
-  for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[first_ + c];
-  for (size_t c = 0; c < weight_.size(); ++c) rest_[c] += weight_[c];
+  for (const auto& term : terms_)
+    term->add_forces({state, displacement_, 1, lambda_, off, 0, true});
+  for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[c] + weight(c);
 }
 
 void Equilibrium::find_masses(const State& state) {
-  std::fill(stiffness_.elastic.begin(), stiffness_.elastic.end(), 0.);
-  std::fill(stiffness_.contact.begin(), stiffness_.contact.end(), 0.);
+  for (std::vector<double>* v : {&stiffness_.elastic, &stiffness_.contact, &stiffness_.rigid}) {
+    std::fill(v->begin(), v->end(), 0.);
+  }
   for (const auto& term : terms_) term->add_stiffness(state, stiffness_);
   revision_ = revision();
-  for (size_t c = 0; c < mass_.size(); ++c) {
-    mass_[c] = kMass * (stiffness_.elastic[c] + stiffness_.contact[c / 2]);
+  for (size_t c = 0; c < first_; ++c) mass_[c] = 0;
+  raise_masses();
+  for (size_t c = first_; c < mass_.size(); ++c) {
+    const size_t node = c - first_;
+    mass_[c] = kMass * (stiffness_.elastic[node] + stiffness_.contact[node / 2]);
     inverse_[c] = held(c) ? 0 : 1 / mass_[c];
+  }
+}
+
+// Of rigid bodies whose contacts have become stiffer; their energy stays what it is.
+void Equilibrium::raise_masses() {
+  for (size_t c = 0; c < first_; ++c) {
+    if (held(c)) continue;
+    const size_t body = c / 3;
+    const double inertia = dofs_.mass(c);
+    const double least = least_[body] * inertia / model_.bodies[body].mass;
+    const double needed = std::max(least, kMass * (stiffness_.rigid[c] + lambda_[body] * inertia));
+    if (!(needed > mass_[c])) continue;
+    velocity_[c] *= std::sqrt(mass_[c] / needed);
+    mass_[c] = needed;
+    inverse_[c] = 1 / needed;
   }
 }
 
@@ -110,37 +148,67 @@ std::int64_t Equilibrium::revision() const {
 void Equilibrium::refuse_diverged(const State& state, const std::string& body) const {
   throw Unstable(
       fmt::format("the relaxation of \"{}\" diverges at t = {:.9g} s (load step {}): the load of "
-                  "one step is too much for it; raise time.load_steps or reduce the load",
-                  body, state.time, state.step));
+                  "one step is too much for it; {}",
+                  body, state.time, state.step,
+                  settling_ ? "leave out time.start, or let gravity and loads grow by a history"
+                            : "raise time.load_steps or reduce the load"));
 }
 
 void Equilibrium::check_shapes(const State& state) const {
+  const auto check = [&](const Vec2& u, const std::string& name) {
+    if (!is_finite(u)) refuse_diverged(state, name);
+    if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) return;
+    throw Unstable(
+        fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
+                    "equilibrium: nothing holds it against its loads; support it, or press it "
+                    "against another body",
+                    name, u.norm(), state.time, state.step));
+  };
+  for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
+    const RigidBody& body = model_.bodies[i];
+    check(state.pose(i).head<2>() - body.position, body.name);
+  }
   for (const DeformableBody& body : model_.deformables) {
     for (NodeIndex i = 0; i < static_cast<NodeIndex>(body.mesh.nodes.size()); ++i) {
-      const Vec2 u = state.node(body.first_node + i);
-      if (!is_finite(u)) refuse_diverged(state, body.name);
-      if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) continue;
-      throw Unstable(
-          fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
-                      "equilibrium: nothing holds it against its loads; support it, or press it "
-                      "against another body",
-                      body.name, u.norm(), state.time, state.step));
+      check(state.node(body.first_node + i), body.name);
     }
   }
   for (const auto& term : terms_) term->watch(state);
 }
 
+// On nodes, N.
+std::vector<double> Equilibrium::loads() const {
+  std::vector<double> forces(rest_.size() - first_, 0);
+  for (const auto& term : terms_) term->add_given_forces(forces);
+  return forces;
+}
+
 // Loads on nodes, and the reactions of supports with prescribed motion, N.
 std::vector<double> Equilibrium::given_forces(const State& state) const {
-  std::vector<double> forces(rest_.size(), 0);
-  for (const auto& term : terms_) term->add_given_forces(forces);
+  std::vector<double> forces = loads();
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
     if (d.coordinate >= first_) forces[d.coordinate - first_] -= state.f[d.coordinate];
   }
   return forces;
 }
 
-// Whether the sum of the forces on a body is small against its loads; adds to the sums of a look.
+// Whether the sum of the forces on a body is small against `loads`; adds to the sums of a look.
+bool Equilibrium::note_balance(BodyIndex b, double off, double loads, double residual, double noise,
+                               LoadStep& result) {
+  sum_noise_ += noise;
+  sum_residual_ += residual;
+  if (residual > most_) {
+    most_ = residual;
+    result.unbalanced = b;
+  }
+  result.off[b] = off;
+  if (off > result.imbalance * loads) {
+    result.imbalance = off / loads;
+    result.worst = b;
+  }
+  return off <= tolerance_ * loads + kNoise * std::sqrt(noise);
+}
+
 bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
                                 const std::vector<double>& outside, LoadStep& result) {
   const DeformableBody& body = model_.deformables[b];
@@ -148,16 +216,17 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
   double sizes = 0, noise = 0, residual = 0;
   for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {
-      const size_t c = 2 * (static_cast<size_t>(body.first_node) + i) + static_cast<size_t>(axis);
+      const size_t of_nodes =
+          2 * (static_cast<size_t>(body.first_node) + i) + static_cast<size_t>(axis);
+      const size_t c = first_ + of_nodes;
       // What acts from outside; at supports their reaction.
-      double f = outside[c] + (weight_.empty() ? 0 : weight_[c]);
-      if (held(c)) f = -state.f[first_ + c];
+      const double f = held(c) ? -state.f[c] : outside[of_nodes] + weight(c);
       sum_loads_ += f * f;
       sizes += std::abs(f);
       residual += rest_[c] * rest_[c];
       sum[axis] += rest_[c];
-      const double rounded = stiffness_.elastic[c] * std::abs(state.x[first_ + c]) +
-                             stiffness_.contact[c / 2] * std::abs(body.mesh.nodes[i][axis]);
+      const double rounded = stiffness_.elastic[of_nodes] * std::abs(state.x[c]) +
+                             stiffness_.contact[of_nodes / 2] * std::abs(body.mesh.nodes[i][axis]);
       noise += rounded * rounded;
     }
   }
@@ -166,19 +235,24 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
     const Vec2 force = term->force_on(b);
     sizes += std::hypot(force.x(), force.y());
   }
-  body_loads_[b] = std::max(body_loads_[b], sizes);
-  sum_noise_ += noise;
-  sum_residual_ += residual;
-  if (residual > most_) {
-    most_ = residual;
-    result.unbalanced = b;
-  }
-  const double off = result.off[b] = sum.norm();
-  if (off > result.imbalance * body_loads_[b]) {
-    result.imbalance = off / body_loads_[b];
-    result.worst = b;
-  }
-  return off <= tolerance_ * body_loads_[b] + kNoise * std::sqrt(noise);
+  const BodyIndex number = static_cast<BodyIndex>(model_.bodies.size()) + b;
+  double& loads = body_loads_[number];
+  loads = std::max(loads, sizes);
+  return note_balance(number, sum.norm(), loads, residual, noise, result);
+}
+
+// `contact`: the sum of the sizes of the contact forces on it, N.
+bool Equilibrium::rigid_balanced(const State& state, RigidIndex b, double contact,
+                                 LoadStep& result) {
+  const size_t c = state.layout.rigid(b);
+  const double force = std::hypot(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius_[b];
+  const double own = std::hypot(weight(c), weight(c + 1));
+  result.load += own;
+  sum_loads_ += own * own;
+  const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius_[b];
+  const double noise = place * (stiffness_.rigid[c] + lambda_[b] * model_.bodies[b].mass);
+  return note_balance(b, force + std::abs(moment), own + contact, force * force + moment * moment,
+                      noise * noise, result);
 }
 
 // Whether the residual, and the sum of the forces on each body, are small against the loads.
@@ -188,10 +262,16 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
   most_ = -1;
   result.imbalance = result.load = 0;
   result.worst = 0;
-  result.off.assign(model_.deformables.size(), 0);
+  result.off.assign(body_loads_.size(), 0);
   bool balanced = true;
   for (DeformableIndex b = 0; b < static_cast<DeformableIndex>(model_.deformables.size()); ++b) {
     balanced = body_balanced(state, b, outside, result) && balanced;
+  }
+  std::vector<double> contact(body_loads_.size(), 0);
+  for (const auto& term : terms_) term->add_force_sizes(contact);
+  for (RigidIndex b = 0; b < state.layout.rigid_bodies; ++b) {
+    if (model_.bodies[b].motion != Motion::free) continue;
+    balanced = rigid_balanced(state, b, contact[b], result) && balanced;
   }
   for (size_t c = 0; c < first_; ++c) {  // of contact on rigid bodies
     if (c % 3 < 2) sum_loads_ += state.f[c] * state.f[c];
@@ -204,13 +284,20 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
 
 void Equilibrium::refuse(const State& state, const LoadStep& result) const {
   throw Unstable(fmt::format(
-      "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: nodal "
+      "no equilibrium at t = {:.9g} s (load step {}) after {} steps of relaxation: "
       "forces out of balance are {:.3g} of the loads, most of them on \"{}\", and the sum of "
-      "the forces on \"{}\" is {:.3g} of its own, where time.tolerance is {:g}; support what "
-      "can move freely, reduce the load, or raise time.load_steps or time.tolerance",
-      state.time, state.step, result.iterations, result.residual,
-      model_.deformables[result.unbalanced].name, model_.deformables[result.worst].name,
-      result.imbalance, tolerance_));
+      "the forces on \"{}\" is {:.3g} of its own, where {:g} is allowed; support what can move "
+      "freely, {}",
+      state.time, state.step, result.iterations, result.residual, model_.name_of(result.unbalanced),
+      model_.name_of(result.worst), result.imbalance, tolerance_,
+      settling_ ? "or leave out time.start"
+                : "reduce the load, or raise time.load_steps or time.tolerance"));
+}
+
+// Of a node, or of any point of a rigid body.
+double Equilibrium::speed(size_t c) const {
+  const double v = std::abs(velocity_[c]);
+  return c < first_ && c % 3 == 2 ? v * radius_[c / 3] : v;
 }
 
 void Equilibrium::move(State& state, bool first) {
@@ -220,7 +307,7 @@ void Equilibrium::move(State& state, bool first) {
     drive_[c] = first ? rest_[c] : rest_[c] + kLag * (rest_[c] - last_[c]);
     velocity_[c] += kStep * (inverse_[c] * drive_[c]);
     kinetic += mass_[c] * velocity_[c] * velocity_[c];
-    fastest = std::max(fastest, std::abs(velocity_[c]));
+    fastest = std::max(fastest, speed(c));
   }
   if (kinetic < kinetic_ || first) {
     kinetic = fastest = 0;
@@ -228,10 +315,10 @@ void Equilibrium::move(State& state, bool first) {
       // Half a step: velocities are those between the steps.
       velocity_[c] = kStep / 2 * (inverse_[c] * drive_[c]);
       kinetic += mass_[c] * velocity_[c] * velocity_[c];
-      fastest = std::max(fastest, std::abs(velocity_[c]));
+      fastest = std::max(fastest, speed(c));
     }
   }
-  const double most = kStride * shortest_edge_ / kStep;
+  const double most = kStride * shortest_ / kStep;
   if (revision_ > 0 && fastest > most) {
     const double slower = most / fastest;
     for (double& v : velocity_) v *= slower;
@@ -239,14 +326,11 @@ void Equilibrium::move(State& state, bool first) {
   }
   kinetic_ = kinetic;
   last_ = rest_;
-  for (size_t c = 0; c < n; ++c) state.x[first_ + c] += kStep * velocity_[c];
+  for (size_t c = 0; c < n; ++c) state.x[c] += kStep * velocity_[c];
 }
 
-LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
-                           const std::function<bool()>& stop) {
-  const State before = state;
-  const double loads_before = loads_;
-  const std::vector<double> body_loads_before = body_loads_;
+LoadStep Equilibrium::relax(State& state, const State& before, double time, double sliding,
+                            const std::function<bool()>& stop) {
   const double steps = ramp(state.time, time);
   LoadStep result{time};
   ++state.step;
@@ -259,38 +343,61 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
       dofs_.place_driven(state);
       dofs_.follow(state);
     }
-    find_forces(state);
-    if (step % kRenewedEvery == 0 || revision() != revision_) find_masses(state);
+    find_forces(state, before, sliding);
+    if (step % kRenewedEvery == 0 || revision() != revision_) {
+      find_masses(state);
+    } else {
+      raise_masses();
+    }
     if (step % kRenewedEvery == 0) check_shapes(state);
     if (share == 1 && step % kCheckedEvery == 0) {
       result.iterations = step;
       if (reached(state, result)) break;
       if (!std::isfinite(result.residual)) {
-        refuse_diverged(state, model_.deformables[std::max(result.unbalanced, 0)].name);
+        refuse_diverged(state, model_.name_of(std::max(result.unbalanced, 0)));
       }
       if (step >= kMostSteps) refuse(state, result);
     }
     move(state, step == 0);
     if (stop && stop()) {
-      state = before;
-      loads_ = loads_before;
-      body_loads_ = body_loads_before;
-      for (const auto& term : terms_) term->refresh(state);
       result.complete = false;
       return result;
     }
   }
   check_shapes(state);
-  // The ledger itself knows the work of prescribed motion.
-  std::vector<double> loads(rest_.size(), 0);
-  for (const auto& term : terms_) term->add_given_forces(loads);
+  return result;
+}
+
+LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
+                           const std::function<bool()>& stop) {
+  const State before = state;
+  const double loads_before = loads_;
+  const std::vector<double> body_loads_before = body_loads_;
+  const LoadStep result = relax(state, before, time, 0, stop);
+  if (!result.complete) {
+    state = before;
+    loads_ = loads_before;
+    body_loads_ = body_loads_before;
+    for (const auto& term : terms_) term->drop_trial(state);
+    return result;
+  }
+  // The ledger itself knows the work of prescribed motion, and terms know that of gravity.
+  const std::vector<double> now = loads();
   double work = 0;
-  for (size_t c = 0; c < loads.size(); ++c) {
-    work += (outside_[c] + loads[c]) / 2 * (state.x[first_ + c] - before.x[first_ + c]);
+  for (size_t c = 0; c < now.size(); ++c) {
+    work += (outside_[c] + now[c]) / 2 * (state.x[first_ + c] - before.x[first_ + c]);
   }
   ledger.add_work(work);
-  outside_ = loads;
+  outside_ = now;
   return result;
+}
+
+void Equilibrium::settle(State& state) {
+  const State before = state;
+  settling_ = true;
+  relax(state, before, state.time, kSlide, {});
+  state.step = before.step;
+  state.v = before.v;
 }
 
 }  // namespace apothem

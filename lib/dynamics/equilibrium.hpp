@@ -1,4 +1,4 @@
-// Static scenes: the equilibrium of deformable bodies under the loads of one instant.
+// Static scenes and settled starts: the equilibrium of all bodies under the loads of one instant.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,9 @@
 
 namespace apothem {
 
-/// Dynamic relaxation. Rigid bodies must be fixed or prescribed.
+/// Dynamic relaxation. Friction is followed from load step to load step: within one, it is a
+/// function of the displacements since its start, so that the path of the relaxation leaves no
+/// trace.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;
@@ -24,6 +26,11 @@ class Equilibrium {
   /// Not complete, with the state as it was, if `stop`, asked after each step of relaxation, says
   /// so. Throws Unstable if there is no equilibrium in reach; the state is then not to be trusted.
   LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
+  /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
+  /// is at its limit. Throws as above.
+  void settle(State& state);
+  /// The loads of the last evaluation have been there before the first load step.
+  void begin_loaded() { outside_ = loads(); }
 
   void fields(Archive& archive) {
     archive.sized("outside", outside_);
@@ -32,37 +39,51 @@ class Equilibrium {
   }
 
  private:
+  LoadStep relax(State& state, const State& before, double time, double sliding,
+                 const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
-  void find_forces(State& state);
+  void find_forces(State& state, const State& before, double sliding);
   void find_masses(const State& state);
+  void raise_masses();
   [[nodiscard]] std::int64_t revision() const;
   void check_shapes(const State& state) const;
+  [[nodiscard]] std::vector<double> loads() const;
   [[nodiscard]] std::vector<double> given_forces(const State& state) const;
   [[nodiscard]] bool reached(const State& state, LoadStep& result);
   [[nodiscard]] bool body_balanced(const State& state, DeformableIndex body,
                                    const std::vector<double>& outside, LoadStep& result);
+  [[nodiscard]] bool rigid_balanced(const State& state, RigidIndex body, double contact,
+                                    LoadStep& result);
+  bool note_balance(BodyIndex body, double off, double loads, double residual, double noise,
+                    LoadStep& result);
   [[noreturn]] void refuse_diverged(const State& state, const std::string& body) const;
   [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
-  /// Of a node's coordinate among the vectors of this object.
-  [[nodiscard]] bool held(size_t coordinate) const { return !dofs_.can_move(first_ + coordinate); }
+  [[nodiscard]] double speed(size_t coordinate) const;
+  [[nodiscard]] bool held(size_t coordinate) const { return !dofs_.can_move(coordinate); }
+  [[nodiscard]] double weight(size_t coordinate) const {
+    return dofs_.weight().empty() ? 0 : dofs_.weight()[coordinate];
+  }
 
   const Model& model_;
   const DegreesOfFreedom& dofs_;
   const Terms& terms_;
   double tolerance_;
-  size_t first_;                // coordinate of the nodes
-  double shortest_edge_;        // of the elements, m
-  std::vector<double> weight_;  // of each coordinate, N; empty without gravity
+  bool settling_ = false;
+  size_t first_;     // coordinate of the nodes
+  double shortest_;  // edge of the elements, or inradius of a free rigid body, m
   NodeStiffness stiffness_;
   std::vector<double> mass_, inverse_;    // scaled; inverse 0 where held
   std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
   std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
-  std::vector<double> outside_;           // forces at the last equilibrium, N
-  std::vector<double> lambda_;            // of rigid bodies; not used
+  std::vector<double> displacement_;      // since the start of the load step
+  std::vector<double> outside_;           // loads on nodes at the last equilibrium, N
+  std::vector<double> lambda_;            // of rigid bodies: stiffness / inertia, 1/s^2
+  std::vector<double> radius_;            // of rigid bodies, m
+  std::vector<double> least_;             // scaled mass of rigid bodies
   double far_ = 0;                        // m
   double loads_ = 0;                      // largest norm so far, N
-  std::vector<double> body_loads_;        // largest sum of sizes so far, N
+  std::vector<double> body_loads_;        // largest sum of sizes so far, of all bodies, N
   double sum_loads_ = 0, sum_residual_ = 0, sum_noise_ = 0, most_ = 0;  // in a look: see reached
   double kinetic_ = 0;                                                  // at the step before
   std::int64_t revision_ = -1;

@@ -27,8 +27,8 @@ struct Block {
 
 class Blocks {
  public:
-  explicit Blocks(const Model& model) : model_(model), g_(model.gravity.norm()) {
-    if (g_ > 0) down_ = model.gravity / g_;
+  explicit Blocks(const Model& model) : model_(model), g_(model.strongest_gravity()) {
+    if (g_ > 0) down_ = model.gravity.normalized();
     for (const RigidBody& body : model.bodies) add(body);
     for (const DeformableBody& body : model.deformables) add(body);
   }

@@ -47,15 +47,17 @@ struct ContactCounts {
 
 /// How the equilibrium of a load step was found.
 struct LoadStep {
-  double time = 0;                  ///< s
-  std::int64_t iterations = 0;      ///< steps of dynamic relaxation
-  double residual = 0;              ///< norm of the nodal forces out of balance / norm of the loads
-  double imbalance = 0;             ///< largest sum of the forces on a body / sum of their sizes
-  DeformableIndex worst = -1;       ///< the body with that imbalance
-  DeformableIndex unbalanced = -1;  ///< the body with most of the residual
-  double load = 0;                  ///< sum of the sizes of all loads and reactions on nodes, N
-  std::vector<double> off{};        ///< size of the sum of all forces on each deformable body, N
-  bool complete = true;             ///< false: stopped on the way
+  double time = 0;              ///< s
+  std::int64_t iterations = 0;  ///< steps of dynamic relaxation
+  double residual = 0;          ///< norm of the nodal forces out of balance / norm of the loads
+  double imbalance = 0;         ///< largest sum of the forces on a body / sum of their sizes
+  BodyIndex worst = -1;         ///< the body with that imbalance
+  BodyIndex unbalanced = -1;    ///< the body with most of the residual
+  double load = 0;              ///< sum of the sizes of all weights, loads and reactions, N
+  /// Size of the sum of all forces on each body, rigid ones first, N. Of a rigid body with that of
+  /// the moments over its radius; 0 where it is not free.
+  std::vector<double> off{};
+  bool complete = true;  ///< false: stopped on the way
 
   void fields(Archive& archive) {
     archive("time", time)("iterations", iterations)("residual", residual)("imbalance", imbalance)(

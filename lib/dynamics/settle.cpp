@@ -78,8 +78,8 @@ class Relaxation {
       const double off =
           body.mass * std::hypot(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
       const double place = std::abs(state_.x[at]) + std::abs(state_.x[at + 1]) + radius_[i];
-      const double may = kResidual * (body.mass * model_.gravity.norm() + std::abs(state_.f[at]) +
-                                      std::abs(state_.f[at + 1])) +
+      const double may = kResidual * (body.mass * model_.strongest_gravity() +
+                                      std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +
                          kNoise * place * lambda_[i] * body.mass;
       if (!(off <= worst_share_ * may)) {
         worst_share_ = off / may;

@@ -9,6 +9,7 @@
 #include "apothem/dynamics/elements.hpp"
 #include "apothem/dynamics/equilibrium.hpp"
 #include "apothem/dynamics/fold_watch.hpp"
+#include "apothem/dynamics/gravity_history.hpp"
 #include "apothem/dynamics/loads.hpp"
 #include "apothem/dynamics/mass_damping.hpp"
 #include "apothem/dynamics/settle.hpp"
@@ -17,6 +18,7 @@ namespace apothem {
 namespace {
 
 constexpr std::int64_t kTimedEvery = 64;
+constexpr double kSettled = 1e-9;           // of the loads, out of balance at a settled start
 constexpr std::int64_t kWatchedEvery = 64;  // steps between looks at places and shapes
 
 const std::vector<double>& mass_of(const Elements* elements) {
@@ -40,7 +42,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   StepBounds bounds;
   for (const auto& term : terms_) term->bound_step(bounds);
   control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
-  if (time.statics && elements_) {
+  if (time.statics) {
     equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, time.tolerance);
   }
   try {
@@ -61,6 +63,9 @@ void Simulation::make_terms(int threads) {
     elements_ = own_elements_.get();
     elements_->start(dofs_, state_);
     terms_.push_back(std::move(own_elements_));
+  }
+  if (GravityHistory::needed(model_)) {
+    terms_.push_back(std::make_unique<GravityHistory>(model_, dofs_));
   }
   if (Loads::needed(model_)) terms_.push_back(std::make_unique<Loads>(model_));
   if (ContactTerm::needed(model_)) {
@@ -169,17 +174,29 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
 }
 
 void Simulation::inherit(const ContactMemory& memory) {
-  if (!contact_) return;
-  contact_->inherit(memory);
-  contact_->start_ledger();
+  if (contact_) {
+    contact_->inherit(memory);
+    contact_->start_ledger();
+  }
   find_forces(state_.v, 0);
   add_onsets(0);
+  if (equilibrium_) equilibrium_->begin_loaded();
   ledger_.start(state_, energies_of_terms());
 }
 
 void Simulation::settle() {
-  apothem::settle({model_, dofs_, state_, lambda_, step_choice().stability},
-                  [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); });
+  if (model_.deformables.empty()) {
+    apothem::settle(
+        {model_, dofs_, state_, lambda_, step_choice().stability},
+        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); });
+  } else {
+    try {
+      Equilibrium(model_, dofs_, terms_, kSettled).settle(state_);
+    } catch (const Unstable& error) {
+      throw Unrunnable(error.what(), "time/start", -1);
+    }
+    find_forces(state_.v, 0);
+  }
   for (const auto& term : terms_) term->start_ledger();
 }
 

@@ -23,13 +23,16 @@ struct Evaluation {
   std::span<double> lambda;  ///< of each rigid body: bound of stiffness / inertia, 1/s^2; to add to
   Stopwatch& clock;
   double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
-  bool trial = false;       ///< the static solver tries a state: nothing of it is recorded
+  /// The static solver tries a state: nothing of it is recorded. `velocity` times `dt` is then the
+  /// displacement since the start of the load step.
+  bool trial = false;
 };
 
 /// Bounds of the stiffness that acts on nodes, for the static solver.
 struct NodeStiffness {
   std::vector<double> elastic;  ///< of each coordinate against its displacement, N/m
   std::vector<double> contact;  ///< of each node against its place, N/m
+  std::vector<double> rigid;    ///< of x, y and angle of each rigid body by nodes, N/m and N m
 };
 
 class Term {
@@ -72,11 +75,15 @@ class Term {
 
   // For static runs:
   virtual void start_load_step() {}
+  /// What it remembers is again what it was before the states that were tried; `state` as well.
+  virtual void drop_trial(const State& state) { refresh(state); }
   /// Changes when the stiffness may have changed at once.
   [[nodiscard]] virtual std::int64_t revision() const { return 0; }
   virtual void add_stiffness(const State& /*state*/, NodeStiffness& /*stiffness*/) {}
   /// Adds given forces on nodes, N.
   virtual void add_given_forces(std::span<double> /*of_nodes*/) const {}
+  /// Adds the sizes of the normal forces on each body, rigid ones first, N.
+  virtual void add_force_sizes(std::span<double> /*of_bodies*/) const {}
   /// The resultant of what other bodies do to a deformable one, N.
   [[nodiscard]] virtual Vec2 force_on(DeformableIndex /*body*/) const { return Vec2::Zero(); }
 

@@ -129,7 +129,7 @@ StepLimit motion_step_limit(const Model& model) {
     for (const auto& point : body.history.velocity) speed = std::max(speed, point.velocity.norm());
     for (const auto& point : body.history.spin) spin = std::max(spin, std::abs(point.spin));
     if (body.motion == Motion::free) {
-      speed = std::sqrt(speed * speed + 2 * model.gravity.norm() * scene.extent());
+      speed = std::sqrt(speed * speed + 2 * model.strongest_gravity() * scene.extent());
     }
     speed += spin * radius;
     if (speed > fastest) {

@@ -1,5 +1,8 @@
 #include "apothem/model/history.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace apothem {
 namespace {
 
@@ -57,6 +60,12 @@ std::array<double, 3> MotionHistory::displacement(double time) const {
 
 double LoadHistory::at(double time) const {
   return points.empty() ? 1 : interpolate(points, time, [](const auto& p) { return p.factor; });
+}
+
+double LoadHistory::largest() const {
+  double most = points.empty() ? 1 : 0;
+  for (const Point& p : points) most = std::max(most, std::abs(p.factor));
+  return most;
 }
 
 }  // namespace apothem

@@ -37,6 +37,8 @@ struct LoadHistory {
   std::vector<Point> points;  ///< may be empty: 1
 
   [[nodiscard]] double at(double time) const;
+  /// The largest size of the factor.
+  [[nodiscard]] double largest() const;
 };
 
 }  // namespace apothem

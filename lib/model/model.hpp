@@ -48,7 +48,8 @@ struct RigidBody {
 struct Model {
   std::string name;
   Vec2 origin = Vec2::Zero();   ///< world coordinates = model coordinates + origin
-  Vec2 gravity = Vec2::Zero();  ///< m/s^2
+  Vec2 gravity = Vec2::Zero();  ///< m/s^2, at factor 1
+  LoadHistory gravity_history;  ///< of its factor
   double thickness = 1;         ///< m
   std::vector<Material> materials;
   ContactLaw contact;
@@ -58,6 +59,11 @@ struct Model {
   // All bodies are numbered rigid ones first.
   [[nodiscard]] const std::string& name_of(BodyIndex body) const;
   [[nodiscard]] MaterialIndex material_of(BodyIndex body) const;
+
+  /// Of all times, m/s^2.
+  [[nodiscard]] double strongest_gravity() const {
+    return gravity.norm() * gravity_history.largest();
+  }
 
   /// Of all deformable bodies.
   [[nodiscard]] int node_count() const;

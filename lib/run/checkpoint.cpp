@@ -17,7 +17,7 @@ static void describe(Archive& archive, Setting& setting) {
 namespace {
 
 void require_fitting(const Simulation& simulation, const RunProgress& progress) {
-  const size_t bodies = simulation.model().deformables.size();
+  const size_t bodies = simulation.model().bodies.size() + simulation.model().deformables.size();
   const auto fits = [&](const LoadStep& s) {
     return s.off.size() == bodies && s.worst >= 0 && static_cast<size_t>(s.worst) < bodies;
   };

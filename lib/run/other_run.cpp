@@ -74,6 +74,9 @@ void OtherRun::load(const std::string& file) {
   const nlohmann::json& simulation = json.at("simulation");
   JsonLoader of_simulation(simulation);
   of_simulation("state", state_);
+  // The time of a static run is that of its load histories: the velocities of what it drives are
+  // none that bodies have.
+  if (simulation.contains("equilibrium")) std::fill(state_.v.begin(), state_.v.end(), 0.);
   const nlohmann::json contacts = contacts_of(simulation);
   JsonLoader of_contacts(contacts);
   memory_.fields(of_contacts);
@@ -84,15 +87,14 @@ Beginning OtherRun::move_into(Scene& scene) {
     throw scene.error_at(
         "/time/start", "finds a start of its own; leave it out to begin with another run's state");
   }
-  if (scene.time.statics) {
-    throw scene.error_at("/time/mode",
-                         "a static run that begins with another run's state is not supported yet");
-  }
   Inheritance found = inheritance(record_, state_, scene.model);
   if (found.starts.empty()) {
     throw SceneError(
         beginning_.folder, 0, "",
         fmt::format("has no body of the same name and shape as one of {}", scene.file));
+  }
+  if (scene.time.statics) {  // nothing moves there
+    for (BodyStart& start : found.starts) std::fill(start.v.begin(), start.v.end(), 0.);
   }
   begin_at(scene.model, found.starts);
   heirs_ = std::move(found.heirs);
@@ -102,8 +104,9 @@ Beginning OtherRun::move_into(Scene& scene) {
 
 void OtherRun::hand_contacts_to(Simulation& simulation) const {
   const ContactNumbers numbers = simulation.contact_numbers();
-  if (numbers.bodies.empty() || record_.contacts.bodies.empty()) return;
-  simulation.inherit(hand_over(memory_, record_.contacts, numbers, heirs_));
+  const bool both = !numbers.bodies.empty() && !record_.contacts.bodies.empty();
+  simulation.inherit(both ? hand_over(memory_, record_.contacts, numbers, heirs_)
+                          : ContactMemory());
 }
 
 std::vector<std::string> not_moved(const Model& model, const Beginning& beginning) {

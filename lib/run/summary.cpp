@@ -66,13 +66,14 @@ void add_load_steps(Json& json, const Run& run) {
                      {"iterations", s.iterations},
                      {"residual", s.residual},
                      {"imbalance", s.imbalance},
-                     {"of", model.deformables[s.worst].name}});
+                     {"of", model.name_of(s.worst)}});
   }
   Json& balance = json["balance"] = Json::array();
   if (run.load_steps().empty()) return;
   const LoadStep& last = run.load_steps().back();
   for (size_t i = 0; i < last.off.size(); ++i) {
-    balance.push_back({{"body", model.deformables[i].name},
+    if (i < model.bodies.size() && model.bodies[i].motion != Motion::free) continue;
+    balance.push_back({{"body", model.name_of(static_cast<BodyIndex>(i))},
                        {"force", last.off[i]},
                        {"of_load", imbalance_of_load(last, i)}});
   }

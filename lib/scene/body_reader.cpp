@@ -79,7 +79,6 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
     body.motion = motion(*v);
     if (body.motion == Motion::prescribed) prescribed_motion(*v, body.history);
   }
-  if (body.motion == Motion::free) features_.add(Feature::free_rigid_body, &value, place());
   if (const JsonValue* v = object.optional("fix")) held_coordinates(*v, body);
   initial_velocity(object, body.velocity, body.spin);
   refuse_held_velocity(value, body);

@@ -43,7 +43,6 @@ void ContactReader::read(const JsonValue& value) {
   if (const JsonValue* v = object.optional("field")) field(*v);
   if (const JsonValue* v = object.optional("reference")) reference(*v);
   if (const JsonValue* v = object.optional("friction")) {
-    features_.add(Feature::friction, v);
     law.friction = friction(*v, true);
   }
   if (const JsonValue* v = object.optional("damping")) damping(*v);
@@ -185,10 +184,7 @@ void ContactReader::read_pairs() {
     const ContactRule::Party a = party(names[0]);
     const ContactRule::Party b = party(names[1]);
     ContactRule rule{{a, b}};
-    if (const JsonValue* v = object.optional("friction")) {
-      features_.add(Feature::friction_of_pairs, v);
-      rule.friction = friction(*v, false);
-    }
+    if (const JsonValue* v = object.optional("friction")) rule.friction = friction(*v, false);
     if (const JsonValue* v = object.optional("damping")) {
       features_.add(Feature::contact_damping, v);
       JsonObject dashpot(in_, *v);

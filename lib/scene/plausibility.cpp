@@ -87,11 +87,11 @@ class Inspection {
   }
 
   void motion() {
-    if (scene_.model.gravity.norm() > kStrongestGravity) {
+    if (scene_.model.strongest_gravity() > kStrongestGravity) {
       say(*scene_.document.find("gravity"),
           fmt::format("{:g} m/s^2 is unusually large: lengths are in m, and gravity on Earth is "
                       "9.81 m/s^2",
-                      scene_.model.gravity.norm()));
+                      scene_.model.strongest_gravity()));
     }
     for (const JsonValue& body : scene_.document.find("bodies")->items) {
       const JsonValue* angle = body.find("angle");

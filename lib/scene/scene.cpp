@@ -6,6 +6,7 @@
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/contact_reader.hpp"
+#include "apothem/scene/deformable_reader.hpp"
 #include "apothem/scene/material_reader.hpp"
 #include "apothem/scene/output_reader.hpp"
 #include "apothem/scene/time_reader.hpp"
@@ -50,8 +51,21 @@ class SceneReader {
     if (const JsonValue* v = top.optional("$schema")) in_.string(*v);
     if (const JsonValue* v = top.optional("name")) model_.name = scene_name(*v);
     if (const JsonValue* v = top.optional("description")) in_.string(*v);
-    if (const JsonValue* v = top.optional("gravity")) model_.gravity = in_.vec2(*v, "m/s^2");
+    if (const JsonValue* v = top.optional("gravity")) gravity(*v);
     if (const JsonValue* v = top.optional("thickness")) model_.thickness = in_.positive(*v, "m");
+  }
+
+  void gravity(const JsonValue& value) {
+    if (value.type != JsonValue::Type::object) {
+      model_.gravity = in_.vec2(value, "m/s^2");
+      return;
+    }
+    JsonObject object(in_, value);
+    model_.gravity = in_.vec2(object.required("value", "[x, y] in m/s^2"), "m/s^2");
+    if (const JsonValue* v = object.optional("history")) {
+      model_.gravity_history = read_load_history(in_, *v);
+    }
+    object.finish();
   }
 
   const std::string& scene_name(const JsonValue& value) {
@@ -83,9 +97,9 @@ class SceneReader {
   }
 
   void add_features_of_all_bodies() {
-    if (model_.deformables.empty()) {
-      features_.add(Feature::rigid_bodies_only);
-    } else if (model_.bodies.size() < 2) {
+    if (model_.deformables.empty()) return;
+    if (scene_.time.settled) features_.add(Feature::settled_mesh);
+    if (model_.bodies.size() < 2) {
       features_.add(Feature::mesh_in_every_contact);
       if (model_.contact.surface == ContactSurface::body) {
         features_.add(Feature::outline_in_every_contact);

@@ -71,6 +71,10 @@ inline std::vector<NamedScene> rubbing_scenes() {
   const char* wedge = R"(,
       { "name": "wall", "material": "rock", "motion": "fixed", "polygon": [[-2, -2], [3, -2], [3, -1], [-2, -1]] },
       { "name": "wedge", "material": "rock", "velocity": [1, -3], "polygon": [[0.1, 0.49], [0.6, 1], [-0.4, 1]] })";
+  std::string growing = slope(rough, block);
+  const std::string constant = R"("gravity": [-0.3, -9.5])";
+  growing.replace(growing.find(constant), constant.size(),
+                  R"("gravity": { "value": [-0.3, -9.5], "history": [[0, 1], [0.02, 3]] })");
   return {
       {"a block that sticks", slope(rough, block), .013, true, {}},
       {"a block that slides", slope(rough, block + fast), .013, false, {}},
@@ -80,6 +84,7 @@ inline std::vector<NamedScene> rubbing_scenes() {
       {"per edge, sliding", slope(per_edge, feet + fast), .013, false, {}},
       {"damped, sticking", slope(rough, block, damped), .013, true, {"normal viscous"}},
       {"damped, on two feet", slope(rough, feet + fast, damped), .013, false, {"normal viscous"}},
+      {"gravity that grows", growing, .013, true, {"gravity that follows a history"}},
       {"meshes that rub", discs("body", ""), 8e-4, false, {"finite elements", "boundaries"}},
       {"meshes that rub by their elements", discs("element", ""), 8e-4, false, {"finite elements"}},
       {"meshes and rigid bodies", discs("body", wedge), 8e-4, false, {"finite elements"}},
@@ -103,6 +108,28 @@ inline std::string pressed_blocks(int load_steps) {
     "time": { "end": 1, "mode": "static", "load_steps": )" +
          std::to_string(load_steps) + R"( },
     "output": { "history": { "track": [ { "body": "upper" } ] } } })";
+}
+
+/// A meshed block on a rigid floor, pressed until time 1 and then pulled at its right side by so
+/// many m in a time of 1. `time`: of the scene.
+inline std::string pulled_block(const std::string& pull, const std::string& history,
+                                const std::string& time) {
+  return R"({
+    "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2, "plane": "strain" } },
+    "contact": { "normal_stiffness": 200e9,
+                 "friction": { "coefficient": 0.5, "tangential_stiffness": 20e9 } },
+    "bodies": [
+      { "name": "floor", "material": "rock", "motion": "fixed",
+        "polygon": [[-2, -1], [3, -1], [3, 0], [-2, 0]] },
+      { "name": "block", "material": "rock",
+        "mesh": { "rectangle": { "size": [1, 0.5], "cells": [8, 4] } },
+        "supports": [ { "where": { "x": 1 }, "fix": ["x"])" +
+         pull + R"( } ],
+        "loads": [ { "where": { "group": "top" }, "force": [0, -1e7])" +
+         history + R"( } ] } ],
+    "time": )" +
+         time + R"(,
+    "output": { "history": { "track": [ { "body": "block" } ] } } })";
 }
 
 }  // namespace apothem::test

@@ -477,22 +477,9 @@ TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
       {"\"output\": {", "\"output\": { \"frames\": 3,", "a frame per load step"},
       {"\"young\"", "\"damping\": { \"model\": \"rayleigh\", \"mass\": 1 }, \"young\"", "damping"},
       {"\"bodies\": [",
-       "\"contact\": { \"normal_stiffness\": 1e9 }, \"bodies\": [ { \"name\": \"r\", \"material\": "
-       "\"rock\", \"polygon\": [[0, 5], [1, 5], [0, 6]] },",
-       "/bodies/0: is not supported yet in a static run"},
-      {"\"bodies\": [",
-       "\"contact\": { \"normal_stiffness\": 1e9, \"friction\": { \"coefficient\": 1, "
-       "\"tangential_stiffness\": 1e9 } }, \"bodies\": [",
-       "/contact/friction: is not supported yet in a static run"},
-      {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"damping\": { \"model\": \"normal_viscous\", "
        "\"ratio\": 0.1 } }, \"bodies\": [",
        "/contact/damping: has no meaning"},
-      {"\"bodies\": [",
-       "\"contact\": { \"normal_stiffness\": 1e9, \"pairs\": [ { \"between\": [\"rock\", "
-       "\"rock\"], "
-       "\"friction\": { \"coefficient\": 0 } } ] }, \"bodies\": [",
-       "/contact/pairs/0/friction: is not supported yet in a static run"},
       {"\"bodies\": [",
        "\"contact\": { \"normal_stiffness\": 1e9, \"surface\": \"element\" }, \"bodies\": [",
        "/contact/surface: is not supported yet in a static run"},
