@@ -107,16 +107,23 @@ struct CollarClip {
   Number tp, dt;  // tau at P, and its change along the edge
   CollarPiece<Number>& piece;
 
-  // Contributions of a part of the edge between heights h1 and h2, by Green's theorem.
-  void add(const Number& lo, const Number& hi, const Number& h1, const Number& h2, double sign) {
-    const Number d = sign * (hi - lo);
-    const Number t1 = tp + lo * dt, t2 = tp + hi * dt;
-    piece.sum += d * (h1 + h2) / 2.;
-    piece.first += d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) / 6.;
-    piece.area += -d * dt * (h1 + h2) / 2.;
-    piece.along += -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) / 6.;
-    piece.height += -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / 6.;
-    piece.deepest = std::max({piece.deepest, real_part(h1), real_part(h2)});
+  // What a part of the edge between heights h1 and h2 contributes, by Green's theorem.
+  [[nodiscard]] CollarPiece<Number> part(const Number& lo, const Number& hi, const Number& h1,
+                                         const Number& h2) const {
+    const Number d = hi - lo, t1 = tp + lo * dt, t2 = tp + hi * dt;
+    return {lo,
+            hi,
+            d * (h1 + h2) / 2.,
+            d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) / 6.,
+            -d * dt * (h1 + h2) / 2.,
+            -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) / 6.,
+            -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / 6.,
+            std::max(real_part(h1), real_part(h2))};
+  }
+  void add(const CollarPiece<Number>& p, double sign) {
+    piece.sum += sign * p.sum, piece.first += sign * p.first;
+    piece.area += sign * p.area, piece.along += sign * p.along, piece.height += sign * p.height;
+    piece.deepest = std::max(piece.deepest, p.deepest);
   }
   // The same along a bisector from the base to the height h.
   void along_a(const Number& h, double sign) {
@@ -200,7 +207,7 @@ inline bool deep_collar_piece(const CollarFace<Number>& f, const CollarSides<Num
     if (!found || real_part(lo) < real_part(piece.from)) piece.from = lo;
     if (!found || real_part(hi) > real_part(piece.to)) piece.to = hi;
     found = true;
-    clip.add(lo, hi, h1, h2, sign);
+    clip.add(clip.part(lo, hi, h1, h2), sign);
   };
 
   const Cut p = cut(0., hp), q = cut(1., hq);
@@ -280,12 +287,9 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
     return hp + u * dh;
   };
   const Number h1 = height(lo, in), h2 = height(hi, out);
-  piece = {};
-  piece.from = lo, piece.to = hi;
-  piece.deepest = std::max(real_part(h1), real_part(h2));
   detail::CollarClip<Number> clipped{f,    ex, ey, f.tx * pax + f.ty * pay, f.tx * ex + f.ty * ey,
                                      piece};
-  clipped.add(lo, hi, h1, h2, 1);
+  piece = clipped.part(lo, hi, h1, h2);
   if (in == End::a) clipped.along_a(h1, -1);
   if (out == End::a) clipped.along_a(h2, 1);
   if (in == End::b) clipped.along_b(h1, 1);

@@ -99,11 +99,10 @@ double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double mo
         const double ahead = f.before + v * f.edge.norm() - e.before - u * e.edge.norm();
         const double turning = f.turned - e.turned;
         const double size = std::abs(ahead), whole = length[e.ring];
-        // The shorter way round.
-        const bool direct = size <= whole - size;
+        // Both ways round.
         const double along = ahead > 0 ? turning : -turning;
-        const double round = turning_round[e.ring];
-        if (tapers(t, direct ? size : whole - size, direct ? along : round - along)) continue;
+        if (tapers(t, size, along) || tapers(t, whole - size, turning_round[e.ring] - along))
+          continue;
       }
       smallest = t;
     }

@@ -56,7 +56,9 @@ void Contacts::evaluate() {
 std::optional<ContactFault> Contacts::fault() const {
   for (const Contact& contact : contacts_) {
     if (contact.share < 1 || contact.kernel == outline_kernel) continue;
-    return kernels_[contact.kernel]->fault(contact);
+    ContactFault fault = kernels_[contact.kernel]->fault(contact);
+    fault.depth = kernels_[contact.kernel]->penetration(contact, 0);
+    return fault;
   }
   if (const auto& self = surfaces_.outlines().self_contact()) {
     return ContactFault{ContactFault::Kind::self_contact, self->body, self->body, self->place};

@@ -23,6 +23,7 @@ struct ContactFault {
   Kind kind;
   BodyIndex a, b;             ///< a is in b where that makes a difference
   Vec2 place = Vec2::Zero();  ///< m
+  double depth = 0;           ///< m
 };
 
 /// A largest value and the two bodies it is of.

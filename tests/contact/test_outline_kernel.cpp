@@ -93,8 +93,8 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
     for (size_t i = 0; i < ring.size(); ++i) {
       const Vec2 x = samples::turned(ring[i], .3 * std::sin(3 * t));
       const size_t c = 2 * (ring.size() + i);
-      u[c] = x.x() - ring[i].x() + (1.35 + .3 * std::cos(2.3 * t)) * std::cos(t);
-      u[c + 1] = x.y() - ring[i].y() + (1.35 + .3 * std::cos(2.3 * t)) * std::sin(t);
+      u[c] = x.x() - ring[i].x() + (1.2 + .7 * std::cos(2.3 * t)) * std::cos(t);
+      u[c + 1] = x.y() - ring[i].y() + (1.2 + .7 * std::cos(2.3 * t)) * std::sin(t);
     }
     bodies.evaluate();
     bodies.find_forces();

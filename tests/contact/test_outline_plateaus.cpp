@@ -14,10 +14,10 @@ namespace {
 using Complex = std::complex<double>;
 
 template <class Number>
-struct Ring {
+struct NumberRing {
   std::vector<Number> x, y;
 
-  explicit Ring(const std::vector<Vec2>& ring) {
+  explicit NumberRing(const std::vector<Vec2>& ring) {
     for (const Vec2& v : ring) x.emplace_back(v.x()), y.emplace_back(v.y());
   }
   [[nodiscard]] size_t size() const { return x.size(); }
@@ -44,7 +44,7 @@ int winding_of(const std::vector<Vec2>& ring, const Vec2& p) {
 // INT over c of the depth below t, in the closed forms of collar.hpp; winding numbers by looking
 // at every vertex on its own.
 template <class Number>
-Number closed_form(const Ring<Number>& c, const Ring<Number>& t, double depth) {
+Number closed_form(const NumberRing<Number>& c, const NumberRing<Number>& t, double depth) {
   const size_t n = t.size();
   std::vector<Number> tx(n), ty(n), length(n), mx(n), my(n);
   for (size_t i = 0; i < n; ++i) {
@@ -52,7 +52,7 @@ Number closed_form(const Ring<Number>& c, const Ring<Number>& t, double depth) {
     length[i] = std::sqrt(dx * dx + dy * dy);
     tx[i] = dx / length[i], ty[i] = dy / length[i];
   }
-  Ring<Number> top = t;
+  NumberRing<Number> top = t;
   for (size_t i = 0; i < n; ++i) {
     const size_t j = t.next(i);
     const Mitre<Number> m(tx[i], ty[i], tx[j], ty[j]);
@@ -203,7 +203,7 @@ TEST_CASE("beyond the collar: the energy is that of the depth at all points", "[
     const OutlinePair pair = random_overlap(random);
     // Any depth of the collar, sound or not.
     const double h = random.uniform(.01, 1.5);
-    const double closed = closed_form(Ring<double>(pair.a), Ring<double>(pair.b), h);
+    const double closed = closed_form(NumberRing<double>(pair.a), NumberRing<double>(pair.b), h);
     const double exact = by_points(pair.a, pair.b, h);
     worst = std::max(worst, std::abs(closed - exact) / std::max(h, std::abs(exact)));
     // What the kernel has, with its depths.
@@ -227,9 +227,9 @@ TEST_CASE("beyond the collar: nodal forces are the gradient of the energy, and m
     const double size = pair.largest_force();
     if (!(size > 0)) continue;
     if (deepest_share(*pair.contacts) > 1) ++deep;
-    Ring<Complex> a(pair.a), b(pair.b);
+    NumberRing<Complex> a(pair.a), b(pair.b);
     size_t k = 0;
-    for (Ring<Complex>* ring : {&a, &b}) {
+    for (NumberRing<Complex>* ring : {&a, &b}) {
       for (size_t j = 0; j < ring->size(); ++j) {
         for (Complex* z : {&ring->x[j], &ring->y[j]}) {
           z->imag(1e-40);

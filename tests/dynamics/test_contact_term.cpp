@@ -211,6 +211,8 @@ TEST_CASE("a body on two feet has two contact patches", "[surface]") {
 
 TEST_CASE("contact beyond the method's range stops the run with the place", "[surface]") {
   Model model = empty_model();
+  model.contact.surface = ContactSurface::element;  // potentials of outlines go on
+  model.contact.distribution = ForceDistribution::resultant;
   model.contact.normal_stiffness = 1e6;
   add_floor(model);
   add(model, "ball", disc({0, .51}, Shape::quads), ElementKind::quad4, {0, -20});

@@ -37,7 +37,7 @@ void add_plates(Model& model, double height, double time) {
   }
 }
 
-struct Run {
+struct DeepRun {
   double energy = 0, momentum = 0;  // largest errors, J and N s
   double strain = 0, contact = 0;   // largest energies, J
   double total = 0;                 // largest sum of the energies, J
@@ -45,12 +45,12 @@ struct Run {
   std::string what;                 // why it stopped early
 };
 
-Run run(const Model& model, double safety, double end) {
+DeepRun run_deep(const Model& model, double safety, double end) {
   TimeSettings time;
   time.end = end;
   time.element_safety = time.safety = safety;
   Simulation simulation(model, time, 1, 1);
-  Run result;
+  DeepRun result;
   try {
     while (simulation.state().time < end) {
       simulation.step();
@@ -72,7 +72,7 @@ Run run(const Model& model, double safety, double end) {
   return result;
 }
 
-double collar(const Mesh& mesh) {
+double collar_of(const Mesh& mesh) {
   Outlines outlines;
   outlines.add_mesh(mesh, boundary(mesh), 0);
   return outlines.bodies[0].depth;
@@ -103,9 +103,9 @@ TEST_CASE("a block, a disc and a membrane are squeezed to half between plates", 
       const double time = .04 * body.height;
       add_plates(model, body.height, time);
       add(model, "body", body.mesh, body.kind, {0, 0});
-      const Run coarse = run(model, .2, time), fine = run(model, .1, time);
+      const DeepRun coarse = run_deep(model, .2, time), fine = run_deep(model, .1, time);
       const double relative = coarse.energy / coarse.total;
-      const double depth = coarse.penetration / collar(body.mesh);
+      const double depth = coarse.penetration / collar_of(body.mesh);
       CAPTURE(body.name, stiffness, coarse.what, relative, coarse.momentum, depth);
       CAPTURE(coarse.energy / fine.energy);
       CHECK(coarse.what.empty());
@@ -135,8 +135,8 @@ TEST_CASE("soft impacts many collars deep keep energy with order 2", "[deep]") {
       add(model, "upper", disc({.07, 1.003}, Shape::triangles), ElementKind::tri3,
           {0, -impact.speed});
       const double end = 1.2 / impact.speed;
-      const Run coarse = run(model, .4, end), fine = run(model, .1, end);
-      const double depth = coarse.penetration / collar(lower);
+      const DeepRun coarse = run_deep(model, .4, end), fine = run_deep(model, .1, end);
+      const double depth = coarse.penetration / collar_of(lower);
       CAPTURE(triangles, impact.speed, coarse.energy, fine.energy, coarse.momentum, depth);
       CHECK(coarse.what.empty());
       CHECK(depth > impact.depth);
@@ -168,8 +168,8 @@ TEST_CASE(
     model.bodies.push_back(tip);
     const Mesh plate = rectangle_mesh({1, .05}, {40, 2}, {-.5, 0}, shape);
     add(model, "plate", plate, triangles ? ElementKind::tri3 : ElementKind::quad4, {0, 0});
-    const Run coarse = run(model, .2, .04), fine = run(model, .1, .04);
-    const double depth = coarse.penetration / collar(plate);
+    const DeepRun coarse = run_deep(model, .2, .04), fine = run_deep(model, .1, .04);
+    const double depth = coarse.penetration / collar_of(plate);
     CAPTURE(triangles, coarse.what, coarse.energy, fine.energy, coarse.total, depth);
     if (std::getenv("APOTHEM_PRINT"))
       fmt::print("tip: {} {:.2e} {:.2e} of {:.3g}, depth/H {:.2f}\n", coarse.what, coarse.energy,
