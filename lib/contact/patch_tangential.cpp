@@ -158,8 +158,8 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
                          (shapes.radius(a) + shapes.radius(b)) * slopes;
     const double closed =
         now.finite && ancestors_ == 0 ? closed_share(motion, patch, slopes, dt) : 1;
-    resultant(motion, closed * dt, friction, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
-              springs_[j], total, memory);
+    resultant(motion, closed * dt, friction, {polygon_kernel, a, b, static_cast<int>(j)}, patch,
+              error, springs_[j], total, memory);
   }
   if (rough && !edgewise() && !inherit_whole()) {
     memory.lose(lost_by_balance(springs, last, total, motion.rate, dt) - (memory.loss() - lost));
