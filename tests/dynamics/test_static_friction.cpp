@@ -348,3 +348,68 @@ TEST_CASE("Cattaneo and Mindlin: two cylinders, pressed and sheared", "[static_f
     CHECK(found.traction < c.traction);
   }
 }
+
+namespace {
+
+// A stone on a soft meshed block on a floor, or on a rigid block.
+Model stone_on_block(bool meshed) {
+  Model model = make_model(.5, 5e7);
+  model.contact.normal_stiffness = 5e7;
+  model.materials[0].elastic = {ElasticLaw::st_venant_kirchhoff, Plane::strain, 2e7, .2};
+  model.gravity = {0, -kG};
+  add(model, "floor", samples::block(-2, -1, 3, 0), Motion::fixed);
+  add(model, "stone", Polygon({{.2, .5}, {.7, .5}, {.6, .9}, {.3, .9}}));
+  if (!meshed) {
+    add(model, "block", samples::block(0, 0, 1, .5));
+    return model;
+  }
+  DeformableBody block;
+  block.name = "block";
+  block.mesh = rectangle_mesh({1, .5}, {10, 5}, {0, 0}, ElementShape::quadrilateral);
+  model.deformables = {block};
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("free rigid bodies are in equilibrium in static runs", "[static_friction]") {
+  for (const bool meshed : {false, true}) {
+    INFO((meshed ? "on a mesh" : "rigid bodies alone"));
+    Model model = stone_on_block(meshed);
+    model.gravity_history.points = {{0, 0}, {1, 1}};
+    model.gravity = {-1, -kG};  // on a slope
+    const TimeSettings time = load_steps(4, 1, 1e-8);
+    Simulation simulation(model, time, 4, 1);
+    run_load_steps(simulation, time, 1, 4);
+    const RigidBody& stone = model.bodies[1];
+    const Eigen::Vector3d on = simulation.state().force(1);
+    CHECK(on[0] == Approx(stone.mass).epsilon(1e-5));
+    CHECK(on[1] == Approx(stone.mass * kG).epsilon(1e-6));
+    CHECK(std::abs(on[2]) < 1e-6 * stone.mass * kG);
+    const double all = stone.mass + 2500 * .5;
+    CHECK(simulation.state().force(0)[0] == Approx(-all).epsilon(1e-5));
+    CHECK(simulation.state().force(0)[1] == Approx(-all * kG).epsilon(1e-6));
+    CHECK(simulation.energies().kinetic == 0);
+    CHECK(std::abs(simulation.energies().total_error) < .02 * simulation.energies().contact);
+  }
+}
+
+TEST_CASE("bodies with a mesh start settled", "[static_friction]") {
+  const Model model = stone_on_block(true);
+  TimeSettings time;
+  time.end = .02;
+  time.settled = true;
+  Simulation simulation(model, time, 1, 1);
+  const std::vector<double> start = simulation.state().x;
+  const Energies before = simulation.energies();
+  CHECK(before.strain > 0);
+  CHECK(before.total_error == 0);
+  CHECK(simulation.state().force(1)[1] == Approx(model.bodies[1].mass * kG).epsilon(1e-6));
+  CHECK(simulation.contact_forces()[1].friction > 0);
+  while (simulation.state().time < time.end * (1 - 1e-9)) simulation.step();
+  for (size_t c = 0; c < start.size(); ++c) {
+    CHECK(std::abs(simulation.state().x[c] - start[c]) < 1e-9);
+  }
+  CHECK(simulation.energies().kinetic < 1e-12 * before.strain);
+  CHECK(std::abs(simulation.energies().total_error) < 1e-9 * before.strain);
+}

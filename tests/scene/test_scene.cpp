@@ -241,8 +241,8 @@ const std::vector<Broken> kBrokenMeshed{
      "  \"contact\": { \"normal_stiffness\": 1, \"pairs\": [ { \"between\": [\"rock\", \"beam\"], "
      "\"friction\": { \"coefficient\": 0 }, \"reference\": 2 } ] },\n  \"bodies\"",
      ":3: /contact/pairs/0/reference", "unknown key", false},
-    {"\"time\": { \"end\": 1 }", "\"time\": { \"end\": 1, \"start\": \"settled\" }",
-     ":10: /time/start", "rigid bodies only", false},
+    {"\"time\"", "\"gravity\": { \"history\": [[0, 0]] }, \"time\"", ":10: /gravity",
+     "missing key \"value\"", false},
     {"\"supports\"", "\"support\"", ":6: /bodies/0/support", "did you mean \"supports\""},
 };
 
