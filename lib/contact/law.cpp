@@ -17,6 +17,9 @@ Friction friction_between(const ContactLaw& law, int a, int material_a, int b, i
     const bool crossed = matches(p, b, material_b) && matches(q, a, material_a);
     if (straight || crossed) friction = rule.friction;
   }
+  if (friction.tangential_stiffness == 0) {
+    friction.tangential_stiffness = kTangentialShare * law.normal_stiffness;
+  }
   return friction;
 }
 

@@ -20,6 +20,11 @@ std::vector<ElementSet> element_sets(const Model& model) {
     const Material& m = model.materials[body.material];
     sets.push_back({body.element, &body.mesh, body.first_node, m.elastic, m.density,
                     model.thickness, m.stiffness_damping});
+    if (body.element_material.empty()) continue;
+    for (const Material& each : model.materials) {
+      sets.back().materials.push_back({each.elastic, each.density, each.stiffness_damping});
+    }
+    sets.back().material_of = body.element_material;
   }
   return sets;
 }
@@ -40,13 +45,15 @@ std::string Elements::describe() const {
   std::string kinds;
   bool damped = false;
   for (const DeformableBody& body : model_.deformables) {
-    const Material& m = model_.materials[body.material];
-    damped = damped || m.stiffness_damping > 0;
-    const std::string kind =
-        fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
-                    kElasticLaws[static_cast<size_t>(m.elastic.law)],
-                    kPlanes[static_cast<size_t>(m.elastic.plane)]);
-    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+    for (const MaterialIndex material : body.materials()) {
+      const Material& m = model_.materials[material];
+      damped = damped || m.stiffness_damping > 0;
+      const std::string kind =
+          fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
+                      kElasticLaws[static_cast<size_t>(m.elastic.law)],
+                      kPlanes[static_cast<size_t>(m.elastic.plane)]);
+      if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+    }
   }
   return fmt::format("{} finite elements, {} nodes: {}{}", elements_.element_count(),
                      elements_.node_count(), kinds,
@@ -64,7 +71,9 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
   const double w = std::sqrt(lambda);
   double beta = 0;
   for (const DeformableBody& body : model_.deformables) {
-    beta = std::max(beta, model_.materials[body.material].stiffness_damping);
+    for (const MaterialIndex material : body.materials()) {
+      beta = std::max(beta, model_.materials[material].stiffness_damping);
+    }
   }
   // Damping lags behind by half a step (T. Belytschko et al. 2014, Sec. 6.2).
   const double ratio = beta * w / 2;
@@ -106,7 +115,7 @@ void Elements::watch(const State& state) {
 std::string Elements::collapse(const State& state) const {
   const FiniteElements::Collapse worst = elements_.smallest_ratio(state.layout.of_nodes(state.x));
   const DeformableBody& body = model_.deformables[worst.set];
-  const Material& material = model_.materials[body.material];
+  const Material& material = model_.materials[body.material_of(worst.element)];
   if (material.elastic.law != ElasticLaw::st_venant_kirchhoff || worst.ratio > kSoftened) return {};
   const Vec2 centre = centre_of(worst);
   const std::string size = worst.ratio > 0
