@@ -156,8 +156,8 @@ void FiniteElements::add_set(int index, const ElementSet& set) {
     members.clear();
     for (int k = e; k < std::min(e + kChunk, mesh.element_count()); ++k) members.push_back(k);
     // Elements with the same number of corners and the same material form one run.
-    const auto kind = [&](int e) {
-      return std::pair(mesh.element(e).size(), set.material_number(e));
+    const auto kind = [&](int element) {
+      return std::pair(mesh.element(element).size(), set.material_number(element));
     };
     std::stable_sort(members.begin(), members.end(),
                      [&](int a, int b) { return kind(a) < kind(b); });
