@@ -88,8 +88,9 @@ std::string description(const Mesh& mesh) {
       line("angles", range(q.smallest_angle / kDegree, q.largest_angle / kDegree, "degrees")) +
       line("Jacobian", fmt::format("{:.4g} or more, scaled (1: best)", q.smallest_scaled_jacobian));
   for (const MeshGroup& group : mesh.groups) {
-    text += line("group", fmt::format("{}: {} nodes, {} edges", group.name, group.nodes.size(),
-                                      group.edges.size()));
+    text +=
+        line("group", fmt::format("{}: {} nodes, {} edges, {} elements", group.name,
+                                  group.nodes.size(), group.edges.size(), group.elements.size()));
   }
   return text;
 }
@@ -98,8 +99,10 @@ nlohmann::json description_json(const Mesh& mesh) {
   const MeshQuality q = mesh_quality(mesh);
   nlohmann::json groups = nlohmann::json::array();
   for (const MeshGroup& group : mesh.groups) {
-    groups.push_back(
-        {{"name", group.name}, {"nodes", group.nodes.size()}, {"edges", group.edges.size()}});
+    groups.push_back({{"name", group.name},
+                      {"nodes", group.nodes.size()},
+                      {"edges", group.edges.size()},
+                      {"elements", group.elements.size()}});
   }
   return {{"nodes", mesh.nodes.size()},
           {"triangles", q.triangles},
@@ -116,7 +119,8 @@ nlohmann::json description_json(const Mesh& mesh) {
 std::string groups_json(const Mesh& mesh) {
   std::string text;
   for (const MeshGroup& group : mesh.groups) {
-    const nlohmann::json json{{"name", group.name}, {"nodes", group.nodes}, {"edges", group.edges}};
+    nlohmann::json json{{"name", group.name}, {"nodes", group.nodes}, {"edges", group.edges}};
+    if (!group.elements.empty()) json["elements"] = group.elements;
     text += (text.empty() ? "" : ",\n") + json.dump();
   }
   return "[\n" + text + "\n]";

@@ -26,10 +26,19 @@ Json rigid_body(const Model& model, const RigidBody& body) {
           {"inradius", body.inradius}};
 }
 
+Json element_materials(const Model& model, const DeformableBody& body) {
+  Json names = Json::array();
+  for (const MaterialIndex material : body.materials()) {
+    names.push_back(model.materials[static_cast<size_t>(material)].name);
+  }
+  return names;
+}
+
 Json deformable_body(const Model& model, const DeformableBody& body) {
   return {{"name", body.name},
           {"kind", "deformable"},
           {"material", model.materials[static_cast<size_t>(body.material)].name},
+          {"element_materials", element_materials(model, body)},
           {"element", kElements[static_cast<size_t>(body.element)].name},
           {"elements", body.mesh.element_count()},
           {"nodes", body.mesh.nodes.size()},

@@ -12,7 +12,7 @@ namespace apothem {
 
 struct Friction {
   double coefficient = 0;           ///< mu; 0: none
-  double tangential_stiffness = 0;  ///< k_s, Pa
+  double tangential_stiffness = 0;  ///< k_s, Pa; 0: kTangentialShare of the normal stiffness
 };
 
 /// Viscous damping, as ratios of critical damping; 0: none.
@@ -28,6 +28,10 @@ struct PairLaw {
   Friction friction = {};
   ContactDamping damping = {};
 };
+
+/// k_s/k_n by default: what R. D. Mindlin (J. Appl. Mech. 16 (1949), 259) finds for the tangential
+/// stiffness of elastic bodies over the normal one, 2 (1 - nu)/(2 - nu), at nu = 1/3.
+inline constexpr double kTangentialShare = 0.8;
 
 /// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
 enum class FrictionLaw { resultant, per_edge };

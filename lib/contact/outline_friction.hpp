@@ -49,8 +49,7 @@ class OutlineFriction {
     if (table_.damped()) archive("damping_x", damping_.x)("damping_y", damping_.y);
   }
   /// Takes back the last slide of a scene without damping.
-  void undo_slide() { std::swap(friction_, friction_before_);
-  }
+  void undo_slide() { std::swap(friction_, friction_before_); }
 
   /// Forces on the vertices of the outlines, N.
   struct VertexForces {

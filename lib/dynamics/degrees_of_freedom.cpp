@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "apothem/model/rotation.hpp"
+
 namespace apothem {
 
 DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> node_mass)
@@ -38,13 +40,14 @@ void DegreesOfFreedom::add_rigid(const RigidBody& body) {
   const size_t first = inverse_mass_.size();
   const std::array<double, 3> inverse = body.inverse_mass();
   const std::array<double, 3> place{body.position.x(), body.position.y(), body.angle};
+  const Vec2 arm = -turned(body.pivot, body.angle);
   for (int k = 0; k < 3; ++k) {
     inverse_mass_.push_back(inverse[k]);
     mass_.push_back(k < 2 ? body.mass : body.inertia);
     acceleration_.push_back(k < 2 && inverse[k] > 0 ? model_.gravity[k] : 0);
     start_.push_back(place[k]);
     if (body.motion == Motion::prescribed) {
-      driven_.push_back({first + static_cast<size_t>(k), k, &body.history, place[k]});
+      driven_.push_back({first + static_cast<size_t>(k), k, &body.history, place[k], arm});
     }
   }
 }
@@ -69,12 +72,15 @@ void DegreesOfFreedom::add_nodes(const DeformableBody& body, std::span<const dou
 void DegreesOfFreedom::add_supports(const DeformableBody& body) {
   for (const Support& support : body.supports) {
     for (const int node : support.nodes) {
+      const size_t first = layout_.node(body.first_node + node);
+      const Vec2 start = displaced_.empty() ? Vec2(0, 0) : Vec2(&displaced_[first]);
       for (int axis = 0; axis < 2; ++axis) {
         if (!support.held[axis]) continue;
-        const size_t c = layout_.node(body.first_node + node) + static_cast<size_t>(axis);
+        const size_t c = first + static_cast<size_t>(axis);
         inverse_mass_[c] = acceleration_[c] = 0;
-        if (support.motion.velocity.empty()) continue;
-        driven_.push_back({c, axis, &support.motion, displaced_.empty() ? 0 : displaced_[c]});
+        if (support.motion.empty()) continue;
+        driven_.push_back(
+            {c, axis, &support.motion, start[axis], body.mesh.nodes[node] + start - support.pivot});
       }
     }
   }
@@ -145,8 +151,7 @@ void DegreesOfFreedom::kick(State& state, double h) const {
 
 void DegreesOfFreedom::steer(State& state, double dt) {
   for (Driven& d : driven_) {
-    const double goal = d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
-    d.move = goal - state.x[d.coordinate];
+    d.move = d.start + d.displacement(state.time) - state.x[d.coordinate];
     state.v[d.coordinate] = d.move / dt;
   }
 }
@@ -173,21 +178,19 @@ void DegreesOfFreedom::drift(State& state, double dt) const {
 
 void DegreesOfFreedom::follow(State& state) const {
   for (const Driven& d : driven_) {
-    state.v[d.coordinate] = d.motion->rate(state.time)[static_cast<size_t>(d.axis)];
+    state.v[d.coordinate] = d.rate(state.time);
   }
 }
 
 void DegreesOfFreedom::place_driven(State& state) const {
   for (const Driven& d : driven_) {
-    state.x[d.coordinate] =
-        d.start + d.motion->displacement(state.time)[static_cast<size_t>(d.axis)];
+    state.x[d.coordinate] = d.start + d.displacement(state.time);
   }
 }
 
 void DegreesOfFreedom::plan_moves(const State& state, double time) {
   for (Driven& d : driven_) {
-    const auto axis = static_cast<size_t>(d.axis);
-    d.move = d.motion->displacement(time)[axis] - d.motion->displacement(state.time)[axis];
+    d.move = d.displacement(time) - d.displacement(state.time);
   }
 }
 

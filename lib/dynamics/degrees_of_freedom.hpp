@@ -47,7 +47,15 @@ class DegreesOfFreedom {
     int axis;  ///< of the motion: x, y, angle
     const MotionHistory* motion;
     double start;     ///< at time 0
+    Vec2 arm;         ///< of its point from the pivot of the motion, at time 0
     double move = 0;  ///< in this step
+
+    [[nodiscard]] double displacement(double time) const {
+      return motion->displacement(time, arm)[static_cast<size_t>(axis)];
+    }
+    [[nodiscard]] double rate(double time) const {
+      return motion->rate(time, arm)[static_cast<size_t>(axis)];
+    }
   };
   [[nodiscard]] const std::vector<Driven>& driven() const { return driven_; }
   /// Sets the moves of a whole load step, from state.time until `time`.

@@ -16,28 +16,32 @@ namespace {
 // grow across the load, so that their area is a little more.
 constexpr double kSoftened = 0.65;
 
-// Rayleigh's coefficient beta of each body, s: that of its material, and what gives oscillations
-// through its thickness, of the angular frequency c/(2 R) with the inradius R and the speed of
-// sound in a bar c, the ratio of the scene.
-std::vector<double> stiffness_damping(const Model& model) {
-  std::vector<double> beta;
-  for (size_t i = 0; i < model.deformables.size(); ++i) {
+// What the damping of the scene adds to Rayleigh's coefficient beta of each body, s: it gives
+// oscillations through its thickness, of the angular frequency c/(2 R) with the inradius R and the
+// speed of sound in a bar c, the ratio of the scene.
+std::vector<double> bulk_damping(const Model& model) {
+  std::vector<double> beta(model.deformables.size());
+  const double ratio = model.contact.damping.bulk;
+  for (size_t i = 0; ratio > 0 && i < beta.size(); ++i) {
     const Material& m = model.materials[model.deformables[i].material];
-    beta.push_back(m.stiffness_damping);
-    const double ratio = model.contact.damping.bulk;
-    if (!(ratio > 0)) continue;
     const double inradius = inradius_of(model, static_cast<BodyIndex>(model.bodies.size() + i));
-    beta.back() += 4 * ratio * inradius * std::sqrt(m.density / m.elastic.young);
+    beta[i] = 4 * ratio * inradius * std::sqrt(m.density / m.elastic.young);
   }
   return beta;
 }
 
-std::vector<ElementSet> element_sets(const Model& model, const std::vector<double>& beta) {
+std::vector<ElementSet> element_sets(const Model& model, const std::vector<double>& bulk) {
   std::vector<ElementSet> sets;
   for (const DeformableBody& body : model.deformables) {
     const Material& m = model.materials[body.material];
     sets.push_back({body.element, &body.mesh, body.first_node, m.elastic, m.density,
-                    model.thickness, beta[sets.size()]});
+                    model.thickness, m.stiffness_damping + bulk[sets.size()]});
+    if (body.element_material.empty()) continue;
+    const double added = bulk[sets.size() - 1];
+    for (const Material& each : model.materials) {
+      sets.back().materials.push_back({each.elastic, each.density, each.stiffness_damping + added});
+    }
+    sets.back().material_of = body.element_material;
   }
   return sets;
 }
@@ -46,8 +50,19 @@ std::vector<ElementSet> element_sets(const Model& model, const std::vector<doubl
 
 Elements::Elements(const Model& model, int threads)
     : model_(model),
-      stiffness_damping_(stiffness_damping(model)),
-      elements_(element_sets(model, stiffness_damping_), threads) {}
+      bulk_damping_(bulk_damping(model)),
+      elements_(element_sets(model, bulk_damping_), threads) {}
+
+// The largest beta of any element, s.
+double Elements::stiffness_damping() const {
+  double beta = 0;
+  for (size_t i = 0; i < model_.deformables.size(); ++i) {
+    for (const MaterialIndex material : model_.deformables[i].materials()) {
+      beta = std::max(beta, model_.materials[material].stiffness_damping + bulk_damping_[i]);
+    }
+  }
+  return beta;
+}
 
 void Elements::start(const DegreesOfFreedom& dofs, State& state) {
   find_limit(dofs, state);
@@ -59,17 +74,18 @@ void Elements::start(const DegreesOfFreedom& dofs, State& state) {
 std::string Elements::describe() const {
   std::string kinds;
   for (const DeformableBody& body : model_.deformables) {
-    const Material& m = model_.materials[body.material];
-    const std::string kind =
-        fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
-                    kElasticLaws[static_cast<size_t>(m.elastic.law)],
-                    kPlanes[static_cast<size_t>(m.elastic.plane)]);
-    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+    for (const MaterialIndex material : body.materials()) {
+      const Material& m = model_.materials[material];
+      const std::string kind =
+          fmt::format("{} ({}, plane {})", kElements[static_cast<size_t>(body.element)].name,
+                      kElasticLaws[static_cast<size_t>(m.elastic.law)],
+                      kPlanes[static_cast<size_t>(m.elastic.plane)]);
+      if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+    }
   }
-  return fmt::format(
-      "{} finite elements, {} nodes: {}{}", elements_.element_count(), elements_.node_count(),
-      kinds,
-      std::ranges::max(stiffness_damping_) > 0 ? "; damping in proportion to the stiffness" : "");
+  return fmt::format("{} finite elements, {} nodes: {}{}", elements_.element_count(),
+                     elements_.node_count(), kinds,
+                     stiffness_damping() > 0 ? "; damping in proportion to the stiffness" : "");
 }
 
 void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
@@ -82,7 +98,7 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
   }
   const double w = std::sqrt(lambda);
   // Damping lags behind by half a step (T. Belytschko et al. 2014, Sec. 6.2).
-  const double ratio = std::ranges::max(stiffness_damping_) * w / 2;
+  const double ratio = stiffness_damping() * w / 2;
   limit_ = {2 / (w * (std::sqrt(1 + ratio * ratio) + ratio)),
             ratio > 0 ? "elements and their damping" : "elements"};
 }
@@ -121,7 +137,7 @@ void Elements::watch(const State& state) {
 std::string Elements::collapse(const State& state) const {
   const FiniteElements::Collapse worst = elements_.smallest_ratio(state.layout.of_nodes(state.x));
   const DeformableBody& body = model_.deformables[worst.set];
-  const Material& material = model_.materials[body.material];
+  const Material& material = model_.materials[body.material_of(worst.element)];
   if (material.elastic.law != ElasticLaw::st_venant_kirchhoff || worst.ratio > kSoftened) return {};
   const Vec2 centre = centre_of(worst);
   const std::string size = worst.ratio > 0

@@ -36,11 +36,12 @@ class Elements final : public Term {
   [[nodiscard]] std::string collapse(const State& state) const;
 
  private:
+  [[nodiscard]] double stiffness_damping() const;
   [[nodiscard]] Vec2 centre_of(const FiniteElements::Collapse& where) const;
   void find_limit(const DegreesOfFreedom& dofs, const State& state);
 
   const Model& model_;
-  std::vector<double> stiffness_damping_;  // of each body, s
+  std::vector<double> bulk_damping_;  // of each body, s
   FiniteElements elements_;
   StepLimit limit_;
   double summed_damping_loss_ = 0;  // J

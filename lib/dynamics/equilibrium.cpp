@@ -82,8 +82,9 @@ double Equilibrium::ramp(double from, double until) const {
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
     if (d.coordinate < first_) continue;
     const auto axis = static_cast<size_t>(d.axis);
-    longest = std::max(longest, std::abs(d.motion->displacement(until)[axis] -
-                                         d.motion->displacement(from)[axis]));
+    const std::array<double, 3> a = d.motion->displacement(from);
+    const std::array<double, 3> b = d.motion->displacement(until);
+    longest = std::max(longest, std::abs(b[axis] - a[axis]) + d.arm.norm() * std::abs(b[2] - a[2]));
   }
   for (size_t i = 0; i < model_.bodies.size(); ++i) {
     const RigidBody& body = model_.bodies[i];
@@ -91,7 +92,7 @@ double Equilibrium::ramp(double from, double until) const {
     const std::array<double, 3> a = body.history.displacement(from);
     const std::array<double, 3> b = body.history.displacement(until);
     longest = std::max(longest,
-                       std::hypot(b[0] - a[0], b[1] - a[1]) + radius_[i] * std::abs(b[2] - a[2]));
+                       std::hypot(b[0] - a[0], b[1] - a[1]) + body.reach() * std::abs(b[2] - a[2]));
   }
   return std::max(kRamp, std::ceil(longest / (kStride * shortest_)));
 }

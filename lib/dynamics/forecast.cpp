@@ -17,13 +17,22 @@ constexpr size_t kFew = 10000;  // bodies; among more, falls end on those that a
 struct Block {
   double mass, density;
   double breadth;             // of the side on which it lands, m
-  double wave = HUGE_VAL;     // pressure of its elastic wave per speed, Pa s/m
+  double wave = HUGE_VAL;     // pressure of its strongest elastic wave per speed, Pa s/m
   double tangent = HUGE_VAL;  // of half the sharpest angle; infinite if not known
   double speed;               // of its fastest point, without a fall, m/s
   bool free;
   double top = 0, bottom = 0;  // along gravity, m
   double left = 0, right = 0;  // across it
 };
+
+double mean_density(const Model& model, const DeformableBody& body, double area) {
+  if (body.element_material.empty()) return model.materials[body.material].density;
+  double mass = 0;
+  for (ElementIndex e = 0; e < body.mesh.element_count(); ++e) {
+    mass += model.materials[body.material_of(e)].density * element_area(body.mesh, e);
+  }
+  return mass / area;
+}
 
 class Blocks {
  public:
@@ -92,18 +101,23 @@ class Blocks {
       fastest_ = std::max(fastest_, point.velocity.norm());
     }
     for (const auto& point : body.history.spin) {
-      fastest_ = std::max(fastest_, std::abs(point.spin) * radius);
+      fastest_ = std::max(fastest_, std::abs(point.spin) * body.reach());
     }
     measure(points, b);
   }
 
   void add(const DeformableBody& body) {
-    const Material& m = model_.materials[body.material];
     const double area = mesh_quality(body.mesh).area;
-    Block b{.mass = m.density * area * model_.thickness,
-            .density = m.density,
+    const double density = mean_density(model_, body, area);
+    double wave = 0;
+    for (const MaterialIndex material : body.materials()) {
+      const Material& m = model_.materials[material];
+      wave = std::max(wave, std::sqrt(m.density * m.elastic.young));
+    }
+    Block b{.mass = density * area * model_.thickness,
+            .density = density,
             .breadth = 0,
-            .wave = std::sqrt(m.density * m.elastic.young),
+            .wave = wave,
             .speed = body.velocity.norm(),
             .free = body.supports.empty()};
     double radius = 0;
@@ -114,6 +128,12 @@ class Blocks {
     for (const Support& support : body.supports) {
       for (const auto& point : support.motion.velocity) {
         fastest_ = std::max(fastest_, point.velocity.norm());
+      }
+      for (const auto& point : support.motion.spin) {
+        for (const int node : support.nodes) {
+          const double arm = (body.mesh.nodes[node] - support.pivot).norm();
+          fastest_ = std::max(fastest_, std::abs(point.spin) * arm);
+        }
       }
     }
     measure(body.mesh.nodes, b);

@@ -124,14 +124,12 @@ StepLimit motion_step_limit(const Model& model) {
   for (const RigidBody& body : model.bodies) {
     double speed = body.velocity.norm();
     double spin = std::abs(body.spin);
-    double radius = 0;
-    for (const Vec2& v : body.potential.vertices) radius = std::max(radius, v.norm());
     for (const auto& point : body.history.velocity) speed = std::max(speed, point.velocity.norm());
     for (const auto& point : body.history.spin) spin = std::max(spin, std::abs(point.spin));
     if (body.motion == Motion::free) {
       speed = std::sqrt(speed * speed + 2 * model.strongest_gravity() * scene.extent());
     }
-    speed += spin * radius;
+    speed += spin * body.reach();
     if (speed > fastest) {
       fastest = speed;
       name = body.name;

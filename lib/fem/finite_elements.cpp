@@ -23,6 +23,7 @@ struct Blocks {
   const std::uint16_t* local;
   int elements, corners;
   const ElementSet& set;
+  const ElementMaterial& material;
   const double* u;
   const double* v;
   double* f;
@@ -71,9 +72,9 @@ APOTHEM_INLINE double sum_of_lanes(const Pack& p, int lanes) {
 // strain energy alone.
 template <class Element, class Law, bool damped, bool forces>
 APOTHEM_INLINE double work_through(const Blocks& blocks) {
-  const ElementSet& set = blocks.set;
-  const Response<Law, damped> response(Law(set.material), set.material, set.stiffness_damping,
-                                       set.thickness);
+  const ElementMaterial& material = blocks.material;
+  const Response<Law, damped> response(Law(material.elastic), material.elastic,
+                                       material.stiffness_damping, blocks.set.thickness);
   const int corners = Element::kCorners > 0 ? Element::kCorners : blocks.corners;
   constexpr int kMost = Element::kCorners > 0 ? Element::kCorners : kMostCorners;
   const ptrdiff_t stored = static_cast<ptrdiff_t>(Element::stored(corners)) * kLanes;
@@ -103,7 +104,7 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
 template <bool damped, bool forces>
 double dispatch(const Blocks& blocks) {
   return with_element(blocks.set.kind, [&]<class Element>(Element) {
-    return with_law(blocks.set.material, [&]<class Law>(const Law&) {
+    return with_law(blocks.material.elastic, [&]<class Law>(const Law&) {
       return with_widest([&]() __attribute__((always_inline)) {
         return work_through<Element, Law, damped, forces>(blocks);
       });
@@ -121,6 +122,11 @@ std::vector<Vec2> places(const Mesh& mesh, int element) {
 
 FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
     : sets_(sets.begin(), sets.end()), threads_(threads) {
+  for (ElementSet& set : sets_) {
+    if (set.materials.empty()) {
+      set.materials = {{set.material, set.density, set.stiffness_damping}};
+    }
+  }
   for (int i = 0; i < static_cast<int>(sets_.size()); ++i) add_set(i, sets_[i]);
   find_shared_nodes();
   chunk_sums_.resize(chunks_.size());
@@ -134,23 +140,27 @@ FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
 void FiniteElements::add_set(int index, const ElementSet& set) {
   const Mesh& mesh = *set.mesh;
   elements_ += mesh.element_count();
-  damped_ = damped_ || set.stiffness_damping > 0;
   mass_.resize(std::max(mass_.size(), set.first_node + mesh.nodes.size()), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
+    const ElementMaterial& of_element = material(index, e);
+    damped_ = damped_ || of_element.stiffness_damping > 0;
     const std::vector<Vec2> x = places(mesh, e);
     const std::vector<double> areas = corner_areas(x);
     for (size_t i = 0; i < areas.size(); ++i) {
       shortest_edge_ = std::min(shortest_edge_, (x[i] - x[i > 0 ? i - 1 : x.size() - 1]).norm());
-      mass_[set.first_node + mesh.element(e)[i]] += set.density * set.thickness * areas[i];
+      mass_[set.first_node + mesh.element(e)[i]] += of_element.density * set.thickness * areas[i];
     }
   }
   std::vector<int> members;
   for (int e = 0; e < mesh.element_count(); e += kChunk) {
     members.clear();
     for (int k = e; k < std::min(e + kChunk, mesh.element_count()); ++k) members.push_back(k);
-    // Elements with the same number of corners form one run.
+    // Elements with the same number of corners and the same material form one run.
+    const auto kind = [&](int element) {
+      return std::pair(mesh.element(element).size(), set.material_number(element));
+    };
     std::stable_sort(members.begin(), members.end(),
-                     [&](int a, int b) { return mesh.element(a).size() < mesh.element(b).size(); });
+                     [&](int a, int b) { return kind(a) < kind(b); });
     add_chunk(index, set, members);
   }
 }
@@ -170,14 +180,17 @@ void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const
   };
   for (size_t begin = 0; begin < elements.size();) {
     const int corners = static_cast<int>(mesh.element(elements[begin]).size());
+    const int number = set.material_number(elements[begin]);
     size_t end = begin;
     while (end < elements.size() &&
-           static_cast<int>(mesh.element(elements[end]).size()) == corners) {
+           static_cast<int>(mesh.element(elements[end]).size()) == corners &&
+           set.material_number(elements[end]) == number) {
       ++end;
     }
     const int count = static_cast<int>(end - begin);
     const size_t blocks = (end - begin + kLanes - 1) / kLanes;
-    runs_.push_back({corners, count, data_.size(), local_.size(), static_cast<int>(order_.size())});
+    runs_.push_back(
+        {corners, count, number, data_.size(), local_.size(), static_cast<int>(order_.size())});
     order_.insert(order_.end(), elements.begin() + static_cast<ptrdiff_t>(begin),
                   elements.begin() + static_cast<ptrdiff_t>(end));
     const int stored =
@@ -191,7 +204,7 @@ void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const
       const size_t block = k / kLanes, lane = k % kLanes;
       const int e = elements[std::min(begin + k, end - 1)];
       with_element(set.kind, [&]<class Element>(Element) {
-        Element::prepare(places(mesh, e), set.material, set.thickness,
+        Element::prepare(places(mesh, e), set.materials[number].elastic, set.thickness,
                          &data_[runs_.back().data + block * stored * kLanes + lane]);
       });
       if (begin + k >= end) continue;
@@ -250,14 +263,15 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       double sum = 0;
       for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
         const Run& part = runs_[r];
+        const ElementMaterial& of_part = set.materials[part.material];
         const Blocks blocks{
             &data_[part.data], &local_[part.local], part.elements, part.corners, set,
-            s.u.data(),        s.v.data(),          s.f.data()};
+            of_part,           s.u.data(),          s.v.data(),    s.f.data()};
         if (task == Task::energy) {
           sum += dispatch<false, false>(blocks);
         } else {
-          sum += set.stiffness_damping > 0 ? dispatch<true, true>(blocks)
-                                           : dispatch<false, true>(blocks);
+          sum += of_part.stiffness_damping > 0 ? dispatch<true, true>(blocks)
+                                               : dispatch<false, true>(blocks);
         }
       }
       chunk_sums_[c] = sum;
@@ -356,7 +370,8 @@ std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) co
   for (const ElementSet& set : sets_) first.push_back(first.back() + set.mesh->element_count());
   each_element(u, [&]<class Element>(Element, const Stored<double>& data, int corners, int set,
                                      int element, const Point<double>* w) {
-    result[first[set] + element] = mean_stress<Element>(sets_[set].material, data, corners, w);
+    result[first[set] + element] =
+        mean_stress<Element>(material(set, element).elastic, data, corners, w);
   });
   return result;
 }
@@ -373,7 +388,7 @@ CauchyStress FiniteElements::stress(std::span<const double> u, int set, int elem
       visit(chunk, runs_[r], static_cast<int>(found - begin), u, corners,
             [&]<class Element>(Element, const Stored<double>& data, int count, int, int,
                                const Point<double>* w) {
-              result = mean_stress<Element>(sets_[set].material, data, count, w);
+              result = mean_stress<Element>(material(set, element).elastic, data, count, w);
             });
     }
   }
@@ -392,8 +407,9 @@ void FiniteElements::stiffness_sums(std::span<const double> u, std::span<double>
     moved.assign(w, w + corners);
     plus.resize(corners);
     minus.resize(corners);
-    with_law(set.material, [&]<class Law>(const Law& law) {
-      const Response<Law, false> response(law, set.material, 0, set.thickness);
+    const Elastic& elastic = material(index, element).elastic;
+    with_law(elastic, [&]<class Law>(const Law& law) {
+      const Response<Law, false> response(law, elastic, 0, set.thickness);
       const std::span<const int> nodes = set.mesh->element(element);
       double power = 0;
       for (int j = 0; j < 2 * corners; ++j) {

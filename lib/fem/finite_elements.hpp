@@ -27,17 +27,33 @@
 
 namespace apothem {
 
-/// The finite elements of one body, with their material.
+/// What an element is made of.
+struct ElementMaterial {
+  Elastic elastic;
+  double density = 0;  ///< kg/m^3
+  double stiffness_damping =
+      0;  ///< Rayleigh's coefficient beta of stiffness-proportional damping, s
+};
+
+/// The finite elements of one body, with their materials.
 struct ElementSet {
   ElementKind kind = ElementKind::quad4;
   const Mesh* mesh = nullptr;  ///< must outlive its users; numbered along a space-filling curve
   int first_node = 0;          ///< place of the mesh's node 0 in the arrays of all nodes
   /// Elastic law and constants.
-  Elastic material;
+  Elastic material = {};
   double density = 0;    ///< kg/m^3
   double thickness = 1;  ///< m
   double stiffness_damping =
       0;  ///< Rayleigh's coefficient beta of stiffness-proportional damping, s
+  /// Where elements differ: the materials that there are, and which of them each element is made
+  /// of; `material_of` must outlive its users. Both empty: all are of the material above.
+  std::vector<ElementMaterial> materials = {};
+  std::span<const int> material_of = {};
+
+  [[nodiscard]] int material_number(int element) const {
+    return material_of.empty() ? 0 : material_of[static_cast<size_t>(element)];
+  }
 };
 
 /// The finite elements of all bodies. Nodal vectors (displacements, velocities, forces) hold x and
@@ -88,9 +104,11 @@ class FiniteElements {
   [[nodiscard]] Collapse smallest_ratio(std::span<const double> u) const;
 
  private:
-  /// Consecutive SIMD blocks of elements of one chunk that have the same number of corners.
+  /// Consecutive SIMD blocks of elements of one chunk that have the same number of corners and the
+  /// same material.
   struct Run {
     int corners, elements;
+    int material;        // among those of the set
     size_t data, local;  // where their stored numbers (data_) and local node numbers (local_) start
     int first;           // where their element numbers (order_) start
   };
@@ -107,6 +125,9 @@ class FiniteElements {
   };
   enum class Task { force, energy };
 
+  [[nodiscard]] const ElementMaterial& material(int set, int element) const {
+    return sets_[set].materials[sets_[set].material_number(element)];
+  }
   void add_set(int index, const ElementSet& set);
   void add_chunk(int index, const ElementSet& set, std::span<const int> elements);
   void find_shared_nodes();

@@ -261,6 +261,21 @@ class Check {
             -1, node);
       }
     }
+    for (size_t i = 0; i < part.elements.size(); ++i) {
+      const int e = part.elements[i];
+      if (e < 0 || e >= mesh_.element_count()) {
+        throw InvalidMesh(name + "names element " + std::to_string(e) + ", which is none", -1, -1);
+      }
+      if (i > 0 && e <= part.elements[i - 1]) {
+        throw InvalidMesh(name + "does not name its elements in ascending order", e, -1);
+      }
+      for (const int node : mesh_.element(e)) {
+        if (std::binary_search(part.nodes.begin(), part.nodes.end(), node)) continue;
+        throw InvalidMesh(name + "names element " + std::to_string(e) + ", but not its node " +
+                              std::to_string(node),
+                          e, node);
+      }
+    }
   }
 
   const Mesh& mesh_;

@@ -54,6 +54,7 @@ class GmshMesh {
   }
 
   void elements_of_mesh() {
+    element_.assign(file_.parts.size(), -1);
     for (size_t i = 0; i < file_.parts.size(); ++i) {
       const Part& part = file_.parts[i];
       if (part.dimension != 2) continue;
@@ -62,7 +63,7 @@ class GmshMesh {
       for (int k = 0; k < part.size; ++k) corners.push_back(number_[part.nodes[k]]);
       mesh_.add_element(corners);
       file_part_.push_back(static_cast<int>(i));
-      const int e = mesh_.element_count() - 1;
+      const int e = element_[i] = mesh_.element_count() - 1;
       // The surface's normal points to -z: gmsh lists the corners clockwise.
       if (element_area(mesh_, e) < 0)
         std::reverse(mesh_.corners.end() - part.size + 1, mesh_.corners.end());
@@ -116,9 +117,10 @@ class GmshMesh {
         mesh_.groups.push_back(line_group(group, edges_of(members, edges, group)));
         continue;
       }
-      std::set<int> numbers;
+      std::set<int> numbers, elements;
       for (const int member : members) {
         const Part& part = file_.parts[member];
+        if (dimension == 2) elements.insert(element_[static_cast<size_t>(member)]);
         for (int i = 0; i < part.size; ++i) {
           const int number = number_[part.nodes[i]];
           if (number < 0) {
@@ -130,7 +132,8 @@ class GmshMesh {
           numbers.insert(number);
         }
       }
-      mesh_.groups.push_back({group, {numbers.begin(), numbers.end()}, {}});
+      mesh_.groups.push_back(
+          {group, {numbers.begin(), numbers.end()}, {}, {elements.begin(), elements.end()}});
     }
   }
 
@@ -159,6 +162,7 @@ class GmshMesh {
   const MeshRules& rules_;
   Mesh mesh_;
   std::vector<int> number_;                 // in the mesh, of each node of the file; -1: left out
+  std::vector<int> element_;                // in the mesh, of each surface part of the file
   std::vector<int> file_node_, file_part_;  // file index of each mesh node, element
 };
 

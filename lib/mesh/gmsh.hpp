@@ -25,7 +25,8 @@ class BadMeshText : public std::invalid_argument {
 
 /// The mesh of a .msh text: triangles and quadrilaterals of first order in the plane z = 0, with
 /// coordinates in m, in the order of the file. Clockwise elements are reversed. Physical groups of
-/// surfaces, curves and points become groups (without a name: surface-TAG, curve-TAG, point-TAG).
+/// surfaces, curves and points become groups (without a name: surface-TAG, curve-TAG, point-TAG);
+/// those of surfaces name their elements.
 /// Other lines and points are left out, and so are nodes that belong to geometry points only, like
 /// the centre of an arc. Throws BadMeshText, which names gmsh's tag, for a malformed text and for a
 /// mesh that check_mesh refuses.

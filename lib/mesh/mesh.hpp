@@ -16,6 +16,8 @@ struct MeshGroup {
   std::vector<int> nodes;  ///< all nodes of the part, in ascending order
   /// If the part is a line: its edges, directed as in their elements.
   std::vector<std::array<int, 2>> edges;
+  /// If the part is an area: its elements, in ascending order.
+  std::vector<int> elements = {};
 };
 
 /// The shape of the elements that the mesh generators produce.

@@ -37,11 +37,15 @@ Reordering reorder_along_curve(Mesh& mesh) {
   for (int node = 0; node < static_cast<int>(mesh.nodes.size()); ++node) renumber(node);
   result.nodes.reserve(mesh.nodes.size());
   for (const int node : old.nodes) result.nodes.push_back(mesh.nodes[node]);
+  std::vector<int> place(old.elements.size());
+  for (size_t e = 0; e < old.elements.size(); ++e) place[old.elements[e]] = static_cast<int>(e);
   result.groups = std::move(mesh.groups);
   for (MeshGroup& group : result.groups) {
     for (int& node : group.nodes) node = number[node];
     std::sort(group.nodes.begin(), group.nodes.end());
     for (auto& edge : group.edges) edge = {number[edge[0]], number[edge[1]]};
+    for (int& e : group.elements) e = place[e];
+    std::sort(group.elements.begin(), group.elements.end());
   }
   mesh = std::move(result);
   return old;

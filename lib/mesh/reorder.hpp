@@ -13,7 +13,8 @@ struct Reordering {
 
 /// Orders the elements along a Hilbert curve through the means of their corners (see hilbert_order)
 /// and the nodes in the order in which elements first use them; unused nodes come last. The nodes
-/// of groups are sorted again, and their edges keep their order. An element keeps its first corner.
+/// and elements of groups are sorted again, and their edges keep their order. An element keeps its
+/// first corner.
 Reordering reorder_along_curve(Mesh& mesh);
 
 }  // namespace apothem

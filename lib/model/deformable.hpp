@@ -16,7 +16,8 @@ namespace apothem {
 struct Support {
   std::vector<int> nodes;
   std::array<bool, 2> held{};  ///< x, y
-  MotionHistory motion;        ///< empty: at rest; its spin is not used
+  MotionHistory motion;        ///< empty: at rest
+  Vec2 pivot = Vec2::Zero();   ///< in model coordinates: the point that it moves, and turns about
 };
 
 /// Forces that keep their direction.
@@ -35,7 +36,9 @@ struct PressureLoad {
 
 struct DeformableBody {
   std::string name;
-  MaterialIndex material = 0;
+  MaterialIndex material = 0;  ///< of the body in contact, and of its elements
+  /// Of each element, where they are not all of the body's material; otherwise empty.
+  std::vector<MaterialIndex> element_material = {};
   ElementKind element = ElementKind::quad4;
   Mesh mesh;                 ///< in model coordinates, along a space-filling curve
   NodeIndex first_node = 0;  ///< in the nodal arrays of the state
@@ -46,6 +49,12 @@ struct DeformableBody {
   double spin = 0;               ///< rad/s, about the mass centre
   /// Of the nodes at time 0, x and y, m and m/s; empty: as the mesh, `velocity` and `spin` say.
   std::vector<double> displacement = {}, node_velocity = {};
+
+  [[nodiscard]] MaterialIndex material_of(ElementIndex e) const {
+    return element_material.empty() ? material : element_material[static_cast<size_t>(e)];
+  }
+  /// The materials of all elements, each once, in ascending order.
+  [[nodiscard]] std::vector<MaterialIndex> materials() const;
 };
 
 /// A point of a deformable body: the weighted mean of nodes; its stress is that of an element.

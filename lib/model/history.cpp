@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/model/rotation.hpp"
+
 namespace apothem {
 namespace {
 
@@ -40,21 +42,27 @@ auto integrate(const Points& points, double time, const Value& value) {
   return sum;
 }
 
+double angle_of(const std::vector<MotionHistory::SpinPoint>& spin, double time) {
+  return spin.empty() ? 0 : integrate(spin, time, [](const auto& p) { return p.spin; });
+}
+
 }  // namespace
 
-std::array<double, 3> MotionHistory::rate(double time) const {
+std::array<double, 3> MotionHistory::rate(double time, const Vec2& arm) const {
   const Vec2 v = velocity.empty()
                      ? Vec2(0, 0)
                      : interpolate(velocity, time, [](const auto& p) { return p.velocity; });
   const double w = spin.empty() ? 0 : interpolate(spin, time, [](const auto& p) { return p.spin; });
-  return {v.x(), v.y(), w};
+  if (w == 0 || arm == Vec2::Zero()) return {v.x(), v.y(), w};
+  const Vec2 turning = cross(w, turned(arm, angle_of(spin, time)));
+  return {v.x() + turning.x(), v.y() + turning.y(), w};
 }
 
-std::array<double, 3> MotionHistory::displacement(double time) const {
+std::array<double, 3> MotionHistory::displacement(double time, const Vec2& arm) const {
   Vec2 u(0, 0);
-  double angle = 0;
   if (!velocity.empty()) u = integrate(velocity, time, [](const auto& p) { return p.velocity; });
-  if (!spin.empty()) angle = integrate(spin, time, [](const auto& p) { return p.spin; });
+  const double angle = angle_of(spin, time);
+  if (arm != Vec2::Zero() && angle != 0) u += turned(arm, angle) - arm;
   return {u.x(), u.y(), angle};
 }
 

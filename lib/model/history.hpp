@@ -8,8 +8,8 @@
 
 namespace apothem {
 
-/// Prescribed motion: velocity and spin piecewise linear in time, constant before the first and
-/// after the last point.
+/// Prescribed motion: velocity of a pivot and spin about it, piecewise linear in time, constant
+/// before the first and after the last point.
 struct MotionHistory {
   struct VelocityPoint {
     double time;
@@ -22,10 +22,13 @@ struct MotionHistory {
   std::vector<VelocityPoint> velocity;  ///< may be empty: no translation
   std::vector<SpinPoint> spin;          ///< may be empty: no rotation
 
-  /// Velocity (vx, vy, spin) at `time`.
-  [[nodiscard]] std::array<double, 3> rate(double time) const;
-  /// Displacement and rotation since time 0, integrated exactly.
-  [[nodiscard]] std::array<double, 3> displacement(double time) const;
+  [[nodiscard]] bool empty() const { return velocity.empty() && spin.empty(); }
+  /// Velocity (vx, vy, spin) at `time` of what has lain `arm` (m) from the pivot at time 0.
+  [[nodiscard]] std::array<double, 3> rate(double time, const Vec2& arm = Vec2::Zero()) const;
+  /// Its displacement and rotation since time 0: the histories are integrated exactly, and the
+  /// place on the circle about the pivot follows from the angle.
+  [[nodiscard]] std::array<double, 3> displacement(double time,
+                                                   const Vec2& arm = Vec2::Zero()) const;
 };
 
 /// A factor, piecewise linear in time, constant before the first and after the last point.

@@ -1,10 +1,26 @@
 #include "apothem/model/model.hpp"
 
+#include <algorithm>
+
 namespace apothem {
 
 std::array<double, 3> RigidBody::inverse_mass() const {
   if (motion != Motion::free) return {0, 0, 0};
   return {held[0] ? 0 : 1 / mass, held[1] ? 0 : 1 / mass, held[2] ? 0 : 1 / inertia};
+}
+
+std::vector<MaterialIndex> DeformableBody::materials() const {
+  if (element_material.empty()) return {material};
+  std::vector<MaterialIndex> all = element_material;
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+double RigidBody::reach() const {
+  double reach = 0;
+  for (const Vec2& v : potential.vertices) reach = std::max(reach, (v - pivot).norm());
+  return reach;
 }
 
 const std::string& Model::name_of(BodyIndex body) const {

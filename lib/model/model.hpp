@@ -35,12 +35,15 @@ struct RigidBody {
   Motion motion = Motion::free;
   std::array<bool, 3> held{};    ///< x, y, angle that a free body may not change
   MotionHistory history;         ///< if prescribed
+  Vec2 pivot = Vec2::Zero();     ///< body frame: the point that `history` moves, and turns about
   Vec2 position = Vec2::Zero();  ///< of the mass centre at time 0
   double angle = 0;
   Vec2 velocity = Vec2::Zero();
   double spin = 0;
 
   [[nodiscard]] bool can_move() const { return motion != Motion::fixed; }
+  /// The largest distance of a vertex from the pivot, m.
+  [[nodiscard]] double reach() const;
   /// 1/m, 1/m, 1/I for the degrees of freedom that forces can change, 0 for the others.
   [[nodiscard]] std::array<double, 3> inverse_mass() const;
 };

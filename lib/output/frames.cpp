@@ -23,6 +23,7 @@
 #include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/measure.hpp"
 #include "apothem/model/columns.hpp"
+#include "apothem/model/rotation.hpp"
 #include "apothem/output/convex_cells.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/vtk_grid.hpp"
@@ -92,13 +93,6 @@ std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchySt
 
 using Cells = std::vector<std::vector<int>>;
 
-// The place of a vertex of a rigid body relative to the mass centre.
-Vec2 turned(const Vec2& p, double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-}
-
 // The bodies of a frame: a rigid one is a cell, and so is an element, or several if it is not
 // convex. `rigid_cells` are those of the rigid bodies.
 class BodyGrid {
@@ -159,7 +153,7 @@ class BodyGrid {
     const BodyMotion of_body = motion(i);
     for (size_t part = 0; part < rigid_cells_[i].size(); ++part) {
       add_corners(rigid_cells_[i][part], [&](int corner) { return first + corner; });
-      add_cell(i, part, x[2] - body.angle, v[2], f.head<2>(), {}, of_body);
+      add_cell(i, part, body.material, x[2] - body.angle, v[2], f.head<2>(), {}, of_body);
     }
   }
 
@@ -183,7 +177,7 @@ class BodyGrid {
       const Cells cells = convex_cells(ring);
       for (size_t part = 0; part < cells.size(); ++part) {
         add_corners(cells[part], [&](int corner) { return first + nodes[corner]; });
-        add_cell(b, part, 0, 0, Vec2::Zero(), stress[e], of_body);
+        add_cell(b, part, body.material_of(e), 0, 0, Vec2::Zero(), stress[e], of_body);
       }
     }
   }
@@ -205,11 +199,11 @@ class BodyGrid {
     points_->InsertNextPoint(p.x(), p.y(), 0);
   }
 
-  void add_cell(BodyIndex body, size_t part, double rotation, double spin, const Vec2& force,
-                const CauchyStress& stress, const BodyMotion& of_body) {
+  void add_cell(BodyIndex body, size_t part, MaterialIndex material, double rotation, double spin,
+                const Vec2& force, const CauchyStress& stress, const BodyMotion& of_body) {
     body_->InsertNextValue(body);
     part_->InsertNextValue(static_cast<int>(part));
-    material_->InsertNextValue(model_.material_of(body));
+    material_->InsertNextValue(material);
     rotation_->InsertNextValue(rotation);
     spin_->InsertNextValue(spin);
     force_->InsertNextTuple3(force.x(), force.y(), 0);

@@ -36,6 +36,7 @@ std::string scene_hash(const Scene& scene) {
   }
   for (const DeformableBody& body : scene.model.deformables) {
     for (const Vec2& v : body.mesh.nodes) hash.add(v);
+    hash.add(body.element_material.data(), body.element_material.size() * sizeof(MaterialIndex));
   }
   return hash.text();
 }

@@ -7,6 +7,7 @@
 
 #include "apothem/mesh/measure.hpp"
 #include "apothem/mesh/reorder.hpp"
+#include "apothem/model/rotation.hpp"
 #include "apothem/scene/deformable_reader.hpp"
 #include "apothem/scene/output_reader.hpp"
 #include "apothem/scene/polygon_value.hpp"
@@ -70,6 +71,9 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
   rigid_places_.push_back(place());
   features_.add(Feature::rigid_body, &value, place());
   object.required("polygon", "");
+  if (const JsonValue* v = object.optional("materials")) {
+    features_.add(Feature::element_materials, v, place());
+  }
   give_shape(value, polygon, body);
   if (const JsonValue* v = object.optional("position")) {
     body.position = in_.vec2(*v, "m") - model_.origin;
@@ -77,7 +81,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
   if (const JsonValue* v = object.optional("angle")) body.angle = in_.number(*v, "rad");
   if (const JsonValue* v = object.optional("motion")) {
     body.motion = motion(*v);
-    if (body.motion == Motion::prescribed) prescribed_motion(*v, body.history);
+    if (body.motion == Motion::prescribed) prescribed_motion(*v, body);
   }
   if (const JsonValue* v = object.optional("fix")) held_coordinates(*v, body);
   initial_velocity(object, body.velocity, body.spin);
@@ -113,18 +117,13 @@ void BodyReader::deformable_body(const JsonValue& value, MeshSpec spec) {
   JsonObject object(in_, value);
   DeformableBody body;
   name_and_material(object, body.name, body.material);
-  const Material& material = model_.materials[body.material];
-  if (!(material.elastic.young > 0) || !materials_.items[body.material].find("poisson")) {
-    in_.fail(*value.find("material"),
-             fmt::format("a body with a mesh needs \"young\" (Pa) and \"poisson\" of material "
-                         "\"{}\"",
-                         material.name));
-  }
+  require_elastic(*value.find("material"), body.material);
   features_.add(Feature::body_with_mesh, &object.required("mesh", ""), place());
   body.element = spec.element;
   body.mesh = std::move(spec.mesh);
   place_mesh(object, body.mesh);
   reorder_along_curve(body.mesh);
+  if (const JsonValue* v = object.optional("materials")) element_materials(*v, body);
   body.first_node = model_.node_count();
   DeformableReader reader(in_, model_, body);
   if (const JsonValue* v = object.optional("supports")) reader.supports(*v);
@@ -144,14 +143,10 @@ void BodyReader::place_mesh(JsonObject& object, Mesh& mesh) const {
   const Vec2 centre = mesh_centroid(mesh);
   const Vec2 goal = position ? Vec2(in_.vec2(*position, "m") - model_.origin) : centre;
   const double a = angle ? in_.number(*angle, "rad") : 0;
-  for (Vec2& x : mesh.nodes) {
-    const Vec2 arm = x - centre;
-    x = goal + Vec2(std::cos(a) * arm.x() - std::sin(a) * arm.y(),
-                    std::sin(a) * arm.x() + std::cos(a) * arm.y());
-  }
+  for (Vec2& x : mesh.nodes) x = goal + turned(x - centre, a);
 }
 
-void BodyReader::name_and_material(JsonObject& object, std::string& name, int& material) {
+void BodyReader::name_and_material(JsonObject& object, std::string& name, MaterialIndex& material) {
   const JsonValue& name_value = object.required("name", "a string, unique among the bodies");
   name = in_.string(name_value);
   refuse_as_column(in_, name_value);
@@ -161,15 +156,65 @@ void BodyReader::name_and_material(JsonObject& object, std::string& name, int& m
         fmt::format("\"{}\" is already the name of another body; give each body its own", name));
   }
   names_.push_back(name);
-  const JsonValue& material_value = object.required("material", "the name of a material");
-  const std::string& wanted = in_.string(material_value);
+  material = this->material(object.required("material", "the name of a material"));
+}
+
+MaterialIndex BodyReader::material(const JsonValue& name) const {
+  const std::string& wanted = in_.string(name);
   std::vector<std::string> known;
   for (const Material& m : model_.materials) known.push_back(m.name);
   const auto found = std::find(known.begin(), known.end(), wanted);
   if (found == known.end()) {
-    in_.fail(material_value, fmt::format("unknown material {}", suggest(wanted, known)));
+    in_.fail(name, fmt::format("unknown material {}", suggest(wanted, known)));
   }
-  material = static_cast<int>(found - known.begin());
+  return static_cast<MaterialIndex>(found - known.begin());
+}
+
+// `name` is the value in the scene that gives elements this material.
+void BodyReader::require_elastic(const JsonValue& name, MaterialIndex material) const {
+  const Material& m = model_.materials[material];
+  if (m.elastic.young > 0 && materials_.items[material].find("poisson")) return;
+  in_.fail(name, fmt::format("a body with a mesh needs \"young\" (Pa) and \"poisson\" of material "
+                             "\"{}\"",
+                             m.name));
+}
+
+// Materials of the groups of elements that have another one than their body.
+void BodyReader::element_materials(const JsonValue& value, DeformableBody& body) const {
+  if (value.type != JsonValue::Type::object || value.items.empty()) {
+    in_.fail(value, "must be {\"GROUP\": \"MATERIAL\", ...} with groups of the mesh");
+  }
+  std::vector<std::string> known;
+  for (const MeshGroup& group : body.mesh.groups) {
+    if (!group.elements.empty()) known.push_back(group.name);
+  }
+  const std::vector<std::string>& groups = value.keys;
+  body.element_material.assign(static_cast<size_t>(body.mesh.element_count()), body.material);
+  std::vector<int> taken(body.element_material.size(), -1);  // by which of the groups
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const JsonValue& name = value.items[i];
+    if (std::find(known.begin(), known.end(), groups[i]) == known.end()) {
+      in_.fail(name, known.empty()
+                         ? "the mesh has no groups of elements: those are the physical "
+                           "surfaces of a file of gmsh"
+                         : "the mesh has no group of elements " + suggest(groups[i], known));
+    }
+    const MaterialIndex chosen = material(name);
+    require_elastic(name, chosen);
+    const auto group = std::find_if(body.mesh.groups.begin(), body.mesh.groups.end(),
+                                    [&](const MeshGroup& g) { return g.name == groups[i]; });
+    for (const int e : group->elements) {
+      MaterialIndex& of_element = body.element_material[e];
+      if (taken[e] >= 0 && of_element != chosen) {
+        in_.fail(name, fmt::format("\"{}\" and \"{}\" share elements; give them one material, or "
+                                   "divide the mesh into groups that do not overlap",
+                                   groups[taken[e]], groups[i]));
+      }
+      taken[e] = static_cast<int>(i);
+      of_element = chosen;
+    }
+  }
+  if (body.materials() == std::vector{body.material}) body.element_material.clear();
 }
 
 Motion BodyReader::motion(const JsonValue& value) {
@@ -181,21 +226,28 @@ Motion BodyReader::motion(const JsonValue& value) {
   if (value.type != JsonValue::Type::object) {
     in_.fail(value,
              "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
-             "[[t,w],...]}");
+             "[[t,w],...], \"pivot\": [x,y]}");
   }
   features_.add(Feature::prescribed_motion, &value, place());
   return Motion::prescribed;
 }
 
-void BodyReader::prescribed_motion(const JsonValue& value, MotionHistory& history) const {
+void BodyReader::prescribed_motion(const JsonValue& value, RigidBody& body) const {
   JsonObject object(in_, value);
+  MotionHistory& history = body.history;
   if (const JsonValue* v = object.optional("velocity")) history.velocity = read_velocities(in_, *v);
   if (const JsonValue* v = object.optional("spin")) history.spin = read_spins(in_, *v);
+  const JsonValue* pivot = object.optional("pivot");
   object.finish();
   if (history.velocity.empty() && history.spin.empty()) {
     in_.fail(value,
              "must give a velocity or a spin history with at least one row; for a body at rest use "
              "\"fixed\"");
+  }
+  if (pivot) {
+    if (history.spin.empty()) in_.fail(*pivot, kPivotAtRest);
+    const Vec2 arm = in_.vec2(*pivot, "m") - model_.origin - body.position;
+    body.pivot = turned(arm, -body.angle);
   }
 }
 

@@ -37,9 +37,12 @@ class BodyReader {
   void give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body);
   void deformable_body(const JsonValue& value, MeshSpec spec);
   void place_mesh(JsonObject& object, Mesh& mesh) const;
-  void name_and_material(JsonObject& object, std::string& name, int& material);
+  void name_and_material(JsonObject& object, std::string& name, MaterialIndex& material);
+  [[nodiscard]] MaterialIndex material(const JsonValue& name) const;
+  void require_elastic(const JsonValue& name, MaterialIndex material) const;
+  void element_materials(const JsonValue& value, DeformableBody& body) const;
   Motion motion(const JsonValue& value);
-  void prescribed_motion(const JsonValue& value, MotionHistory& history) const;
+  void prescribed_motion(const JsonValue& value, RigidBody& body) const;
   void held_coordinates(const JsonValue& value, RigidBody& body);
   void initial_velocity(JsonObject& object, Vec2& velocity, double& spin);
   void refuse_held_velocity(const JsonValue& value, const RigidBody& body) const;

@@ -92,8 +92,6 @@ Friction ContactReader::friction(const JsonValue& value, bool of_scene) {
   if (!(friction.coefficient >= 0)) in_.fail(mu, "must be 0 or more");
   if (const JsonValue* v = object.optional("tangential_stiffness")) {
     friction.tangential_stiffness = in_.positive(*v, "Pa");
-  } else if (friction.coefficient > 0 && !(friction.tangential_stiffness > 0)) {
-    object.required("tangential_stiffness", "k_s in Pa");
   }
   if (of_scene) {
     if (const JsonValue* v = object.optional("law")) friction_law(*v);

@@ -120,7 +120,7 @@ void DeformableReader::support(const JsonValue& value) {
     for (const JsonValue& direction : in_.array(*fix)) {
       support.held[in_.choice(direction, {"x", "y"})] = true;
     }
-  } else if (velocity) {
+  } else if (velocity || value.find("spin")) {
     support.held = {true, true};
   }
   if (!support.held[0] && !support.held[1]) {
@@ -132,11 +132,12 @@ void DeformableReader::support(const JsonValue& value) {
       in_.fail(*velocity, "must hold at least one row; leave it out for a support at rest");
     }
   }
+  rotation(object, support);
   object.finish();
   for (const int node : support.nodes) {
     for (int axis = 0; axis < 2; ++axis) {
       if (!support.held[axis]) continue;
-      if (held_[node][axis] && velocity) {
+      if (held_[node][axis] && !support.motion.empty()) {
         in_.fail(value, fmt::format("another support already holds the {} of a node here",
                                     axis == 0 ? "x" : "y"));
       }
@@ -144,6 +145,25 @@ void DeformableReader::support(const JsonValue& value) {
     }
   }
   body_.supports.push_back(std::move(support));
+}
+
+// Of a support that turns its nodes about a point.
+void DeformableReader::rotation(JsonObject& object, Support& support) const {
+  const JsonValue* spin = object.optional("spin");
+  const JsonValue* pivot = object.optional("pivot");
+  if (pivot && !spin) in_.fail(*pivot, kPivotAtRest);
+  if (!spin) return;
+  support.motion.spin = read_spins(in_, *spin);
+  if (support.motion.spin.empty()) {
+    in_.fail(*spin, "must hold at least one row; leave it out for a support that does not turn");
+  }
+  if (!support.held[0] || !support.held[1]) {
+    in_.fail(*spin, "turns nodes, which moves them in both directions: \"fix\": [\"x\", \"y\"]");
+  }
+  support.pivot =
+      in_.vec2(object.required("pivot", "[x, y] in m, the point that the support turns about"),
+               "m") -
+      model_.origin;
 }
 
 void DeformableReader::loads(const JsonValue& value) {

@@ -23,6 +23,7 @@ class DeformableReader {
   std::vector<int> nodes(const JsonValue& where) const;
   std::vector<MeshEdge> edges(const JsonValue& where) const;
   void support(const JsonValue& value);
+  void rotation(JsonObject& object, Support& support) const;
   void load(const JsonValue& value);
   void point_force(const JsonValue& at, const Vec2& force, const LoadHistory& history);
   void edge_force(const JsonValue& where, const Vec2& value, bool per_area,
@@ -35,6 +36,10 @@ class DeformableReader {
   DeformableBody& body_;
   std::vector<std::array<bool, 2>> held_;  // x and y of each node, by the supports read so far
 };
+
+/// Why a "pivot" without a "spin" is refused.
+inline constexpr const char* kPivotAtRest =
+    "nothing turns about it; give a \"spin\" history, or leave it out";
 
 /// Histories with increasing times: [[t, vx, vy], ...], [[t, spin], ...] and [[t, factor], ...].
 /// They throw SceneError.

@@ -757,7 +757,8 @@ TEST_CASE("a mesh of gmsh's, described", "[program]") {
   CHECK(description["areas"] == Json{.5, 1});
   CHECK(description["holes"] == 0);
   CHECK(description["angles"][1] == Approx(std::acos(-1.) / 2));
-  CHECK(description["groups"][1] == Json{{"name", "left"}, {"nodes", 2}, {"edges", 1}});
+  CHECK(description["groups"][1] ==
+        Json{{"name", "left"}, {"nodes", 2}, {"edges", 1}, {"elements", 0}});
   const Json mesh = Json::parse(content(folder / "m.json"));
   CHECK(mesh["points"][7] == Json{3, 1});
   CHECK(mesh["cells"][2] == Json{2, 3, 6});

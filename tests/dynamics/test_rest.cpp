@@ -11,6 +11,7 @@
 using namespace apothem;
 using namespace apothem::test;
 
+namespace heaps {
 namespace {
 
 Model empty() {
@@ -145,3 +146,5 @@ TEST_CASE("heaps that should rest come to rest, and move beyond their limit", "[
     CHECK(moves.speed > 1e-2);
   }
 }
+
+}  // namespace heaps

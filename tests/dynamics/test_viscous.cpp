@@ -12,6 +12,7 @@
 using namespace apothem;
 using namespace apothem::test;
 
+namespace viscous {
 namespace {
 
 enum class Kind { rigid, quads, triangles, polygons };
@@ -198,3 +199,5 @@ TEST_CASE("stiffness, friction and damping of a pair", "[viscous]") {
   CHECK(time[0] == Approx(M_PI / omega).epsilon(.03));
   CHECK(time[1] > 1.5 * time[0]);
 }
+
+}  // namespace viscous

@@ -171,6 +171,15 @@ TEST_CASE("groups must name what is there", "[mesh]") {
   check_refused(with({"a", {0, 1}, {{1, 0}}}), "from node 1 to node 0", -1, -1);
   check_refused(with({"a", {0, 4}, {{0, 4}}}), "from node 0 to node 4", -1, -1);
   check_refused(with({"a", {0}, {{0, 1}}}), "does not name the node", -1, 1);
+  const Mesh mesh = squares();
+  std::vector<int> nodes(mesh.element(1).begin(), mesh.element(1).end());
+  std::sort(nodes.begin(), nodes.end());
+  CHECK(refusal(with({"a", nodes, {}, {1}})).what.empty());
+  check_refused(with({"a", nodes, {}, {99}}), "names element 99", -1, -1);
+  check_refused(with({"a", nodes, {}, {1, 1}}), "elements in ascending order", 1, -1);
+  const int gone = nodes.back();
+  nodes.pop_back();
+  check_refused(with({"a", nodes, {}, {1}}), "but not its node", 1, gone);
 }
 
 TEST_CASE("the boundary of a frame", "[mesh]") {

@@ -89,6 +89,7 @@ void check_same(const Mesh& read, const Mesh& mesh) {
   }
   CHECK(group(read, "all").nodes.size() == mesh.nodes.size());
   CHECK(group(read, "all").edges.empty());
+  CHECK(group(read, "all").elements.size() == static_cast<size_t>(mesh.element_count()));
   CHECK(read.groups.size() == mesh.groups.size() + 1);
 }
 
@@ -153,6 +154,8 @@ TEST_CASE("mixed elements, and a point of the geometry that is no node", "[mesh]
   CHECK(group(mesh, "corner").nodes == std::vector<int>{0});
   CHECK(group(mesh, "left").edges == std::vector<std::array<int, 2>>{{4, 0}});
   CHECK(group(mesh, "squares").nodes == std::vector<int>{0, 1, 2, 4, 5, 6});
+  CHECK(group(mesh, "squares").elements == std::vector<int>{0, 1});
+  CHECK(group(mesh, "left").elements.empty());
 }
 
 TEST_CASE("clockwise elements are turned, repeated ones are one", "[mesh]") {

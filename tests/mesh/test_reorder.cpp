@@ -44,7 +44,15 @@ TEST_CASE("a reordered mesh is the same mesh", "[mesh]") {
   for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
     const Mesh before = disc_mesh({1, 2}, 3, {8}, shape);
     Mesh mesh = before;
+    const std::vector<int> some{1, 5, 6, 40};
+    mesh.groups.push_back({"some", {}, {}, some});
     const Reordering old = reorder_along_curve(mesh);
+    std::vector<int> were;
+    for (const int e : group(mesh, "some").elements) were.push_back(old.elements[e]);
+    CHECK(std::is_sorted(group(mesh, "some").elements.begin(), group(mesh, "some").elements.end()));
+    std::sort(were.begin(), were.end());
+    CHECK(were == some);
+    mesh.groups.pop_back();
     check_permutation(old.nodes, before.nodes.size());
     check_permutation(old.elements, before.element_count());
     check_laws(mesh, mesh_quality(before).area);

@@ -92,6 +92,16 @@ inline std::vector<NamedScene> rubbing_scenes() {
   };
 }
 
+/// A block that sticks to a slope, which begins to turn about its end.
+inline NamedScene turning_slope() {
+  std::string text = slope(R"({ "coefficient": 0.6, "tangential_stiffness": 1e9 })",
+                           R"("polygon": [[-0.25, 0], [0.25, 0], [0.25, 0.125], [-0.25, 0.125]])");
+  const std::string still = R"("motion": "fixed")";
+  text.replace(text.find(still), still.size(),
+               R"("motion": { "spin": [[0, 0], [0.02, 0.01]], "pivot": [-5, 0] })");
+  return {"a block on a slope that turns about its end", text, .013, true, {}};
+}
+
 /// Two blocks of meshes, pressed on each other in so many load steps.
 inline std::string pressed_blocks(int load_steps) {
   return R"({

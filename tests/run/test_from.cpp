@@ -78,6 +78,27 @@ TEST_CASE("a run that begins with another's state goes on as that one would", "[
   }
 }
 
+TEST_CASE("a body that turns about a pivot takes it along into the next run",
+          "[run][from][pivot]") {
+  const Folder folder;
+  const std::string paddle = R"({ "materials": { "wood": { "density": 700 } },
+    "bodies": [ { "name": "paddle", "material": "wood", "polygon": [[0, 0], [1, 0], [1, 0.1], [0, 0.1]],
+                  "position": [4, 3], "angle": 0.2,
+                  "motion": { "velocity": [[0, 2, -1]], "spin": [[0, 5]], "pivot": [4.5, 3] } } ],
+    "time": { "end": 0.5, "step": 1e-3 } })";
+  Run first(scene_of(folder, paddle), {.folder = folder / "first"});
+  REQUIRE(first.run(.3) == Run::Status::done);
+  Run second(scene_with(folder, paddle, {"time.end=0.2"}),
+             {.folder = folder / "second", .from = folder / "first"});
+  CHECK(apart(first.state().x, second.state().x) == 0);
+  CHECK(apart(first.state().v, second.state().v) < 1e-14);
+  REQUIRE(second.run() == Run::Status::done);
+  while (first.state().time < .5 - 1e-9) first.simulation().step();
+  CHECK(apart(first.state().x, second.state().x) < 1e-14);
+  CHECK(apart(first.state().v, second.state().v) < 1e-13);
+  CHECK(first.state().x[2] == Approx(.2 + 5 * .5));
+}
+
 TEST_CASE("bodies keep their springs where others come, go, or stand in another order",
           "[run][from]") {
   for (const char* law : {"resultant", "per_edge"}) {

@@ -42,12 +42,18 @@ void check_same_files(const Folder& folder, const std::vector<std::string>& name
   }
 }
 
+std::vector<NamedScene> stopped_scenes() {
+  std::vector<NamedScene> scenes = rubbing_scenes();
+  scenes.push_back(turning_slope());
+  return scenes;
+}
+
 std::string checkpoint_of(const Folder& folder) { return folder / "parts/checkpoint.json"; }
 
 }  // namespace
 
 TEST_CASE("a run that was stopped while bodies rub continues bit for bit", "[resume]") {
-  for (const NamedScene& named : rubbing_scenes()) {
+  for (const NamedScene& named : stopped_scenes()) {
     INFO(named.name);
     const Folder folder;
     const Scene scene = scene_of(folder, named.text);
@@ -88,7 +94,7 @@ TEST_CASE("a run that was stopped while bodies rub continues bit for bit", "[res
 }
 
 TEST_CASE("what is loaded is what was saved, to the last bit", "[resume]") {
-  for (const NamedScene& named : rubbing_scenes()) {
+  for (const NamedScene& named : stopped_scenes()) {
     INFO(named.name);
     const Folder folder;
     const Scene scene = scene_of(folder, named.text);

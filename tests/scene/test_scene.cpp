@@ -101,8 +101,9 @@ const std::vector<Broken> kBroken{
     {"\"reference\": \"roof\"",
      "\"friction\": { \"coefficient\": -1, \"tangential_stiffness\": 1 }",
      ":5: /contact/friction/coefficient", "must be 0 or more"},
-    {"\"reference\": \"roof\"", "\"friction\": { \"coefficient\": 0.5 }", ":5: /contact/friction",
-     "missing key \"tangential_stiffness\"", false},
+    {"\"reference\": \"roof\"",
+     "\"friction\": { \"coefficient\": 0.5, \"tangential_stiffness\": 0 }",
+     ":5: /contact/friction/tangential_stiffness", "must be positive (in Pa)"},
     {"\"reference\": \"roof\"", "\"surface\": \"elements\"", ":5: /contact/surface",
      "did you mean \"element\""},
     {"\"reference\": \"roof\"", "\"distribution\": \"sum\"", ":5: /contact/distribution",
@@ -146,6 +147,12 @@ const std::vector<Broken> kBroken{
      "at least one row", false},
     {"\"motion\": \"fixed\"", "\"motion\": { \"velocity\": [[1, 0, 0], [0, 0, 0]] }",
      ":7: /bodies/0/motion/velocity/1", "times must increase", false},
+    {"\"motion\": \"fixed\"", "\"motion\": { \"velocity\": [[0, 1, 0]], \"pivot\": [0, 0] }",
+     ":7: /bodies/0/motion/pivot", "nothing turns about it"},
+    {"\"motion\": \"fixed\"", "\"motion\": { \"spin\": [[0, 1]], \"pivot\": 0 }",
+     ":7: /bodies/0/motion/pivot", "must be [x, y] in m"},
+    {"\"motion\": \"fixed\"", "\"materials\": { \"core\": \"rock\" }", ":7: /bodies/0/materials",
+     "a polygon has no groups of elements"},
     {"\"motion\": \"fixed\"", "\"fix\": [\"z\"]", ":7: /bodies/0/fix/0", "unknown choice"},
     {"\"velocity\": [0, -1]", "\"fix\": [\"y\"], \"velocity\": [0, -1]", ":9: /bodies/1/velocity/1",
      "must be 0", false},
@@ -216,6 +223,17 @@ const std::vector<Broken> kBrokenMeshed{
     {"{ \"x\": 0 }", "{ \"z\": 0 }", ":6: /bodies/0/supports/0/where/z", "unknown key"},
     {"\"fix\": [\"x\", \"y\"]", "\"fix\": []", ":6: ", "what it holds"},
     {"\"fix\": [\"x\", \"y\"]", "\"fix\": [\"angle\"]", ":6: ", "\"angle\""},
+    {"\"fix\": [\"x\", \"y\"]", "\"spin\": [[0, 1]]", ":6: /bodies/0/supports/0",
+     "missing key \"pivot\""},
+    {"\"fix\": [\"x\", \"y\"]", "\"fix\": [\"x\"], \"spin\": [[0, 1]], \"pivot\": [0, 0]",
+     ":6: /bodies/0/supports/0/spin", "both directions", false},
+    {"\"fix\": [\"x\", \"y\"]", "\"spin\": [], \"pivot\": [0, 0]", ":6: /bodies/0/supports/0/spin",
+     "at least one row", false},
+    {"\"fix\": [\"x\", \"y\"]", "\"velocity\": [[0, 1, 0]], \"pivot\": [0, 0]",
+     ":6: /bodies/0/supports/0/pivot", "nothing turns about it"},
+    {"\"fix\": [\"x\", \"y\"]", "\"spin\": [[0, 1]], \"pivot\": [0, 0]", "", "", false},
+    {"\"material\": \"rock\",", "\"material\": \"rock\", \"materials\": { \"top\": \"rock\" },",
+     ":4: /bodies/0/materials/top", "no groups of elements", false},
     {"[9.8, 1.0]", "[9.8, 1.1]", ":7: /bodies/0/loads/0/at", "outside", false},
     {"\"force\": [0, -1]", "\"pressure\": 1", ":7: /bodies/0/loads/0/at", "\"force\""},
     {"[[0, 0], [0.5, 1]]", "[[0.5, 0], [0.5, 1]]", ":7: ", "times must increase", false},
@@ -453,6 +471,59 @@ TEST_CASE("a body can be placed by mass centre and angle", "[scene]") {
   CHECK(body.position.x() + far.model.origin.x() == 1e9);
   CHECK(body.position.y() + far.model.origin.y() == 5);
   CHECK(body.angle == 0.5);
+}
+
+TEST_CASE("a pivot is a point of the world that the body takes with it", "[scene]") {
+  const Folder folder;
+  const std::string motion = "\"motion\": { \"spin\": [[0, 2]], \"pivot\": [5, 7] }";
+  for (const char* at : {"", ", \"position\": [3, 4], \"angle\": 0.5"}) {
+    const Scene scene = read_scene(
+        folder.write("pivot.json", replaced(kGood, "\"motion\": \"fixed\"", motion + at)));
+    const RigidBody& body = scene.model.bodies[0];
+    const double c = std::cos(body.angle), s = std::sin(body.angle);
+    const Vec2 place =
+        scene.model.origin + body.position +
+        Vec2(c * body.pivot.x() - s * body.pivot.y(), s * body.pivot.x() + c * body.pivot.y());
+    CHECK((place - Vec2(5, 7)).norm() < 1e-14);
+  }
+  const Scene centred =
+      read_scene(folder.write("pivot.json", replaced(kGood, "\"motion\": \"fixed\"",
+                                                     "\"motion\": { \"spin\": [[0, 2]] }")));
+  CHECK(centred.model.bodies[0].pivot == Vec2::Zero());
+  const Scene support =
+      read_scene(folder.write("support.json", replaced(kMeshedScene, "\"fix\": [\"x\", \"y\"]",
+                                                       "\"spin\": [[0, 1]], \"pivot\": [5, 7]")));
+  const Support& turning = support.model.deformables[0].supports[0];
+  CHECK(turning.held == std::array{true, true});
+  CHECK((turning.pivot + support.model.origin - Vec2(5, 7)).norm() < 1e-14);
+  CHECK(turning.motion.spin.size() == 1);
+}
+
+TEST_CASE("friction takes its tangential stiffness from the normal one", "[scene]") {
+  const Folder folder;
+  const auto between = [&](const std::string& friction, const std::string& pairs) {
+    const std::string contact = "\"reference\": \"roof\"" + friction + pairs;
+    const Scene scene = read_scene(
+        folder.write("friction.json", replaced(kGood, "\"reference\": \"roof\"", contact)));
+    return law_between(scene.model.contact, 0, 0, 1, 0).friction;
+  };
+  const std::string plain = ", \"friction\": { \"coefficient\": 0.5 }";
+  const std::string given =
+      ", \"friction\": { \"coefficient\": 0.5, \"tangential_stiffness\": 3e9 }";
+  const auto pair = [](const char* more) {
+    return std::string(", \"pairs\": [ { \"between\": [\"target\", \"rock\"], \"friction\": { ") +
+           "\"coefficient\": 0.25" + more + " } } ]";
+  };
+  CHECK(kTangentialShare == .8);
+  CHECK(between(plain, "").tangential_stiffness == .8 * 20e9);
+  CHECK(between(given, "").tangential_stiffness == 3e9);
+  for (const std::string& scene : {plain, std::string()}) {
+    CHECK(between(scene, pair("")).coefficient == .25);
+    CHECK(between(scene, pair("")).tangential_stiffness == .8 * 20e9);
+    CHECK(between(scene, pair(", \"tangential_stiffness\": 7e9")).tangential_stiffness == 7e9);
+  }
+  CHECK(between(given, pair("")).tangential_stiffness == 3e9);
+  CHECK(between(given, pair(", \"tangential_stiffness\": 7e9")).tangential_stiffness == 7e9);
 }
 
 TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
