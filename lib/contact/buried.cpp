@@ -1,5 +1,5 @@
 #include "apothem/contact/contacts.hpp"
-#include "apothem/geometry/polygon/loops.hpp"
+#include "apothem/geometry/spatial/loops.hpp"
 
 namespace apothem {
 

@@ -28,9 +28,8 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
         std::make_unique<ElementKernel>(surfaces_, law, table_, thickness, threads);
   }
   if (needed[outline_kernel]) {
-    kernels_[outline_kernel] =
-        std::make_unique<OutlineKernel>(surfaces_.outlines(), law.normal_stiffness, thickness,
-                                        table_, surfaces_.inverse_mass(), threads);
+    kernels_[outline_kernel] = std::make_unique<OutlineKernel>(
+        surfaces_.outlines(), thickness, table_, surfaces_.inverse_mass(), threads);
   }
 }
 
@@ -41,6 +40,9 @@ bool Contacts::search_if_stale() {
   for (std::vector<BoxPair>& pairs : pairs_) pairs.clear();
   for (const BoxPair& pair : search_.pairs()) {
     pairs_[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
+  }
+  for (SurfaceIndex i = 0; table_.self() && i < surfaces_.size(); ++i) {
+    if (surfaces_.kind(i) == SurfaceKind::outline) pairs_[outline_kernel].push_back({i, i});
   }
   for (size_t k = 0; k < kernels_.size(); ++k) {
     if (kernels_[k]) kernels_[k]->take(pairs_[k]);
@@ -59,9 +61,6 @@ std::optional<ContactFault> Contacts::fault() const {
     ContactFault fault = kernels_[contact.kernel]->fault(contact);
     fault.depth = kernels_[contact.kernel]->penetration(contact, 0);
     return fault;
-  }
-  if (const auto& self = surfaces_.outlines().self_contact()) {
-    return ContactFault{ContactFault::Kind::self_contact, self->body, self->body, self->place};
   }
   return {};
 }

@@ -17,6 +17,7 @@ struct EdgeFace {
 /// One that does.
 struct EdgeFaceContact {
   int edge, face;
+  double slope;  ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
 };
 
@@ -26,7 +27,7 @@ struct EdgeFaceForces {
   double edge_start, edge_end, face_start, face_end;
 };
 
-/// `slope`: k_n thickness / r of the face, N/m^2; lengths of the edge and of the face's base, m.
+/// `slope` of the face, as above; lengths of the edge and of the face's base, m.
 inline EdgeFaceForces edge_face_forces(const CollarPiece<double>& p, double slope,
                                        double edge_length, double face_length) {
   const double on_edge = slope * edge_length;

@@ -19,7 +19,7 @@ namespace apothem {
 /// Two bodies that are deeper in each other than their potentials reach, so that the forces are not
 /// to be trusted, or an element out of the range of its method.
 struct ContactFault {
-  enum class Kind { singular_area, centre, element, not_convex, self_contact };
+  enum class Kind { singular_area, centre, element, not_convex };
   Kind kind;
   BodyIndex a, b;             ///< a is in b where that makes a difference
   Vec2 place = Vec2::Zero();  ///< m
@@ -36,7 +36,8 @@ class Kernel {
  public:
   virtual ~Kernel() = default;
 
-  /// After a search: the pairs that this kernel serves, ascending.
+  /// After a search: the pairs that this kernel serves. A body that touches itself is a pair with
+  /// itself.
   virtual void take(std::span<const BoxPair> pairs) = 0;
   /// Finds the contacts of its pairs and the normal forces in them; appends the contacts in
   /// ascending order. The same bits for any number of threads. No allocation unless there are more

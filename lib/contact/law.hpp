@@ -67,6 +67,7 @@ struct ContactLaw {
   ContactDamping damping = {};
   std::vector<ContactRule> rules = {};  ///< for pairs; later ones win
   double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
+  bool self = false;                    ///< bodies with a mesh touch themselves as well
   bool accepts_overlaps = false;        ///< bodies may overlap deeply at the start
   /// Penetration over the inradius of a body above which the run warns.
   double penetration_warning = 0.01;

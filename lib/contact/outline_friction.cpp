@@ -68,7 +68,7 @@ void OutlineFriction::find_times(const std::vector<EdgeFaceContact>& contacts, d
   times_.begin_step();
   for (const EdgeFaceContact& c : contacts) {
     DampingTimes::Pair& pair = times_.of(o.body[c.edge], o.body[c.face]);
-    pair.normal += slope_[c.face] * (c.piece.to - c.piece.from) * o.length[c.edge];
+    pair.normal += c.slope * (c.piece.to - c.piece.from) * o.length[c.edge];
     const Friction& friction = table_.between(pair.a, pair.b).friction;
     pair.tangential += spring_stiffness(o, c, friction, thickness_);
   }
@@ -94,7 +94,7 @@ void OutlineFriction::damp_normal(const EdgeFaceContact& c, double time, double&
     const double vy = (1 - u) * vy_[p] + u * vy_[q] - (1 - s) * vy_[a] - s * vy_[b];
     const double closing = tx * vy - ty * vx;  // along the inward normal (-ty, tx)
     const double pressure = std::max(time * closing, -depth);
-    const double force = slope_[a] * o.length[p] * part / 2 * pressure;
+    const double force = c.slope * o.length[p] * part / 2 * pressure;
     push += force;
     const auto add = [&](int vertex, double share) {
       damping_.x[vertex] += share * force * ty;
@@ -140,7 +140,7 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
     double normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
     for (size_t i = first; i < end; ++i) {
       const EdgeFaceContact& c = contacts[i];
-      const double weight = slope_[c.face] * o.length[c.edge];
+      const double weight = c.slope * o.length[c.edge];
       const double length = (c.piece.to - c.piece.from) * o.length[c.edge];
       normal += weight * c.piece.sum;
       spring.stiffness += spring_stiffness(o, c, friction, thickness_);
@@ -174,7 +174,7 @@ double OutlineFriction::slide(const std::vector<EdgeFaceContact>& contacts, cons
     }
     for (size_t i = first; i < end; ++i) {
       const EdgeFaceContact& c = contacts[i];
-      const double weight = slope_[c.face] * o.length[c.edge] / normal;
+      const double weight = c.slope * o.length[c.edge] / normal;
       apply(c, weight * spring.force, friction_);
       if (dashpot != 0) apply(c, weight * dashpot, damping_);
       shares_[i] = (spring.force + dashpot) * weight * c.piece.sum;

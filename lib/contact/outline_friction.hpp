@@ -24,16 +24,10 @@ namespace apothem {
 
 class OutlineFriction {
  public:
-  /// `slope`: k_n thickness / r of each face, N/m^2; `thickness` in m; `inverse_mass` of each body,
-  /// 1/kg. All must outlive this object.
-  OutlineFriction(const Outlines& outlines, const PairTable& table,
-                  const std::vector<double>& slope, double thickness,
+  /// `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive this object.
+  OutlineFriction(const Outlines& outlines, const PairTable& table, double thickness,
                   const std::vector<double>& inverse_mass)
-      : outlines_(outlines),
-        table_(table),
-        slope_(slope),
-        thickness_(thickness),
-        times_(table, inverse_mass) {}
+      : outlines_(outlines), table_(table), thickness_(thickness), times_(table, inverse_mass) {}
 
   /// See Kernel.
   void limit_damping(double rate) { times_.limit(rate); }
@@ -76,7 +70,6 @@ class OutlineFriction {
 
   const Outlines& outlines_;
   const PairTable& table_;
-  const std::vector<double>& slope_;
   double thickness_;
   DampingTimes times_;
   std::vector<double> vx_, vy_;  // of the vertices

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "apothem/contact/stiffness.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kCandidateTime = 40;  // ns
 constexpr double kInsideTop = 2;       // share of a contact that is not with a face
+constexpr double kNothing = 1e-12;     // of a collar: round-off where an edge begins on a face
 constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth in a plain face,
                                        // unless the body is squeezed to less than the collar
 
@@ -24,23 +26,19 @@ double depth_ratio(const CollarFace<double>& face) {
 
 }  // namespace
 
-OutlineKernel::OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
-                             const PairTable& table, const std::vector<double>& inverse_mass,
-                             int threads)
+OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const PairTable& table,
+                             const std::vector<double>& inverse_mass, int threads)
     : outlines_(outlines),
-      stiffness_(stiffness * thickness),
       thickness_(thickness),
       table_(table),
+      slopes_{outlines, table, thickness},
       threads_(threads),
       plateaus_(outlines),
-      onset_(outlines, slope_) {
+      onset_(outlines, slopes_) {
   const auto n = static_cast<size_t>(outlines.size());
-  for (const Outlines::Body& body : outlines.bodies) {
-    slope_.resize(static_cast<size_t>(body.end), stiffness_ / body.reference);
-  }
   fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
   if (table.rough() || table.damped()) {
-    friction_.emplace(outlines, table, slope_, thickness, inverse_mass);
+    friction_.emplace(outlines, table, thickness, inverse_mass);
   }
 }
 
@@ -49,10 +47,20 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
   candidates_.clear();
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
-    find_candidates(b, a);
+    if (a != b) find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
   plateaus_.take(pairs);
+}
+
+// An edge of a body lies on its own face, without a depth, and in those of the edges next to it
+// only where these have shrunk to nothing.
+bool OutlineKernel::are_neighbours(int edge, int face) const {
+  const Outlines& o = outlines_;
+  if (edge == face) return true;
+  if (o.next[edge] != face && o.previous[edge] != face) return false;
+  const Vec2 top = o.top(o.next[face]) - o.top(face);
+  return o.tx[face] * top.x() + o.ty[face] * top.y() > 2 * o.growth();
 }
 
 // Edges of a, faces of b: sweep along the longer side of the common region.
@@ -85,7 +93,9 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
     auto it = std::lower_bound(near_faces_.begin(), near_faces_.end(), low(box) - widest,
                                [&](int i, double x) { return low(o.face_boxes[i]) < x; });
     for (; it != near_faces_.end() && low(o.face_boxes[*it]) <= high(box); ++it) {
-      if (!apart(box, o.face_boxes[*it])) candidates_.push_back({e, *it});
+      if (apart(box, o.face_boxes[*it])) continue;
+      if (a == b && are_neighbours(e, *it)) continue;
+      candidates_.push_back({e, *it});
     }
   }
 }
@@ -130,18 +140,21 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
                                 std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   const auto [e, f] = pair;
-  const EdgeFaceForces force = edge_face_forces(p, slope_[f], o.length[e], o.length[f]);
+  const double slope = slopes_.of(pair);
+  const EdgeFaceForces force = edge_face_forces(p, slope, o.length[e], o.length[f]);
   ends_[2 * e] += force.edge_start;
   ends_[2 * e + 1] += force.edge_end;
   ends_[2 * f] += force.face_start;
   ends_[2 * f + 1] += force.face_end;
 
-  if (!(p.deepest <= 0)) {
-    const double surely = is_depth(f, p) ? p.deepest : 0;
-    contacts_.emplace_back(e, f, p);
-    contacts.push_back({outline_kernel, e, f, surely, p.deepest * depth_ratio(o.face(f)),
-                        std::min(1., p.deepest / o.depth[f]),
-                        slope_[f] * o.length[e] * (p.to - p.from)});
+  const bool self = o.body[e] == o.body[f];
+  if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
+    // Of a body in itself, the height in the face is the depth by definition.
+    const double surely = self || is_depth(f, p) ? p.deepest : 0;
+    contacts_.emplace_back(e, f, slope, p);
+    contacts.push_back(
+        {outline_kernel, e, f, surely, self ? surely : p.deepest * depth_ratio(o.face(f)),
+         std::min(1., p.deepest / o.depth[f]), slope * o.length[e] * (p.to - p.from)});
   }
 }
 
@@ -151,15 +164,19 @@ void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   plateaus_.evaluate();
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    const int f = o.bodies[on.in].first;
-    const double force = slope_[f] * o.depth[f] * o.length[on.edge];
+    const Outlines::Body& in = o.bodies[on.in];
+    const BodyIndex own = o.body[on.edge];
+    const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
     ends_[2 * on.edge] += force * (on.sum - on.first);
     ends_[2 * on.edge + 1] += force * on.first;
-    contacts.push_back({outline_kernel, on.edge, f, 0, HUGE_VAL, kInsideTop, 0});
+    const bool self = own == on.in;
+    contacts.push_back({outline_kernel, on.edge, in.first, self ? in.depth : 0,
+                        self ? in.depth : HUGE_VAL, kInsideTop, 0});
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    const double end = slope_[on.face] * on.moment.along / o.length[on.face];
-    ends_[2 * on.face] += slope_[on.face] * on.moment.area - end;
+    const double slope = slopes_(o.body[on.face], on.in);
+    const double end = slope * on.moment.along / o.length[on.face];
+    ends_[2 * on.face] += slope * on.moment.area - end;
     ends_[2 * on.face + 1] += end;
     contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
@@ -280,7 +297,7 @@ Resultant OutlineKernel::resultant(BodyIndex body) const {
 
 void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
   for (const EdgeFaceContact& c : contacts_) {
-    const double size = slope_[c.face] * c.piece.sum * outlines_.length[c.edge];
+    const double size = c.slope * c.piece.sum * outlines_.length[c.edge];
     of_bodies[outlines_.body[c.edge]] += size;
     of_bodies[outlines_.body[c.face]] += size;
   }
@@ -288,13 +305,13 @@ void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
 
 double OutlineKernel::energy() const {
   double sum = 0;
-  for (const EdgeFaceContact& c : contacts_) sum += slope_[c.face] * c.piece.height;
+  for (const EdgeFaceContact& c : contacts_) sum += c.slope * c.piece.height;
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    const int f = outlines_.bodies[on.in].first;
-    sum += slope_[f] * outlines_.depth[f] * on.swept;
+    sum += slopes_(on.in, outlines_.body[on.edge]) * outlines_.bodies[on.in].depth * on.swept;
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    sum += slope_[on.face] * (on.moment.height + outlines_.depth[on.face] * on.swept);
+    sum += slopes_(outlines_.body[on.face], on.in) *
+           (on.moment.height + outlines_.depth[on.face] * on.swept);
   }
   return sum;
 }
@@ -312,13 +329,14 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
       second = std::max(second, slope);
     }
   }
+  const double stiffness = table_.stiffest() * thickness_;
   double worst = 0;
   for (int i = 0; i < o.size(); ++i) {
     const double mass = o.node[i] < 0 ? 0 : node_mass[o.node[i]];
     const BodyIndex b = o.body[i];
-    const double other = b == steepest ? second : first;
+    const double other = b == steepest && !table_.self() ? second : first;
     if (!(mass > 0) || other == 0) continue;
-    worst = std::max(worst, node_rate(stiffness_, o.bodies[b].slope() + other, o.share(i), mass));
+    worst = std::max(worst, node_rate(stiffness, o.bodies[b].slope() + other, o.share(i), mass));
   }
   return worst;
 }
@@ -326,15 +344,18 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
 void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
   const Outlines& o = outlines_;
   std::vector<double> slope(o.size(), 0);       // of each vertex: 1/r_c + 1/r_t
+  std::vector<double> normal(o.size(), 0);      // largest k_n thickness, N/m
   std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m
   std::vector<std::pair<BodyIndex, int>> met;   // rigid bodies and vertices of meshes near them
   for (const EdgeFace& c : candidates_) {
     const BodyIndex own = o.body[c.edge], other = o.body[c.face];
     const double both = o.bodies[own].slope() + o.bodies[other].slope();
-    const Friction& f = table_.between(own, other).friction;
+    const PairLaw& law = table_.between(own, other);
+    const Friction& f = law.friction;
     const double spring = f.coefficient > 0 ? f.tangential_stiffness * thickness_ : 0;
     for (const int i : {c.edge, o.next[c.edge], c.face, o.next[c.face]}) {
       slope[i] = std::max(slope[i], both);
+      normal[i] = std::max(normal[i], law.normal_stiffness * thickness_);
       tangential[i] = std::max(tangential[i], spring);
       const BodyIndex partner = o.body[i] == own ? other : own;
       if (o.bodies[partner].is_rigid() && o.node[i] >= 0) met.emplace_back(partner, i);
@@ -342,7 +363,7 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
   }
   // Springs pull along the contact, potentials push across it.
   const auto of_vertex = [&](int i) {
-    return node_rate(stiffness_ + tangential[i], slope[i], o.share(i));
+    return node_rate(normal[i] + tangential[i], slope[i], o.share(i));
   };
   for (int i = 0; i < o.size(); ++i) {
     if (o.node[i] >= 0) nodes[o.node[i]] += of_vertex(i);
@@ -366,20 +387,21 @@ void OutlineKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
   SurfaceRecord* const record = records.data() + first;
   for (size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& [edge, face, piece] = contacts_[i];
-    record[edge].pressure += slope_[face] / thickness_ * piece.sum;
-    record[face].pressure += slope_[face] / thickness_ * piece.area / o.length[face];
+    const auto& [edge, face, slope, piece] = contacts_[i];
+    record[edge].pressure += slope / thickness_ * piece.sum;
+    record[face].pressure += slope / thickness_ * piece.area / o.length[face];
     if (!friction_) continue;
     for (const int k : {edge, face}) {  // the faces look the other way
       record[k].traction -= friction_->shares()[i] / (o.length[k] * thickness_);
     }
   }
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    const int f = o.bodies[on.in].first;
-    record[on.edge].pressure += slope_[f] * o.depth[f] / thickness_ * on.sum;
+    const double slope = slopes_(on.in, o.body[on.edge]);
+    record[on.edge].pressure += slope * o.bodies[on.in].depth / thickness_ * on.sum;
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    record[on.face].pressure += slope_[on.face] / thickness_ * on.moment.area / o.length[on.face];
+    const double slope = slopes_(o.body[on.face], on.in);
+    record[on.face].pressure += slope / thickness_ * on.moment.area / o.length[on.face];
   }
 }
 
@@ -458,6 +480,20 @@ std::vector<int> OutlineKernel::patches() const {
   return groups.numbers(keys);
 }
 
+// How far apart two vertices of a closed line are, in edges.
+int OutlineKernel::steps_between(int vertex, int other) const {
+  const std::vector<Outlines::Loop>& loops = outlines_.loops;
+  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &Outlines::Loop::first));
+  if (other < loop->first || other >= loop->end) return std::numeric_limits<int>::max() / 2;
+  const int steps = std::abs(vertex - other);
+  return std::min(steps, loop->end - loop->first - steps);
+}
+
+bool OutlineKernel::is_a(const PatchSum& patch, int edge) const {
+  if (patch.record.a != patch.record.b) return outlines_.body[edge] == patch.record.a;
+  return steps_between(edge, patch.edge) <= steps_between(edge, patch.face);
+}
+
 void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
                                 std::vector<ContactRecord>& records) const {
   const Outlines& o = outlines_;
@@ -466,28 +502,33 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
   std::vector<PatchSum> found(static_cast<size_t>(count));
   std::vector<BoundaryDistance> boundaries(o.bodies.size());
   for (size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& [edge, face, p] = contacts_[i];
+    const auto& [edge, face, slope, p] = contacts_[i];
     PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
     ContactRecord& sum = of_patch.record;
-    const BodyIndex own = o.body[edge];
-    BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
-    if (boundary.empty()) add_boundary(o.body[face], boundary);
-    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
-    std::tie(sum.a, sum.b) = std::minmax(own, o.body[face]);
-    const double force = slope_[face] * p.sum * o.length[edge];
+    std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
+    if (of_patch.edge < 0) of_patch.edge = edge, of_patch.face = face;
+    if (sum.a == sum.b) {
+      sum.penetration = std::max(sum.penetration, p.deepest);
+    } else {
+      BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
+      if (boundary.empty()) add_boundary(o.body[face], boundary);
+      sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
+    }
+    const bool own_is_a = is_a(of_patch, edge);
+    const double force = slope * p.sum * o.length[edge];
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
-    const double area = slope_[face] * p.area;
+    const double area = slope * p.area;
     const Vec2 gives(-o.ty[face], o.tx[face]);
     // What the edge of a feels, or what the face of a gives.
-    sum.normal += own == sum.a ? Vec2(force * inward) : Vec2(area * gives);
+    sum.normal += own_is_a ? Vec2(force * inward) : Vec2(area * gives);
     const double u = p.sum > 0 ? p.first / p.sum : 0;
     sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, p.deepest);
     if (friction_) {
       const double along = friction_->shares()[i];
-      sum.tangential += (own == sum.a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
-      const double push = own == sum.a ? -friction_->pushes()[i] : friction_->pushes()[i];
+      sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
+      const double push = own_is_a ? -friction_->pushes()[i] : friction_->pushes()[i];
       sum.damping += push * gives;
     }
   }
@@ -496,24 +537,31 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[on.edge], on.in);
-    const int f = o.bodies[on.in].first;
-    const double force = slope_[f] * o.depth[f] * on.sum * o.length[on.edge];
+    if (of_patch.edge < 0) of_patch.edge = on.edge;
+    const double depth = o.bodies[on.in].depth;
+    const double force = slopes_(on.in, o.body[on.edge]) * depth * on.sum * o.length[on.edge];
     const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
-    if (o.body[on.edge] == sum.a) sum.normal += force * inward;
+    if (is_a(of_patch, on.edge)) sum.normal += force * inward;
     const double u = on.sum > 0 ? on.first / on.sum : 0;
     const Vec2 start = o.point(on.edge);
     sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
     of_patch.weight += force;
-    of_patch.deepest = std::max(of_patch.deepest, o.depth[f]);
+    of_patch.deepest = std::max(of_patch.deepest, depth);
+    if (sum.a == sum.b) {
+      sum.penetration = std::max(sum.penetration, depth);
+      continue;
+    }
     BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
     if (boundary.empty()) add_boundary(on.in, boundary);
     sum.penetration = deepest_inside(on.edge, on.in, sum.penetration, boundary);
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    ContactRecord& sum = found[static_cast<size_t>(patch[next++])].record;
+    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
+    ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
-    if (o.body[on.face] != sum.a) continue;
-    sum.normal += slope_[on.face] * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
+    if (!is_a(of_patch, on.face)) continue;
+    sum.normal +=
+        slopes_(o.body[on.face], on.in) * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
   }
   for (PatchSum& sum : found) {
     if (sum.weight > 0) sum.record.point /= sum.weight;

@@ -3,7 +3,8 @@
 //
 //   E = k_n SUM over pairs of bodies  INT over the overlap  (h_a/r_a + h_b/r_b) dA
 //
-// with the depth h below each body's own surface, which is limited to that of its collar. Every
+// with the depth h below each body's own surface, which is limited to that of its collar. A body
+// that touches itself is a pair with itself, whose overlap is where it lies twice. Every
 // term is a sum over (edge of one outline) x (face of the other's collar) and what lies inside the
 // tops of collars; only the vertices of the outlines get forces.
 #pragma once
@@ -15,6 +16,7 @@
 #include "apothem/contact/outline_friction.hpp"
 #include "apothem/contact/outline_onset.hpp"
 #include "apothem/contact/outline_plateaus.hpp"
+#include "apothem/contact/outline_slopes.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
@@ -22,10 +24,9 @@ namespace apothem {
 
 class OutlineKernel final : public Kernel {
  public:
-  /// `stiffness`: k_n in Pa; `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive
-  /// this object.
-  OutlineKernel(const Outlines& outlines, double stiffness, double thickness,
-                const PairTable& table, const std::vector<double>& inverse_mass, int threads);
+  /// `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive this object.
+  OutlineKernel(const Outlines& outlines, double thickness, const PairTable& table,
+                const std::vector<double>& inverse_mass, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
@@ -62,11 +63,15 @@ class OutlineKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
-  /// A contact patch while it is summed.
+  /// A contact patch while it is summed. Where a body touches itself, the side of the first edge is
+  /// called a, and that of its face b.
   struct PatchSum {
     ContactRecord record;
     double weight = 0, deepest = 0;
+    int edge = -1, face = -1;  // first ones
   };
+  [[nodiscard]] bool is_a(const PatchSum& patch, int edge) const;
+  [[nodiscard]] int steps_between(int vertex, int other) const;
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   void add_boundary(BodyIndex body, BoundaryDistance& boundary) const;
   [[nodiscard]] bool is_depth(int face, const CollarPiece<double>& piece) const;
@@ -76,6 +81,7 @@ class OutlineKernel final : public Kernel {
                                       BoundaryDistance& boundary) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
+  [[nodiscard]] bool are_neighbours(int edge, int face) const;
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
                    std::vector<Contact>& contacts);
   void add_plateaus(std::vector<Contact>& contacts);
@@ -86,8 +92,9 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] std::vector<int> patches() const;
 
   const Outlines& outlines_;
-  double stiffness_, thickness_;  // k_n times the thickness, N/m; m
+  double thickness_;
   const PairTable& table_;
+  OutlineSlopes slopes_;
   Threads threads_;
   std::optional<OutlineFriction> friction_;  // only where there is friction
   std::vector<EdgeFace> candidates_;
@@ -99,7 +106,6 @@ class OutlineKernel final : public Kernel {
   };
   std::vector<Met> met_;  // of the candidates, with several threads
   std::vector<EdgeFaceContact> contacts_;
-  std::vector<double> slope_;    // k_n thickness / r of each edge's face, N/m^2
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
   OutlinePlateaus plateaus_;

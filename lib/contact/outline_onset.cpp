@@ -80,16 +80,16 @@ void OutlineOnset::find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
                              std::span<const EdgeFace> candidates, const Step& step) {
   take_near(body_a, body_b, candidates);
   if (near_.empty()) return;
-  coordinates_.clear();
-  const Side a = take_side(body_a, step);
-  const Side b = take_side(body_b, step);
+  coordinates_.clear(), sides_.clear();
+  sides_.push_back(take_side(body_a, step));
+  if (body_b != body_a) sides_.push_back(take_side(body_b, step));
   find_events(step);
   const int inside = find_onset_samples(events_, panels, samples_);
   for (int i = 0; i < static_cast<int>(samples_.size()); ++i) {
-    for (const Side& side : {a, b}) place(side.body, step, samples_[i].theta);
+    for (const Side& side : sides_) place(side.body, step, samples_[i].theta);
     find_forces();
     forces_.clear();
-    for (const Side& side : {a, b}) add_forces(side, step, samples_[i].theta);
+    for (const Side& side : sides_) add_forces(side, step, samples_[i].theta);
     for (size_t c = 0; c < coordinates_.size(); ++c) {
       OnsetForces& f = coordinates_[c].force;
       f.add(samples_[i], forces_[c]);
@@ -101,16 +101,15 @@ void OutlineOnset::find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
   for (size_t i = 0; i < coordinates_.size(); ++i) {
     Coordinate& c = coordinates_[i];
     c.missing = c.force.missing();
-    (i < b.coordinates ? rest_a : rest_b)
+    (i < sides_.back().coordinates ? rest_a : rest_b)
         .add(c.force, c.missing, step.dynamics.others(c.index, c.force),
              step.dynamics.inverse_mass[c.index], c.velocity);
   }
   rest_a.add(rest_b);
   const double share = rest_a.share();
   for (Coordinate& c : coordinates_) c.missing += share * c.force.mean;
-  balance(a, b);
-  keep(a);
-  keep(b);
+  balance();
+  for (const Side& side : sides_) keep(side);
 }
 
 // The candidates of the two bodies; candidates ascend by edge, and so by the body of the edge.
@@ -125,7 +124,7 @@ void OutlineOnset::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace>
     }
   };
   take(a, b);
-  take(b, a);
+  if (a != b) take(b, a);
   for (const auto& [e, f] : near_) {
     for (const int i : {e, o.next[e], f, o.next[f]}) ends_.push_back(i);
     for (const int i : {o.previous[f], o.next[o.next[f]]}) corners_.push_back(i);
@@ -194,8 +193,7 @@ void OutlineOnset::place(BodyIndex b, const Step& step, double theta) {
 void OutlineOnset::find_events(const Step& step) {
   const Outlines& o = outlines_;
   const auto place_all = [&](double theta) {
-    place(o.body[near_.front().edge], step, theta);
-    place(o.body[near_.front().face], step, theta);
+    for (const Side& side : sides_) place(side.body, step, theta);
   };
   place_all(0);
   for (const int i : ends_) start_[i] = point(i);
@@ -246,7 +244,7 @@ void OutlineOnset::find_forces() {
     if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece, top)) continue;
     const Vec2 edge = point(q) - point(e);
     const double length = edge.norm();
-    const EdgeFaceForces force = edge_face_forces(piece, slope_[f], length, face_f.length);
+    const EdgeFaceForces force = edge_face_forces(piece, slopes_.of({e, f}), length, face_f.length);
     const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length;
     push(e, from_edge, force.edge_start);
     push(q, from_edge, force.edge_end);
@@ -280,11 +278,11 @@ void OutlineOnset::add_forces(const Side& side, const Step& step, double theta) 
 }
 
 // Moments of forces at earlier positions do not balance at the end of the step. What is left over
-// goes half and half to both bodies, so that the angular momentum is kept.
-void OutlineOnset::balance(const Side& a, const Side& b) {
-  const double rest = moment(a) + moment(b);
-  turn(a, -rest / 2);
-  turn(b, -rest / 2);
+// goes to both bodies in equal parts, so that the angular momentum is kept.
+void OutlineOnset::balance() {
+  double rest = 0;
+  for (const Side& side : sides_) rest += moment(side);
+  for (const Side& side : sides_) turn(side, -rest / static_cast<double>(sides_.size()));
 }
 
 // Of what is missing, about the first end, where the bodies are at the end of the step.

@@ -11,15 +11,16 @@
 #include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/outline_plateaus.hpp"
+#include "apothem/contact/outline_slopes.hpp"
 #include "apothem/contact/outlines.hpp"
 
 namespace apothem {
 
 class OutlineOnset {
  public:
-  /// `slope`: k_n thickness / r of each face, N/m^2. Both must outlive this object.
-  OutlineOnset(const Outlines& outlines, const std::vector<double>& slope)
-      : outlines_(outlines), slope_(slope) {}
+  /// Both must outlive this object.
+  OutlineOnset(const Outlines& outlines, const OutlineSlopes& slopes)
+      : outlines_(outlines), slopes_(slopes) {}
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
@@ -64,7 +65,7 @@ class OutlineOnset {
   void place(BodyIndex body, const Step& step, double theta);
   void find_forces();
   void add_forces(const Side& side, const Step& step, double theta);
-  void balance(const Side& a, const Side& b);
+  void balance();
   [[nodiscard]] double moment(const Side& side) const;
   void turn(const Side& side, double moment);
   void keep(const Side& side);
@@ -72,10 +73,11 @@ class OutlineOnset {
   [[nodiscard]] Vec2 point(int vertex) const { return {x_[vertex], y_[vertex]}; }
 
   const Outlines& outlines_;
-  const std::vector<double>& slope_;
+  const OutlineSlopes& slopes_;
   OnsetWatch watch_;
   std::vector<Impulse> on_nodes_, on_rigid_;
-  // Of the pair at hand.
+  // Of the pair at hand, which may be one body that touches itself.
+  std::vector<Side> sides_;
   std::vector<EdgeFace> near_;
   std::vector<int> ends_;        // of the near edges, and of the bases of the near faces
   std::vector<int> corners_;     // these, and the vertices that bisectors follow from

@@ -15,7 +15,7 @@ void OutlinePlateaus::take(std::span<const BoxPair> pairs) {
   pairs_.clear(), bases_.clear();
   for (const auto& [a, b] : pairs) {
     add_pair(a, b);
-    add_pair(b, a);
+    if (a != b) add_pair(b, a);
   }
   std::ranges::sort(pairs_, {}, [](const Pair& p) { return std::pair(p.edges, p.faces); });
   quiet_ = std::ranges::all_of(bases_, [](const Base& b) { return b.settled && b.winding == 0; });
@@ -44,7 +44,7 @@ OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool 
   const Outlines::Loop& loop = o.loops[static_cast<size_t>(index)];
   const std::vector<Box>& own = top ? o.face_boxes : o.edge_boxes;
   for (int i = loop.first; i < loop.end; ++i) {
-    if (apart(own[i], o.body_boxes[other])) return {index, i, 0, true};
+    if (apart(own[i], o.body_boxes[other])) return {index, i, 0, top, true};
   }
   const Outlines::Body& body = o.bodies[other];
   const auto box_of = [&](const Vec2& a, const Vec2& b) {
@@ -63,18 +63,25 @@ OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool 
     for (int j = body.first; far && j < body.end; ++j) {
       far = apart(box, top ? o.edge_boxes[j] : box_of(o.top(j), o.top(o.next[j])));
     }
-    if (far) return {index, i, o.winding(place, other, !top), true};
+    if (far) return {index, i, winding(place, index, other, top), top, true};
   }
-  return {index, loop.first, 0, false};
+  return {index, loop.first, 0, top, false};
 }
 
-void OutlinePlateaus::settle(Base& base, BodyIndex other, bool top) const {
+// Of the other body's outline round a place of a top, or of its top round a place of an outline.
+int OutlinePlateaus::winding(const Vec2& place, int loop, BodyIndex other, bool top,
+                             bool* clear) const {
+  const bool self = outlines_.loops[static_cast<size_t>(loop)].body == other;
+  return outlines_.winding(place, other, !top, clear) - (self && top ? 1 : 0);
+}
+
+void OutlinePlateaus::settle(Base& base, BodyIndex other) const {
   const Outlines& o = outlines_;
   const Outlines::Loop& loop = o.loops[static_cast<size_t>(base.loop)];
   for (base.vertex = loop.first; base.vertex < loop.end; ++base.vertex) {
     bool clear = true;
-    const Vec2 place = top ? o.top(base.vertex) : o.point(base.vertex);
-    base.winding = o.winding(place, other, !top, &clear);
+    const Vec2 place = base.top ? o.top(base.vertex) : o.point(base.vertex);
+    base.winding = winding(place, base.loop, other, base.top, &clear);
     if (clear) return;
   }
   base.vertex = loop.end - 1;
@@ -97,9 +104,7 @@ void OutlinePlateaus::evaluate() {
     bool inside = first != end;
     for (size_t i = pair.first; i < pair.end; ++i) {
       Base& base = bases_[i];
-      const BodyIndex own = o.loops[static_cast<size_t>(base.loop)].body;
-      const bool top = own == pair.faces;
-      if (!base.settled) settle(base, top ? pair.edges : pair.faces, top);
+      if (!base.settled) settle(base, base.top ? pair.edges : pair.faces);
       inside = inside || base.winding != 0;
     }
     if (inside) {
@@ -117,7 +122,7 @@ void OutlinePlateaus::find_edges(const Pair& pair, std::span<const Crossing> cro
   for (size_t c = crossings.size(); c-- > 0;) at_[crossings[c].edge] = static_cast<int>(c);
   for (size_t i = pair.first; i < pair.end; ++i) {
     const Base& base = bases_[i];
-    if (o.loops[static_cast<size_t>(base.loop)].body != pair.edges) continue;
+    if (base.top) continue;
     int w = base.winding, e = base.vertex;
     do {
       const int q = o.next[e];
@@ -148,7 +153,7 @@ void OutlinePlateaus::find_faces(const Pair& pair, std::span<Crossing> crossings
   for (size_t c = crossings.size(); c-- > 0;) at_[crossings[c].face] = static_cast<int>(c);
   for (size_t i = pair.first; i < pair.end; ++i) {
     const Base& base = bases_[i];
-    if (o.loops[static_cast<size_t>(base.loop)].body != pair.faces) continue;
+    if (!base.top) continue;
     int w = base.winding, f = base.vertex;
     do {
       const int q = o.next[f];

@@ -32,7 +32,9 @@ class OutlinePlateaus {
 
   explicit OutlinePlateaus(const Outlines& outlines) : outlines_(outlines) {}
 
-  /// After a search: the pairs of bodies, both bodies of each being the one of the edges in turn.
+  /// After a search: the pairs of bodies, both bodies of each being the one of the edges in turn. A
+  /// body that touches itself is a pair with itself: an outline counts once less round a top of the
+  /// same body, which lies inside it by nature.
   void take(std::span<const BoxPair> pairs);
   /// Forgets the crossings.
   void begin() { crossings_.clear(); }
@@ -57,6 +59,7 @@ class OutlinePlateaus {
   struct Base {
     int loop, vertex;
     int winding;
+    bool top;
     bool settled;  ///< until the next search
   };
   /// Edges of one body, faces of another, and their bases: first the loops of the edges.
@@ -67,7 +70,9 @@ class OutlinePlateaus {
 
   void add_pair(BodyIndex edges, BodyIndex faces);
   [[nodiscard]] Base base_of(int loop, BodyIndex other, bool top) const;
-  void settle(Base& base, BodyIndex other, bool top) const;
+  void settle(Base& base, BodyIndex other) const;
+  [[nodiscard]] int winding(const Vec2& place, int loop, BodyIndex other, bool top,
+                            bool* clear = nullptr) const;
   void find_edges(const Pair& pair, std::span<const Crossing> crossings);
   void find_faces(const Pair& pair, std::span<Crossing> crossings);
 

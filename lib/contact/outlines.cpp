@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/polygon/loops.hpp"
+#include "apothem/geometry/spatial/loops.hpp"
 
 namespace apothem {
 namespace {
@@ -181,12 +181,8 @@ bool Outlines::stale() const {
 }
 
 void Outlines::prepare_search() {
-  self_contact_.reset();
   const int count = static_cast<int>(bodies.size());
   find_boxes(skin_ / 2);
-  for (BodyIndex b = 0; b < count; ++b) {
-    if (!bodies[b].is_rigid()) find_crossing(b);
-  }
   kept_.clear();
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
@@ -208,25 +204,6 @@ int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) cons
     if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
   }
   return sum;
-}
-
-// Looks for edges of a body that cross.
-void Outlines::find_crossing(BodyIndex b) {
-  const Body& own = bodies[b];
-  near_boxes_.assign(edge_boxes.begin() + own.first, edge_boxes.begin() + own.end);
-  grid_.find_pairs(near_boxes_, near_pairs_);
-  const auto side = [&](int e, int v) { return tx[e] * (y[v] - y[e]) - ty[e] * (x[v] - x[e]); };
-  for (auto [i, j] : near_pairs_) {
-    i += own.first, j += own.first;
-    const int in = next[i], jn = next[j];
-    if (i == jn || j == in) continue;
-    const double p = side(i, j), q = side(i, jn);
-    if (p * q < 0 && side(j, i) * side(j, in) < 0) {
-      const double u = p / (p - q);
-      self_contact_ = {b, {x[j] + u * (x[jn] - x[j]), y[j] + u * (y[jn] - y[j])}};
-      return;
-    }
-  }
 }
 
 }  // namespace apothem

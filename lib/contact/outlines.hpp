@@ -78,13 +78,6 @@ class Outlines {
   /// Renews the boxes for the search.
   void prepare_search();
 
-  /// Two edges of one body that cross, noticed at the last search.
-  struct SelfContact {
-    BodyIndex body;
-    Vec2 place;  ///< m
-  };
-  [[nodiscard]] const std::optional<SelfContact>& self_contact() const { return self_contact_; }
-
   /// How often the outline of a body, or the top of its collar, goes round a point. `clear`, if
   /// given, becomes false where round-off might decide.
   [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
@@ -112,7 +105,6 @@ class Outlines {
   void move(const Kinematics& now, const PlacedShapes& polygons);
   void find_edges();
   void find_boxes(double growth);
-  void find_crossing(BodyIndex body);
   /// x, y of the start of an edge and of both upper ends of its face.
   using Corners = std::array<double, 6>;
   [[nodiscard]] Corners corners(int edge) const;
@@ -120,10 +112,6 @@ class Outlines {
   double skin_;
   std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
   std::vector<Corners> kept_;    // of the last search
-  BoxGrid grid_;
-  std::vector<Box> near_boxes_;
-  std::vector<BoxPair> near_pairs_;
-  std::optional<SelfContact> self_contact_;
 };
 
 }  // namespace apothem

@@ -5,7 +5,8 @@
 namespace apothem {
 
 PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& material,
-                     int materials) {
+                     int materials)
+    : self_(law.self) {
   std::vector<char> named(material.size());
   for (const ContactRule& rule : law.rules) {
     for (const ContactRule::Party& party : rule.between) {

@@ -18,6 +18,8 @@ class PairTable {
   [[nodiscard]] const PairLaw& between(BodyIndex a, BodyIndex b) const {
     return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
   }
+  /// True if bodies with a mesh touch themselves as well.
+  [[nodiscard]] bool self() const { return self_; }
   /// True if there is friction between any two bodies.
   [[nodiscard]] bool rough() const { return rough_; }
   /// True if there is viscous damping between any two bodies.
@@ -30,7 +32,7 @@ class PairTable {
   std::vector<int> kind_;  // of each body
   size_t kinds_ = 0;
   std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
-  bool rough_ = false, damped_ = false;
+  bool self_, rough_ = false, damped_ = false;
   double stiffest_ = 0, softest_ = HUGE_VAL;
 };
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "apothem/dynamics/fold_watch.hpp"
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/model/inradius.hpp"
 #include "apothem/model/pairs.hpp"
@@ -39,7 +38,11 @@ double shortest_inradius(const Model& model) {
 }
 
 bool ContactTerm::needed(const Model& model) {
-  return model.bodies.size() + model.deformables.size() > 1;
+  return model.bodies.size() + model.deformables.size() > 1 || touches_itself(model);
+}
+
+bool ContactTerm::touches_itself(const Model& model) {
+  return !model.deformables.empty() && model.contact.self;
 }
 
 bool ContactTerm::touches_meshes(const Model& model) {
@@ -211,7 +214,6 @@ void ContactTerm::note_peaks(const State& state) {
 
 void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   using Kind = ContactFault::Kind;
-  if (fault.kind == Kind::self_contact) refuse_fold(model_, state, fault.a, fault.place);
   const Vec2 world = fault.place + model_.origin;
   const std::string& a = name(fault.a);
   const std::string& b = name(fault.b);
@@ -230,8 +232,6 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
     case Kind::not_convex:
       what += "at an element that is no longer convex and cannot keep its potential";
       advice = "reduce the load or time.safety, or use \"surface\": \"body\"";
-      break;
-    case Kind::self_contact:
       break;
   }
   if (state.step == 0) advice = "move them apart";

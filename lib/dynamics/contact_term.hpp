@@ -17,6 +17,8 @@ class ContactTerm final : public Term {
   static bool needed(const Model& model);
   /// True if a body with a mesh can touch another body.
   static bool touches_meshes(const Model& model);
+  /// True if bodies with a mesh touch themselves as well.
+  static bool touches_itself(const Model& model);
   /// Throws Unrunnable if elements cannot have potentials of their own, or a body with a mesh and
   /// another body are inside each other.
   ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const State& state, int threads);

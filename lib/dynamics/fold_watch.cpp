@@ -16,8 +16,7 @@ constexpr double kSkin = 0.5;  // of the shortest inradius: a look is cheap unti
 }  // namespace
 
 bool FoldWatch::needed(const Model& model) {
-  return !model.deformables.empty() &&
-         !(ContactTerm::touches_meshes(model) && model.contact.surface == ContactSurface::body);
+  return !model.deformables.empty() && !ContactTerm::touches_itself(model);
 }
 
 FoldWatch::FoldWatch(const Model& model)
@@ -34,18 +33,38 @@ void FoldWatch::watch(const State& state) {
   } catch (const NotFinite&) {
     refuse_infinite(state, "a node");
   }
-  if (outlines_.stale()) outlines_.prepare_search();
-  if (const auto& self = outlines_.self_contact()) {
-    refuse_fold(model_, state, static_cast<int>(model_.bodies.size()) + self->body, self->place);
+  if (!outlines_.stale()) return;
+  outlines_.prepare_search();
+  for (size_t i = 0; i < outlines_.bodies.size(); ++i) {
+    const std::optional<Vec2> place = crossing(outlines_.bodies[i]);
+    if (!place) continue;
+    const Vec2 world = *place + model_.origin;
+    throw Unstable(fmt::format(
+        "\"{}\" folds onto itself at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}), and contact of a "
+        "body with itself is not computed; say \"self_contact\": \"compute\" in \"contact\"",
+        model_.name_of(static_cast<BodyIndex>(model_.bodies.size() + i)), world.x(), world.y(),
+        state.time, state.step));
   }
 }
 
-void refuse_fold(const Model& model, const State& state, BodyIndex body, const Vec2& place) {
-  const Vec2 world = place + model.origin;
-  throw Unstable(fmt::format(
-      "\"{}\" folds onto itself at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}): contact of a body "
-      "with itself is not modelled; divide it into two bodies",
-      model.name_of(body), world.x(), world.y(), state.time, state.step));
+// Where edges of a body cross.
+std::optional<Vec2> FoldWatch::crossing(const Outlines::Body& body) {
+  const Outlines& o = outlines_;
+  boxes_.assign(o.edge_boxes.begin() + body.first, o.edge_boxes.begin() + body.end);
+  grid_.find_pairs(boxes_, pairs_);
+  const auto side = [&](int e, int v) {
+    return o.tx[e] * (o.y[v] - o.y[e]) - o.ty[e] * (o.x[v] - o.x[e]);
+  };
+  for (auto [i, j] : pairs_) {
+    i += body.first, j += body.first;
+    const int in = o.next[i], jn = o.next[j];
+    if (i == jn || j == in) continue;
+    const double p = side(i, j), q = side(i, jn);
+    if (p * q < 0 && side(j, i) * side(j, in) < 0) {
+      return o.point(j) + p / (p - q) * (o.point(jn) - o.point(j));
+    }
+  }
+  return {};
 }
 
 }  // namespace apothem

@@ -1,5 +1,4 @@
-// Notices a body with a mesh whose boundary crosses itself, where no contact does so: contact of a
-// body with itself is not supported yet.
+// Notices a body with a mesh whose boundary crosses itself, where contact does not look for that.
 #pragma once
 
 #include "apothem/contact/outlines.hpp"
@@ -10,7 +9,7 @@ namespace apothem {
 
 class FoldWatch final : public Term {
  public:
-  /// True if contact itself does not notice.
+  /// True if a body may cross itself and does not feel it.
   static bool needed(const Model& model);
   explicit FoldWatch(const Model& model);
 
@@ -21,12 +20,13 @@ class FoldWatch final : public Term {
   void watch(const State& state) override;
 
  private:
+  [[nodiscard]] std::optional<Vec2> crossing(const Outlines::Body& body);
+
   const Model& model_;
   Outlines outlines_;
+  BoxGrid grid_;
+  std::vector<Box> boxes_;
+  std::vector<BoxPair> pairs_;
 };
-
-/// Throws Unstable: a body touches itself at a place.
-[[noreturn]] void refuse_fold(const Model& model, const State& state, BodyIndex body,
-                              const Vec2& place);
 
 }  // namespace apothem

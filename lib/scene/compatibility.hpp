@@ -39,6 +39,7 @@ enum class Feature {
   per_edge_friction,
   contact_damping,
   viscous_damping,
+  self_contact,
   // Materials.
   material_damping,
   // One body.
@@ -93,6 +94,7 @@ inline constexpr std::array kFeatureTexts{
                 "with the friction law `per_edge`"},
     FeatureText{Feature::contact_damping, "`contact.damping`", ""},
     FeatureText{Feature::viscous_damping, "`contact.damping.model`: `viscous`", ""},
+    FeatureText{Feature::self_contact, "`contact.self_contact`: `compute`", ""},
     FeatureText{Feature::material_damping, "`damping` of a material", ""},
     FeatureText{Feature::rigid_body, "", "for a rigid body"},
     FeatureText{Feature::body_with_mesh, "", "for a body with a mesh"},
@@ -158,6 +160,9 @@ inline constexpr std::array kIncompatible{
                     "the gradient of the energy is computed on the surface of a body only",
                     "use \"resultant\" or \"integrated\", because \"variational\" needs "
                     "\"surface\": \"body\""},
+    Incompatibility{Feature::self_contact, Feature::element_surface, Verdict::not_supported_yet,
+                    "elements of one body overlap by nature where they share an edge",
+                    "use \"surface\": \"body\""},
     // One body.
     Incompatibility{Feature::fixed_motion, Feature::body_with_mesh, Verdict::has_no_meaning,
                     "a body with a mesh is \"free\" to deform",

@@ -55,6 +55,10 @@ void ContactReader::read(const JsonValue& value) {
   if (const JsonValue* v = object.optional("overlaps")) {
     law.accepts_overlaps = in_.choice(*v, {"refuse", "accept"}) == 1;
   }
+  if (const JsonValue* v = object.optional("self_contact")) {
+    law.self = in_.choice(*v, {"refuse", "compute"}) == 1;
+    if (law.self) features_.add(Feature::self_contact, v);
+  }
   object.finish();
 }
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/geometry/polygon/loops.hpp"
+#include "apothem/geometry/spatial/loops.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "contact/outline_pairs.hpp"
 
@@ -276,28 +276,6 @@ TEST_CASE("a body pushed through the collar meets a constant pressure there",
     CHECK(records[0].penetration == Approx(std::min(d, .75)).epsilon(1e-9));
     CHECK(records[0].phi == Approx(h / .125));
   }
-}
-
-TEST_CASE("edges of one body that cross are noticed", "[outline_kernel][contact]") {
-  // A horseshoe whose right arm is bent into the left one.
-  const std::vector<Vec2> ring{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
-  Bodies bodies(law_of(1), .01);
-  bodies.add_ring(ring, .3);
-  bodies.join();
-  const Outlines& outlines = bodies.contacts->surfaces().outlines();
-  bodies.evaluate();
-  CHECK_FALSE(outlines.self_contact());
-  CHECK_FALSE(bodies.contacts->fault());
-  bodies.displacement[4] = bodies.displacement[6] = -1.2;  // both upper nodes of the right arm
-  bodies.evaluate();
-  REQUIRE(outlines.self_contact());
-  CHECK(outlines.self_contact()->body == 0);
-  CHECK(outlines.self_contact()->place.x() == Approx(1).margin(.2));
-  const std::optional<ContactFault> fault = bodies.contacts->fault();
-  REQUIRE(fault);
-  CHECK(fault->kind == ContactFault::Kind::self_contact);
-  CHECK(fault->a == 0);
-  CHECK(fault->place == outlines.self_contact()->place);
 }
 
 TEST_CASE("a vertex of an outline that is nowhere is an error", "[outline_kernel][contact]") {

@@ -1,4 +1,4 @@
-#include "apothem/geometry/polygon/loops.hpp"
+#include "apothem/geometry/spatial/loops.hpp"
 
 #include <algorithm>
 #include <cmath>
