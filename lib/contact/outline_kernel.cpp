@@ -149,11 +149,11 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
 
   const bool self = o.body[e] == o.body[f];
   if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
-    // Of a body in itself, the height in the face is the depth by definition.
-    const double surely = self || is_depth(f, p) ? p.deepest : 0;
+    const double surely = is_depth(f, p) ? p.deepest : 0;
+    const bool known = self && surely > 0;
     contacts_.emplace_back(e, f, slope, p);
     contacts.push_back(
-        {outline_kernel, e, f, surely, self ? surely : p.deepest * depth_ratio(o.face(f)),
+        {outline_kernel, e, f, surely, known ? surely : p.deepest * depth_ratio(o.face(f)),
          std::min(1., p.deepest / o.depth[f]), slope * o.length[e] * (p.to - p.from)});
   }
 }
@@ -169,9 +169,7 @@ void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
     const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
     ends_[2 * on.edge] += force * (on.sum - on.first);
     ends_[2 * on.edge + 1] += force * on.first;
-    const bool self = own == on.in;
-    contacts.push_back({outline_kernel, on.edge, in.first, self ? in.depth : 0,
-                        self ? in.depth : HUGE_VAL, kInsideTop, 0});
+    contacts.push_back({outline_kernel, on.edge, in.first, 0, HUGE_VAL, kInsideTop, 0});
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
     const double slope = slopes_(o.body[on.face], on.in);
@@ -204,21 +202,38 @@ bool OutlineKernel::is_depth(int face, const CollarPiece<double>& piece) const {
 
 double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
                                  BoundaryDistance& boundary) const {
-  if (!is_depth(c.face, c.piece))
-    return deepest_inside(c.edge, outlines_.body[c.face], floor, boundary);
+  const BodyIndex in = outlines_.body[c.face];
+  if (outlines_.body[c.edge] == in || !is_depth(c.face, c.piece)) {
+    return deepest_inside(c.edge, in, floor, boundary);
+  }
   const Vec2 start = outlines_.point(c.edge);
   const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
   return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
 }
 
-// Of all parts of an edge that are inside a body.
+// Of all parts of an edge that are inside a body. In its own body it is inside where this lies once
+// more on its outer side, and edges that carry it on are not the boundary.
 double OutlineKernel::deepest_inside(int edge, BodyIndex in, double floor,
-                                     BoundaryDistance& boundary) const {
+                                     BoundaryDistance& of_body) const {
+  constexpr double kBeside = 1e-9;   // of the edge
+  constexpr double kCarriesOn = .7;  // cosine of the turn
   const Outlines& o = outlines_;
+  const bool self = o.body[edge] == in;
+  const auto is_other = [&](int i) {
+    if (!self) return true;
+    if (i == edge) return false;
+    const bool near = i == o.next[edge] || i == o.previous[edge];
+    return !near || o.tx[i] * o.tx[edge] + o.ty[i] * o.ty[edge] < kCarriesOn;
+  };
   const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
+  const Vec2 beside = self ? kBeside * Vec2(along.y(), -along.x()) : Vec2(0, 0);
   std::vector<double> ends{0, 1};
   const Outlines::Body& body = o.bodies[in];
+  BoundaryDistance of_others;
+  BoundaryDistance& boundary = self ? of_others : of_body;
   for (int i = body.first; i < body.end; ++i) {
+    if (!is_other(i)) continue;
+    if (self) boundary.add(o.point(i), o.point(o.next[i]));
     const Vec2 from = o.point(i) - start, to = o.point(o.next[i]) - start;
     const double p = cross(along, from), q = cross(along, to);
     if ((p > 0) == (q > 0)) continue;
@@ -230,7 +245,7 @@ double OutlineKernel::deepest_inside(int edge, BodyIndex in, double floor,
   for (size_t i = 1; i < ends.size(); ++i) {
     if (!(ends[i] > ends[i - 1])) continue;
     const Vec2 from = start + ends[i - 1] * along, to = start + ends[i] * along;
-    if (o.winding((from + to) / 2, in) != 0) deepest = boundary.largest(from, to, deepest);
+    if (o.winding((from + to) / 2 + beside, in) != 0) deepest = boundary.largest(from, to, deepest);
   }
   return deepest;
 }
@@ -507,13 +522,9 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
     if (of_patch.edge < 0) of_patch.edge = edge, of_patch.face = face;
-    if (sum.a == sum.b) {
-      sum.penetration = std::max(sum.penetration, p.deepest);
-    } else {
-      BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
-      if (boundary.empty()) add_boundary(o.body[face], boundary);
-      sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
-    }
+    BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
+    if (boundary.empty()) add_boundary(o.body[face], boundary);
+    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
     const bool own_is_a = is_a(of_patch, edge);
     const double force = slope * p.sum * o.length[edge];
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
@@ -547,10 +558,6 @@ void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
     sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, depth);
-    if (sum.a == sum.b) {
-      sum.penetration = std::max(sum.penetration, depth);
-      continue;
-    }
     BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
     if (boundary.empty()) add_boundary(on.in, boundary);
     sum.penetration = deepest_inside(on.edge, on.in, sum.penetration, boundary);

@@ -78,7 +78,7 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] double deepest_in(const EdgeFaceContact& contact, double floor,
                                   BoundaryDistance& boundary) const;
   [[nodiscard]] double deepest_inside(int edge, BodyIndex in, double floor,
-                                      BoundaryDistance& boundary) const;
+                                      BoundaryDistance& of_body) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
