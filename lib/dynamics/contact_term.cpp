@@ -133,6 +133,7 @@ std::string ContactTerm::describe() const {
   if (touches_meshes(model_)) {
     text += law.surface == ContactSurface::body ? "; meshes by the potentials of their boundaries"
                                                 : "; meshes by the potentials of their elements";
+    if (touches_itself(model_)) text += ", also with themselves";
   }
   text += pair_table(model_).rough()
               ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)

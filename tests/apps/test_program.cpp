@@ -161,7 +161,8 @@ TEST_CASE("check prints the terms of the step, one to a line, and no others", "[
   CHECK(beam.find("\n  + a look at boundaries that cross themselves") != std::string::npos);
 
   const std::string blocks = terms(test::kSource + "/data/scenes/pressed-blocks.json");
-  CHECK(lines(blocks) == 4);
+  CHECK(lines(blocks) == 5);
+  CHECK(blocks.find("also with themselves") == std::string::npos);
   CHECK(blocks.find("meshes by the potentials of their boundaries") != std::string::npos);
 
   const std::string alone = folder.write("alone.json", R"({
