@@ -107,10 +107,12 @@ struct PatchDamper {
 double damping_time(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
                     const Vec2& point, const Vec2& n, const PairMotion& motion);
 
-/// beta times the rate of the resultant and its moments, beta = 2 ratio/omega with the contact's
-/// present stiffness and the two bodies' mobility, and never so much that the contact would pull.
+/// beta times the rate of the resultant and its moments at the end of a step of dt (s), beta = 2
+/// ratio/omega with the contact's present stiffness and the two bodies' mobility, and never so much
+/// that the contact would pull. `rate_before`: of the bodies in the step before, if they touched.
 /// With dt = 0 it keeps its force. `k`: normal stiffness times thickness, N/m.
 void damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidIndex b,
-          const PairIntegral& patch, const PairMotion& motion, double dt, PatchDamper& damper);
+          const PairIntegral& patch, const PairMotion& motion, const PairRate* rate_before,
+          double dt, PatchDamper& damper);
 
 }  // namespace apothem

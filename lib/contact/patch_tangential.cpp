@@ -152,7 +152,7 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
     if (damped) {
       PatchDamper& d = dampers_[j];
       damp(law.damping.normal, law.normal_stiffness * thickness_, surfaces_, a, b, patch, motion,
-           dt, d);
+           last ? &last->rate : nullptr, dt, d);
       total.add_damping(d.damping);
     }
     if (!rough || edgewise()) continue;

@@ -124,27 +124,35 @@ Moves run(const Model& model, double end, bool settled) {
 
 }  // namespace
 
-TEST_CASE("heaps that should rest come to rest, and move beyond their limit", "[rest]") {
-  struct Case {
-    const char* name;
-    Model (*model)(double);
-    double end;    // s; at once, gravity makes them slip and rock first
-    bool settled;  // at once, it falls over
-  };
-  for (const Case& c :
-       {Case{"stack", stack, 2, true}, Case{"ratio", ratio, 12, false},
-        Case{"wall", wall, 8, false}, Case{"jointed slope", jointed_slope, 14, false},
-        Case{"card house", card_house, 8, false}}) {
-    const Moves rests = run(c.model(.9), c.end, c.settled);
-    const Moves moves = run(c.model(1.1), 1, false);
-    if (long_run()) {
-      fmt::print("{}: rest {:.1e} m/s, error {:.1e} of what is lost; beyond the limit {:.2f} m/s\n",
-                 c.name, rests.speed, rests.error, moves.speed);
-    }
-    CAPTURE(c.name, rests.speed, moves.speed);
-    CHECK(rests.speed < 1e-6);
-    CHECK(moves.speed > 1e-2);
+namespace {
+
+// At rest below its limit, and on the move beyond it. Under the sanitizers only the first steps.
+void check_heap(const char* name, Model (*model)(double), double end, bool settled) {
+  if (scaled(2) < 2) {
+    const Moves first = run(model(.9), .02, settled);
+    CHECK(std::isfinite(first.speed));
+    return;
   }
+  const Moves rests = run(model(.9), end, settled);
+  const Moves moves = run(model(1.1), 1, false);
+  if (long_run()) {
+    fmt::print("{}: rest {:.1e} m/s, error {:.1e} of what is lost; beyond the limit {:.2f} m/s\n",
+               name, rests.speed, rests.error, moves.speed);
+  }
+  CAPTURE(name, rests.speed, moves.speed);
+  CHECK(rests.speed < 1e-6);
+  CHECK(moves.speed > 1e-2);
 }
+
+}  // namespace
+
+// With gravity at once heaps slip and rock first; the stack falls over, and starts settled.
+TEST_CASE("a stack of twenty rests", "[rest]") { check_heap("stack", stack, 2, true); }
+TEST_CASE("a heavy block on a light one rests", "[rest]") { check_heap("ratio", ratio, 12, false); }
+TEST_CASE("a dry-stone wall rests", "[rest]") { check_heap("wall", wall, 8, false); }
+TEST_CASE("a jointed slope rests", "[rest]") {
+  check_heap("jointed slope", jointed_slope, 14, false);
+}
+TEST_CASE("a card house rests", "[rest]") { check_heap("card house", card_house, 8, false); }
 
 }  // namespace heaps

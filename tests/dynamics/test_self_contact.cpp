@@ -196,40 +196,53 @@ Model bent_wire(double stiffness, ElementShape shape, double speed) {
 }  // namespace
 }  // namespace folds
 
-TEST_CASE("bodies that fold onto themselves keep energy and momenta as two bodies do",
-          "[self_contact]") {
-  using namespace folds;
-  struct Scene {
-    const char* name;
-    Model (*model)(double, ElementShape, double);
-    double speed, end;
-  };
-  for (const Scene& scene : {Scene{"c", closing_c, 4, .2}, Scene{"strip", folding_strip, 3, .15},
-                             Scene{"ring", flat_ring, 5, .2}, Scene{"wire", bent_wire, 4, .055}}) {
-    for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
-      for (const double stiffness : {1e6, 1e7}) {
-        if ((shape == ElementShape::triangle) == (stiffness > 2e6) && scaled(2) < 2) continue;
-        const Model model = scene.model(stiffness, shape, scene.speed);
-        const Fold coarse = run(model, {}, scene.end), fine = run(model, .05, scene.end);
-        CAPTURE(scene.name, stiffness, coarse.what, fine.what);
-        if (std::getenv("APOTHEM_PRINT")) {
-          fmt::print(
-              "{} {} k={:.0e}: {:.2e} {:.2e} last {:.2e} {:.2e} of {:.3g}, contact {:.2g}, p "
-              "{:.1e}, depth "
-              "{:.3g} {} {}\n",
-              scene.name, shape == ElementShape::triangle ? "T3" : "Q4", stiffness,
-              coarse.error / coarse.total, fine.error / fine.total, coarse.last / coarse.total,
-              fine.last / fine.total, coarse.total, coarse.contact, coarse.momentum,
-              coarse.penetration, coarse.what, fine.what);
-        }
-        CHECK(coarse.what.empty());
-        CHECK(coarse.contact > .005 * coarse.total);
-        CHECK(coarse.error / coarse.total < 1e-3);  // on the way, as velocity Verlet has it
-        // Where the parts of the body have come apart again; those of the wire are still pressed.
-        CHECK(coarse.last / coarse.total < (model.bodies.empty() ? 1e-4 : 5e-4));
-        CHECK(fine.error < coarse.error / 6);
-        CHECK(coarse.momentum < 1e-9);
+namespace folds {
+namespace {
+
+void check_fold(const char* name, Model (*make)(double, ElementShape, double), double speed,
+                double end) {
+  if (scaled(2) < 2) {  // under the sanitizers only the first steps
+    CHECK(run(make(1e6, ElementShape::triangle, speed), {}, end / 20).what.empty());
+    return;
+  }
+  for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
+    for (const double stiffness : {1e6, 1e7}) {
+      const Model model = make(stiffness, shape, speed);
+      const Fold coarse = run(model, {}, end), fine = run(model, .05, end);
+      CAPTURE(name, stiffness, coarse.what, fine.what);
+      if (std::getenv("APOTHEM_PRINT")) {
+        fmt::print(
+            "{} {} k={:.0e}: {:.2e} {:.2e} last {:.2e} {:.2e} of {:.3g}, contact {:.2g}, p {:.1e}, "
+            "depth {:.3g}\n",
+            name, shape == ElementShape::triangle ? "T3" : "Q4", stiffness,
+            coarse.error / coarse.total, fine.error / fine.total, coarse.last / coarse.total,
+            fine.last / fine.total, coarse.total, coarse.contact, coarse.momentum,
+            coarse.penetration);
       }
+      CHECK(coarse.what.empty());
+      CHECK(coarse.contact > .005 * coarse.total);
+      CHECK(coarse.error / coarse.total < 1e-3);  // on the way, as velocity Verlet has it
+      // Where the parts of the body have come apart again; those of the wire are still pressed.
+      CHECK(coarse.last / coarse.total < (model.bodies.empty() ? 1e-4 : 5e-4));
+      CHECK(fine.error < coarse.error / 6);
+      CHECK(coarse.momentum < 1e-9);
     }
   }
 }
+
+}  // namespace
+
+TEST_CASE("a C that closes on its ends keeps energy and momenta", "[self_contact]") {
+  check_fold("c", closing_c, 4, .2);
+}
+TEST_CASE("a strip folded onto itself keeps energy and momenta", "[self_contact]") {
+  check_fold("strip", folding_strip, 3, .15);
+}
+TEST_CASE("a ring squashed flat keeps energy and momenta", "[self_contact]") {
+  check_fold("ring", flat_ring, 5, .2);
+}
+TEST_CASE("a bent wire pressed solid keeps energy and momenta", "[self_contact]") {
+  check_fold("wire", bent_wire, 4, .055);
+}
+
+}  // namespace folds
