@@ -387,7 +387,9 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
     sum.normal += t.force;
-    const Vec2 normal = t.force / t.force.norm();
+    // A contact without a resultant has no direction, and no damping.
+    const double size = t.force.norm();
+    const Vec2 normal = size > 0 ? Vec2(t.force / size) : Vec2(0, 0);
     const Vec2 damping = t.damping.dot(normal) * normal;
     sum.damping += damping;
     sum.tangential += t.friction + (t.damping - damping);

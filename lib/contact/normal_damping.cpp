@@ -34,6 +34,8 @@ void damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidI
   const double rest = cross(motion.between, rise.force) + (rise.moment_a + rise.moment_b);
   rise.moment_a -= rest / 2;
   rise.moment_b -= rest / 2;
+  // The pair may touch already with another patch, or have touched in the run before.
+  const bool is_new = damper.elastic.force == Vec2(0, 0);
   PairForce before = damper.elastic;
   before += damper.damping;
   damper.elastic = elastic;
@@ -53,7 +55,7 @@ void damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidI
   // A patch that is new has risen from nothing since its bodies have met, not in the whole step.
   const double approach = -motion.slip(point).dot(n);
   const double since =
-      rate_before || !(approach * dt * stiffness > size) ? dt : size / (stiffness * approach);
+      !is_new || !(approach * dt * stiffness > size) ? dt : size / (stiffness * approach);
   damper.damping = time / since * rise;
   // This is the rate half a step ago. Until now the bodies have been accelerated as before, and by
   // the change of this force, with the damping itself.
@@ -70,7 +72,7 @@ void damp(double ratio, double k, const Surfaces& surfaces, RigidIndex a, RigidI
   damper.damping += force_at(point, motion, (now - early) * n);
   // The first force acts for the step to come and has to make up for the time since the bodies met,
   // where Verlet gives it half a step.
-  if (!rate_before) damper.damping = (.5 + since / dt) * damper.damping;
+  if (is_new) damper.damping = (.5 + since / dt) * damper.damping;
   // Damping takes the whole force and no more.
   if (-now > size) damper.damping = size / -now * damper.damping;
 }

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
 #include "apothem/contact/stiffness.hpp"
-#include "apothem/geometry/spatial/groups.hpp"
 
 namespace apothem {
 namespace {
@@ -14,8 +11,6 @@ namespace {
 constexpr double kCandidateTime = 40;  // ns
 constexpr double kInsideTop = 2;       // share of a contact that is not with a face
 constexpr double kNothing = 1e-12;     // of a collar: round-off where an edge begins on a face
-constexpr double kSurelyDepth = .5;    // of a collar: up to here h is a depth in a plain face,
-                                       // unless the body is squeezed to less than the collar
 
 // A bound of the distance from the boundary over the height in a face, which reaches beyond the end
 // of its edge at a reflex vertex.
@@ -34,6 +29,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       slopes_{outlines, table, thickness},
       threads_(threads),
       plateaus_(outlines),
+      depths_(outlines),
       onset_(outlines, slopes_) {
   const auto n = static_cast<size_t>(outlines.size());
   fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
@@ -103,6 +99,7 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
 void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   contacts_.clear();
+  depths_.forget();
   std::fill(ends_.begin(), ends_.end(), 0.);
   plateaus_.begin();
   const int count = static_cast<int>(candidates_.size());
@@ -149,7 +146,7 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
 
   const bool self = o.body[e] == o.body[f];
   if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
-    const double surely = is_depth(f, p) ? p.deepest : 0;
+    const double surely = depths_.is_depth(f, p) ? p.deepest : 0;
     const bool known = self && surely > 0;
     contacts_.emplace_back(e, f, slope, p);
     contacts.push_back(
@@ -187,74 +184,9 @@ const EdgeFaceContact& OutlineKernel::edge_face(const Contact& c) const {
                            });
 }
 
-void OutlineKernel::add_boundary(BodyIndex b, BoundaryDistance& boundary) const {
-  const Outlines& o = outlines_;
-  for (int i = o.bodies[b].first; i < o.bodies[b].end; ++i) {
-    boundary.add(o.point(i), o.point(o.next[i]));
-  }
-}
-
-// False if the height in a face need not be a depth, or the piece may even be outside the body,
-// because faces overlap there.
-bool OutlineKernel::is_depth(int face, const CollarPiece<double>& piece) const {
-  return piece.deepest <= std::min(outlines_.plain[face], kSurelyDepth * outlines_.depth[face]);
-}
-
-double OutlineKernel::deepest_in(const EdgeFaceContact& c, double floor,
-                                 BoundaryDistance& boundary) const {
-  const BodyIndex in = outlines_.body[c.face];
-  if (outlines_.body[c.edge] == in || !is_depth(c.face, c.piece)) {
-    return deepest_inside(c.edge, in, floor, boundary);
-  }
-  const Vec2 start = outlines_.point(c.edge);
-  const Vec2 along = outlines_.point(outlines_.next[c.edge]) - start;
-  return boundary.largest(start + c.piece.from * along, start + c.piece.to * along, floor);
-}
-
-// Of all parts of an edge that are inside a body. In its own body it is inside where this lies once
-// more on its outer side, and edges that carry it on are not the boundary.
-double OutlineKernel::deepest_inside(int edge, BodyIndex in, double floor,
-                                     BoundaryDistance& of_body) const {
-  constexpr double kBeside = 1e-9;   // of the edge
-  constexpr double kCarriesOn = .7;  // cosine of the turn
-  const Outlines& o = outlines_;
-  const bool self = o.body[edge] == in;
-  const auto is_other = [&](int i) {
-    if (!self) return true;
-    if (i == edge) return false;
-    const bool near = i == o.next[edge] || i == o.previous[edge];
-    return !near || o.tx[i] * o.tx[edge] + o.ty[i] * o.ty[edge] < kCarriesOn;
-  };
-  const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
-  const Vec2 beside = self ? kBeside * Vec2(along.y(), -along.x()) : Vec2(0, 0);
-  std::vector<double> ends{0, 1};
-  const Outlines::Body& body = o.bodies[in];
-  BoundaryDistance of_others;
-  BoundaryDistance& boundary = self ? of_others : of_body;
-  for (int i = body.first; i < body.end; ++i) {
-    if (!is_other(i)) continue;
-    if (self) boundary.add(o.point(i), o.point(o.next[i]));
-    const Vec2 from = o.point(i) - start, to = o.point(o.next[i]) - start;
-    const double p = cross(along, from), q = cross(along, to);
-    if ((p > 0) == (q > 0)) continue;
-    const Vec2 place = from + p / (p - q) * (to - from);
-    ends.push_back(std::clamp(place.dot(along) / along.squaredNorm(), 0., 1.));
-  }
-  std::ranges::sort(ends);
-  double deepest = floor;
-  for (size_t i = 1; i < ends.size(); ++i) {
-    if (!(ends[i] > ends[i - 1])) continue;
-    const Vec2 from = start + ends[i - 1] * along, to = start + ends[i] * along;
-    if (o.winding((from + to) / 2 + beside, in) != 0) deepest = boundary.largest(from, to, deepest);
-  }
-  return deepest;
-}
-
 double OutlineKernel::penetration(const Contact& c, double floor) {
-  boundary_.clear();
-  add_boundary(outlines_.body[c.b], boundary_);
-  return c.share <= 1 ? deepest_in(edge_face(c), floor, boundary_)
-                      : deepest_inside(c.a, outlines_.body[c.b], floor, boundary_);
+  return c.share <= 1 ? depths_.of_piece(c.a, c.b, edge_face(c).piece, floor)
+                      : depths_.of_edge(c.a, outlines_.body[c.b], floor);
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
@@ -393,188 +325,6 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
     of_body[0] += stiffness;
     of_body[1] += stiffness;
     of_body[2] += stiffness * (x * x + y * y);
-  }
-}
-
-void OutlineKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
-  const Outlines& o = outlines_;
-  const size_t first = records.size();
-  for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
-  SurfaceRecord* const record = records.data() + first;
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& [edge, face, slope, piece] = contacts_[i];
-    record[edge].pressure += slope / thickness_ * piece.sum;
-    record[face].pressure += slope / thickness_ * piece.area / o.length[face];
-    if (!friction_) continue;
-    for (const int k : {edge, face}) {  // the faces look the other way
-      record[k].traction -= friction_->shares()[i] / (o.length[k] * thickness_);
-    }
-  }
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    const double slope = slopes_(on.in, o.body[on.edge]);
-    record[on.edge].pressure += slope * o.bodies[on.in].depth / thickness_ * on.sum;
-  }
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    const double slope = slopes_(o.body[on.face], on.in);
-    record[on.face].pressure += slope / thickness_ * on.moment.area / o.length[on.face];
-  }
-}
-
-// The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
-// outline, or goes on inside the top.
-std::vector<int> OutlineKernel::patches() const {
-  const Outlines& o = outlines_;
-  const auto from = [&](int edge, int face) {
-    return std::lower_bound(contacts_.begin(), contacts_.end(), std::pair(edge, face),
-                            [](const EdgeFaceContact& c, const std::pair<int, int>& key) {
-                              return std::pair(c.edge, c.face) < key;
-                            });
-  };
-  const std::vector<OutlinePlateaus::Edge>& edges = plateaus_.edges();
-  const std::vector<OutlinePlateaus::Face>& faces = plateaus_.faces();
-  const int first_edge = static_cast<int>(contacts_.size());
-  const int first_face = first_edge + static_cast<int>(edges.size());
-  Groups groups(contacts_.size() + edges.size() + faces.size());
-  std::vector<std::pair<int, int>> keys;
-  const auto each = [&](int edge, BodyIndex in, auto&& f) {
-    const Outlines::Body& body = o.bodies[in];
-    for (auto it = from(edge, body.first);
-         it != contacts_.end() && it->edge == edge && it->face < body.end; ++it) {
-      f(static_cast<int>(it - contacts_.begin()));
-    }
-  };
-  for (int i = 0; i < first_edge; ++i) {
-    const EdgeFaceContact& c = contacts_[i];
-    keys.push_back(std::minmax(o.body[c.edge], o.body[c.face]));
-    const auto back = from(c.face, c.edge);
-    if (back != contacts_.end() && back->edge == c.face && back->face == c.edge) {
-      groups.join(i, static_cast<int>(back - contacts_.begin()));
-    }
-    each(c.edge, o.body[c.face], [&](int k) {
-      const EdgeFaceContact& d = contacts_[k];
-      if ((d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
-          d.piece.from <= c.piece.to && c.piece.from <= d.piece.to) {
-        groups.join(i, k);
-      }
-    });
-    if (c.piece.to >= 1) {
-      each(o.next[c.edge], o.body[c.face], [&](int k) {
-        if (contacts_[k].piece.from <= 0) groups.join(i, k);
-      });
-    }
-  }
-  // Inside tops: by the numbers of edges and faces, and the body they are in.
-  std::map<std::pair<int, BodyIndex>, int> edge_at, face_at;
-  for (int i = first_edge; i < first_face; ++i) {
-    const OutlinePlateaus::Edge& on = edges[i - first_edge];
-    keys.push_back(std::minmax(o.body[on.edge], on.in));
-    edge_at[{on.edge, on.in}] = i;
-    each(on.edge, on.in, [&](int k) { groups.join(i, k); });
-  }
-  for (size_t k = 0; k < faces.size(); ++k) {
-    const OutlinePlateaus::Face& on = faces[k];
-    keys.push_back(std::minmax(o.body[on.face], on.in));
-    face_at[{on.face, on.in}] = first_face + static_cast<int>(k);
-  }
-  const auto join_at = [&](const auto& at, int i, int number, BodyIndex in) {
-    if (const auto it = at.find({number, in}); it != at.end()) groups.join(i, it->second);
-  };
-  for (int i = first_edge; i < first_face; ++i) {
-    const OutlinePlateaus::Edge& on = edges[i - first_edge];
-    join_at(edge_at, i, o.next[on.edge], on.in);
-    join_at(face_at, i, on.edge, on.in);
-  }
-  for (size_t k = 0; k < faces.size(); ++k) {
-    join_at(face_at, first_face + static_cast<int>(k), o.next[faces[k].face], faces[k].in);
-  }
-  if (!face_at.empty()) {
-    for (int i = 0; i < first_edge; ++i) {
-      join_at(face_at, i, contacts_[i].face, o.body[contacts_[i].edge]);
-    }
-  }
-  return groups.numbers(keys);
-}
-
-// How far apart two vertices of a closed line are, in edges.
-int OutlineKernel::steps_between(int vertex, int other) const {
-  const std::vector<Outlines::Loop>& loops = outlines_.loops;
-  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &Outlines::Loop::first));
-  if (other < loop->first || other >= loop->end) return std::numeric_limits<int>::max() / 2;
-  const int steps = std::abs(vertex - other);
-  return std::min(steps, loop->end - loop->first - steps);
-}
-
-bool OutlineKernel::is_a(const PatchSum& patch, int edge) const {
-  if (patch.record.a != patch.record.b) return outlines_.body[edge] == patch.record.a;
-  return steps_between(edge, patch.edge) <= steps_between(edge, patch.face);
-}
-
-void OutlineKernel::add_records(const FrictionMemory& /*memory*/,
-                                std::vector<ContactRecord>& records) const {
-  const Outlines& o = outlines_;
-  const std::vector<int> patch = patches();
-  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<PatchSum> found(static_cast<size_t>(count));
-  std::vector<BoundaryDistance> boundaries(o.bodies.size());
-  for (size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& [edge, face, slope, p] = contacts_[i];
-    PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
-    if (of_patch.edge < 0) of_patch.edge = edge, of_patch.face = face;
-    BoundaryDistance& boundary = boundaries[static_cast<size_t>(o.body[face])];
-    if (boundary.empty()) add_boundary(o.body[face], boundary);
-    sum.penetration = deepest_in(contacts_[i], sum.penetration, boundary);
-    const bool own_is_a = is_a(of_patch, edge);
-    const double force = slope * p.sum * o.length[edge];
-    const Vec2 inward(-o.ty[edge], o.tx[edge]);
-    const double area = slope * p.area;
-    const Vec2 gives(-o.ty[face], o.tx[face]);
-    // What the edge of a feels, or what the face of a gives.
-    sum.normal += own_is_a ? Vec2(force * inward) : Vec2(area * gives);
-    const double u = p.sum > 0 ? p.first / p.sum : 0;
-    sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
-    of_patch.weight += force;
-    of_patch.deepest = std::max(of_patch.deepest, p.deepest);
-    if (friction_) {
-      const double along = friction_->shares()[i];
-      sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
-      const double push = own_is_a ? -friction_->pushes()[i] : friction_->pushes()[i];
-      sum.damping += push * gives;
-    }
-  }
-  size_t next = contacts_.size();
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[on.edge], on.in);
-    if (of_patch.edge < 0) of_patch.edge = on.edge;
-    const double depth = o.bodies[on.in].depth;
-    const double force = slopes_(on.in, o.body[on.edge]) * depth * on.sum * o.length[on.edge];
-    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
-    if (is_a(of_patch, on.edge)) sum.normal += force * inward;
-    const double u = on.sum > 0 ? on.first / on.sum : 0;
-    const Vec2 start = o.point(on.edge);
-    sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
-    of_patch.weight += force;
-    of_patch.deepest = std::max(of_patch.deepest, depth);
-    BoundaryDistance& boundary = boundaries[static_cast<size_t>(on.in)];
-    if (boundary.empty()) add_boundary(on.in, boundary);
-    sum.penetration = deepest_inside(on.edge, on.in, sum.penetration, boundary);
-  }
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
-    if (!is_a(of_patch, on.face)) continue;
-    sum.normal +=
-        slopes_(o.body[on.face], on.in) * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
-  }
-  for (PatchSum& sum : found) {
-    if (sum.weight > 0) sum.record.point /= sum.weight;
-    const BodyIndex a = sum.record.a, b = sum.record.b;
-    sum.record.phi = sum.deepest * std::max(o.bodies[a].slope(), o.bodies[b].slope());
-    records.push_back(sum.record);
   }
 }
 

@@ -13,12 +13,13 @@
 #include <vector>
 
 #include "apothem/contact/kernel.hpp"
+#include "apothem/contact/outline_depths.hpp"
 #include "apothem/contact/outline_friction.hpp"
 #include "apothem/contact/outline_onset.hpp"
 #include "apothem/contact/outline_plateaus.hpp"
+#include "apothem/contact/outline_records.hpp"
 #include "apothem/contact/outline_slopes.hpp"
 #include "apothem/execution/parallel.hpp"
-#include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
 
@@ -58,27 +59,16 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
   void add_force_sizes(std::span<double> of_bodies) const override;
-  void add_records(const FrictionMemory& memory,
-                   std::vector<ContactRecord>& records) const override;
-  void add_surfaces(std::vector<SurfaceRecord>& records) const override;
+  void add_records(const FrictionMemory& /*memory*/,
+                   std::vector<ContactRecord>& records) const override {
+    add_patch_records(state(), records);
+  }
+  void add_surfaces(std::vector<SurfaceRecord>& records) const override {
+    add_surface_records(state(), records);
+  }
 
  private:
-  /// A contact patch while it is summed. Where a body touches itself, the side of the first edge is
-  /// called a, and that of its face b.
-  struct PatchSum {
-    ContactRecord record;
-    double weight = 0, deepest = 0;
-    int edge = -1, face = -1;  // first ones
-  };
-  [[nodiscard]] bool is_a(const PatchSum& patch, int edge) const;
-  [[nodiscard]] int steps_between(int vertex, int other) const;
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
-  void add_boundary(BodyIndex body, BoundaryDistance& boundary) const;
-  [[nodiscard]] bool is_depth(int face, const CollarPiece<double>& piece) const;
-  [[nodiscard]] double deepest_in(const EdgeFaceContact& contact, double floor,
-                                  BoundaryDistance& boundary) const;
-  [[nodiscard]] double deepest_inside(int edge, BodyIndex in, double floor,
-                                      BoundaryDistance& of_body) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
@@ -87,9 +77,9 @@ class OutlineKernel final : public Kernel {
   void add_plateaus(std::vector<Contact>& contacts);
   [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
                               std::span<const double> fy) const;
-  /// The number of the patch of each contact, then of each edge and each face of the plateaus;
-  /// ascending pairs of bodies. Not for every step.
-  [[nodiscard]] std::vector<int> patches() const;
+  [[nodiscard]] OutlineState state() const {
+    return {slopes_, contacts_, plateaus_, friction_ ? &*friction_ : nullptr};
+  }
 
   const Outlines& outlines_;
   double thickness_;
@@ -109,8 +99,8 @@ class OutlineKernel final : public Kernel {
   std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
   OutlinePlateaus plateaus_;
+  OutlineDepths depths_;
   OutlineOnset onset_;
-  BoundaryDistance boundary_;  // memory for penetrations
 };
 
 }  // namespace apothem

@@ -245,4 +245,28 @@ TEST_CASE("a bent wire pressed solid keeps energy and momenta", "[self_contact]"
   check_fold("wire", bent_wire, 4, .055);
 }
 
+TEST_CASE("friction and dashpots of a body with itself keep momenta and close the ledger",
+          "[self_contact]") {
+  Model model = folding_strip(1e6, ElementShape::quadrilateral, 3);
+  // The legs slide along each other as well.
+  DeformableBody& strip = model.deformables.back();
+  for (size_t n = 0; n < strip.mesh.nodes.size(); ++n) {
+    strip.node_velocity[2 * n] += .8 * strip.mesh.nodes[n].x() * strip.mesh.nodes[n].y();
+  }
+  model.contact.friction = {.3, 6e5};
+  model.contact.damping = {.2, .2, .05};
+  Simulation simulation(model, {.end = .15}, 1, 1);
+  const double end = scaled(2) < 2 ? .01 : .15;
+  while (simulation.state().time < end) simulation.step();
+  const Momenta p = simulation.momenta();
+  for (const double error : {p.x_error, p.y_error, p.angular_error}) CHECK(std::abs(error) < 1e-9);
+  const Energies e = simulation.energies();
+  const double total = e.kinetic + e.strain + e.contact + e.damping_loss + e.friction_loss;
+  CAPTURE(e.friction_loss / total, e.damping_loss / total, e.total_error / total);
+  CHECK(std::abs(e.total_error) < 1e-4 * total);
+  if (end < .15) return;
+  CHECK(e.friction_loss > 1e-5 * total);
+  CHECK(e.damping_loss > 1e-3 * total);
+}
+
 }  // namespace folds

@@ -90,6 +90,59 @@ TEST_CASE("a free impact rebounds as the ratio of damping promises", "[viscous]"
   }
 }
 
+TEST_CASE("a rigid impact rebounds alike wherever it begins within a step", "[viscous]") {
+  const double ratio = GENERATE(.05, .2, .5);
+  for (int phase = 0; phase < 8; ++phase) {
+    Model model = empty_model();
+    model.contact.normal_stiffness = 2e6;
+    model.contact.damping = {ratio, ratio, 0};
+    add_floor(model);
+    const double speed = .2;
+    Model first = model;
+    add_block(first, "block", {-.5, 1e-4}, {1, 1}, Kind::rigid, {1, 1});
+    const double way = speed * Simulation(first, {.end = 10}, 1, 1).step_size();
+    add_block(model, "block", {-.5, 1e-4 + phase / 8. * way}, {1, 1}, Kind::rigid, {1, 1},
+              {0, -speed});
+    Simulation simulation(model, {.end = 10}, 1, 1);
+    bool touched = false;
+    while (!touched || simulation.counts().touching_now > 0) {
+      simulation.step();
+      touched = touched || simulation.counts().touching_now > 0;
+    }
+    CAPTURE(ratio, phase);
+    CHECK(simulation.momenta().y / (2000. * model.thickness * speed) ==
+          Approx(restitution(ratio)).margin(.02));
+  }
+}
+
+TEST_CASE("a contact that ends and begins again beside another one is damped as a new one",
+          "[viscous]") {
+  // Two feet: the left one stands all the time, the right one is dropped on the floor.
+  for (const bool both : {false, true}) {
+    Model model = empty_model();
+    model.contact.normal_stiffness = 2e6;
+    model.contact.damping = {.2, .2, 0};
+    model.gravity = {0, -9.81};
+    add_floor(model);
+    RigidBody table;
+    table.name = "table";
+    set_shape(table,
+              Polygon({{0, 0}, {.2, 0}, {.2, .3}, {.8, .3}, {.8, 0}, {1, 0}, {1, .5}, {0, .5}}),
+              model);
+    table.spin = both ? 0 : .05;
+    model.bodies.push_back(table);
+    Simulation simulation(model, {.end = 2}, 1, 1);
+    while (simulation.state().time < 2) simulation.step();
+    const Energies e = simulation.energies();
+    CAPTURE(both, e.kinetic, e.damping_loss, e.total_error);
+    CHECK(e.kinetic < 1e-9);
+    CHECK(std::abs(e.total_error) < .02 * e.damping_loss);
+    for (const ContactRecord& c : simulation.contacts()) {
+      CHECK(c.damping.norm() < 1e-6 * c.normal.norm());
+    }
+  }
+}
+
 TEST_CASE("what should stick rests on a slope, and slides beyond its limit", "[viscous]") {
   const Kind kind = GENERATE(Kind::rigid, Kind::quads, Kind::triangles, Kind::polygons);
   const bool slides = GENERATE(false, true);

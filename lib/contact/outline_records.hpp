@@ -1,0 +1,28 @@
+// What outlines report of their contact: the patches, and the pressure on every edge.
+#pragma once
+
+#include <vector>
+
+#include "apothem/contact/contact.hpp"
+#include "apothem/contact/outline_friction.hpp"
+#include "apothem/contact/outline_plateaus.hpp"
+#include "apothem/contact/outline_slopes.hpp"
+
+namespace apothem {
+
+/// Contact of outlines where they are now.
+struct OutlineState {
+  const OutlineSlopes& slopes;
+  const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
+  const OutlinePlateaus& plateaus;
+  const OutlineFriction* friction;  ///< null without friction and damping
+  [[nodiscard]] const Outlines& outlines() const { return slopes.outlines; }
+};
+
+/// Adds a record for every patch, by ascending pairs of bodies.
+void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& records);
+
+/// Adds a record for every edge of the outlines.
+void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& records);
+
+}  // namespace apothem
