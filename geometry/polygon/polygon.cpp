@@ -13,7 +13,7 @@ std::string name(int i) { return "vertex " + std::to_string(i); }
 // Limits of the coordinates, m. Within them, squares and fourth powers stay far from overflow and
 // from the subnormal range.
 constexpr double kLargest = 1e60;
-constexpr double kSmallest = 1e-60;
+constexpr double kSmallestSize = 1e-60;
 
 void require_usable_coordinates(const std::vector<Vec2>& ring) {
   const int n = static_cast<int>(ring.size());
@@ -29,7 +29,7 @@ void require_usable_coordinates(const std::vector<Vec2>& ring) {
     }
     box.include(ring[i].x(), ring[i].y());
   }
-  if (box.extent() < kSmallest)
+  if (box.extent() < kSmallestSize)
     throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
 }
 

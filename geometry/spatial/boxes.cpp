@@ -7,6 +7,10 @@
 namespace apothem {
 namespace {
 
+constexpr std::int32_t kEmpty = INT32_MIN;  // level of an empty box
+
+bool is_empty(const Box& box) { return box.x1 < box.x0; }
+
 // Slot of a cell in the hash table.
 size_t slot(std::int64_t column, std::int64_t row, int level, size_t mask) {
   auto h = static_cast<std::uint64_t>(column) * 0x9E3779B97F4A7C15U;
@@ -29,6 +33,7 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
   // No level is finer than 2^-50 of the largest coordinate, so that cell indices stay below 2^52.
   double reach = 0;
   for (const Box& box : boxes) {
+    if (is_empty(box)) continue;
     reach =
         std::max({reach, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
   }
@@ -40,6 +45,10 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
   std::vector<int> levels;
   for (std::int32_t i = 0; i < n; ++i) {
     const Box& box = boxes[i];
+    if (is_empty(box)) {
+      entries_[i].level = kEmpty;
+      continue;
+    }
     const double extent = box.extent();
     const int level = extent > 0 ? std::max(std::ilogb(extent) + 1, finest) : finest;
     if (std::find(levels.begin(), levels.end(), level) == levels.end()) levels.push_back(level);
@@ -53,6 +62,7 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
   for (std::int32_t i = 0; i < n; ++i) {
     const Box& box = boxes[i];
     const int own = entries_[i].level;
+    if (own == kEmpty) continue;
     for (const int level : levels) {
       if (level < own) continue;
       // A box of this level reaches at most half a cell beyond the cell that contains its centre.

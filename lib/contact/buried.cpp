@@ -3,7 +3,7 @@
 
 namespace apothem {
 
-std::optional<Buried> find_buried(const Outlines& o) {
+std::optional<Buried> find_buried(const Outlines& o, const std::vector<std::uint8_t>& absent) {
   std::vector<Loops> loops;
   std::vector<double> reach;  // of the potentials, m
   std::vector<Box> boxes;
@@ -17,7 +17,8 @@ std::optional<Buried> find_buried(const Outlines& o) {
         of_body.box.include(o.x[i], o.y[i]);
       } while (o.next[i++] != first);
     }
-    boxes.push_back(of_body.box);
+    const bool there = absent.empty() || absent[boxes.size()] == 0;
+    boxes.push_back(there ? of_body.box : Box());
   }
   std::vector<BoxPair> pairs;
   BoxGrid().find_pairs(boxes, pairs);

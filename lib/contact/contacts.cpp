@@ -42,7 +42,8 @@ bool Contacts::search_if_stale() {
     pairs_[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
   }
   for (SurfaceIndex i = 0; table_.self() && i < surfaces_.size(); ++i) {
-    if (surfaces_.kind(i) == SurfaceKind::outline) pairs_[outline_kernel].push_back({i, i});
+    if (surfaces_.kind(i) == SurfaceKind::outline && surfaces_.is_present(i))
+      pairs_[outline_kernel].push_back({i, i});
   }
   for (size_t k = 0; k < kernels_.size(); ++k) {
     if (kernels_[k]) kernels_[k]->take(pairs_[k]);

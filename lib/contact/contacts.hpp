@@ -40,6 +40,11 @@ class Contacts {
   /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
   void place_all(const Kinematics& now) { surfaces_.place_all(now); }
   void place(const Kinematics& now) { surfaces_.place(now); }
+  /// See Surfaces. Has the next step search anew.
+  void set_absent(const std::vector<std::uint8_t>& absent) {
+    surfaces_.set_absent(absent);
+    forget_search();
+  }
   /// Renews the candidates if they do not serve any more; true if it did.
   bool search_if_stale();
   /// Contacts and normal forces where the surfaces are.
@@ -147,6 +152,8 @@ struct Buried {
   BodyIndex inner, outer;
   Vec2 place;  ///< m
 };
-std::optional<Buried> find_buried(const Outlines& outlines);
+/// Bodies of which `absent` is not 0 are not there; it may be empty.
+std::optional<Buried> find_buried(const Outlines& outlines,
+                                  const std::vector<std::uint8_t>& absent = {});
 
 }  // namespace apothem

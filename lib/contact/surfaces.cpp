@@ -33,6 +33,14 @@ void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const Potent
   ++body_count_;
 }
 
+void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {
+  absent_ = absent;
+  moving_.clear();
+  for (RigidIndex i = 0; i < rigid_count(); ++i) {
+    if (rigid_[i].moves && is_present(i)) moving_.push_back(i);
+  }
+}
+
 bool Surfaces::responsive(SurfaceIndex i) const {
   if (!is_rigid(i)) return true;
   const std::array<double, 3>& w = rigid_[i].inverse_mass;

@@ -51,6 +51,12 @@ class Surfaces {
   void place_all(const Kinematics& now);
   void place(const Kinematics& now);
 
+  /// The surfaces of bodies with an entry other than 0 stay where they are and touch nothing.
+  void set_absent(const std::vector<std::uint8_t>& absent);
+  [[nodiscard]] bool is_present(SurfaceIndex i) const {
+    return absent_.empty() || absent_[static_cast<size_t>(bodies_[i])] == 0;
+  }
+
   [[nodiscard]] int size() const { return static_cast<int>(kinds_.size()); }
   [[nodiscard]] SurfaceKind kind(SurfaceIndex i) const { return kinds_[i]; }
   [[nodiscard]] BodyIndex body(SurfaceIndex i) const { return bodies_[i]; }
@@ -96,6 +102,7 @@ class Surfaces {
   std::vector<double> inverse_mass_;
   std::vector<Rigid> rigid_;
   std::vector<RigidIndex> moving_;
+  std::vector<std::uint8_t> absent_;  // of each body; empty while all are there
   PlacedShapes shapes_;
   std::vector<std::array<double, 3>> pose_;
   ElementSurfaces elements_;

@@ -13,7 +13,8 @@ namespace apothem {
 struct BodyStart {
   BodyIndex body = 0;
   std::vector<double> x, v;
-  void fields(Archive& archive) { archive("body", body)("x", x)("v", v); }
+  int absent = 0;  ///< see State
+  void fields(Archive& archive) { archive("body", body)("x", x)("v", v)("absent", absent); }
 };
 
 }  // namespace apothem

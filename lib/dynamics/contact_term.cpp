@@ -95,6 +95,7 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
   largest_stride_ = kLargestStride * inradius;
   const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
   for (BodyIndex i = 0; i < bodies; ++i) inradius_.push_back(inradius_of(model, i));
+  if (!state.absent.empty()) contacts_.set_absent(state.absent);
   try {
     contacts_.place_all(state.kinematics(state.v));
   } catch (const NotFinite& error) {
@@ -114,7 +115,7 @@ void ContactTerm::refuse_buried(const State& state) const {
     outlines.add_mesh(body.mesh, boundary(body.mesh), body.first_node);
   }
   outlines.place(state.kinematics(state.v), contacts_.surfaces().shapes());
-  const std::optional<Buried> found = find_buried(outlines);
+  const std::optional<Buried> found = find_buried(outlines, state.absent);
   if (!found) return;
   const Vec2 world = found->place + model_.origin;
   throw Unrunnable(

@@ -57,6 +57,8 @@ class ContactTerm final : public Term {
   void fields(Archive& archive) override;
   void refresh(const State& state) override { contacts_.refresh(state.kinematics(state.v)); }
 
+  void set_absent(const std::vector<std::uint8_t>& absent) { contacts_.set_absent(absent); }
+
   /// See Simulation::inherit.
   void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
 

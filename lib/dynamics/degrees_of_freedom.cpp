@@ -26,13 +26,55 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> n
     const size_t across = axis == 0 ? c + 1 : c - 1;
     held_[axis].push_back({c, across, c < rigid ? 0 : start_[across]});
   }
-  for (size_t c = 0; c < weight_.size(); ++c) {
+  weight_at_start_ = weight_at_start(weight_);
+}
+
+Impulse DegreesOfFreedom::weight_at_start(const std::vector<double>& weight) const {
+  const size_t rigid = layout_.node(0);
+  Impulse sum;
+  for (size_t c = 0; c < weight.size(); ++c) {
     const size_t axis = c < rigid ? c % 3 : (c - rigid) % 2;
-    if (axis == 0) weight_at_start_.x += weight_[c];
-    if (axis == 1) weight_at_start_.y += weight_[c];
+    if (axis == 0) sum.x += weight[c];
+    if (axis == 1) sum.y += weight[c];
   }
-  for (size_t c = rigid; c < weight_.size(); c += 2) {
-    weight_at_start_.angular += start_[c] * weight_[c + 1] - start_[c + 1] * weight_[c];
+  for (size_t c = rigid; c < weight.size(); c += 2) {
+    sum.angular += start_[c] * weight[c + 1] - start_[c + 1] * weight[c];
+  }
+  return sum;
+}
+
+std::pair<size_t, size_t> DegreesOfFreedom::coordinates(BodyIndex body) const {
+  if (body < layout_.rigid_bodies) return {layout_.rigid(body), layout_.rigid(body) + 3};
+  const DeformableBody& of = model_.deformables[body - layout_.rigid_bodies];
+  return {layout_.node(of.first_node),
+          layout_.node(of.first_node + static_cast<int>(of.mesh.nodes.size()))};
+}
+
+void DegreesOfFreedom::set_absent(const std::vector<std::uint8_t>& absent) {
+  if (given_inverse_mass_.empty()) {
+    given_inverse_mass_ = inverse_mass_;
+    given_acceleration_ = full_acceleration_.empty() ? acceleration_ : full_acceleration_;
+    absent_.resize(absent.size());
+  }
+  for (size_t b = 0; b < absent.size(); ++b) {
+    const bool present = absent[b] == 0;
+    if (present != (absent_[b] == 0)) set_present(static_cast<BodyIndex>(b), present);
+  }
+  absent_ = absent;
+  weight_at_start_ = weight_at_start(weight_);
+  if (!full_weight_.empty()) full_weight_at_start_ = weight_at_start(full_weight_);
+}
+
+void DegreesOfFreedom::set_present(BodyIndex body, bool present) {
+  const auto [first, end] = coordinates(body);
+  for (size_t c = first; c < end; ++c) {
+    inverse_mass_[c] = present ? given_inverse_mass_[c] : 0;
+    if (acceleration_.empty()) continue;
+    const double full = present ? given_acceleration_[c] : 0;
+    const double weight = full * mass_[c];
+    acceleration_[c] = gravity_factor_ * full;
+    weight_[c] = gravity_factor_ * weight;
+    if (!full_weight_.empty()) full_acceleration_[c] = full, full_weight_[c] = weight;
   }
 }
 
@@ -107,7 +149,9 @@ State DegreesOfFreedom::start() const {
   for (RigidIndex i = 0; i < layout_.rigid_bodies; ++i) {
     const RigidBody& body = model_.bodies[i];
     for (int k = 0; k < 3; ++k) state.pose(i)[k] = start_[layout_.rigid(i) + size_t(k)];
-    state.pose_rate(i) << body.velocity, body.spin;
+    if (absent_.empty() || absent_[static_cast<size_t>(i)] == 0) {
+      state.pose_rate(i) << body.velocity, body.spin;
+    }
   }
   for (const DeformableBody& body : model_.deformables) {
     const auto n = static_cast<int>(body.mesh.nodes.size());

@@ -61,7 +61,12 @@ class DegreesOfFreedom {
   /// Sets the moves of a whole load step, from state.time until `time`.
   void plan_moves(const State& state, double time);
 
+  /// Bodies that are absent (see State) cannot move and weigh nothing.
+  void set_absent(const std::vector<std::uint8_t>& absent);
+
   [[nodiscard]] const Layout& layout() const { return layout_; }
+  /// The coordinates of a body: the first one, and one behind the last.
+  [[nodiscard]] std::pair<size_t, size_t> coordinates(BodyIndex body) const;
   /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   [[nodiscard]] bool can_move(size_t coordinate) const { return inverse_mass_[coordinate] > 0; }
@@ -114,6 +119,12 @@ class DegreesOfFreedom {
   /// At factor 1; empty while gravity has never been scaled.
   std::vector<double> full_acceleration_, full_weight_;
   Impulse full_weight_at_start_;
+  /// Of all bodies, at factor 1; empty while none has been taken out.
+  std::vector<double> given_inverse_mass_, given_acceleration_;
+  std::vector<std::uint8_t> absent_;
+
+  void set_present(BodyIndex body, bool present);
+  [[nodiscard]] Impulse weight_at_start(const std::vector<double>& weight) const;
 };
 
 }  // namespace apothem

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <unordered_map>
+
+#include "apothem/dynamics/population.hpp"
 
 namespace apothem {
 namespace {
@@ -60,6 +63,16 @@ bool same(const BodyRecord& a, const BodyRecord& b) {
   return apart <= kSameShape * size;
 }
 
+// What is there, or has left, does not come any more.
+void begin_present(Model& model, const BodyStart& start) {
+  const auto presence = static_cast<Presence>(start.absent);
+  if (presence == Presence::waiting) return;
+  if (presence == Presence::left) model.left.push_back(start.body);
+  for (Inflow& inflow : model.inflows) {
+    for (std::vector<BodyIndex>& batch : inflow.batches) std::erase(batch, start.body);
+  }
+}
+
 }  // namespace
 
 Layout ModelRecord::layout() const {
@@ -78,20 +91,24 @@ ModelRecord record_of(const Simulation& simulation) {
 Inheritance inheritance(const ModelRecord& other, const State& state, const Model& model) {
   const std::vector<BodyRecord> records = records_of(model);
   const Vec2 shift = other.origin - model.origin;
+  std::unordered_map<std::string, const BodyRecord*> by_name;
+  for (const BodyRecord& record : records) by_name[record.name] = &record;
   Inheritance result;
   size_t c = 0;  // the first coordinate of the body
   for (const BodyRecord& old : other.bodies) {
-    const auto found = std::find_if(records.begin(), records.end(),
-                                    [&](const BodyRecord& r) { return same(old, r); });
+    const auto named = by_name.find(old.name);
+    const BodyRecord* const found =
+        named != by_name.end() && same(old, *named->second) ? named->second : nullptr;
     const size_t size = old.rigid ? 3 : old.shape.size();
     const auto slice = [&](const std::vector<double>& of) {
       return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(c),
                                  of.begin() + static_cast<std::ptrdiff_t>(c + size));
     };
-    BodyStart start{-1, slice(state.x), slice(state.v)};
+    BodyStart start{-1, slice(state.x), slice(state.v), 0};
     c += size;
-    if (found != records.end()) {
-      start.body = static_cast<BodyIndex>(found - records.begin());
+    if (!state.absent.empty()) start.absent = state.absent[result.heirs.size()];
+    if (found) {
+      start.body = static_cast<BodyIndex>(found - records.data());
       for (size_t i = 0; i < (old.rigid ? 2 : size); ++i) {
         start.x[i] += shift[static_cast<Eigen::Index>(i % 2)];
         if (!old.rigid) start.x[i] += old.shape[i] - found->shape[i];
@@ -113,6 +130,7 @@ void begin_at(Model& model, const std::vector<BodyStart>& starts) {
         is_rigid ? 3
                  : 2 * model.deformables[static_cast<size_t>(start.body - rigid)].mesh.nodes.size();
     if (start.x.size() != size || start.v.size() != size) throw ArchiveMismatch("x");
+    begin_present(model, start);
     if (is_rigid) {
       RigidBody& body = model.bodies[static_cast<size_t>(start.body)];
       body.position = {start.x[0], start.x[1]};

@@ -38,6 +38,12 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
       forces_(state_.f.size()),
       lambda_(model.bodies.size()),
       guard_(model) {
+  if (Population::needed(model)) {
+    population_ = std::make_unique<Population>(model);
+    state_.absent = Population::absent_at_start(model);
+    take_absent_out();
+    state_.v = dofs_.start().v;
+  }
   make_terms(threads);
   StepBounds bounds;
   for (const auto& term : terms_) term->bound_step(bounds);
@@ -130,6 +136,37 @@ void Simulation::take_step() {
   if (state_.step % kWatchedEvery == 0) watch();
 }
 
+void Simulation::take_absent_out() {
+  dofs_.set_absent(state_.absent);
+  if (contact_) contact_->set_absent(state_.absent);
+}
+
+void Simulation::change_population(std::span<const BodyIndex> leave,
+                                   std::span<const BodyIndex> come) {
+  const double error = energies().total_error;
+  const Impulse momentum = dofs_.momentum(state_);
+  const auto mark = [&](BodyIndex b, Presence presence) {
+    state_.absent[static_cast<size_t>(b)] = static_cast<std::uint8_t>(presence);
+  };
+  for (const BodyIndex b : leave) mark(b, Presence::left);
+  for (const BodyIndex b : come) mark(b, Presence::present);
+  take_absent_out();
+  const auto copy_velocity = [&](BodyIndex b, const State& from) {
+    const auto [first, end] = dofs_.coordinates(b);
+    for (size_t c = first; c < end; ++c) state_.v[c] = from.v[c];
+  };
+  const State start = dofs_.start(), rest(state_.layout);
+  for (const BodyIndex b : leave) copy_velocity(b, rest);
+  for (const BodyIndex b : come) copy_velocity(b, start);
+  find_forces(state_.v, 0);
+  add_onsets(0);
+  const Impulse after = dofs_.momentum(state_);
+  ledger_.refresh(state_);
+  ledger_.add_work(energies().total_error - error);
+  ledger_.add_impulse(
+      {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
+}
+
 void Simulation::damp(double h) {
   for (const auto& term : terms_) term->damp(state_, h, ledger_);
 }
@@ -204,6 +241,9 @@ void Simulation::watch() {
   if (!std::isfinite(dofs_.kinetic(state_))) refuse_infinite(state_, "a body");
   for (const auto& term : terms_) term->watch(state_);
   if (state_.step % EnergyGuard::kEvery == 0) check_energy();
+  if (!population_) return;
+  const Population::Change change = population_->look(state_);
+  if (!change.empty()) change_population(change.leave, change.come);
 }
 
 void Simulation::check_energy() {
@@ -243,11 +283,13 @@ void Simulation::fields(Archive& archive) {
   archive("state", state_)("ledger", ledger_);
   archive("step_control", *control_);
   archive("energy_guard", guard_)("touching_before", touching_before_);
+  if (population_) archive("population", *population_);
   for (size_t i = 0; i < terms_.size(); ++i) archive(fmt::format("term_{}", i).c_str(), *terms_[i]);
   if (equilibrium_) archive("equilibrium", *equilibrium_);
 }
 
 void Simulation::refresh() {
+  if (population_) take_absent_out();
   for (const auto& term : terms_) term->refresh(state_);
   ledger_.refresh(state_);
   steps_before_ = state_.step;

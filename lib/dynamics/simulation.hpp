@@ -16,6 +16,7 @@
 
 #include "apothem/dynamics/energy_guard.hpp"
 #include "apothem/dynamics/forecast.hpp"
+#include "apothem/dynamics/population.hpp"
 #include "apothem/dynamics/results.hpp"
 #include "apothem/dynamics/step_control.hpp"
 #include "apothem/dynamics/term.hpp"
@@ -49,6 +50,12 @@ class Simulation {
 
   /// One step. Throws Unstable; the state is then not to be trusted.
   void step();
+
+  /// Lets bodies leave, and others come with the velocities of their model. What that does to
+  /// energies and momenta is booked as work and impulses from outside.
+  void change_population(std::span<const BodyIndex> leave, std::span<const BodyIndex> come);
+  /// Of scenes where bodies come or go; null in others.
+  [[nodiscard]] const Population* population() const { return population_.get(); }
 
   /// Static scenes: the next load step, which brings loads, supports and prescribed bodies to where
   /// they are at `time`. Not complete if `stop`, asked after each step of relaxation, says so:
@@ -109,6 +116,7 @@ class Simulation {
  private:
   void make_terms(int threads);
   void take_step();
+  void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0);
@@ -127,6 +135,7 @@ class Simulation {
   ContactTerm* contact_ = nullptr;            // likewise
   std::unique_ptr<Equilibrium> equilibrium_;  // only in static scenes
 
+  std::unique_ptr<Population> population_;  // only where bodies come or go
   std::optional<StepControl> control_;
   bool onsets_ = true;
   std::vector<double> forces_;  // at the start of the step; then at its end, without onsets

@@ -1,6 +1,7 @@
 #include "apothem/model/columns.hpp"
 
 #include "apothem/mesh/measure.hpp"
+#include "apothem/model/statistics.hpp"
 
 namespace apothem {
 
@@ -39,6 +40,7 @@ std::vector<HistoryColumn> history_columns(const Model& model, const OutputSetti
   for (const DeformableIndex i : settings.track_surfaces)
     add(model.deformables[i].name, kSurfaceColumns);
   for (const TrackedPoint& point : settings.points) add(point.name, kPointColumns);
+  for (const Region& region : model.regions) add(region.name, kRegionQuantities);
   return result;
 }
 

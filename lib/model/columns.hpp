@@ -83,7 +83,7 @@ struct HistoryColumn {
   const char* unit;
 };
 
-/// After the time: rigid bodies, deformable ones, surfaces, points.
+/// After the time: rigid bodies, deformable ones, surfaces, points, regions.
 std::vector<HistoryColumn> history_columns(const Model& model, const OutputSettings& settings);
 
 }  // namespace apothem

@@ -10,6 +10,7 @@
 #include "apothem/contact/law.hpp"
 #include "apothem/geometry/potential/potential.hpp"
 #include "apothem/model/deformable.hpp"
+#include "apothem/model/population.hpp"
 
 namespace apothem {
 
@@ -58,6 +59,10 @@ struct Model {
   ContactLaw contact;
   std::vector<RigidBody> bodies;
   std::vector<DeformableBody> deformables;
+  std::vector<Inflow> inflows;
+  std::vector<BodyIndex> left;  ///< bodies that have left the world before the start
+  World world;
+  std::vector<Region> regions;
 
   // All bodies are numbered rigid ones first.
   [[nodiscard]] const std::string& name_of(BodyIndex body) const;

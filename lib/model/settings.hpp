@@ -38,16 +38,43 @@ struct OutputSettings {
   std::optional<double> checkpoint_interval = 600;
 };
 
-/// Ways to reduce a column to one number, by the names in scenes; in the order of
-/// Expectation::Take.
-inline constexpr std::array kTakes{"first", "last", "min", "max", "max_abs"};
+/// When a run ends before its time: all conditions that are given hold, for as long as is asked.
+struct StopRule {
+  std::string name;
+  int region = -1;                              ///< of the model, or -1: everywhere
+  std::optional<double> kinetic_per_body;       ///< below it, mean of the free bodies, J
+  std::optional<int> count_below, count_above;  ///< of free bodies; "above" includes the number
+  std::optional<double> no_exit_for;            ///< s; none has left the region for so long
+  double hold = 0;                              ///< s
+  double after = 0;                             ///< s; before, it is not looked at
+  std::optional<double> wall_clock;             ///< s of real time
+};
+/// What a run is stopped by where a body leaves a world that stops it.
+inline constexpr const char* kStoppedOutside = "outside";
 
-/// A result the scene promises: a column of a history, reduced to one number.
-struct Expectation {
-  enum class Take { first, last, minimum, maximum, largest };  ///< largest: of the absolute value
+/// Ways to reduce a column to one number, by the names in scenes; in the order of Reduction::Take.
+inline constexpr std::array kTakes{"first",   "last", "min",    "max",
+                                   "max_abs", "mean", "change", "slope"};
+
+/// A column of a history, reduced to one number.
+struct Reduction {
+  /// largest: of the absolute value; mean: over time; change: from the first row to the last;
+  /// slope: per s, of the straight line of least squares.
+  enum class Take { first, last, minimum, maximum, largest, mean, change, slope };
   std::string quantity;  ///< column of history.csv, energy.csv or momentum.csv, no unit
   Take take = Take::last;
   std::optional<double> from, until;  ///< time window, s
+};
+
+/// A result of a run that studies compare: a number, or whether a rule has stopped the run.
+struct Measure {
+  std::string name;
+  Reduction of;            ///< if `stopped_by` is empty
+  std::string stopped_by;  ///< name of a rule
+};
+
+/// A result the scene promises.
+struct Expectation : Reduction {
   double value = 0;
   double tolerance = 0;    ///< absolute, in the quantity's unit
   std::string label = {};  ///< what it is in words; may be empty

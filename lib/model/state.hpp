@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
@@ -51,6 +52,9 @@ struct State {
   /// of elements, loads and contacts (N). Without gravity.
   std::vector<double> f;
   std::vector<double> remainder;  ///< what rounding has kept out of x of rigid bodies so far
+  /// Of each body, rigid ones first: 0 if it is there, 1 if it comes later, 2 if it has left the
+  /// world. Empty in a scene where all bodies are always there.
+  std::vector<std::uint8_t> absent;
 
   explicit State(Layout of = {})
       : layout(of), x(of.size()), v(of.size()), f(of.size()), remainder(of.node(0)) {}
@@ -71,6 +75,9 @@ struct State {
   [[nodiscard]] Pair node(NodeIndex i) { return Pair(&x[layout.node(i)]); }
   [[nodiscard]] ConstPair node(NodeIndex i) const { return ConstPair(&x[layout.node(i)]); }
   [[nodiscard]] ConstPair node_velocity(NodeIndex i) const { return ConstPair(&v[layout.node(i)]); }
+  [[nodiscard]] bool is_absent(BodyIndex body) const {
+    return !absent.empty() && absent[static_cast<size_t>(body)] != 0;
+  }
   [[nodiscard]] ConstPair node_force(NodeIndex i) const { return ConstPair(&f[layout.node(i)]); }
 
   /// As contact sees it, with these velocities.
@@ -82,6 +89,12 @@ struct State {
   void fields(Archive& archive) {
     archive("time", time)("step", step);
     archive.sized("x", x).sized("v", v).sized("f", f).sized("remainder", remainder);
+    if (absent.empty()) return;
+    std::string flags;
+    for (const std::uint8_t flag : absent) flags += static_cast<char>('0' + flag);
+    archive("absent", flags);
+    if (flags.size() != absent.size()) throw ArchiveMismatch("absent has another size");
+    for (size_t i = 0; i < flags.size(); ++i) absent[i] = static_cast<std::uint8_t>(flags[i] - '0');
   }
 };
 

@@ -26,6 +26,7 @@
 #include "apothem/model/rotation.hpp"
 #include "apothem/output/convex_cells.hpp"
 #include "apothem/output/files.hpp"
+#include "apothem/output/force_lines.hpp"
 #include "apothem/output/vtk_grid.hpp"
 
 namespace apothem {
@@ -103,10 +104,14 @@ class BodyGrid {
     for (const BodyQuantity& quantity : kBodyQuantities) {
       if (quantity.in_frames) quantities_.push_back({&quantity, doubles(quantity.name, 1)});
     }
-    for (RigidIndex i = 0; i < static_cast<RigidIndex>(model.bodies.size()); ++i) add_rigid(i);
+    for (RigidIndex i = 0; i < static_cast<RigidIndex>(model.bodies.size()); ++i) {
+      if (!frame.state.is_absent(i)) add_rigid(i);
+    }
     const CauchyStress* stress = frame.stresses.data();
     for (DeformableIndex i = 0; i < static_cast<DeformableIndex>(model.deformables.size()); ++i) {
-      add_deformable(i, stress);
+      if (!frame.state.is_absent(static_cast<BodyIndex>(model.bodies.size()) + i)) {
+        add_deformable(i, stress);
+      }
       stress += model.deformables[i].mesh.element_count();
     }
   }
@@ -119,10 +124,13 @@ class BodyGrid {
       of_cells_.add_to(grid->GetCellData());
       of_points_.add_to(grid->GetPointData());
     }
+    mean_stress_->SetComponentName(0, "xx");
+    mean_stress_->SetComponentName(1, "yy");
+    mean_stress_->SetComponentName(2, "xy");
     grid->GetPointData()->AddArray(displacement_);
     grid->GetPointData()->AddArray(velocity_);
-    for (vtkDataArray* array :
-         std::initializer_list<vtkDataArray*>{body_, part_, material_, rotation_, spin_, force_}) {
+    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{
+             body_, part_, material_, rotation_, spin_, force_, coordination_, mean_stress_}) {
       grid->GetCellData()->AddArray(array);
     }
     for (const auto& [quantity, array] : quantities_) grid->GetCellData()->AddArray(array);
@@ -208,6 +216,10 @@ class BodyGrid {
     spin_->InsertNextValue(spin);
     force_->InsertNextTuple3(force.x(), force.y(), 0);
     of_cells_.add(stress);
+    const BodyStatistics own =
+        frame_.bodies.empty() ? BodyStatistics() : frame_.bodies[static_cast<size_t>(body)];
+    coordination_->InsertNextValue(own.coordination);
+    mean_stress_->InsertNextTuple3(own.stress.xx, own.stress.yy, own.stress.xy);
     for (const auto& [quantity, array] : quantities_) {
       array->InsertNextValue(quantity->value(of_body));
     }
@@ -226,6 +238,8 @@ class BodyGrid {
   vtkNew<vtkDoubleArray> rotation_ = doubles("rotation", 1);
   vtkNew<vtkDoubleArray> spin_ = doubles("spin", 1);
   vtkNew<vtkDoubleArray> force_ = doubles("contact_force", 3);
+  vtkNew<vtkIntArray> coordination_ = integers("coordination");
+  vtkNew<vtkDoubleArray> mean_stress_ = doubles("mean_stress", 3);
   std::vector<std::pair<const BodyQuantity*, vtkSmartPointer<vtkDoubleArray>>> quantities_;
   StressArrays of_cells_, of_points_;
 };
@@ -251,6 +265,7 @@ vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
   };
   const auto rigid = static_cast<RigidIndex>(model.bodies.size());
   for (RigidIndex i = 0; i < rigid; ++i) {
+    if (state.is_absent(i)) continue;
     const std::vector<Vec2>& vertices = model.bodies[i].potential.vertices;
     const auto pose = state.pose(i);
     const Vec2 centre = pose.head<2>();
@@ -258,6 +273,7 @@ vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
     add(i, vertices.size(), [&](size_t k) { return Vec2(centre + turned(vertices[k], angle)); });
   }
   for (DeformableIndex i = 0; i < static_cast<DeformableIndex>(model.deformables.size()); ++i) {
+    if (state.is_absent(rigid + i)) continue;
     const DeformableBody& body = model.deformables[i];
     for (const std::vector<int>& loop : loops[i]) {
       add(rigid + i, loop.size(), [&](size_t k) {
@@ -378,6 +394,12 @@ void FrameWriter::write(const FrameContents& frame) {
              xml(outlines(model_, frame.state, loops_)));
   write_file(folder_ + "/" + file_name("contacts", number),
              xml(patches(model_, time, frame.contacts)));
+  const auto write_lines = [&](const char* series, vtkUnstructuredGrid* grid) {
+    add_time(grid, time);
+    write_file(folder_ + "/" + file_name(series, number), xml(grid));
+  };
+  write_lines("chains", force_chains(model_, frame));
+  if (!model_.regions.empty()) write_lines("roses", roses(model_, frame));
   if (!frame.surfaces.empty()) {
     write_file(folder_ + "/" + file_name("surfaces", number),
                xml(boundaries(model_, time, frame.surfaces)));
@@ -389,6 +411,8 @@ void FrameWriter::write(const FrameContents& frame) {
   write_file(folder_ + "/frames.pvd", collection("bodies", times_));
   write_file(folder_ + "/outlines.pvd", collection("outlines", times_));
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
+  write_file(folder_ + "/chains.pvd", collection("chains", times_));
+  if (!model_.regions.empty()) write_file(folder_ + "/roses.pvd", collection("roses", times_));
 }
 
 void write_mesh(const std::string& file, const PolygonMesh& mesh) {

@@ -1,7 +1,8 @@
 // Writes and reads the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
 // frame for the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact
-// patches, and surfaces.pvd for the boundaries of bodies that are in contact with meshes. Also
-// writes a mesh as a .vtu file.
+// patches, chains.pvd for the lines along which they carry force, roses.pvd for the directions of
+// contacts in regions, and surfaces.pvd for the boundaries of bodies that are in contact with
+// meshes. Bodies that are not there are left out. Also writes a mesh as a .vtu file.
 //
 // Cells are convex, because many viewers fill a polygon as if it were. A body or an element that is
 // not convex is several cells with the same values, numbered by the cell data `part`.
@@ -14,6 +15,7 @@
 #include "apothem/mesh/mesh.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/model/state.hpp"
+#include "apothem/model/statistics.hpp"
 
 namespace apothem {
 
@@ -24,8 +26,9 @@ struct FrameContents {
   /// One for each element of all deformable bodies, in the order of the model.
   std::vector<CauchyStress> stresses = {};
   std::vector<SurfaceRecord> surfaces = {};
-  std::vector<BodyForce> forces = {};  ///< contact force on each body, rigid ones first
-  std::vector<double> node_mass = {};  ///< kg
+  std::vector<BodyForce> forces = {};       ///< contact force on each body, rigid ones first
+  std::vector<double> node_mass = {};       ///< kg
+  std::vector<BodyStatistics> bodies = {};  ///< of all bodies
 };
 
 /// Writes the time series of a run into a folder of results.

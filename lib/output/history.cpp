@@ -111,6 +111,11 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
     fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{},{},{},{},{},{},{},{},{}"), value[0],
                    value[1], value[2], value[3], s.xx, s.yy, s.xy, major, minor);
   }
+  for (const RegionSums& sums : observed.regions) {
+    for (const RegionQuantity& quantity : kRegionQuantities) {
+      fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), quantity.value(sums));
+    }
+  }
   rows += '\n';
   add_row(energy_.rows, state.time, e.kinetic, e.strain, e.contact, e.gravity, e.friction_loss,
           e.damping_loss, e.external_work, e.total_error);
@@ -183,40 +188,72 @@ double refined(const std::vector<double>& t, const std::vector<double>& y, size_
   return y[i] - slope * slope / (4 * curvature);
 }
 
+// Over time, between rows by the trapezoid rule.
+double mean(const std::vector<double>& t, const std::vector<double>& y, size_t from, size_t until) {
+  if (until - from < 2) return y[from];
+  double sum = 0;
+  for (size_t i = from + 1; i < until; ++i) sum += (t[i] - t[i - 1]) * (y[i] + y[i - 1]) / 2;
+  return sum / (t[until - 1] - t[from]);
+}
+
+// Of the line of least squares; 0 for a single row.
+double slope(const std::vector<double>& t, const std::vector<double>& y, size_t from,
+             size_t until) {
+  const auto count = static_cast<double>(until - from);
+  double mean_t = 0, mean_y = 0;
+  for (size_t i = from; i < until; ++i) mean_t += t[i] / count, mean_y += y[i] / count;
+  double tt = 0, ty = 0;
+  for (size_t i = from; i < until; ++i) {
+    tt += (t[i] - mean_t) * (t[i] - mean_t);
+    ty += (t[i] - mean_t) * (y[i] - mean_y);
+  }
+  return tt > 0 ? ty / tt : 0;
+}
+
 }  // namespace
 
-Outcome evaluate(const Expectation& expectation, const std::string& folder) {
-  const HistoryTable table = read_history_of(folder, expectation.quantity);
+double reduce(const Reduction& reduction, const std::string& folder) {
+  const HistoryTable table = read_history_of(folder, reduction.quantity);
   const std::vector<double>& t = table.columns.front();
-  const std::vector<double>& y = *table.column(expectation.quantity);
+  const std::vector<double>& y = *table.column(reduction.quantity);
   size_t from = 0;
   size_t until = t.size();
-  while (expectation.from && from < until && t[from] < *expectation.from) ++from;
-  while (expectation.until && until > from && t[until - 1] > *expectation.until) --until;
-  if (from == until)
-    throw std::runtime_error("no row of " + expectation.quantity + " in the window");
+  while (reduction.from && from < until && t[from] < *reduction.from) ++from;
+  while (reduction.until && until > from && t[until - 1] > *reduction.until) --until;
+  if (from == until) {
+    throw std::runtime_error("no row of " + reduction.quantity + " in the window");
+  }
   const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
                                                  y.begin() + static_cast<std::ptrdiff_t>(until));
-  const double minimum = refined(t, y, static_cast<size_t>(least - y.begin()));
-  const double maximum = refined(t, y, static_cast<size_t>(most - y.begin()));
-  double value = 0;
-  switch (expectation.take) {
-    case Expectation::Take::first:
-      value = y[from];
-      break;
-    case Expectation::Take::last:
-      value = y[until - 1];
-      break;
-    case Expectation::Take::minimum:
-      value = minimum;
-      break;
-    case Expectation::Take::maximum:
-      value = maximum;
-      break;
-    case Expectation::Take::largest:
-      value = std::max(-minimum, maximum);
-      break;
+  const auto minimum = [&, at = static_cast<size_t>(least - y.begin())] {
+    return refined(t, y, at);
+  };
+  const auto maximum = [&, at = static_cast<size_t>(most - y.begin())] {
+    return refined(t, y, at);
+  };
+  switch (reduction.take) {
+    case Reduction::Take::first:
+      return y[from];
+    case Reduction::Take::last:
+      return y[until - 1];
+    case Reduction::Take::minimum:
+      return minimum();
+    case Reduction::Take::maximum:
+      return maximum();
+    case Reduction::Take::largest:
+      return std::max(-minimum(), maximum());
+    case Reduction::Take::mean:
+      return mean(t, y, from, until);
+    case Reduction::Take::change:
+      return y[until - 1] - y[from];
+    case Reduction::Take::slope:
+      return slope(t, y, from, until);
   }
+  return 0;
+}
+
+Outcome evaluate(const Expectation& expectation, const std::string& folder) {
+  const double value = reduce(expectation, folder);
   return {value, std::abs(value - expectation.value) <= expectation.tolerance};
 }
 

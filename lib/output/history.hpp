@@ -9,6 +9,7 @@
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
 #include "apothem/model/state.hpp"
+#include "apothem/model/statistics.hpp"
 #include "apothem/output/files.hpp"
 
 namespace apothem {
@@ -20,6 +21,7 @@ struct Observed {
   std::vector<CauchyStress> stress = {};  ///< of the element that holds each tracked point, Pa
   /// Boundary pressures; needed only if surfaces are tracked.
   std::vector<SurfaceRecord> surfaces = {};
+  std::vector<RegionSums> regions = {};  ///< of the model
 };
 
 /// Writes the three files of a run.
@@ -81,9 +83,12 @@ struct Outcome {
   bool met;
 };
 
-/// Evaluates an expectation with the histories in a folder of results. Minima and maxima are those
-/// of the parabola through a row and its neighbours, which is exact in free flight. Throws
-/// std::runtime_error if no row lies in the expectation's time window.
+/// A column of the histories in a folder of results, reduced to one number. Minima and maxima are
+/// those of the parabola through a row and its neighbours, which is exact in free flight. Throws
+/// std::runtime_error if no row lies in the time window.
+double reduce(const Reduction& reduction, const std::string& folder);
+
+/// Evaluates an expectation, as `reduce` does.
 Outcome evaluate(const Expectation& expectation, const std::string& folder);
 
 }  // namespace apothem

@@ -9,6 +9,7 @@
 #include "apothem/dynamics/body_start.hpp"
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/output/history.hpp"
+#include "apothem/run/stop_watch.hpp"
 #include "apothem/scene/scene.hpp"
 
 namespace apothem {
@@ -28,11 +29,13 @@ struct RunProgress {
   std::int64_t next_row = 1, next_frame = 1;
   std::vector<LoadStep> load_steps;  ///< of static runs
   Beginning beginning;
+  StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
 
   void fields(Archive& archive) {
     archive.sized("history_sizes", history_sizes);
     archive("frame_times", frame_times)("next_row", next_row)("next_frame", next_frame)(
         "load_steps", load_steps)("beginning", beginning);
+    if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };
 

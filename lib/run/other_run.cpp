@@ -72,6 +72,7 @@ void OtherRun::load(const std::string& file) {
   archive("model", record_);
   state_ = State(record_.layout());
   const nlohmann::json& simulation = json.at("simulation");
+  if (simulation.at("state").contains("absent")) state_.absent.resize(record_.bodies.size());
   JsonLoader of_simulation(simulation);
   of_simulation("state", state_);
   // The time of a static run is that of its load histories: the velocities of what it drives are
@@ -111,11 +112,10 @@ void OtherRun::hand_contacts_to(Simulation& simulation) const {
 
 std::vector<std::string> not_moved(const Model& model, const Beginning& beginning) {
   std::vector<std::string> names;
-  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
-  for (BodyIndex i = 0; i < bodies; ++i) {
-    const bool moved = std::any_of(beginning.bodies.begin(), beginning.bodies.end(),
-                                   [&](const BodyStart& start) { return start.body == i; });
-    if (!moved) names.push_back(model.name_of(i));
+  std::vector<bool> moved(model.bodies.size() + model.deformables.size());
+  for (const BodyStart& start : beginning.bodies) moved[static_cast<size_t>(start.body)] = true;
+  for (size_t i = 0; i < moved.size(); ++i) {
+    if (!moved[i]) names.push_back(model.name_of(static_cast<BodyIndex>(i)));
   }
   return names;
 }

@@ -50,6 +50,7 @@ Run::Run(Scene scene, const RunSettings& settings)
 // The simulation where it begins, or where it goes on.
 void Run::start() {
   const std::string& folder = settings_.folder;
+  progress_.stop_watch = &stop_watch_;
   if (settings_.resume) {
     begin_at(scene_.model, read_progress(folder).beginning.bodies);
     simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
@@ -117,8 +118,9 @@ void Run::loop(double until) {
         scene_.time.end * static_cast<double>(state().step + 1) / static_cast<double>(count);
     return state().step < count && next <= until * (1 + 1e-12);
   };
-  while (!stop_ && more() && step()) {
+  while (!stop_ && stopped_by_.empty() && more() && step()) {
     if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
+    look_for_stop();
     if (on_progress_) on_progress_(*this);
     const std::optional<double>& interval = scene_.output.checkpoint_interval;
     if (interval && seconds_since(last_checkpoint_) > *interval) {
@@ -126,7 +128,21 @@ void Run::loop(double until) {
       last_checkpoint_ = Clock::now();
     }
   }
-  status_ = more() ? Status::interrupted : Status::done;
+  status_ = more() && !ended() ? Status::interrupted : Status::done;
+  if (ended() && !stopped_by_.empty()) record(true, true);
+}
+
+bool Run::ended() const {
+  return reached(scene_.time.end) ||
+         (!stopped_by_.empty() && !stop_watch_.is_wall_clock(stopped_by_));
+}
+
+void Run::look_for_stop() {
+  if (const Population* population = simulation_->population()) {
+    if (population->outside() >= 0) stopped_by_ = kStoppedOutside;
+  }
+  if (scene_.stops.empty() || !stopped_by_.empty()) return;
+  stopped_by_ = stop_watch_.look(state(), simulation_->node_mass(), seconds());
 }
 
 Run::Status Run::run(std::optional<double> until) {
@@ -134,8 +150,8 @@ Run::Status Run::run(std::optional<double> until) {
   try {
     try {
       loop(end);
-      if (reached(scene_.time.end)) simulation_->check_energy();
-      close(end);
+      if (ended()) simulation_->check_energy();
+      close();
     } catch (const Unstable& error) {
       flush();
       status_ = Status::unstable;
@@ -161,9 +177,9 @@ Run::Status Run::run(std::optional<double> until) {
   return status_;
 }
 
-void Run::close(double until) {
+void Run::close() {
   flush();
-  if (reached(scene_.time.end)) {
+  if (ended()) {
     save(StateFile::final);
     if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
   } else {
@@ -173,10 +189,14 @@ void Run::close(double until) {
       flush();
     }
   }
-  if (status_ == Status::interrupted) {
+  if (status_ == Status::interrupted && !stopped_by_.empty()) {
+    message_ =
+        fmt::format("stopped by \"{}\" at t = {:.9g} s; all files are complete, --resume continues",
+                    stopped_by_, state().time);
+  } else if (status_ == Status::interrupted) {
     message_ = fmt::format(
         "interrupted at t = {:.9g} s; all files are complete, --resume continues", state().time);
-  } else if (!(until < scene_.time.end)) {
+  } else if (ended()) {
     judge();
   }
 }
@@ -192,18 +212,27 @@ void Run::record(bool row, bool frame) {
 void Run::write_row() {
   last_row_ = state().step;
   Simulation& s = *simulation_;
-  history_->add(
-      s.state(), s.energies(), s.momenta(),
-      {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),
-       scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces()});
+  const Model& model = scene_.model;
+  std::vector<RegionSums> regions;
+  if (!model.regions.empty()) {
+    const std::vector<ContactRecord> contacts = s.contacts();
+    regions = region_sums(model, s.state(), s.node_mass(), contacts,
+                          body_statistics(model, s.state(), contacts, s.stresses()));
+  }
+  history_->add(s.state(), s.energies(), s.momenta(),
+                {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),
+                 scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces(),
+                 std::move(regions)});
 }
 
 void Run::write_frame() {
   last_frame_ = state().step;
   history_->flush();
   const Simulation& s = *simulation_;
-  frames_->write(
-      {s.state(), s.contacts(), s.stresses(), s.surfaces(), s.contact_forces(), s.node_mass()});
+  const std::vector<ContactRecord> contacts = s.contacts();
+  const std::vector<CauchyStress> stresses = s.stresses();
+  frames_->write({s.state(), contacts, stresses, s.surfaces(), s.contact_forces(), s.node_mass(),
+                  body_statistics(scene_.model, s.state(), contacts, stresses)});
 }
 
 void Run::flush() {
@@ -228,6 +257,17 @@ void Run::judge() {
       outcomes_.push_back(evaluate(expectation, settings_.folder));
     } catch (const std::runtime_error&) {  // no row in its window
       outcomes_.push_back({std::nan(""), false});
+    }
+  }
+  for (const Measure& measure : scene_.measures) {
+    if (!measure.stopped_by.empty()) {
+      measures_.push_back(measure.stopped_by == stopped_by_ ? 1 : 0);
+      continue;
+    }
+    try {
+      measures_.push_back(reduce(measure.of, settings_.folder));
+    } catch (const std::runtime_error&) {  // no row in its window
+      measures_.push_back(std::nan(""));
     }
   }
 }

@@ -20,6 +20,7 @@
 #include "apothem/run/applied_force.hpp"
 #include "apothem/run/checkpoint.hpp"
 #include "apothem/run/start.hpp"
+#include "apothem/run/stop_watch.hpp"
 #include "apothem/scene/scene.hpp"
 
 namespace apothem {
@@ -86,6 +87,8 @@ class Run {
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] const State& state() const { return simulation_->state(); }
   [[nodiscard]] Status status() const { return status_; }
+  /// The rule of the scene that has ended the run before its time, or empty.
+  [[nodiscard]] const std::string& stopped_by() const { return stopped_by_; }
   /// Why the run has stopped; empty if it is done.
   [[nodiscard]] const std::string& message() const { return message_; }
   /// Reasons to doubt the results, as whole sentences: those of warn(), and at the end of run()
@@ -95,6 +98,9 @@ class Run {
   [[nodiscard]] const std::vector<LoadStep>& load_steps() const { return progress_.load_steps; }
   /// One for each expectation of the scene, after a run to its end.
   [[nodiscard]] const std::vector<Outcome>& outcomes() const { return outcomes_; }
+  /// One for each measure of the scene, after a run to its end; not finite where its window holds
+  /// no row. Of a measure that asks what has stopped the run: 1 or 0.
+  [[nodiscard]] const std::vector<double>& measures() const { return measures_; }
   /// Seconds of wall clock: in all, and for output.
   [[nodiscard]] double seconds() const;
   [[nodiscard]] double output_seconds() const { return output_seconds_; }
@@ -109,8 +115,11 @@ class Run {
   void write_frame();
   void flush();
   void save(StateFile kind);
-  void close(double until);
+  void close();
   void judge();
+  /// At its end, or stopped by a rule of the scene for good.
+  [[nodiscard]] bool ended() const;
+  void look_for_stop();
 
   Scene scene_;
   RunSettings settings_;
@@ -127,6 +136,9 @@ class Run {
   std::string message_;
   std::vector<std::string> warnings_;
   std::vector<Outcome> outcomes_;
+  std::vector<double> measures_;
+  StopWatch stop_watch_{scene_.model, scene_.stops};
+  std::string stopped_by_;
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_, last_checkpoint_;
   double output_seconds_ = 0;

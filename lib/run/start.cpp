@@ -19,8 +19,8 @@ std::string pair_text(const Model& model, const PairDepth& pair) {
 }
 
 std::string place_of(const Scene& scene, BodyIndex body) {
-  const auto rigid = static_cast<BodyIndex>(scene.rigid_places.size());
-  return body < rigid ? fmt::format("/bodies/{}", scene.rigid_places[body]) : "/bodies";
+  const auto rigid = static_cast<BodyIndex>(scene.rigid_pointers.size());
+  return body < rigid ? scene.rigid_pointers[body] : "/bodies";
 }
 
 // A resting body may press into its support a little; what is deeper would be shot out.
@@ -50,9 +50,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Sta
   try {
     simulation = std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads);
   } catch (const Unrunnable& error) {
-    const std::string index =
-        error.body() >= 0 ? "/" + std::to_string(scene.rigid_places[error.body()]) : "";
-    throw scene.error_at("/" + error.key() + index, error.what());
+    throw scene.error_at(error.body() >= 0 ? place_of(scene, error.body()) : "/" + error.key(),
+                         error.what());
   }
   if (start == Start::scene && !time.settled && !scene.model.contact.accepts_overlaps) {
     refuse_overlaps(scene, *simulation);

@@ -108,6 +108,22 @@ Json expectations(const Run& run) {
   return list;
 }
 
+// Null where a measure has no value.
+Json measures(const Run& run) {
+  Json values = Json::object();
+  const std::vector<Measure>& measures = run.scene().measures;
+  for (size_t i = 0; i < measures.size(); ++i) {
+    Json& value = values[measures[i].name] = nullptr;
+    if (i >= run.measures().size()) continue;
+    if (measures[i].stopped_by.empty()) {
+      value = run.measures()[i];
+    } else {
+      value = run.measures()[i] > 0;
+    }
+  }
+  return values;
+}
+
 Json step_changes(const Run& run) {
   const StepChanges& changes = run.simulation().step_changes();
   Json list = Json::array();
@@ -141,6 +157,7 @@ std::string summary_text(const Run& run) {
             {"set", settings(scene)},
             {"version", kVersion},
             {"status", name_of(run.status())},
+            {"stopped_by", nullptr},
             {"threads", run.settings().threads},
             {"time", state.time},
             {"steps", state.step},
@@ -162,6 +179,12 @@ std::string summary_text(const Run& run) {
   if (!run.message().empty()) json["message"] = run.message();
   json["warnings"] = run.warnings();
   json["expectations"] = expectations(run);
+  if (!run.stopped_by().empty()) json["stopped_by"] = run.stopped_by();
+  if (!run.scene().measures.empty()) json["measures"] = measures(run);
+  if (const Population* population = simulation.population()) {
+    json["bodies_come"] = population->come();
+    json["bodies_left"] = population->left();
+  }
   // JSON knows no infinity: where nothing limits the step, the limit is null.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/measure.hpp"
 #include "apothem/mesh/reorder.hpp"
 #include "apothem/model/rotation.hpp"
@@ -14,25 +15,66 @@
 
 namespace apothem {
 
-void BodyReader::read(const JsonValue& list) {
-  // All shapes are read before any body, because the origin of the model's coordinates depends on
-  // where the scene lies.
-  std::vector<Shape> shapes;
+void BodyReader::add(const std::vector<JsonValue>& bodies) {
+  for (const JsonValue& value : bodies) {
+    values_.push_back(&value);
+    shapes_.push_back(read_shape(value));
+  }
+}
+
+// All shapes are read before any body, because the origin of the model's coordinates depends on
+// where the scene lies.
+void BodyReader::read() {
   Box box;
-  for (const JsonValue& value : list.items) {
-    shapes.push_back(read_shape(value));
-    const Box own = extent(value, shapes.back());
+  for (size_t i = 0; i < shapes_.size(); ++i) {
+    const Box own = extent(*values_[i], shapes_[i]);
     box.include(own.x0, own.y0);
     box.include(own.x1, own.y1);
   }
   model_.origin = local_origin(box);
-  for (size_t i = 0; i < shapes.size(); ++i) {
-    if (const auto* polygon = std::get_if<Polygon>(&shapes[i])) {
-      rigid_body(list.items[i], *polygon);
+  for (size_t i = 0; i < shapes_.size(); ++i) {
+    if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
+      rigid_body(*values_[i], *polygon);
     } else {
-      deformable_body(list.items[i], std::move(std::get<MeshSpec>(shapes[i])));
+      deformable_body(*values_[i], std::move(std::get<MeshSpec>(shapes_[i])));
     }
   }
+}
+
+std::vector<std::vector<Vec2>> BodyReader::outlines() const {
+  std::vector<std::vector<Vec2>> rings;
+  for (size_t i = 0; i < shapes_.size(); ++i) {
+    if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
+      const Vec2 centre = polygon->origin() + area_moments(*polygon).centroid;
+      rings.push_back(moved(*values_[i], polygon->vertices(), centre));
+      continue;
+    }
+    const Mesh& mesh = std::get<MeshSpec>(shapes_[i]).mesh;
+    for (const BoundaryLoop& loop : boundary(mesh).loops) {
+      if (loop.is_hole) continue;
+      std::vector<Vec2> ring;
+      for (const int node : loop.nodes) ring.push_back(mesh.nodes[node]);
+      rings.push_back(moved(*values_[i], std::move(ring), mesh_centroid(mesh)));
+    }
+  }
+  return rings;
+}
+
+// To where "position" and "angle" put the centre.
+std::vector<Vec2> BodyReader::moved(const JsonValue& value, std::vector<Vec2> points,
+                                    const Vec2& centre) const {
+  const JsonValue* position = value.find("position");
+  const JsonValue* angle = value.find("angle");
+  if (!position && !angle) return points;
+  const Vec2 goal = position ? in_.vec2(*position, "m") : centre;
+  const double a = angle ? in_.number(*angle, "rad") : 0;
+  for (Vec2& x : points) x = goal + turned(Vec2(x - centre), a);
+  return points;
+}
+
+BodyIndex BodyReader::body_at(size_t place) const {
+  const int number = numbers_[place];
+  return number >= 0 ? number : static_cast<int>(model_.bodies.size()) - 1 - number;
 }
 
 BodyReader::Shape BodyReader::read_shape(const JsonValue& value) {
@@ -68,7 +110,8 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
   JsonObject object(in_, value);
   RigidBody body;
   name_and_material(object, body.name, body.material);
-  rigid_places_.push_back(place());
+  rigid_pointers_.push_back(value.pointer);
+  numbers_.push_back(static_cast<int>(model_.bodies.size()));
   features_.add(Feature::rigid_body, &value, place());
   object.required("polygon", "");
   if (const JsonValue* v = object.optional("materials")) {
@@ -117,6 +160,7 @@ void BodyReader::deformable_body(const JsonValue& value, MeshSpec spec) {
   JsonObject object(in_, value);
   DeformableBody body;
   name_and_material(object, body.name, body.material);
+  numbers_.push_back(-1 - static_cast<int>(model_.deformables.size()));
   require_elastic(*value.find("material"), body.material);
   features_.add(Feature::body_with_mesh, &object.required("mesh", ""), place());
   body.element = spec.element;
@@ -150,7 +194,7 @@ void BodyReader::name_and_material(JsonObject& object, std::string& name, Materi
   const JsonValue& name_value = object.required("name", "a string, unique among the bodies");
   name = in_.string(name_value);
   refuse_as_column(in_, name_value);
-  if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+  if (!known_names_.insert(name).second) {
     in_.fail(
         name_value,
         fmt::format("\"{}\" is already the name of another body; give each body its own", name));

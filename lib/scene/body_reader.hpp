@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_set>
 #include <variant>
 #include <vector>
 
@@ -20,19 +21,28 @@ class BodyReader {
   BodyReader(const JsonReader& in, const JsonValue& materials, Model& model, UsedFeatures& features)
       : in_(in), materials_(materials), model_(model), features_(features) {}
 
-  /// Reads the scene's list of bodies. Throws SceneError.
-  void read(const JsonValue& list);
+  /// Reads the shapes of bodies, which are then the next ones in the list of bodies. The values
+  /// must outlive this object. Throws SceneError.
+  void add(const std::vector<JsonValue>& bodies);
+  /// The rings around all bodies so far, where they start, in world coordinates, m.
+  [[nodiscard]] std::vector<std::vector<Vec2>> outlines() const;
+  /// Reads all bodies, when all shapes are known. Throws SceneError.
+  void read();
 
   /// Names of all bodies, in the order of the list.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// For each rigid body of the model, its place in the list.
-  [[nodiscard]] const std::vector<int>& rigid_places() const { return rigid_places_; }
+  /// JSON pointers of the rigid bodies of the model.
+  [[nodiscard]] const std::vector<std::string>& rigid_pointers() const { return rigid_pointers_; }
+  /// The number in the model of the body at a place of the list.
+  [[nodiscard]] BodyIndex body_at(size_t place) const;
 
  private:
   using Shape = std::variant<Polygon, MeshSpec>;
 
   Shape read_shape(const JsonValue& value);
   Box extent(const JsonValue& value, const Shape& shape) const;
+  [[nodiscard]] std::vector<Vec2> moved(const JsonValue& value, std::vector<Vec2> points,
+                                        const Vec2& centre) const;
   void rigid_body(const JsonValue& value, const Polygon& polygon);
   void give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body);
   void deformable_body(const JsonValue& value, MeshSpec spec);
@@ -53,8 +63,12 @@ class BodyReader {
   const JsonValue& materials_;
   Model& model_;
   UsedFeatures& features_;
+  std::vector<const JsonValue*> values_;  // of all bodies
+  std::vector<Shape> shapes_;
   std::vector<std::string> names_;
-  std::vector<int> rigid_places_;
+  std::unordered_set<std::string> known_names_;
+  std::vector<std::string> rigid_pointers_;
+  std::vector<int> numbers_;  // among the rigid bodies, or -1 - number among the deformable ones
 };
 
 }  // namespace apothem

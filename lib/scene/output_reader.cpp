@@ -138,38 +138,82 @@ void OutputReader::history(const JsonValue& value) {
   object.finish();
 }
 
-std::vector<Expectation> OutputReader::expectations(const JsonValue& value, double end) const {
+// Of all histories.
+std::vector<std::string> OutputReader::columns() const {
   std::vector<std::string> columns = names_of(history_columns(model_, output_));
   for (const std::vector<std::string>& ledger :
        {names_of(kEnergyColumns), names_of(kMomentumColumns)}) {
     columns.insert(columns.end(), ledger.begin(), ledger.end());
   }
+  columns.emplace_back("time");
+  return columns;
+}
+
+std::vector<Expectation> OutputReader::expectations(const JsonValue& value, double end) const {
+  const std::vector<std::string> known = columns();
   std::vector<Expectation> expectations;
   for (const JsonValue& item : in_.array(value)) {
-    expectations.push_back(expectation(item, columns, end));
+    expectations.push_back(expectation(item, known, end));
   }
   return expectations;
+}
+
+std::vector<Measure> OutputReader::measures(const JsonValue& value, double end,
+                                            const std::vector<std::string>& stops) const {
+  const std::vector<std::string> known = columns();
+  std::vector<Measure> measures;
+  for (const JsonValue& item : in_.array(value)) {
+    JsonObject object(in_, item);
+    Measure measure;
+    const JsonValue& name = object.required("name", "what it is called in tables");
+    refuse_as_column(in_, name);
+    measure.name = name.string;
+    for (const Measure& other : measures) {
+      if (other.name == measure.name) in_.fail(name, "is the name of another measure");
+    }
+    const JsonValue* quantity = object.optional("quantity");
+    if (const JsonValue* v = object.optional("stopped_by")) {
+      if (quantity) in_.fail(*v, "and \"quantity\" are two measures; make two entries");
+      measure.stopped_by = in_.string(*v);
+      if (std::find(stops.begin(), stops.end(), measure.stopped_by) == stops.end()) {
+        in_.fail(*v, "no \"stop\" has the name " + suggest(measure.stopped_by, stops));
+      }
+    } else {
+      const JsonValue& column = object.required("quantity",
+                                                "a column of a history; or "
+                                                "\"stopped_by\"");
+      reduction(object, column, known, end, measure.of);
+    }
+    object.finish();
+    measures.push_back(std::move(measure));
+  }
+  return measures;
+}
+
+void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
+                             const std::vector<std::string>& columns, double end,
+                             Reduction& result) const {
+  result.quantity = in_.string(quantity);
+  if (std::find(columns.begin(), columns.end(), result.quantity) == columns.end()) {
+    in_.fail(quantity, "no history has a column " + suggest(result.quantity, columns));
+  }
+  if (const JsonValue* v = object.optional("take")) {
+    result.take = static_cast<Reduction::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
+  }
+  if (const JsonValue* v = object.optional("between")) {
+    const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
+    if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
+    if (t[0] > end || t[1] < 0) in_.fail(*v, "lies outside the run");
+    result.from = t[0];
+    result.until = t[1];
+  }
 }
 
 Expectation OutputReader::expectation(const JsonValue& item,
                                       const std::vector<std::string>& columns, double end) const {
   JsonObject object(in_, item);
   Expectation e;
-  const JsonValue& quantity = object.required("quantity", "a column of a history");
-  e.quantity = in_.string(quantity);
-  if (std::find(columns.begin(), columns.end(), e.quantity) == columns.end()) {
-    in_.fail(quantity, "no history has a column " + suggest(e.quantity, columns));
-  }
-  if (const JsonValue* v = object.optional("take")) {
-    e.take = static_cast<Expectation::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
-  }
-  if (const JsonValue* v = object.optional("between")) {
-    const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
-    if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
-    if (t[0] > end || t[1] < 0) in_.fail(*v, "lies outside the run");
-    e.from = t[0];
-    e.until = t[1];
-  }
+  reduction(object, object.required("quantity", "a column of a history"), columns, end, e);
   e.value = in_.number(object.required("value", "the number to expect"), "");
   const JsonValue* absolute = object.optional("tolerance");
   const JsonValue* relative = object.optional("relative");

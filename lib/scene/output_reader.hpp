@@ -28,6 +28,9 @@ class OutputReader {
   /// Reads "expect". Called last, because expectations name the columns of the histories. `end` is
   /// the end of the run in s. Throws SceneError.
   [[nodiscard]] std::vector<Expectation> expectations(const JsonValue& value, double end) const;
+  /// Reads "measure". `stops`: names of what can end the run. Throws SceneError.
+  [[nodiscard]] std::vector<Measure> measures(const JsonValue& value, double end,
+                                              const std::vector<std::string>& stops) const;
 
  private:
   void history(const JsonValue& value);
@@ -35,6 +38,9 @@ class OutputReader {
   void tracked(const JsonValue& item);
   void track_once(std::vector<int>& list, int body, const JsonValue& value) const;
   void tracked_point(int deformable, const JsonValue& point, const JsonValue* label);
+  [[nodiscard]] std::vector<std::string> columns() const;
+  void reduction(JsonObject& object, const JsonValue& quantity,
+                 const std::vector<std::string>& columns, double end, Reduction& result) const;
   [[nodiscard]] Expectation expectation(const JsonValue& item,
                                         const std::vector<std::string>& columns, double end) const;
 

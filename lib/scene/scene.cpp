@@ -7,8 +7,10 @@
 #include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/contact_reader.hpp"
 #include "apothem/scene/deformable_reader.hpp"
+#include "apothem/scene/fill_reader.hpp"
 #include "apothem/scene/material_reader.hpp"
 #include "apothem/scene/output_reader.hpp"
+#include "apothem/scene/population_reader.hpp"
 #include "apothem/scene/time_reader.hpp"
 
 namespace apothem {
@@ -26,23 +28,32 @@ class SceneReader {
     settings(top);
     const JsonValue& materials = top.required("materials", "{\"NAME\": {\"density\": ...}, ...}");
     model_.materials = read_materials(in_, materials, features_);
-    const JsonValue& list = top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
-    if (in_.array(list).empty()) in_.fail(list, "must hold at least one body");
+    const JsonValue* fills = top.optional("fill");
+    const JsonValue* list = top.optional("bodies");
+    if (!list && !fills) top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
+    if (list && in_.array(*list).empty() && !fills) in_.fail(*list, "must hold at least one body");
     ContactReader contact(in_, model_, features_);
     if (const JsonValue* v = top.optional("contact")) {
       contact.read(*v);
-    } else if (list.items.size() > 1) {
+    } else if (fills || list->items.size() > 1) {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
-    bodies.read(list);
-    scene_.rigid_places = bodies.rigid_places();
+    if (list) bodies.add(list->items);
+    std::vector<Filled> filled;
+    if (fills) filled = FillReader(in_, bodies.outlines()).read(*fills);
+    for (const Filled& fill : filled) bodies.add(fill.bodies);
+    bodies.read();
+    scene_.rigid_pointers = bodies.rigid_pointers();
+    add_inflows(bodies, list ? list->items.size() : 0, filled);
     contact.read_pairs();
+    population(top);
     scene_.time = read_time(in_, top.required("time", "{\"end\": ...} in s"), features_);
     const JsonValue* output = top.optional("output");
     const JsonValue* expect = top.optional("expect");
+    const JsonValue* measure = top.optional("measure");
     top.finish();
-    results(bodies.names(), output, expect);
+    results(bodies.names(), output, expect, measure);
   }
 
  private:
@@ -68,6 +79,31 @@ class SceneReader {
     object.finish();
   }
 
+  // Bodies of the batches after the first one of a fill.
+  void add_inflows(const BodyReader& bodies, size_t place, const std::vector<Filled>& filled) {
+    for (const Filled& fill : filled) {
+      const size_t first = place;
+      place += fill.bodies.size();
+      if (fill.batches == 1) continue;
+      Inflow inflow{fill.every, {}};
+      for (int batch = 1; batch < fill.batches; ++batch) {
+        std::vector<BodyIndex>& members = inflow.batches.emplace_back();
+        for (int i = 0; i < fill.batch; ++i) {
+          members.push_back(bodies.body_at(first + static_cast<size_t>(batch * fill.batch + i)));
+        }
+      }
+      model_.inflows.push_back(std::move(inflow));
+      features_.add(Feature::inflow, scene_.document.find("fill"));
+    }
+  }
+
+  void population(JsonObject& top) {
+    PopulationReader reader(in_, model_, features_);
+    if (const JsonValue* v = top.optional("world")) reader.world(*v);
+    if (const JsonValue* v = top.optional("regions")) reader.regions(*v);
+    if (const JsonValue* v = top.optional("stop")) scene_.stops = reader.stops(*v);
+  }
+
   const std::string& scene_name(const JsonValue& value) {
     const std::string& name = in_.string(value);
     if (name.empty() || has_control_character(name) ||
@@ -82,7 +118,7 @@ class SceneReader {
   // Expectations are read last, because only a scene whose features go together has the columns
   // that they name.
   void results(const std::vector<std::string>& bodies, const JsonValue* output,
-               const JsonValue* expect) {
+               const JsonValue* expect, const JsonValue* measure) {
     if (scene_.time.statics) {
       scene_.output.frames = scene_.time.load_steps;
       scene_.output.history_interval = scene_.time.end / scene_.time.load_steps;
@@ -94,6 +130,15 @@ class SceneReader {
     add_features_of_all_bodies();
     refuse_incompatible(in_, features_);
     if (expect) scene_.expectations = reader.expectations(*expect, scene_.time.end);
+    if (measure) scene_.measures = reader.measures(*measure, scene_.time.end, stop_names());
+  }
+
+  // What can end a run before its time.
+  [[nodiscard]] std::vector<std::string> stop_names() const {
+    std::vector<std::string> names;
+    for (const StopRule& rule : scene_.stops) names.push_back(rule.name);
+    if (model_.world.outside == World::Outside::stop) names.emplace_back(kStoppedOutside);
+    return names;
   }
 
   void add_features_of_all_bodies() {

@@ -19,7 +19,9 @@ struct Scene {
   TimeSettings time;
   OutputSettings output;
   std::vector<Expectation> expectations;
-  std::vector<int> rigid_places;  ///< of each rigid body, its place in the scene's list of bodies
+  std::vector<StopRule> stops;
+  std::vector<Measure> measures;
+  std::vector<std::string> rigid_pointers;  ///< of each rigid body, its JSON pointer
   JsonValue document;
 
   /// An error at a JSON pointer of this scene, or at the innermost enclosing value that exists.

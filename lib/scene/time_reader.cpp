@@ -55,6 +55,7 @@ class TimeReader {
   void start(const JsonValue& value) {
     features_.add(Feature::start, &value);
     time_.settled = in_.choice(value, {"as_given", "settled"}) == 1;
+    if (time_.settled) features_.add(Feature::settled_start, &value);
   }
 
   void accuracy(const JsonValue& value) {

@@ -60,6 +60,7 @@ const std::map<std::string, std::set<std::string>> kGeometryMayInclude{
     {"integrals", {"polygon", "skeleton", "potential"}},
     {"exact", {"polygon", "skeleton", "potential", "integrals"}},
     {"meshing", {"polygon", "spatial"}},
+    {"packing", {"polygon", "spatial", "skeleton", "meshing"}},
 };
 
 std::string folder_of(const std::string& room) { return room == "geometry" ? room : "lib/" + room; }

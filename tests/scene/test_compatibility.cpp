@@ -62,7 +62,26 @@ struct FeatureTrial {
 using F = Feature;
 const char* const kMotion = R"({ "velocity": [[0, 1, 0]] })";
 const char* const kMassDamping = R"({ "model": "mass", "rate": 1 })";
+const char* const kRepeatedFill =
+    R"([ { "name": "pebble", "material": "rock", "region": [[5, 5], [9, 5], [9, 9]], "count": 2,
+           "shapes": [ { "cross": {} } ], "diameter": 0.1, "repeat": { "times": 2 } } ])";
 const std::vector<FeatureTrial> kTrials{
+    {F::inflow, F::static_run, kStatic, {{"/fill", kRepeatedFill}}, "/fill"},
+    {F::inflow,
+     F::settled_start,
+     kRigid,
+     {{"/time/start", "\"settled\""}, {"/fill", kRepeatedFill}},
+     "/fill"},
+    {F::outside,
+     F::static_run,
+     kStatic,
+     {{"/world", R"({ "box": [[-9, -9], [9, 9]], "outside": "remove" })"}},
+     "/world/outside"},
+    {F::stop_rule,
+     F::static_run,
+     kStatic,
+     {{"/stop", R"([ { "name": "few", "count_below": 1 } ])"}},
+     "/stop"},
     {F::field,
      F::area_potential,
      kRigid,

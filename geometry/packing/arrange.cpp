@@ -1,0 +1,184 @@
+#include "apothem/geometry/packing/arrange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "apothem/geometry/packing/block_shapes.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr int kTries = 20000;
+
+std::vector<Vec2> ring_of(const Block& block, const Vec2& place, double scale = 1) {
+  return placed(block.shape, place, block.angle, scale * block.scale);
+}
+
+// The largest first, those of equal size in their order.
+std::vector<size_t> by_size(const std::vector<Block>& blocks) {
+  std::vector<size_t> order(blocks.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t i, size_t j) { return blocks[i].scale > blocks[j].scale; });
+  return order;
+}
+
+Vec2 random_place(const Box& box, Random& random) {
+  const double x = random.uniform(box.x0, box.x1);
+  return {x, random.uniform(box.y0, box.y1)};
+}
+
+}  // namespace
+
+Arrangement insert_at_random(PackingSpace& space, Random& random,
+                             const std::vector<Block>& blocks) {
+  Arrangement result;
+  result.rings.resize(blocks.size());
+  for (const size_t i : by_size(blocks)) {
+    int tries = 0;
+    do {
+      result.rings[i] = ring_of(blocks[i], random_place(space.box(), random));
+      ++tries;
+    } while (!space.is_free(result.rings[i]) && tries < kTries);
+    if (tries == kTries) {
+      result.rings[i].clear();
+      return result;
+    }
+    space.add(result.rings[i]);
+    ++result.placed;
+  }
+  return result;
+}
+
+Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks) {
+  Arrangement result;
+  result.rings.resize(blocks.size());
+  std::vector<Box> boxes;
+  double width = 0, height = 0;
+  for (const Block& block : blocks) {
+    Box box;
+    for (const Vec2& v : ring_of(block, Vec2::Zero())) box.include(v.x(), v.y());
+    boxes.push_back(box);
+    width = std::max(width, box.x1 - box.x0);
+    height = std::max(height, box.y1 - box.y0);
+  }
+  // Twice the clearance, so that rounding cannot make neighbours too near.
+  width += 2 * space.clearance();
+  height += 2 * space.clearance();
+  const Box& region = space.box();
+  for (double y = region.y0 + height / 2; y + height / 2 <= region.y1 + height; y += height) {
+    for (double x = region.x0 + width / 2; x + width / 2 <= region.x1 + width; x += width) {
+      const auto next = static_cast<size_t>(result.placed);
+      if (next == blocks.size()) return result;
+      const Box& box = boxes[next];
+      const Vec2 centre((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
+      std::vector<Vec2> ring = ring_of(blocks[next], Vec2(x, y) - centre);
+      if (!space.is_free(ring)) continue;
+      space.add(ring);
+      result.rings[next] = std::move(ring);
+      ++result.placed;
+    }
+  }
+  return result;
+}
+
+namespace {
+
+constexpr double kLooseFraction = .3;  // solid fraction at which blocks are inserted
+constexpr double kFirstMove = .2;      // of a block's size
+constexpr double kAccepted = .4;       // share of moves that should succeed
+constexpr int kSweepsOfALook = 100;    // sweeps between looks at the growth
+constexpr double kSlowest = 1e-4;      // growth between two looks at which it ends
+
+// Blocks that grow and move at random.
+class Growth {
+ public:
+  Growth(PackingSpace& space, Random& random, std::vector<Block> blocks, bool turns)
+      : space_(space), random_(random), blocks_(std::move(blocks)), turns_(turns) {
+    double solid = 0;
+    for (const Block& b : blocks_) solid += b.scale * b.scale;
+    scale_ = std::min(1., std::sqrt(kLooseFraction * space.area() / solid));
+  }
+
+  Arrangement run() {
+    std::vector<Block> small = blocks_;
+    for (Block& b : small) b.scale *= scale_;
+    Arrangement result = insert_at_random(space_, random_, small);
+    if (result.placed < static_cast<int>(blocks_.size())) return result;
+    for (const std::vector<Vec2>& ring : result.rings) places_.push_back(centroid(ring));
+    double at_last_look = scale_;
+    for (int sweep = 1; scale_ < 1; ++sweep) {
+      move_all();
+      grow_all();
+      if (sweep % kSweepsOfALook != 0) continue;
+      if (scale_ < at_last_look * (1 + kSlowest)) break;
+      at_last_look = scale_;
+    }
+    result.scale = scale_;
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      result.rings[i] = space_.block(static_cast<int>(i));
+    }
+    return result;
+  }
+
+ private:
+  static Vec2 centroid(const std::vector<Vec2>& ring) {
+    return ring.front() + area_moments(Polygon(ring)).centroid;
+  }
+
+  void move_all() {
+    int accepted = 0;
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      const double size = scale_ * blocks_[i].scale, reach = move_ * size;
+      const double x = random_.uniform(-reach, reach);
+      const Vec2 place = places_[i] + Vec2(x, random_.uniform(-reach, reach));
+      Block turned = blocks_[i];
+      if (turns_) turned.angle += random_.uniform(-move_, move_);
+      std::vector<Vec2> ring = ring_of(turned, place, scale_);
+      if (!space_.is_free(ring, static_cast<int>(i))) continue;
+      space_.move(static_cast<int>(i), std::move(ring));
+      places_[i] = place;
+      blocks_[i].angle = turned.angle;
+      ++accepted;
+    }
+    const double share = static_cast<double>(accepted) / static_cast<double>(blocks_.size());
+    move_ = std::clamp(move_ * (share > kAccepted ? 1.05 : .95), 1e-6, .5);
+  }
+
+  // As much as all blocks allow, of the rate that is tried.
+  void grow_all() {
+    const double goal = std::min(1., scale_ * (1 + rate_));
+    std::vector<std::vector<Vec2>> before;
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      const int block = static_cast<int>(i);
+      std::vector<Vec2> ring = ring_of(blocks_[i], places_[i], goal);
+      before.push_back(space_.block(block));
+      if (space_.is_free(ring, block)) {
+        space_.move(block, std::move(ring));
+        continue;
+      }
+      for (size_t k = 0; k < i; ++k) space_.move(static_cast<int>(k), std::move(before[k]));
+      rate_ = std::max(rate_ / 2, 1e-9);
+      return;
+    }
+    scale_ = goal;
+    rate_ = std::min(rate_ * 1.5, .05);
+  }
+
+  PackingSpace& space_;
+  Random& random_;
+  std::vector<Block> blocks_;
+  bool turns_;
+  std::vector<Vec2> places_;
+  double scale_, move_ = kFirstMove, rate_ = .01;
+};
+
+}  // namespace
+
+Arrangement grow(PackingSpace& space, Random& random, const std::vector<Block>& blocks,
+                 bool turns) {
+  return Growth(space, random, blocks, turns).run();
+}
+
+}  // namespace apothem

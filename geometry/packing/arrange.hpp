@@ -1,0 +1,40 @@
+// Arrangements of blocks in a space: by random sequential insertion, on a lattice, or dense, by
+// growing from small.
+#pragma once
+
+#include <vector>
+
+#include "apothem/geometry/packing/packing_space.hpp"
+#include "apothem/geometry/packing/random.hpp"
+
+namespace apothem {
+
+/// A block to be placed.
+struct Block {
+  std::vector<Vec2> shape;  ///< of area 1 about its centroid (block_shapes.hpp)
+  double scale = 1;         ///< square root of its area, m
+  double angle = 0;         ///< rad
+};
+
+/// What has been placed, and what could not be.
+struct Arrangement {
+  std::vector<std::vector<Vec2>> rings;  ///< of the blocks, in their order; empty if not placed
+  int placed = 0;
+  double scale = 1;  ///< that the blocks have reached, of their sizes; below 1 only for `grow`
+};
+
+/// Puts one block after the other, the largest first, at a random place where it is free (random
+/// sequential insertion). Ends at the first block that finds no place in 20 000 tries.
+Arrangement insert_at_random(PackingSpace& space, Random& random, const std::vector<Block>& blocks);
+
+/// Puts blocks row by row, from below, into rectangular cells as wide and as high as the widest and
+/// the highest block. Cells where a block is not free stay empty.
+Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks);
+
+/// Inserts the blocks at random while they are small, and lets all grow at the same rate while they
+/// move at random and never overlap (Monte Carlo form of B. D. Lubachevsky and F. H. Stillinger, J.
+/// Stat. Phys. 60 (1990) 561-583). `turns`: blocks may turn as well. Ends at full size, or when
+/// growth has become slower than 1e-4 per hundred sweeps.
+Arrangement grow(PackingSpace& space, Random& random, const std::vector<Block>& blocks, bool turns);
+
+}  // namespace apothem

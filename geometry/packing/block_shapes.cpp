@@ -1,0 +1,96 @@
+#include "apothem/geometry/packing/block_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apothem/geometry/polygon/polygon.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kTurn = .45;      // rad
+constexpr double kNearest = .5;    // of a corner from the centre, over a common length
+constexpr double kFarthest = .72;  // likewise
+constexpr int kDraws = 1000;
+
+bool angles_between(const std::vector<Vec2>& ring, double smallest, double largest) {
+  const size_t n = ring.size();
+  for (size_t i = 0; i < n; ++i) {
+    const Vec2 to_next = ring[(i + 1) % n] - ring[i], to_last = ring[(i + n - 1) % n] - ring[i];
+    const double angle = std::atan2(cross(to_next, to_last), to_next.dot(to_last));
+    if (!(angle >= smallest && angle <= largest)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Vec2> random_quadrilateral(Random& random, double smallest, double largest) {
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<Vec2> ring;
+    for (int k = 0; k < 4; ++k) {
+      const double angle = k * M_PI / 2 + random.uniform(-kTurn, kTurn);
+      const double radius = random.uniform(kNearest, kFarthest);
+      ring.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    if (angles_between(ring, smallest, largest)) return normalised(std::move(ring));
+  }
+  throw std::invalid_argument("no quadrilateral has all its angles in this narrow a range");
+}
+
+std::vector<Vec2> random_polygon(Random& random, int corners, double aspect, double roundness) {
+  const double off = (1 - roundness) / 2;
+  std::vector<Vec2> ring;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2 * M_PI * (k + random.uniform(-off, off)) / corners;
+    ring.emplace_back(aspect * std::cos(angle), std::sin(angle));
+  }
+  return normalised(std::move(ring));
+}
+
+std::vector<Vec2> cross_shape(double arm) {
+  const double near = .5, far = near + arm;
+  return normalised({{-near, -far},
+                     {near, -far},
+                     {near, -near},
+                     {far, -near},
+                     {far, near},
+                     {near, near},
+                     {near, far},
+                     {-near, far},
+                     {-near, near},
+                     {-far, near},
+                     {-far, -near},
+                     {-near, -near}});
+}
+
+std::vector<Vec2> normalised(std::vector<Vec2> ring) {
+  const Polygon polygon(std::move(ring));
+  const AreaMoments moments = area_moments(polygon);
+  std::vector<Vec2> result = polygon.local_vertices();
+  const double scale = 1 / std::sqrt(moments.area);
+  for (Vec2& v : result) v = scale * (v - moments.centroid);
+  return result;
+}
+
+std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, double angle,
+                         double scale) {
+  const double c = scale * std::cos(angle), s = scale * std::sin(angle);
+  std::vector<Vec2> result;
+  result.reserve(ring.size());
+  for (const Vec2& v : ring) {
+    result.emplace_back(place.x() + c * v.x() - s * v.y(), place.y() + s * v.x() + c * v.y());
+  }
+  return result;
+}
+
+double area_of(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (size_t i = 2; i < ring.size(); ++i) {
+    twice += cross(Vec2(ring[i - 1] - ring[0]), Vec2(ring[i] - ring[0]));
+  }
+  return twice / 2;
+}
+
+}  // namespace apothem

@@ -1,0 +1,161 @@
+#include "apothem/geometry/packing/packing_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kLeastClearance = 1e-9;  // of the size of a block
+constexpr double kMostCells = 4e6;
+
+Box box_of(const std::vector<Vec2>& ring) {
+  Box box;
+  for (const Vec2& v : ring) box.include(v.x(), v.y());
+  return box;
+}
+
+Box box_between(const Vec2& a, const Vec2& b) {
+  return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.x(), b.x()),
+          std::max(a.y(), b.y())};
+}
+
+double square_distance(const Vec2& point, const Vec2& a, const Vec2& b) {
+  const Vec2 along = b - a, from = point - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp(from.dot(along) / length2, 0., 1.) : 0;
+  return (from - t * along).squaredNorm();
+}
+
+// Rounding may hide a crossing only where an end lies on the other segment, and then that end is
+// nearer than any clearance.
+bool nearer(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, double distance) {
+  const Vec2 ab = b - a, cd = d - c;
+  const bool crosses_ab = (cross(ab, Vec2(c - a)) > 0) != (cross(ab, Vec2(d - a)) > 0);
+  const bool crosses_cd = (cross(cd, Vec2(a - c)) > 0) != (cross(cd, Vec2(b - c)) > 0);
+  if (crosses_ab && crosses_cd) return true;
+  const double least = std::min({square_distance(a, c, d), square_distance(b, c, d),
+                                 square_distance(c, a, b), square_distance(d, a, b)});
+  return least < distance * distance;
+}
+
+bool borders_nearer(const std::vector<Vec2>& a, const Box& box_a, const std::vector<Vec2>& b,
+                    double distance) {
+  const Box reach = box_a.grown(distance);
+  for (size_t j = 0; j < b.size(); ++j) {
+    const Vec2& from = b[j];
+    const Vec2& to = b[j + 1 == b.size() ? 0 : j + 1];
+    const Box edge = box_between(from, to);
+    if (apart(edge, reach)) continue;
+    const Box near = edge.grown(distance);
+    for (size_t i = 0; i < a.size(); ++i) {
+      const Vec2& p = a[i];
+      const Vec2& q = a[i + 1 == a.size() ? 0 : i + 1];
+      if (!apart(near, box_between(p, q)) && nearer(p, q, from, to, distance)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+PackingSpace::PackingSpace(const Polygon& outline, const std::vector<Polygon>& holes, double gap,
+                           double size)
+    : outline_(outline.vertices()),
+      box_(bounding_box(outline)),
+      area_(area_moments(outline).area),
+      clearance_(std::max(gap, kLeastClearance * size)) {
+  const double width = box_.x1 - box_.x0, height = box_.y1 - box_.y0;
+  cell_ = std::max(size, std::sqrt(width * height / kMostCells));
+  columns_ = static_cast<int>(std::ceil(width / cell_)) + 1;
+  rows_ = static_cast<int>(std::ceil(height / cell_)) + 1;
+  cells_.resize(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
+  for (const Polygon& hole : holes) {
+    add_obstacle(hole.vertices());
+    area_ -= area_moments(hole).area;
+  }
+}
+
+template <class F>
+void PackingSpace::each_cell(const Box& box, F&& f) const {
+  const auto index = [&](double x, double from, int count) {
+    return static_cast<int>(std::clamp(std::floor((x - from) / cell_), 0., count - 1.));
+  };
+  const int x0 = index(box.x0, box_.x0, columns_), x1 = index(box.x1, box_.x0, columns_);
+  const int y0 = index(box.y0, box_.y0, rows_), y1 = index(box.y1, box_.y0, rows_);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) f(static_cast<size_t>(y) * static_cast<size_t>(columns_) + x);
+  }
+}
+
+void PackingSpace::enter(size_t solid) {
+  each_cell(solids_[solid].box, [&](size_t cell) { cells_[cell].push_back(solid); });
+}
+
+void PackingSpace::leave(size_t solid) {
+  each_cell(solids_[solid].box, [&](size_t cell) { std::erase(cells_[cell], solid); });
+}
+
+void PackingSpace::add_obstacle(const std::vector<Vec2>& ring) {
+  const Box box = box_of(ring);
+  if (apart(box, box_.grown(clearance_))) return;
+  add(ring);
+  ++fixed_;
+}
+
+void PackingSpace::add(std::vector<Vec2> ring) {
+  const Box box = box_of(ring);
+  solids_.push_back({std::move(ring), box});
+  seen_.push_back(0);
+  enter(solids_.size() - 1);
+}
+
+void PackingSpace::move(int block, std::vector<Vec2> ring) {
+  const size_t i = fixed_ + static_cast<size_t>(block);
+  leave(i);
+  solids_[i].box = box_of(ring);
+  solids_[i].ring = std::move(ring);
+  enter(i);
+}
+
+void PackingSpace::clear() {
+  for (size_t i = fixed_; i < solids_.size(); ++i) leave(i);
+  solids_.resize(fixed_);
+  seen_.resize(fixed_);
+}
+
+bool PackingSpace::keeps_off_border(const std::vector<Vec2>& ring, const Box& box) const {
+  if (!contains(box_, box) || borders_nearer(ring, box, outline_, clearance_)) return false;
+  return strictly_inside(outline_, ring.front());
+}
+
+bool PackingSpace::is_free(const std::vector<Vec2>& ring, int except) const {
+  const Box box = box_of(ring);
+  return contains(box_, box) && is_clear(ring, except) && keeps_off_border(ring, box);
+}
+
+bool PackingSpace::is_clear(const std::vector<Vec2>& ring, int except) const {
+  const Box box = box_of(ring);
+  const Box reach = box.grown(clearance_);
+  const size_t skipped = except < 0 ? solids_.size() : fixed_ + static_cast<size_t>(except);
+  ++question_;
+  bool clear = true;
+  each_cell(reach, [&](size_t cell) {
+    for (const size_t i : cells_[cell]) {
+      if (!clear) return;
+      if (i == skipped || seen_[i] == question_) continue;
+      seen_[i] = question_;
+      const Solid& other = solids_[i];
+      if (apart(reach, other.box)) continue;
+      clear = !borders_nearer(ring, box, other.ring, clearance_) &&
+              !(contains(other.box, box) && strictly_inside(other.ring, ring.front())) &&
+              !(contains(box, other.box) && strictly_inside(ring, other.ring.front()));
+    }
+  });
+  return clear;
+}
+
+}  // namespace apothem

@@ -1,0 +1,131 @@
+#include "apothem/output/force_lines.hpp"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <array>
+#include <cmath>
+
+#include "apothem/model/columns.hpp"
+#include "apothem/output/vtk_grid.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr size_t kSectors = 36;
+
+// What a rose shows.
+struct Rose {
+  std::array<double, kSectors> count{}, force{};
+  double contacts = 0, all_force = 0;
+
+  // Both bodies see the contact, from opposite sides.
+  void add(const Vec2& normal) {
+    const double size = normal.norm();
+    for (const Vec2& n : {normal, Vec2(-normal)}) {
+      const double turns = std::atan2(n.y(), n.x()) / (2 * M_PI) + 1;
+      const auto sector = static_cast<size_t>(turns * kSectors) % kSectors;
+      count[sector] += 1;
+      force[sector] += size;
+    }
+    contacts += 2;
+    all_force += 2 * size;
+  }
+  [[nodiscard]] double frequency(size_t sector) const {
+    return contacts > 0 ? count[sector] * kSectors / contacts : 0;
+  }
+  [[nodiscard]] double mean_force(size_t sector) const {
+    return count[sector] > 0 ? force[sector] / count[sector] * contacts / all_force : 0;
+  }
+};
+
+Rose rose_of(const Region& region, const std::vector<ContactRecord>& contacts) {
+  Rose rose;
+  for (const ContactRecord& c : contacts) {
+    if (region.contains(c.point) && c.normal.norm() > 0) rose.add(c.normal);
+  }
+  return rose;
+}
+
+}  // namespace
+
+vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents& frame) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> a = integers("body_a"), b = integers("body_b");
+  vtkNew<vtkDoubleArray> normal = doubles("normal_force", 1);
+  vtkNew<vtkDoubleArray> tangential = doubles("tangential_force", 1);
+  const auto add_point = [&](const Vec2& world) {
+    cells->InsertCellPoint(points->InsertNextPoint(world.x(), world.y(), 0));
+  };
+  const auto free_centre = [&](BodyIndex body) -> std::optional<Vec2> {
+    const bool rigid = body < static_cast<BodyIndex>(model.bodies.size());
+    if (rigid && model.bodies[body].motion != Motion::free) return {};
+    return motion_of(model, frame.state, body, {}, frame.node_mass).place;
+  };
+  for (const ContactRecord& c : frame.contacts) {
+    const std::optional<Vec2> from = free_centre(c.a), to = free_centre(c.b);
+    const Vec2 point = c.point + model.origin;
+    cells->InsertNextCell(1 + (from ? 1 : 0) + (to ? 1 : 0));
+    if (from) add_point(*from);
+    add_point(point);
+    if (to) add_point(*to);
+    a->InsertNextValue(c.a);
+    b->InsertNextValue(c.b);
+    normal->InsertNextValue((c.normal + c.damping).norm());
+    tangential->InsertNextValue(c.tangential.norm());
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLY_LINE, cells);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, normal, tangential}) {
+    grid->GetCellData()->AddArray(array);
+  }
+  return grid;
+}
+
+vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> of_region = integers("region");
+  vtkNew<vtkDoubleArray> frequency = doubles("frequency", 1);
+  vtkNew<vtkDoubleArray> force = doubles("mean_force", 1);
+  for (size_t r = 0; r < model.regions.size(); ++r) {
+    const Region& region = model.regions[r];
+    Box box;
+    for (const std::vector<Vec2>& part : region.parts) {
+      for (const Vec2& v : part) box.include(v.x(), v.y());
+    }
+    const Vec2 middle = Vec2((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2) + model.origin;
+    const double unit = std::sqrt(region.area) / 4;
+    const Rose rose = rose_of(region, frame.contacts);
+    const vtkIdType first = points->GetNumberOfPoints();
+    cells->InsertNextCell(2 * static_cast<int>(kSectors) + 1);
+    for (size_t s = 0; s < kSectors; ++s) {
+      for (const size_t end : {s, s + 1}) {
+        const double angle = 2 * M_PI * static_cast<double>(end) / kSectors;
+        const double radius = unit * rose.frequency(s);
+        cells->InsertCellPoint(points->InsertNextPoint(middle.x() + radius * std::cos(angle),
+                                                       middle.y() + radius * std::sin(angle), 0));
+        frequency->InsertNextValue(rose.frequency(s));
+        force->InsertNextValue(rose.mean_force(s));
+      }
+    }
+    cells->InsertCellPoint(first);
+    of_region->InsertNextValue(static_cast<int>(r));
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLY_LINE, cells);
+  grid->GetCellData()->AddArray(of_region);
+  grid->GetPointData()->AddArray(frequency);
+  grid->GetPointData()->AddArray(force);
+  return grid;
+}
+
+}  // namespace apothem

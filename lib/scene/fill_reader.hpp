@@ -1,0 +1,35 @@
+// Expands the fills of a scene into bodies: draws shapes, sizes and angles, and arranges the blocks
+// so that nothing overlaps.
+#pragma once
+
+#include <vector>
+
+#include "apothem/geometry/packing/arrange.hpp"
+#include "apothem/scene/json.hpp"
+
+namespace apothem {
+
+/// The bodies of one fill.
+struct Filled {
+  std::vector<JsonValue> bodies;  ///< as they would stand in the scene, batch after batch
+  int batch = 0;                  ///< number of bodies in a batch
+  int batches = 1;                ///< the first is there from the start
+  double every = 0;               ///< s, least time between two batches
+};
+
+class FillReader {
+ public:
+  /// `obstacles`: rings (m) of the bodies that the scene has already; blocks stay clear of them.
+  FillReader(const JsonReader& in, std::vector<std::vector<Vec2>> obstacles)
+      : in_(in), obstacles_(std::move(obstacles)) {}
+
+  /// Reads the scene's list of fills, each of which stays clear of those before it. Throws
+  /// SceneError.
+  std::vector<Filled> read(const JsonValue& list);
+
+ private:
+  const JsonReader& in_;
+  std::vector<std::vector<Vec2>> obstacles_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,124 @@
+#include "apothem/scene/population_reader.hpp"
+
+#include <algorithm>
+
+#include "apothem/geometry/polygon/convex_parts.hpp"
+#include "apothem/scene/output_reader.hpp"
+#include "apothem/scene/polygon_value.hpp"
+
+namespace apothem {
+
+void PopulationReader::world(const JsonValue& value) {
+  JsonObject object(in_, value);
+  if (const JsonValue* v = object.optional("periodic")) {
+    in_.fail(*v, "periodic cells are not supported yet; leave it out");
+  }
+  const JsonValue& box = object.required("box", "[[x0, y0], [x1, y1]] in m");
+  if (in_.array(box).size() != 2) in_.fail(box, "must be [[x0, y0], [x1, y1]] in m");
+  const Vec2 low = in_.vec2(box.items[0], "m") - model_.origin;
+  const Vec2 high = in_.vec2(box.items[1], "m") - model_.origin;
+  if (!(low.x() < high.x() && low.y() < high.y())) {
+    in_.fail(box, "must be two corners, the lower left one first");
+  }
+  model_.world.box = {low.x(), low.y(), high.x(), high.y()};
+  const JsonValue& outside =
+      object.required("outside",
+                      "what happens to bodies that leave the box: \"keep\", \"remove\" "
+                      "or \"stop\"");
+  object.finish();
+  model_.world.outside =
+      static_cast<World::Outside>(in_.choice(outside, {kOutsides.begin(), kOutsides.end()}));
+  if (model_.world.outside != World::Outside::keep) features_.add(Feature::outside, &outside);
+}
+
+void PopulationReader::regions(const JsonValue& value) {
+  if (value.type != JsonValue::Type::object) {
+    in_.fail(value, "must be {\"NAME\": {\"polygon\": [[x,y],...]}, ...}");
+  }
+  for (size_t i = 0; i < value.items.size(); ++i) {
+    const JsonValue& item = value.items[i];
+    const std::string& name = value.keys[i];
+    if (name.empty() || has_control_character(name) ||
+        name.find_first_of(",\"[]") != std::string::npos) {
+      in_.fail(item,
+               "has a name that cannot head the columns of a table: it must not be empty nor "
+               "hold , \" [ ]");
+    }
+    JsonObject object(in_, item);
+    const Polygon polygon = read_polygon(in_, object.required("polygon", "[[x,y],...] in m"));
+    object.finish();
+    Region region{name, {}, area_moments(polygon).area};
+    for (const std::vector<int>& part : convex_parts(polygon)) {
+      std::vector<Vec2>& ring = region.parts.emplace_back();
+      for (const int vertex : part) ring.push_back(polygon[vertex] - model_.origin);
+    }
+    model_.regions.push_back(std::move(region));
+  }
+}
+
+std::vector<StopRule> PopulationReader::stops(const JsonValue& value) {
+  features_.add(Feature::stop_rule, &value);
+  std::vector<StopRule> rules;
+  for (const JsonValue& item : in_.array(value)) {
+    rules.push_back(stop(item));
+    for (size_t i = 0; i + 1 < rules.size(); ++i) {
+      if (rules[i].name == rules.back().name) {
+        in_.fail(*item.find("name"), "is the name of another rule");
+      }
+    }
+  }
+  return rules;
+}
+
+double PopulationReader::not_negative(const JsonValue& value, const std::string& unit) const {
+  const double x = in_.number(value, unit);
+  if (x < 0) in_.fail(value, "must not be negative");
+  return x;
+}
+
+StopRule PopulationReader::stop(const JsonValue& value) const {
+  JsonObject object(in_, value);
+  StopRule rule;
+  rule.name = in_.string(object.required("name", "a string, for \"stopped_by\""));
+  if (const JsonValue* v = object.optional("region")) {
+    std::vector<std::string> names;
+    for (const Region& region : model_.regions) names.push_back(region.name);
+    const auto found = std::find(names.begin(), names.end(), in_.string(*v));
+    if (found == names.end()) in_.fail(*v, "unknown region " + suggest(v->string, names));
+    rule.region = static_cast<int>(found - names.begin());
+  }
+  int conditions = 0;
+  if (const JsonValue* v = object.optional("kinetic_per_body")) {
+    rule.kinetic_per_body = in_.positive(*v, "J");
+    ++conditions;
+  }
+  if (const JsonValue* v = object.optional("count_below")) {
+    rule.count_below = in_.count(*v);
+    ++conditions;
+  }
+  if (const JsonValue* v = object.optional("count_above")) {
+    rule.count_above = in_.count(*v);
+    ++conditions;
+  }
+  if (const JsonValue* v = object.optional("no_exit_for")) {
+    rule.no_exit_for = in_.positive(*v, "s");
+    if (rule.region < 0) in_.fail(*v, "needs a \"region\" that bodies can leave");
+    ++conditions;
+  }
+  if (const JsonValue* v = object.optional("wall_clock")) {
+    rule.wall_clock = in_.positive(*v, "s of real time");
+    if (conditions > 0) in_.fail(*v, "stands alone; make two entries");
+    ++conditions;
+  }
+  if (const JsonValue* v = object.optional("for")) rule.hold = not_negative(*v, "s");
+  if (const JsonValue* v = object.optional("after")) rule.after = not_negative(*v, "s");
+  object.finish();
+  if (conditions == 0) {
+    in_.fail(value,
+             "must give one or more of kinetic_per_body, count_below, count_above, "
+             "no_exit_for, wall_clock");
+  }
+  return rule;
+}
+
+}  // namespace apothem

@@ -1,0 +1,34 @@
+// Reads what a scene says of many bodies: the world, the regions, and when to stop.
+#pragma once
+
+#include <vector>
+
+#include "apothem/model/model.hpp"
+#include "apothem/model/settings.hpp"
+#include "apothem/scene/compatibility.hpp"
+#include "apothem/scene/json.hpp"
+
+namespace apothem {
+
+class PopulationReader {
+ public:
+  /// The model has its origin, and receives world and regions.
+  PopulationReader(const JsonReader& in, Model& model, UsedFeatures& features)
+      : in_(in), model_(model), features_(features) {}
+
+  /// All throw SceneError.
+  void world(const JsonValue& value);
+  void regions(const JsonValue& value);
+  /// Called after `regions`.
+  [[nodiscard]] std::vector<StopRule> stops(const JsonValue& value);
+
+ private:
+  [[nodiscard]] StopRule stop(const JsonValue& value) const;
+  [[nodiscard]] double not_negative(const JsonValue& value, const std::string& unit) const;
+
+  const JsonReader& in_;
+  Model& model_;
+  UsedFeatures& features_;
+};
+
+}  // namespace apothem
