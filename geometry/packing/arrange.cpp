@@ -24,14 +24,14 @@ std::vector<size_t> by_size(const std::vector<Block>& blocks) {
   return order;
 }
 
-Vec2 random_place(const Box& box, Random& random) {
+Vec2 random_place(const Box& box, RandomNumbers& random) {
   const double x = random.uniform(box.x0, box.x1);
   return {x, random.uniform(box.y0, box.y1)};
 }
 
 }  // namespace
 
-Arrangement insert_at_random(PackingSpace& space, Random& random,
+Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
                              const std::vector<Block>& blocks) {
   Arrangement result;
   result.rings.resize(blocks.size());
@@ -88,37 +88,39 @@ namespace {
 constexpr double kLooseFraction = .3;  // solid fraction at which blocks are inserted
 constexpr double kFirstMove = .2;      // of a block's size
 constexpr double kAccepted = .4;       // share of moves that should succeed
-constexpr int kSweepsOfALook = 100;    // sweeps between looks at the growth
-constexpr double kSlowest = 1e-4;      // growth between two looks at which it ends
+constexpr double kGrowth = .05;        // largest growth of a block in a sweep
+constexpr int kSweepsOfALook = 500;    // sweeps between looks at the growth
+constexpr double kSlowest = 1e-3;      // growth of the missing area between two looks, at the end
 
-// Blocks that grow and move at random.
+// Blocks that grow and move at random, each as much as there is room.
 class Growth {
  public:
-  Growth(PackingSpace& space, Random& random, std::vector<Block> blocks, bool turns)
+  Growth(PackingSpace& space, RandomNumbers& random, std::vector<Block> blocks, bool turns)
       : space_(space), random_(random), blocks_(std::move(blocks)), turns_(turns) {
-    double solid = 0;
-    for (const Block& b : blocks_) solid += b.scale * b.scale;
-    scale_ = std::min(1., std::sqrt(kLooseFraction * space.area() / solid));
+    for (const Block& b : blocks_) solid_ += b.scale * b.scale;
+    const double start = std::min(1., std::sqrt(kLooseFraction * space.area() / solid_));
+    parts_.assign(blocks_.size(), start);
+    rates_.assign(blocks_.size(), kGrowth);
   }
 
   Arrangement run() {
     std::vector<Block> small = blocks_;
-    for (Block& b : small) b.scale *= scale_;
+    for (size_t i = 0; i < small.size(); ++i) small[i].scale *= parts_[i];
     Arrangement result = insert_at_random(space_, random_, small);
     if (result.placed < static_cast<int>(blocks_.size())) return result;
-    for (const std::vector<Vec2>& ring : result.rings) places_.push_back(centroid(ring));
-    double at_last_look = scale_;
-    for (int sweep = 1; scale_ < 1; ++sweep) {
+    number_blocks(small);
+    for (size_t i = 0; i < blocks_.size(); ++i) places_.push_back(centroid(result.rings[i]));
+    double missing = missing_area();
+    for (int sweep = 1; missing > 0; ++sweep) {
       move_all();
       grow_all();
       if (sweep % kSweepsOfALook != 0) continue;
-      if (scale_ < at_last_look * (1 + kSlowest)) break;
-      at_last_look = scale_;
+      const double now = missing_area();
+      if (now > missing * (1 - kSlowest)) break;
+      missing = now;
     }
-    result.scale = scale_;
-    for (size_t i = 0; i < blocks_.size(); ++i) {
-      result.rings[i] = space_.block(static_cast<int>(i));
-    }
+    result.scale = std::sqrt(1 - missing_area() / solid_);
+    for (size_t i = 0; i < blocks_.size(); ++i) result.rings[i] = space_.block(numbers_[i]);
     return result;
   }
 
@@ -127,56 +129,70 @@ class Growth {
     return ring.front() + area_moments(Polygon(ring)).centroid;
   }
 
+  // The space numbers blocks as they were inserted.
+  void number_blocks(const std::vector<Block>& inserted) {
+    numbers_.resize(inserted.size());
+    int next = 0;
+    for (const size_t i : by_size(inserted)) numbers_[i] = next++;
+  }
+
+  [[nodiscard]] double missing_area() const {
+    double sum = 0;
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      sum += blocks_[i].scale * blocks_[i].scale * (1 - parts_[i] * parts_[i]);
+    }
+    return sum;
+  }
+
   void move_all() {
     int accepted = 0;
     for (size_t i = 0; i < blocks_.size(); ++i) {
-      const double size = scale_ * blocks_[i].scale, reach = move_ * size;
+      const double reach = move_ * parts_[i] * blocks_[i].scale;
       const double x = random_.uniform(-reach, reach);
       const Vec2 place = places_[i] + Vec2(x, random_.uniform(-reach, reach));
       Block turned = blocks_[i];
       if (turns_) turned.angle += random_.uniform(-move_, move_);
-      std::vector<Vec2> ring = ring_of(turned, place, scale_);
-      if (!space_.is_free(ring, static_cast<int>(i))) continue;
-      space_.move(static_cast<int>(i), std::move(ring));
+      std::vector<Vec2> ring = ring_of(turned, place, parts_[i]);
+      if (!space_.is_free(ring, numbers_[i])) continue;
+      space_.move(numbers_[i], std::move(ring));
       places_[i] = place;
       blocks_[i].angle = turned.angle;
       ++accepted;
     }
     const double share = static_cast<double>(accepted) / static_cast<double>(blocks_.size());
-    move_ = std::clamp(move_ * (share > kAccepted ? 1.05 : .95), 1e-6, .5);
+    move_ = std::clamp(move_ * (share > kAccepted ? 1.05 : .95), 1e-4, .5);
   }
 
-  // As much as all blocks allow, of the rate that is tried.
   void grow_all() {
-    const double goal = std::min(1., scale_ * (1 + rate_));
-    std::vector<std::vector<Vec2>> before;
     for (size_t i = 0; i < blocks_.size(); ++i) {
-      const int block = static_cast<int>(i);
+      if (parts_[i] == 1) continue;
+      const double goal = std::min(1., parts_[i] * (1 + rates_[i]));
       std::vector<Vec2> ring = ring_of(blocks_[i], places_[i], goal);
-      before.push_back(space_.block(block));
-      if (space_.is_free(ring, block)) {
-        space_.move(block, std::move(ring));
+      if (!space_.is_free(ring, numbers_[i])) {
+        rates_[i] = std::max(rates_[i] / 2, 1e-6);
         continue;
       }
-      for (size_t k = 0; k < i; ++k) space_.move(static_cast<int>(k), std::move(before[k]));
-      rate_ = std::max(rate_ / 2, 1e-9);
-      return;
+      space_.move(numbers_[i], std::move(ring));
+      parts_[i] = goal;
+      rates_[i] = std::min(rates_[i] * 1.5, kGrowth);
     }
-    scale_ = goal;
-    rate_ = std::min(rate_ * 1.5, .05);
   }
 
   PackingSpace& space_;
-  Random& random_;
+  RandomNumbers& random_;
   std::vector<Block> blocks_;
   bool turns_;
-  std::vector<Vec2> places_;
-  double scale_, move_ = kFirstMove, rate_ = .01;
+  double solid_ = 0;           // area of all blocks at full size, m^2
+  std::vector<double> parts_;  // of its full size that each block has
+  std::vector<double> rates_;  // at which it tries to grow
+  std::vector<int> numbers_;   // in the space
+  std::vector<Vec2> places_;   // of the centroids
+  double move_ = kFirstMove;
 };
 
 }  // namespace
 
-Arrangement grow(PackingSpace& space, Random& random, const std::vector<Block>& blocks,
+Arrangement grow(PackingSpace& space, RandomNumbers& random, const std::vector<Block>& blocks,
                  bool turns) {
   return Growth(space, random, blocks, turns).run();
 }

@@ -20,21 +20,25 @@ struct Block {
 struct Arrangement {
   std::vector<std::vector<Vec2>> rings;  ///< of the blocks, in their order; empty if not placed
   int placed = 0;
-  double scale = 1;  ///< that the blocks have reached, of their sizes; below 1 only for `grow`
+  /// Of the blocks, as far as they have grown: square root of their area over that of full size.
+  /// Below 1 only for `grow`.
+  double scale = 1;
 };
 
 /// Puts one block after the other, the largest first, at a random place where it is free (random
 /// sequential insertion). Ends at the first block that finds no place in 20 000 tries.
-Arrangement insert_at_random(PackingSpace& space, Random& random, const std::vector<Block>& blocks);
+Arrangement insert_at_random(PackingSpace& space, RandomNumbers& random,
+                             const std::vector<Block>& blocks);
 
 /// Puts blocks row by row, from below, into rectangular cells as wide and as high as the widest and
 /// the highest block. Cells where a block is not free stay empty.
 Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks);
 
-/// Inserts the blocks at random while they are small, and lets all grow at the same rate while they
-/// move at random and never overlap (Monte Carlo form of B. D. Lubachevsky and F. H. Stillinger, J.
-/// Stat. Phys. 60 (1990) 561-583). `turns`: blocks may turn as well. Ends at full size, or when
-/// growth has become slower than 1e-4 per hundred sweeps.
-Arrangement grow(PackingSpace& space, Random& random, const std::vector<Block>& blocks, bool turns);
+/// Inserts the blocks at random while they are small, and lets them grow while they move at random
+/// and never overlap (Monte Carlo form of B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60
+/// (1990) 561-583; here each block grows as it finds room). `turns`: blocks may turn as well. Ends
+/// at full size, or when in 500 sweeps less than a thousandth of the missing area has been gained.
+Arrangement grow(PackingSpace& space, RandomNumbers& random, const std::vector<Block>& blocks,
+                 bool turns);
 
 }  // namespace apothem

@@ -26,7 +26,7 @@ bool angles_between(const std::vector<Vec2>& ring, double smallest, double large
 
 }  // namespace
 
-std::vector<Vec2> random_quadrilateral(Random& random, double smallest, double largest) {
+std::vector<Vec2> random_quadrilateral(RandomNumbers& random, double smallest, double largest) {
   for (int draw = 0; draw < kDraws; ++draw) {
     std::vector<Vec2> ring;
     for (int k = 0; k < 4; ++k) {
@@ -39,7 +39,8 @@ std::vector<Vec2> random_quadrilateral(Random& random, double smallest, double l
   throw std::invalid_argument("no quadrilateral has all its angles in this narrow a range");
 }
 
-std::vector<Vec2> random_polygon(Random& random, int corners, double aspect, double roundness) {
+std::vector<Vec2> random_polygon(RandomNumbers& random, int corners, double aspect,
+                                 double roundness) {
   const double off = (1 - roundness) / 2;
   std::vector<Vec2> ring;
   for (int k = 0; k < corners; ++k) {

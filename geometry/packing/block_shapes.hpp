@@ -11,12 +11,13 @@ namespace apothem {
 /// A convex quadrilateral: corners at 90 degrees plus up to `turn` (rad) either way, at distances
 /// between .5 and .72 of each other, drawn anew until all angles lie between `smallest` and
 /// `largest` (rad). Throws std::invalid_argument if a thousand draws give none.
-std::vector<Vec2> random_quadrilateral(Random& random, double smallest, double largest);
+std::vector<Vec2> random_quadrilateral(RandomNumbers& random, double smallest, double largest);
 
 /// A convex polygon inscribed in an ellipse with this ratio of its axes. `roundness` from 0 to 1:
 /// with 1 the corners divide the circle that the ellipse is stretched from evenly; below, each may
 /// be off by (1 - roundness) / 2 of the distance of two corners either way.
-std::vector<Vec2> random_polygon(Random& random, int corners, double aspect, double roundness);
+std::vector<Vec2> random_polygon(RandomNumbers& random, int corners, double aspect,
+                                 double roundness);
 
 /// A cross whose four arms are as wide as the square in the middle and `arm` times as long.
 std::vector<Vec2> cross_shape(double arm);

@@ -1,5 +1,5 @@
-// Random numbers that are the same on every platform: the standard fixes the generator, but not its
-// distributions.
+// RandomNumbers numbers that are the same on every platform: the standard fixes the generator, but
+// not its distributions.
 #pragma once
 
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace apothem {
 
-class Random {
+class RandomNumbers {
  public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  explicit RandomNumbers(std::uint64_t seed) : generator_(seed) {}
 
   /// Uniform in [from, to).
   double uniform(double from, double to) {

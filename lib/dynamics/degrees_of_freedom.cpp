@@ -89,7 +89,8 @@ void DegreesOfFreedom::add_rigid(const RigidBody& body) {
     acceleration_.push_back(k < 2 && inverse[k] > 0 ? model_.gravity[k] : 0);
     start_.push_back(place[k]);
     if (body.motion == Motion::prescribed) {
-      driven_.push_back({first + static_cast<size_t>(k), k, &body.history, place[k], arm});
+      driven_.push_back({first + static_cast<size_t>(k), k, &body.history, place[k], arm,
+                         body.servo ? &*body.servo : nullptr});
     }
   }
 }
@@ -195,6 +196,13 @@ void DegreesOfFreedom::kick(State& state, double h) const {
 
 void DegreesOfFreedom::steer(State& state, double dt) {
   for (Driven& d : driven_) {
+    if (d.servo) {
+      const size_t first = d.coordinate - static_cast<size_t>(d.axis);
+      const double rate = d.servo->rate(state.time, Vec2(&state.f[first]));
+      state.v[d.coordinate] = d.axis < 2 ? rate * d.servo->direction[d.axis] : 0;
+      d.move = dt * state.v[d.coordinate];
+      continue;
+    }
     d.move = d.start + d.displacement(state.time) - state.x[d.coordinate];
     state.v[d.coordinate] = d.move / dt;
   }
@@ -222,13 +230,13 @@ void DegreesOfFreedom::drift(State& state, double dt) const {
 
 void DegreesOfFreedom::follow(State& state) const {
   for (const Driven& d : driven_) {
-    state.v[d.coordinate] = d.rate(state.time);
+    if (!d.servo) state.v[d.coordinate] = d.rate(state.time);
   }
 }
 
 void DegreesOfFreedom::place_driven(State& state) const {
   for (const Driven& d : driven_) {
-    state.x[d.coordinate] = d.start + d.displacement(state.time);
+    if (!d.servo) state.x[d.coordinate] = d.start + d.displacement(state.time);
   }
 }
 

@@ -46,9 +46,10 @@ class DegreesOfFreedom {
     size_t coordinate;
     int axis;  ///< of the motion: x, y, angle
     const MotionHistory* motion;
-    double start;     ///< at time 0
-    Vec2 arm;         ///< of its point from the pivot of the motion, at time 0
-    double move = 0;  ///< in this step
+    double start;                  ///< at time 0
+    Vec2 arm;                      ///< of its point from the pivot of the motion, at time 0
+    const Servo* servo = nullptr;  ///< that moves it instead
+    double move = 0;               ///< in this step
 
     [[nodiscard]] double displacement(double time) const {
       return motion->displacement(time, arm)[static_cast<size_t>(axis)];

@@ -97,6 +97,7 @@ class Blocks {
                           body.position.y() + s * v[i].x() + c * v[i].y());
     }
     b.speed += std::abs(body.spin) * radius;
+    if (body.servo) fastest_ = std::max(fastest_, body.servo->speed);
     for (const auto& point : body.history.velocity) {
       fastest_ = std::max(fastest_, point.velocity.norm());
     }

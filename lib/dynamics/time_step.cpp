@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -72,35 +73,68 @@ double flat_mobility(const RigidBody& body) {
   return worst;
 }
 
-StepLimit contact_step_limit(const Model& model) {
-  std::vector<FlatEdges> all;
-  FlatEdges any;  // bounds every other body
-  for (const RigidBody& body : model.bodies) {
-    all.push_back(flat_edges(body));
-    any.mobility = std::max(any.mobility, all.back().mobility);
-    any.slope = std::max(any.slope, all.back().slope);
+namespace {
+
+// Bounds of some bodies.
+struct FlatGroup {
+  std::vector<int> members;
+  double longest = 0, mobility = 0, slope = 0;
+
+  void add(int member, const FlatEdges& f) {
+    members.push_back(member);
+    longest = std::max(longest, f.longest);
+    mobility = std::max(mobility, f.mobility);
+    slope = std::max(slope, f.slope);
   }
-  const PairTable table = pair_table(model);
-  // Bodies in the order of what they could reach at worst, so that the search may stop early.
-  const auto bound = [&](int i) {
-    const FlatEdges& f = all[i];
-    return table.stiffest() * f.longest * (f.mobility + any.mobility) * (f.slope + any.slope);
-  };
+  // Of lambda / k_n of a body with each of these.
+  [[nodiscard]] double bound(const FlatEdges& f) const {
+    return std::min(f.longest, longest) * (f.mobility + mobility) * (f.slope + slope);
+  }
+};
+
+// Bodies of about the same size go together, so that the bounds of a group are sharp.
+std::vector<FlatGroup> groups_by_length(const std::vector<FlatEdges>& all) {
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return std::pair(-bound(i), i) < std::pair(-bound(j), j); });
+  std::ranges::stable_sort(order, std::greater(), [&](int i) { return all[i].longest; });
+  const auto size = static_cast<size_t>(std::sqrt(static_cast<double>(all.size()))) + 1;
+  std::vector<FlatGroup> groups;
+  for (const int i : order) {
+    if (groups.empty() || groups.back().members.size() == size) groups.emplace_back();
+    groups.back().add(i, all[i]);
+  }
+  return groups;
+}
+
+}  // namespace
+
+StepLimit contact_step_limit(const Model& model) {
+  std::vector<FlatEdges> all;
+  for (const RigidBody& body : model.bodies) all.push_back(flat_edges(body));
+  const PairTable table = pair_table(model);
+  const std::vector<FlatGroup> groups = groups_by_length(all);
+  const auto bound = [&](int i) {
+    double most = 0;
+    for (const FlatGroup& group : groups) most = std::max(most, group.bound(all[i]));
+    return most * table.stiffest();
+  };
+  // Bodies in the order of what they could reach at worst, so that the search may stop early.
+  std::vector<std::pair<double, int>> order;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) order.emplace_back(-bound(i), i);
+  std::ranges::sort(order);
   double worst = 0;
   std::array<int, 2> pair{-1, -1};
-  for (size_t k = 0; k < order.size() && bound(order[k]) > worst; ++k) {
-    const int i = order[k];
-    for (size_t l = k + 1; l < order.size(); ++l) {
-      const int j = order[l];
-      if (!model.bodies[i].can_move() && !model.bodies[j].can_move()) continue;
-      const double lambda = flat_contact(all[i], all[j]) * table.between(i, j).normal_stiffness;
-      if (lambda > worst) {
-        worst = lambda;
-        pair = {std::min(i, j), std::max(i, j)};
+  for (const auto& [minus_bound, i] : order) {
+    if (!(-minus_bound > worst)) break;
+    for (const FlatGroup& group : groups) {
+      if (!(group.bound(all[i]) * table.stiffest() > worst)) continue;
+      for (const int j : group.members) {
+        if (i == j || (!model.bodies[i].can_move() && !model.bodies[j].can_move())) continue;
+        const double lambda = flat_contact(all[i], all[j]) * table.between(i, j).normal_stiffness;
+        if (lambda > worst) {
+          worst = lambda;
+          pair = {std::min(i, j), std::max(i, j)};
+        }
       }
     }
   }
@@ -124,6 +158,7 @@ StepLimit motion_step_limit(const Model& model) {
   for (const RigidBody& body : model.bodies) {
     double speed = body.velocity.norm();
     double spin = std::abs(body.spin);
+    if (body.servo) speed = body.servo->speed;
     for (const auto& point : body.history.velocity) speed = std::max(speed, point.velocity.norm());
     for (const auto& point : body.history.spin) spin = std::max(spin, std::abs(point.spin));
     if (body.motion == Motion::free) {

@@ -44,4 +44,17 @@ struct LoadHistory {
   [[nodiscard]] double largest() const;
 };
 
+/// A wall that moves so that it holds a force: along its direction with the speed
+/// speed (1 - P/P0), at most `speed` either way, where P is the contact force that resists it and
+/// P0 = force history(t) the force to be held. At rest P = P0.
+struct Servo {
+  Vec2 direction;       ///< of unit length
+  double force = 0;     ///< N, at factor 1
+  double speed = 0;     ///< m/s
+  LoadHistory history;  ///< of the factor
+
+  /// The speed along the direction against a contact force on the wall, m/s.
+  [[nodiscard]] double rate(double time, const Vec2& contact_force) const;
+};
+
 }  // namespace apothem

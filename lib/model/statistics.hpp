@@ -27,7 +27,7 @@ std::vector<BodyStatistics> body_statistics(const Model& model, const State& sta
                                             const std::vector<CauchyStress>& stresses);
 
 /// A symmetric tensor of the plane.
-struct Tensor {
+struct SymmetricTensor {
   double xx = 0, yy = 0, xy = 0;
 };
 
@@ -40,12 +40,12 @@ struct RegionSums {
   double translation = 0;         ///< kinetic energy, J; of a body with a mesh all of it
   double rotation = 0;            ///< kinetic energy, J
   double coordination = 0;        ///< sum over the bodies
-  Tensor stress;                  ///< sum of V stress, J
+  SymmetricTensor stress;         ///< sum of V stress, J
   double solid_area = 0;          ///< of all bodies, as far as it is in the region, m^2
   double volume = 0;              ///< of the region, m^3
   double area = 0;                ///< of the region, m^2
   int contacts = 0;               ///< number of contact patches
-  Tensor fabric;                  ///< sum of n (x) n of the contact normals n
+  SymmetricTensor fabric;         ///< sum of n (x) n of the contact normals n
   double force = 0, force_2 = 0;  ///< sums of the normal forces, N, and of their squares
   double largest_force = 0;       ///< N
 };

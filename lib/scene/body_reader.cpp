@@ -269,15 +269,44 @@ Motion BodyReader::motion(const JsonValue& value) {
   }
   if (value.type != JsonValue::Type::object) {
     in_.fail(value,
-             "must be \"free\", \"fixed\" or {\"velocity\": [[t,vx,vy],...], \"spin\": "
-             "[[t,w],...], \"pivot\": [x,y]}");
+             "must be \"free\", \"fixed\", {\"velocity\": [[t,vx,vy],...], \"spin\": "
+             "[[t,w],...], \"pivot\": [x,y]} or {\"servo\": {...}}");
   }
   features_.add(Feature::prescribed_motion, &value, place());
   return Motion::prescribed;
 }
 
-void BodyReader::prescribed_motion(const JsonValue& value, RigidBody& body) const {
+void BodyReader::servo(const JsonValue& value, RigidBody& body) const {
   JsonObject object(in_, value);
+  Servo servo{};
+  const JsonValue& direction = object.required("direction", "[x, y], in which the wall pushes");
+  servo.direction = in_.vec2(direction, "");
+  if (!(servo.direction.norm() > 0)) in_.fail(direction, "must not be zero");
+  servo.direction /= servo.direction.norm();
+  const JsonValue* force = object.optional("force");
+  const JsonValue* stress = object.optional("stress");
+  if (!force == !stress) in_.fail(value, "must give either \"force\" (N) or \"stress\" (Pa)");
+  if (force) {
+    servo.force = in_.positive(*force, "N");
+  } else {
+    const double length =
+        in_.positive(object.required("length", "on which the stress acts, m"), "m");
+    servo.force = in_.positive(*stress, "Pa") * length * model_.thickness;
+  }
+  servo.speed = in_.positive(object.required("speed", "the highest one, m/s"), "m/s");
+  if (const JsonValue* v = object.optional("history")) servo.history = read_load_history(in_, *v);
+  object.finish();
+  body.servo = servo;
+}
+
+void BodyReader::prescribed_motion(const JsonValue& value, RigidBody& body) {
+  JsonObject object(in_, value);
+  if (const JsonValue* v = object.optional("servo")) {
+    features_.add(Feature::servo, v, place());
+    servo(*v, body);
+    object.finish();
+    return;
+  }
   MotionHistory& history = body.history;
   if (const JsonValue* v = object.optional("velocity")) history.velocity = read_velocities(in_, *v);
   if (const JsonValue* v = object.optional("spin")) history.spin = read_spins(in_, *v);

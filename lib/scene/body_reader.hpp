@@ -52,7 +52,8 @@ class BodyReader {
   void require_elastic(const JsonValue& name, MaterialIndex material) const;
   void element_materials(const JsonValue& value, DeformableBody& body) const;
   Motion motion(const JsonValue& value);
-  void prescribed_motion(const JsonValue& value, RigidBody& body) const;
+  void prescribed_motion(const JsonValue& value, RigidBody& body);
+  void servo(const JsonValue& value, RigidBody& body) const;
   void held_coordinates(const JsonValue& value, RigidBody& body);
   void initial_velocity(JsonObject& object, Vec2& velocity, double& spin);
   void refuse_held_velocity(const JsonValue& value, const RigidBody& body) const;

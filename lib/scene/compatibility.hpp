@@ -50,6 +50,7 @@ enum class Feature {
   element_materials,
   fixed_motion,
   prescribed_motion,
+  servo,
   held_coordinates,
   initial_velocity,
   // All bodies together.
@@ -110,6 +111,7 @@ inline constexpr std::array kFeatureTexts{
     FeatureText{Feature::fixed_motion, "`motion`: `fixed`", "for a fixed body"},
     FeatureText{Feature::prescribed_motion, "`motion` with histories",
                 "for a body of prescribed motion"},
+    FeatureText{Feature::servo, "`motion.servo` of a body", ""},
     FeatureText{Feature::held_coordinates, "`fix` of a rigid body", ""},
     FeatureText{Feature::initial_velocity, "`velocity` or `spin` of a body", ""},
     FeatureText{Feature::mesh_in_every_contact, "",
@@ -249,6 +251,9 @@ inline constexpr std::array kIncompatible{
                     "the area potential is defined for triangles, not for the outline of a mesh",
                     "use \"distance\", or \"surface\": \"element\" with triangles"},
     // Many bodies.
+    Incompatibility{Feature::servo, Feature::static_run, Verdict::not_supported_yet,
+                    "a wall that holds a force finds its place by moving",
+                    "use a dynamic run, or histories"},
     Incompatibility{Feature::inflow, Feature::static_run, Verdict::not_supported_yet,
                     "the equilibria of a static run are of the same bodies",
                     "use a dynamic run, or leave out \"repeat\""},

@@ -21,13 +21,13 @@ constexpr double kTouching = 1e-7;  // of the size of a cell
 constexpr double kSharpest = 50 * M_PI / 180, kBluntest = 130 * M_PI / 180;  // of quadrilaterals
 
 // A number that is drawn for each block.
-using Draw = std::function<double(Random&)>;
+using Draw = std::function<double(RandomNumbers&)>;
 
 // One of the shapes that blocks are drawn from.
 struct Shape {
   double weight = 1;
-  std::function<std::vector<Vec2>(Random&)> ring;  // of area 1
-  std::optional<double> own_diameter;              // m
+  std::function<std::vector<Vec2>(RandomNumbers&)> ring;  // of area 1
+  std::optional<double> own_diameter;                     // m
 };
 
 enum class Arranged { random, lattice, dense, voronoi };
@@ -62,7 +62,7 @@ class Fill {
     }
     if (const JsonValue* v = object.optional("gap")) gap_ = not_negative(*v, "m");
     const JsonValue* seed = object.optional("seed");
-    Random random(seed ? static_cast<std::uint64_t>(in_.count(*seed)) : 1);
+    RandomNumbers random(seed ? static_cast<std::uint64_t>(in_.count(*seed)) : 1);
     velocity_ = object.optional("velocity");
     spin_ = object.optional("spin");
     mesh(object.optional("mesh"));
@@ -196,7 +196,7 @@ class Fill {
     if (const JsonValue* v = object.optional("polygon")) {
       const Polygon polygon = read_polygon(in_, *v);
       shape.own_diameter = std::sqrt(area_moments(polygon).area / disc_area(1));
-      shape.ring = [ring = normalised(polygon.vertices())](Random&) { return ring; };
+      shape.ring = [ring = normalised(polygon.vertices())](RandomNumbers&) { return ring; };
       ++kinds;
     }
     if (const JsonValue* v = object.optional("quadrilateral"))
@@ -206,7 +206,7 @@ class Fill {
       JsonObject cross(in_, *v);
       const JsonValue* arm = cross.optional("arm");
       cross.finish();
-      shape.ring = [ring = cross_shape(arm ? in_.positive(*arm, "widths") : 1)](Random&) {
+      shape.ring = [ring = cross_shape(arm ? in_.positive(*arm, "widths") : 1)](RandomNumbers&) {
         return ring;
       };
       ++kinds;
@@ -218,7 +218,7 @@ class Fill {
     return shape;
   }
 
-  std::function<std::vector<Vec2>(Random&)> quadrilateral(const JsonValue& value) const {
+  std::function<std::vector<Vec2>(RandomNumbers&)> quadrilateral(const JsonValue& value) const {
     JsonObject object(in_, value);
     std::array<double, 2> angles{kSharpest, kBluntest};
     if (const JsonValue* v = object.optional("angles")) {
@@ -227,17 +227,19 @@ class Fill {
         in_.fail(*v, "must include pi/2, the mean angle of every quadrilateral");
       }
       try {
-        Random trial(1);
+        RandomNumbers trial(1);
         random_quadrilateral(trial, angles[0], angles[1]);
       } catch (const std::invalid_argument& error) {
         in_.fail(*v, error.what());
       }
     }
     object.finish();
-    return [angles](Random& random) { return random_quadrilateral(random, angles[0], angles[1]); };
+    return [angles](RandomNumbers& random) {
+      return random_quadrilateral(random, angles[0], angles[1]);
+    };
   }
 
-  std::function<std::vector<Vec2>(Random&)> convex(const JsonValue& value) const {
+  std::function<std::vector<Vec2>(RandomNumbers&)> convex(const JsonValue& value) const {
     JsonObject object(in_, value);
     const JsonValue& number = object.required("corners", "[from, to], or one number");
     const std::array<double, 2> corners = range(number, 3, 1000, "corners");
@@ -248,7 +250,7 @@ class Fill {
     if (const JsonValue* v = object.optional("aspect")) aspects = range(*v, 1, 1000, "");
     if (const JsonValue* v = object.optional("roundness")) roundnesses = range(*v, 0, 1, "");
     object.finish();
-    return [=](Random& random) {
+    return [=](RandomNumbers& random) {
       const int n = random.whole(static_cast<int>(corners[0]), static_cast<int>(corners[1]));
       const double aspect = random.uniform(aspects[0], aspects[1]);
       const double roundness = random.uniform(roundnesses[0], roundnesses[1]);
@@ -258,19 +260,21 @@ class Fill {
 
   Draw diameter(const JsonValue& value) const {
     if (value.type == JsonValue::Type::number) {
-      return [d = in_.positive(value, "m")](Random&) { return d; };
+      return [d = in_.positive(value, "m")](RandomNumbers&) { return d; };
     }
     JsonObject object(in_, value);
     Draw draw;
     int kinds = 0;
     if (const JsonValue* v = object.optional("uniform")) {
       const std::array<double, 2> d = positive_range(*v);
-      draw = [d](Random& random) { return random.uniform(d[0], d[1]); };
+      draw = [d](RandomNumbers& random) { return random.uniform(d[0], d[1]); };
       ++kinds;
     }
     if (const JsonValue* v = object.optional("uniform_area")) {
       const std::array<double, 2> d = positive_range(*v);
-      draw = [d](Random& random) { return std::sqrt(random.uniform(d[0] * d[0], d[1] * d[1])); };
+      draw = [d](RandomNumbers& random) {
+        return std::sqrt(random.uniform(d[0] * d[0], d[1] * d[1]));
+      };
       ++kinds;
     }
     if (const JsonValue* v = object.optional("lognormal")) draw = lognormal(*v), ++kinds;
@@ -301,7 +305,7 @@ class Fill {
     if (!(between[0] < median && median < between[1])) {
       in_.fail(limits, "must have the median inside");
     }
-    return [=](Random& random) {
+    return [=](RandomNumbers& random) {
       double d = 0;
       do d = median * std::exp(sigma * random.normal());
       while (!(d >= between[0] && d <= between[1]));
@@ -319,7 +323,7 @@ class Fill {
       rows.push_back({row[0], sum += row[1]});
     }
     if (rows.empty()) in_.fail(value, "must hold at least one row");
-    return [rows](Random& random) {
+    return [rows](RandomNumbers& random) {
       const double share = random.uniform(0, rows.back()[1]);
       size_t i = 0;
       while (i + 1 < rows.size() && share >= rows[i][1]) ++i;
@@ -327,7 +331,7 @@ class Fill {
     };
   }
 
-  [[nodiscard]] Block draw(Random& random) const {
+  [[nodiscard]] Block draw(RandomNumbers& random) const {
     double weights = 0;
     for (const Shape& s : shapes_) weights += s.weight;
     double left = shapes_.size() > 1 ? random.uniform(0, weights) : 0;
@@ -341,7 +345,7 @@ class Fill {
     return block;
   }
 
-  std::vector<Block> draw_all(Random& random, double area) const {
+  std::vector<Block> draw_all(RandomNumbers& random, double area) const {
     std::vector<Block> blocks;
     if (count_) {
       for (int i = 0; i < *count_; ++i) blocks.push_back(draw(random));
@@ -375,7 +379,7 @@ class Fill {
     return space;
   }
 
-  void add_blocks(std::vector<std::vector<Vec2>>& obstacles, Random& random, Filled& filled,
+  void add_blocks(std::vector<std::vector<Vec2>>& obstacles, RandomNumbers& random, Filled& filled,
                   bool stays) {
     double area = area_moments(*outline_).area;
     for (const Polygon& hole : holes_) area -= area_moments(hole).area;

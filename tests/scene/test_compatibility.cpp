@@ -66,6 +66,11 @@ const char* const kRepeatedFill =
     R"([ { "name": "pebble", "material": "rock", "region": [[5, 5], [9, 5], [9, 9]], "count": 2,
            "shapes": [ { "cross": {} } ], "diameter": 0.1, "repeat": { "times": 2 } } ])";
 const std::vector<FeatureTrial> kTrials{
+    {F::servo,
+     F::static_run,
+     kStatic,
+     {{"/bodies/0/motion", R"({ "servo": { "direction": [0, 1], "force": 1, "speed": 1 } })"}},
+     "/bodies/0/motion/servo"},
     {F::inflow, F::static_run, kStatic, {{"/fill", kRepeatedFill}}, "/fill"},
     {F::inflow,
      F::settled_start,

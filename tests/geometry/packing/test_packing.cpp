@@ -75,7 +75,7 @@ void check_all(const std::vector<Ring>& rings, const Ring& region, const std::ve
 
 enum class Kind { quads, polygons, crosses, sizes };
 
-std::vector<Block> blocks_of(Kind kind, Random& random, int count) {
+std::vector<Block> blocks_of(Kind kind, RandomNumbers& random, int count) {
   std::vector<Block> blocks;
   for (int i = 0; i < count; ++i) {
     Block b;
@@ -109,7 +109,7 @@ PackingSpace space_with(double gap) {
 }  // namespace
 
 TEST_CASE("shapes of blocks are simple, about their centroid, and of area 1", "[packing]") {
-  Random random(3);
+  RandomNumbers random(3);
   for (int i = 0; i < 300; ++i) {
     const int corners = random.whole(3, 12);
     const Ring quad = random_quadrilateral(random, .9, 2.3);
@@ -135,7 +135,7 @@ TEST_CASE("shapes of blocks are simple, about their centroid, and of area 1", "[
 TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
   const Kind kind = GENERATE(Kind::quads, Kind::polygons, Kind::crosses, Kind::sizes);
   for (const double gap : {0., .01}) {
-    Random random(7);
+    RandomNumbers random(7);
     const std::vector<Block> many = blocks_of(kind, random, 120);
     CAPTURE(static_cast<int>(kind), gap);
     {
@@ -169,7 +169,7 @@ TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
 }
 
 TEST_CASE("a space that is full says how many blocks it has taken", "[packing]") {
-  Random random(1);
+  RandomNumbers random(1);
   const Ring region{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   PackingSpace space(Polygon(region), {}, 0, .3);
   std::vector<Block> blocks(40, Block{cross_shape(1), .3, 0});
@@ -183,7 +183,7 @@ TEST_CASE("a space that is full says how many blocks it has taken", "[packing]")
 
 TEST_CASE("the same seed gives the same bits", "[packing]") {
   const auto make = [](std::uint64_t seed) {
-    Random random(seed);
+    RandomNumbers random(seed);
     PackingSpace space = space_with(0);
     const std::vector<Block> blocks = blocks_of(Kind::polygons, random, 40);
     return insert_at_random(space, random, blocks).rings;
@@ -217,7 +217,7 @@ TEST_CASE("Voronoi blocks fill a region, or leave the gap", "[packing]") {
 }
 
 TEST_CASE("normal random numbers have the moments of the normal distribution", "[packing]") {
-  Random random(11);
+  RandomNumbers random(11);
   const int n = 200000;
   double mean = 0, square = 0, fourth = 0;
   for (int i = 0; i < n; ++i) {

@@ -1,0 +1,81 @@
+// Walls that hold a force.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "apothem/run/run.hpp"
+#include "folder.hpp"
+#include "support.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace servo {
+namespace {
+
+// Blocks in a box under a lid that presses on them.
+std::string box(const std::string& mesh, const std::string& press, double end) {
+  return R"({ "materials": { "rock": { "density": 2000, "young": 1e7, "poisson": 0.2 } }, "thickness": 0.5,
+    "contact": { "normal_stiffness": 1e7, "damping": { "model": "viscous", "ratio": 0.5 } },
+    "bodies": [
+      { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]] },
+      { "name": "lid", "material": "rock", "polygon": [[-1, 2.01], [2, 2.01], [2, 2.5], [-1, 2.5]],
+        "motion": { "servo": { "direction": [0, -2], )" +
+         press + R"(, "speed": 0.2 } } },
+      { "name": "lower", "material": "rock", )" +
+         (mesh.empty() ? R"("polygon": [[0, 0], [1, 0], [1, 1], [0, 1]])"
+                       : R"("mesh": { "rectangle": { "size": [1, 1], "cells": [4, 4] } })") +
+         R"( },
+      { "name": "upper", "material": "rock", "polygon": [[0, 1], [1, 1], [1, 2], [0, 2]] } ],
+    "time": { "end": )" +
+         std::to_string(end) + R"( }, "output": { "frames": 1 } })";
+}
+
+}  // namespace
+
+TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo]") {
+  const bool meshed = GENERATE(false, true);
+  const Folder folder;
+  const double end = meshed && scaled(2) < 2 ? .02 : 1.5;
+  const Scene scene = read_scene(
+      folder.write("scene.json", box(meshed ? "mesh" : "", R"("stress": 4e4, "length": 1)", end)));
+  Run run(scene, {.folder = ""});
+  double most = 0;
+  while (run.state().time < end - 1e-9) {
+    run.step();
+    const Energies e = run.simulation().energies();
+    most = std::max(most, std::abs(e.external_work));
+    REQUIRE(std::abs(e.total_error) < 5e-3 * std::max(most, 1e-3));
+    REQUIRE(std::abs(run.state().pose_rate(1)[1]) <= .2 * (1 + 1e-12));
+    REQUIRE(run.state().pose_rate(1)[0] == 0);
+  }
+  if (end < 1) return;
+  // 4e4 Pa on 1 m x 0.5 m.
+  CHECK(run.state().force(1)[1] == Approx(2e4).epsilon(1e-6));
+  CHECK(std::abs(run.state().pose_rate(1)[1]) < 1e-6);
+}
+
+TEST_CASE("the force of a servo wall follows its history", "[servo]") {
+  const Folder folder;
+  const Scene scene = read_scene(folder.write(
+      "scene.json", box("", R"("force": 1000, "history": [[0, 1], [2, 1], [3, 3]])", 4)));
+  Run run(scene, {.folder = ""});
+  while (run.state().time < 2) run.step();
+  CHECK(run.state().force(1)[1] == Approx(1000).epsilon(1e-5));
+  while (run.state().time < 4 - 1e-9) run.step();
+  CHECK(run.state().force(1)[1] == Approx(3000).epsilon(1e-5));
+}
+
+TEST_CASE("a servo wall goes on bit for bit", "[servo]") {
+  const Folder folder;
+  const Scene scene = read_scene(folder.write("scene.json", box("", R"("force": 1000)", .4)));
+  Run whole(scene, {.folder = folder / "whole"});
+  whole.run();
+  Run part(scene, {.folder = folder / "part"});
+  part.run(.17);
+  Run rest(scene, {.folder = folder / "part", .resume = true});
+  rest.run();
+  CHECK(rest.state().x == whole.state().x);
+  CHECK(rest.state().v == whole.state().v);
+}
+
+}  // namespace servo
