@@ -10,6 +10,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/energy_guard.hpp
   dynamics/forecast.hpp
   dynamics/ledger.hpp
+  dynamics/population.hpp
   dynamics/results.hpp
   dynamics/simulation.hpp
   dynamics/step_control.hpp
@@ -59,8 +60,10 @@ set(APOTHEM_PUBLIC_HEADERS
   model/deformable.hpp
   model/history.hpp
   model/model.hpp
+  model/population.hpp
   model/settings.hpp
   model/state.hpp
+  model/statistics.hpp
   output/files.hpp
   output/frames.hpp
   output/history.hpp
@@ -68,6 +71,7 @@ set(APOTHEM_PUBLIC_HEADERS
   run/checkpoint.hpp
   run/run.hpp
   run/start.hpp
+  run/stop_watch.hpp
   scene/error.hpp
   scene/json.hpp
   scene/scene.hpp

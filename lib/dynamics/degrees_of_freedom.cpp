@@ -194,12 +194,19 @@ void DegreesOfFreedom::kick(State& state, double h) const {
   }
 }
 
+// Gives the wall whose coordinates begin with `first` its velocity.
+void DegreesOfFreedom::push_servo(const Servo& servo, State& state, size_t first, double dt) const {
+  const double before = Vec2(&state.v[first]).dot(servo.direction);
+  const double rate = servo.rate(state.time, Vec2(&state.f[first]), before, mass_[first], dt);
+  state.v[first] = rate * servo.direction.x();
+  state.v[first + 1] = rate * servo.direction.y();
+  state.v[first + 2] = 0;
+}
+
 void DegreesOfFreedom::steer(State& state, double dt) {
   for (Driven& d : driven_) {
     if (d.servo) {
-      const size_t first = d.coordinate - static_cast<size_t>(d.axis);
-      const double rate = d.servo->rate(state.time, Vec2(&state.f[first]));
-      state.v[d.coordinate] = d.axis < 2 ? rate * d.servo->direction[d.axis] : 0;
+      if (d.axis == 0) push_servo(*d.servo, state, d.coordinate, dt);
       d.move = dt * state.v[d.coordinate];
       continue;
     }

@@ -125,6 +125,7 @@ class DegreesOfFreedom {
   std::vector<std::uint8_t> absent_;
 
   void set_present(BodyIndex body, bool present);
+  void push_servo(const Servo& servo, State& state, size_t first, double dt) const;
   [[nodiscard]] Impulse weight_at_start(const std::vector<double>& weight) const;
 };
 

@@ -76,10 +76,10 @@ double LoadHistory::largest() const {
   return most;
 }
 
-double Servo::rate(double time, const Vec2& contact_force) const {
-  const double target = force * history.at(time);
-  if (!(target > 0)) return -speed;
-  return speed * std::clamp(1 + contact_force.dot(direction) / target, -1., 1.);
+double Servo::rate(double time, const Vec2& contact_force, double before, double mass,
+                   double dt) const {
+  const double excess = force * history.at(time) + contact_force.dot(direction);
+  return std::clamp(before + dt * excess / mass, -speed, speed);
 }
 
 }  // namespace apothem

@@ -44,17 +44,18 @@ struct LoadHistory {
   [[nodiscard]] double largest() const;
 };
 
-/// A wall that moves so that it holds a force: along its direction with the speed
-/// speed (1 - P/P0), at most `speed` either way, where P is the contact force that resists it and
-/// P0 = force history(t) the force to be held. At rest P = P0.
+/// A wall that moves along its direction so that it holds a force: the difference of the force to
+/// be held and the contact force that resists accelerates its mass. Its speed stays below a limit.
 struct Servo {
   Vec2 direction;       ///< of unit length
   double force = 0;     ///< N, at factor 1
-  double speed = 0;     ///< m/s
+  double speed = 0;     ///< m/s, the highest one
   LoadHistory history;  ///< of the factor
 
-  /// The speed along the direction against a contact force on the wall, m/s.
-  [[nodiscard]] double rate(double time, const Vec2& contact_force) const;
+  /// The speed along the direction after dt (s), of a wall of that mass (kg) with the speed
+  /// `before`, against a contact force on it (N).
+  [[nodiscard]] double rate(double time, const Vec2& contact_force, double before, double mass,
+                            double dt) const;
 };
 
 }  // namespace apothem

@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "apothem/model/columns.hpp"
-#include "apothem/output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {

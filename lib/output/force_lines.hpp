@@ -1,10 +1,8 @@
 // Private header: what carries force between bodies, as lines for VTK.
 #pragma once
 
-#include <vtkNew.h>
-#include <vtkUnstructuredGrid.h>
-
 #include "apothem/output/frames.hpp"
+#include "apothem/output/vtk_grid.hpp"
 
 namespace apothem {
 

@@ -93,7 +93,14 @@ class Inspection {
                       "9.81 m/s^2",
                       scene_.model.strongest_gravity()));
     }
-    for (const JsonValue& body : scene_.document.find("bodies")->items) {
+    for (const char* key : {"bodies", "fill"}) {
+      const JsonValue* list = scene_.document.find(key);
+      if (list) velocities(*list);
+    }
+  }
+
+  void velocities(const JsonValue& bodies) {
+    for (const JsonValue& body : bodies.items) {
       const JsonValue* angle = body.find("angle");
       if (angle && std::abs(angle->number) > kFullTurn) {
         say(*angle, fmt::format("{:g} rad is more than a full turn: angles are in radians; {:g} "
@@ -129,7 +136,8 @@ class Inspection {
       compare(box, body.name);
     }
     if (!std::isfinite(smallest) || smallest < kLargest) return;
-    say(*scene_.document.find("bodies"),
+    const JsonValue* bodies = scene_.document.find("bodies");
+    say(bodies ? *bodies : *scene_.document.find("fill"),
         fmt::format("even the smallest body that can move, \"{}\", is {:g} m across: lengths are "
                     "in m, not in mm",
                     name, smallest));

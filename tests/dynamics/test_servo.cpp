@@ -18,7 +18,7 @@ std::string box(const std::string& mesh, const std::string& press, double end) {
     "contact": { "normal_stiffness": 1e7, "damping": { "model": "viscous", "ratio": 0.5 } },
     "bodies": [
       { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-1, -1], [2, -1], [2, 0], [-1, 0]] },
-      { "name": "lid", "material": "rock", "polygon": [[-1, 2.01], [2, 2.01], [2, 2.5], [-1, 2.5]],
+      { "name": "lid", "material": "rock", "polygon": [[-1, 2], [2, 2], [2, 2.5], [-1, 2.5]],
         "motion": { "servo": { "direction": [0, -2], )" +
          press + R"(, "speed": 0.2 } } },
       { "name": "lower", "material": "rock", )" +
@@ -37,7 +37,7 @@ TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo
   const Folder folder;
   const double end = meshed && scaled(2) < 2 ? .02 : 1.5;
   const Scene scene = read_scene(
-      folder.write("scene.json", box(meshed ? "mesh" : "", R"("stress": 4e4, "length": 1)", end)));
+      folder.write("scene.json", box(meshed ? "mesh" : "", R"("stress": 4e4, "length": 1, "history": [[0, 0], [0.5, 1]])", end)));
   Run run(scene, {.folder = ""});
   double most = 0;
   while (run.state().time < end - 1e-9) {
@@ -57,7 +57,7 @@ TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo
 TEST_CASE("the force of a servo wall follows its history", "[servo]") {
   const Folder folder;
   const Scene scene = read_scene(folder.write(
-      "scene.json", box("", R"("force": 1000, "history": [[0, 1], [2, 1], [3, 3]])", 4)));
+      "scene.json", box("", R"("force": 1000, "history": [[0, 0], [0.5, 1], [2, 1], [3, 3]])", 4)));
   Run run(scene, {.folder = ""});
   while (run.state().time < 2) run.step();
   CHECK(run.state().force(1)[1] == Approx(1000).epsilon(1e-5));

@@ -26,7 +26,7 @@ std::string hopper(const std::string& outside, const std::string& more = "",
       { "name": "left", "material": "rock", "motion": "fixed", "polygon": [[-3, 0], [-0.7, 0], [-2, 1.3], [-3, 1.3]] },
       { "name": "right", "material": "rock", "motion": "fixed", "polygon": [[0.7, 0], [3, 0], [3, 1.3], [2, 1.3]] } ],
     "fill": [ { "name": "stone", "material": "rock", "region": [[-1.5, 1.3], [1.5, 1.3], [1.5, 3], [-1.5, 3]],
-                "shapes": [ { "quadrilateral": {} }, { "cross": {} } ], "diameter": 0.35, "count": 12,
+                "shapes": [ { "quadrilateral": {} }, { "cross": {} } ], "diameter": 0.28, "count": 12,
                 "repeat": { "times": 3, "every": 0.3 })" +
          mesh + R"( } ],
     "world": { "box": [[-4, -1], [4, 6]], "outside": ")" +
