@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/contact_reader.hpp"
 #include "apothem/scene/deformable_reader.hpp"
+#include "apothem/scene/import_reader.hpp"
 #include "apothem/scene/material_reader.hpp"
 #include "apothem/scene/output_reader.hpp"
 #include "apothem/scene/time_reader.hpp"
@@ -22,11 +24,13 @@ class SceneReader {
   explicit SceneReader(Scene& scene) : scene_(scene), model_(scene.model), in_(scene.file) {}
 
   void read() {
+    add_bodies();
     JsonObject top(in_, scene_.document);
     settings(top);
     const JsonValue& materials = top.required("materials", "{\"NAME\": {\"density\": ...}, ...}");
     model_.materials = read_materials(in_, materials, features_);
     const JsonValue& list = top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
+    top.optional("import");
     if (in_.array(list).empty()) in_.fail(list, "must hold at least one body");
     ContactReader contact(in_, model_, features_);
     if (const JsonValue* v = top.optional("contact")) {
@@ -46,6 +50,27 @@ class SceneReader {
   }
 
  private:
+  // Puts the bodies that come from elsewhere behind those of the scene's own list.
+  void add_bodies() {
+    JsonValue& top = scene_.document;
+    const JsonValue* imports = top.find("import");
+    if (imports == nullptr) return;
+    std::vector<JsonValue> bodies;
+    append_imports(in_, *imports, bodies);
+    if (top.find("bodies") == nullptr) {
+      JsonValue list;
+      list.type = JsonValue::Type::array;
+      list.line = imports->line;
+      list.pointer = imports->pointer;
+      top.keys.emplace_back("bodies");
+      top.items.push_back(std::move(list));
+    }
+    const auto at = std::find(top.keys.begin(), top.keys.end(), "bodies") - top.keys.begin();
+    JsonValue& list = top.items[at];
+    in_.array(list);
+    std::move(bodies.begin(), bodies.end(), std::back_inserter(list.items));
+  }
+
   void settings(JsonObject& top) {
     model_.name = std::filesystem::path(scene_.file).stem().string();
     if (const JsonValue* v = top.optional("$schema")) in_.string(*v);
