@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 #include "apothem/geometry/exact/overlap.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
@@ -67,9 +67,13 @@ class OutlineMaker {
   }
 
  private:
-  // The first vertex is repeated at the end, if need be more than once, or nearly so.
-  [[nodiscard]] std::vector<Vec2> opened(std::vector<Vec2> ring) const {
-    while (ring.size() > 1 && !((ring.back() - ring.front()).norm() > tolerance_)) ring.pop_back();
+  // Closing vertices are left out, and vertices that repeat the one before: programs write both
+  // where arcs meet lines, and not always with the same digits.
+  [[nodiscard]] std::vector<Vec2> cleaned(const std::vector<Vec2>& drawn) const {
+    const auto close = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= tolerance_; };
+    std::vector<Vec2> ring;
+    std::unique_copy(drawn.begin(), drawn.end(), std::back_inserter(ring), close);
+    while (ring.size() > 1 && close(ring.back(), ring.front())) ring.pop_back();
     return ring;
   }
 
@@ -93,7 +97,7 @@ class OutlineMaker {
              "holes, or give its bodies a \"mesh\"");
     }
     for (const auto& ring : shape.rings) {
-      outline.rings.push_back(opened(ring));
+      outline.rings.push_back(cleaned(ring));
       try {
         const Polygon polygon(outline.rings.back());
         if (outline.rings.size() == 1) polygons_.push_back(polygon);
@@ -123,7 +127,7 @@ class OutlineMaker {
     const DrawnShape* found = nullptr;
     for (const DrawnShape& shape : shapes_) {
       if (shape.kind != DrawnShape::Kind::label || shape.rings[0].empty()) continue;
-      if (!strictly_inside(opened(face.rings[0]), shape.rings[0][0])) continue;
+      if (!strictly_inside(cleaned(face.rings[0]), shape.rings[0][0])) continue;
       if (found != nullptr) {
         refuse(shape, fmt::format("is a second label of one face, besides {}; take one away",
                                   shown_place(found->place, found->layer)));

@@ -22,8 +22,8 @@ struct OutlineRules {
   double scale = 1;            ///< m per unit of the drawing
   Vec2 offset = Vec2::Zero();  ///< m, added to the scaled coordinates
   bool polygonize = false;     ///< take the faces between lines
-  /// Ends of lines that are closer than this meet, m. A millionth of the drawing's extent if it is
-  /// not given.
+  /// Ends of lines that are closer than this meet, and vertices that follow each other are one, m.
+  /// A millionth of the drawing's extent if it is not given.
   std::optional<double> tolerance;
   std::set<std::string> ignored;  ///< layers that are left out
   /// Whether the bodies of a layer may have holes.
