@@ -146,10 +146,9 @@ class FeatureDrawing {
     open_text(file);  // says what is wrong where the file cannot be opened
     const std::array<const char*, 2> drivers{driver, nullptr};
     const std::array<const char*, 3> options{"HEADERS=YES", "GEOM_POSSIBLE_NAMES=WKT", nullptr};
-    // The prefix makes GDAL accept a table of one column.
-    const std::string name = is("CSV") ? "CSV:" + file : file;
-    set_.reset(gdal().GDALOpenEx(name.c_str(), GDAL_OF_VECTOR, drivers.data(),
+    set_.reset(gdal().GDALOpenEx(file.c_str(), GDAL_OF_VECTOR, drivers.data(),
                                  is("CSV") ? options.data() : nullptr, nullptr));
+    if (!set_ && is("CSV")) fail("is not valid CSV; give it a header and two columns or more");
     if (!set_) fail(fmt::format("is not valid {}{}", driver, reason()));
   }
 

@@ -162,6 +162,7 @@ Scene read_scene(const std::string& file, const std::vector<Setting>& settings) 
   scene.settings = settings;
   scene.document = parse_json(scene.text, file);
   std::vector<std::string> places;
+  places.reserve(settings.size());
   for (const Setting& s : settings) places.push_back(apply_setting(scene.document, s, file));
   try {
     SceneReader(scene).read();
