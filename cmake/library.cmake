@@ -25,3 +25,12 @@ set(APOTHEM_GENERATED ${PROJECT_BINARY_DIR}/generated)
 file(RELATIVE_PATH APOTHEM_DATA_FROM_PROGRAM
      ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/apothem)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/version.hpp.in ${APOTHEM_GENERATED}/version.hpp @ONLY)
+
+# GDAL is not linked but loaded when a drawing is read, see lib/scene/gdal.hpp: by the name under which
+# a linked program would look for it, which is where the link of the development package leads.
+set(GDAL_SONAME ${GDAL_LIBRARY})
+if(IS_SYMLINK ${GDAL_LIBRARY})
+  file(READ_SYMLINK ${GDAL_LIBRARY} GDAL_SONAME)
+endif()
+cmake_path(GET GDAL_SONAME FILENAME GDAL_SONAME)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/gdal_library.hpp.in ${APOTHEM_GENERATED}/gdal_library.hpp @ONLY)

@@ -15,6 +15,7 @@ class Hash {
     for (size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3U;
   }
   void add(std::span<const double> values) { add(values.data(), values.size_bytes()); }
+  void add(const std::string& text) { add(text.data(), text.size() + 1); }
   void add(const Vec2& v) { add(v.data(), 2 * sizeof(double)); }
   [[nodiscard]] std::string text() const { return fmt::format("fnv1a64:{:016x}", value_); }
 
@@ -31,10 +32,16 @@ std::string scene_hash(const Scene& scene) {
     const std::string text = '\n' + setting.text();
     hash.add(text.data(), text.size());
   }
+  // An imported drawing also gives names, and by its layers materials and motions.
   for (const RigidBody& body : scene.model.bodies) {
+    hash.add(body.name);
+    hash.add(&body.material, sizeof body.material);
+    hash.add(&body.motion, sizeof body.motion);
     for (const Vec2& v : body.potential.vertices) hash.add(v);
   }
   for (const DeformableBody& body : scene.model.deformables) {
+    hash.add(body.name);
+    hash.add(&body.material, sizeof body.material);
     for (const Vec2& v : body.mesh.nodes) hash.add(v);
     hash.add(body.element_material.data(), body.element_material.size() * sizeof(MaterialIndex));
   }

@@ -8,8 +8,8 @@
 
 namespace apothem {
 
-/// Of the scene as read, with its settings and the polygons and meshes that stand in files of their
-/// own.
+/// Of the scene as read, with its settings and what stands in files of their own: polygons, meshes
+/// and drawings.
 std::string scene_hash(const Scene& scene);
 
 /// Of time, places, velocities and forces.

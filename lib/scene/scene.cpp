@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/contact_reader.hpp"
 #include "apothem/scene/deformable_reader.hpp"
 #include "apothem/scene/fill_reader.hpp"
+#include "apothem/scene/import_reader.hpp"
 #include "apothem/scene/material_reader.hpp"
 #include "apothem/scene/output_reader.hpp"
 #include "apothem/scene/population_reader.hpp"
@@ -24,6 +26,7 @@ class SceneReader {
   explicit SceneReader(Scene& scene) : scene_(scene), model_(scene.model), in_(scene.file) {}
 
   void read() {
+    add_bodies();
     JsonObject top(in_, scene_.document);
     settings(top);
     const JsonValue& materials = top.required("materials", "{\"NAME\": {\"density\": ...}, ...}");
@@ -32,6 +35,7 @@ class SceneReader {
     const JsonValue* list = top.optional("bodies");
     if (!list && !fills) top.required("bodies", "[{\"name\": ..., \"polygon\": ...}, ...]");
     if (list && in_.array(*list).empty() && !fills) in_.fail(*list, "must hold at least one body");
+    top.optional("import");
     ContactReader contact(in_, model_, features_);
     if (const JsonValue* v = top.optional("contact")) {
       contact.read(*v);
@@ -57,6 +61,27 @@ class SceneReader {
   }
 
  private:
+  // Puts the bodies that come from elsewhere behind those of the scene's own list.
+  void add_bodies() {
+    JsonValue& top = scene_.document;
+    const JsonValue* imports = top.find("import");
+    if (imports == nullptr) return;
+    std::vector<JsonValue> bodies;
+    append_imports(in_, *imports, bodies);
+    if (top.find("bodies") == nullptr) {
+      JsonValue list;
+      list.type = JsonValue::Type::array;
+      list.line = imports->line;
+      list.pointer = imports->pointer;
+      top.keys.emplace_back("bodies");
+      top.items.push_back(std::move(list));
+    }
+    const auto at = std::find(top.keys.begin(), top.keys.end(), "bodies") - top.keys.begin();
+    JsonValue& list = top.items[at];
+    in_.array(list);
+    std::move(bodies.begin(), bodies.end(), std::back_inserter(list.items));
+  }
+
   void settings(JsonObject& top) {
     model_.name = std::filesystem::path(scene_.file).stem().string();
     if (const JsonValue* v = top.optional("$schema")) in_.string(*v);
@@ -182,6 +207,7 @@ Scene read_scene(const std::string& file, const std::vector<Setting>& settings) 
   scene.settings = settings;
   scene.document = parse_json(scene.text, file);
   std::vector<std::string> places;
+  places.reserve(settings.size());
   for (const Setting& s : settings) places.push_back(apply_setting(scene.document, s, file));
   try {
     SceneReader(scene).read();

@@ -34,6 +34,15 @@ const char* const kGood = R"({
   "expect": [ { "quantity": "falling.y", "take": "max", "between": [0, 1], "value": 1, "tolerance": 1 } ]
 })";
 
+const char* const kImport = R"({
+  "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
+  "contact": { "normal_stiffness": 20e9 },
+  "import": [ { "file": "wall.dxf", "scale": 0.001, "offset": [0, 1], "material": "rock", "tolerance": 1e-3,
+                "layers": { "ground": { "motion": "fixed" }, "notes": false },
+                "mesh": { "size": 0.1, "element": "Q4" } } ],
+  "time": { "end": 1.0 }
+})";
+
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const size_t at = text.find(what);
   REQUIRE(at != std::string::npos);
@@ -363,6 +372,9 @@ TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
   read_schema(schema);
   CHECK(valid(schema, kGood));
   CHECK(valid(schema, kMeshedScene));
+  CHECK(valid(schema, kImport));
+  CHECK_FALSE(valid(schema, replaced(kImport, "\"notes\": false", "\"notes\": true")));
+  CHECK_FALSE(valid(schema, replaced(kImport, "\"import\"", "\"imports\"")));
   for (const Broken& broken : kBrokenMeshed) {
     INFO(broken.what << " -> " << broken.by);
     if (broken.schema) CHECK_FALSE(valid(schema, replaced(kMeshedScene, broken.what, broken.by)));
@@ -418,6 +430,9 @@ TEST_CASE("the JSON Schema lists exactly the keys that the reader knows", "[scen
       {"\"where\": { \"x\"", &definitions["support"]["properties"], kMeshedScene},
       {"\"x\": 0", &definitions["place"]["properties"], kMeshedScene},
       {"\"at\"", &definitions["load"]["properties"], kMeshedScene},
+      {"\"file\"", &definitions["import"]["properties"], kImport},
+      {"\"motion\"", &definitions["import_layer"]["properties"], kImport},
+      {"\"size\"", &definitions["filling"]["oneOf"][1]["properties"], kImport},
       {"\"body\": \"beam\", \"point\"",
        &top["output"]["properties"]["history"]["properties"]["track"]["items"]["properties"],
        kMeshedScene},

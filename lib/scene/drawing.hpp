@@ -1,0 +1,29 @@
+// Reads drawings: files of DXF, WKT, GeoJSON and CSV.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+/// Something that is drawn, in units of the drawing.
+struct DrawnShape {
+  enum class Kind { label, line, area };
+  Kind kind;
+  /// One point of a label, the vertices of a line, or the outer ring of an area and its holes. As
+  /// in the file: the first vertex may be repeated at the end.
+  std::vector<std::vector<Vec2>> rings;
+  std::string layer;  ///< empty if it has none
+  std::string name;   ///< by the attribute "name" or "id", or the text of a label; may be empty
+  std::string place;  ///< where it stands in the file, for messages
+};
+
+/// The shapes of a drawing, in the order of the file. Curves are given by chords. The name's ending
+/// tells the format: .dxf; .wkt or .txt, with geometries of WKT one after the other; .geojson or
+/// .json; .csv, with a column WKT, or with a vertex x, y in each row and the id of its outline.
+/// Throws SceneError.
+std::vector<DrawnShape> read_drawing(const std::string& file);
+
+}  // namespace apothem

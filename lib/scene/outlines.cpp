@@ -1,0 +1,176 @@
+#include "apothem/scene/outlines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/spatial/boxes.hpp"
+#include "apothem/scene/faces.hpp"
+
+namespace apothem {
+namespace {
+
+// An outline that covers this part of another one is drawn twice, or over it.
+constexpr double kCovered = 0.01;
+constexpr double kTolerance = 1e-6;  // of the extent
+
+std::string shown_place(const std::string& place, const std::string& layer) {
+  return layer.empty() ? place : fmt::format("{} on layer \"{}\"", place, layer);
+}
+
+// Of a ring that may be too thin for a polygon.
+double area(const std::vector<Vec2>& ring) {
+  double twice = 0;
+  for (size_t i = 0; i < ring.size(); ++i) twice += cross(ring[i], ring[(i + 1) % ring.size()]);
+  return twice / 2;
+}
+
+template <class Shape>
+[[noreturn]] void refuse(const Shape& shape, const std::string& what) {
+  throw BadOutline(fmt::format("{}: {}", shown_place(shape.place, shape.layer), what));
+}
+
+class OutlineMaker {
+ public:
+  OutlineMaker(const std::vector<DrawnShape>& shapes, const OutlineRules& rules) : rules_(rules) {
+    Box box;
+    for (const DrawnShape& shape : shapes) {
+      if (rules.ignored.count(shape.layer)) continue;
+      shapes_.push_back(shape);
+      for (auto& ring : shapes_.back().rings) {
+        for (Vec2& v : ring) {
+          v = rules.scale * v + rules.offset;
+          box.include(v.x(), v.y());
+        }
+      }
+    }
+    tolerance_ = rules.tolerance.value_or(kTolerance * std::max(0.0, box.extent()));
+  }
+
+  std::vector<Outline> make() {
+    for (const DrawnShape& shape : shapes_) {
+      if (shape.kind == DrawnShape::Kind::area) add(shape);
+      if (shape.kind == DrawnShape::Kind::line && !rules_.polygonize) add_line(shape);
+    }
+    if (rules_.polygonize) add_faces();
+    if (outlines_.empty()) {
+      throw BadOutline(rules_.polygonize
+                           ? "its lines enclose no face; check that they meet, or raise "
+                             "\"tolerance\" (m)"
+                           : "holds no closed outline; draw closed polylines or polygons");
+    }
+    refuse_covered();
+    return std::move(outlines_);
+  }
+
+ private:
+  // Closing vertices are left out, and vertices that repeat the one before: programs write both
+  // where arcs meet lines, and not always with the same digits.
+  [[nodiscard]] std::vector<Vec2> cleaned(const std::vector<Vec2>& drawn) const {
+    const auto close = [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= tolerance_; };
+    std::vector<Vec2> ring;
+    std::unique_copy(drawn.begin(), drawn.end(), std::back_inserter(ring), close);
+    while (ring.size() > 1 && close(ring.back(), ring.front())) ring.pop_back();
+    return ring;
+  }
+
+  void add_line(const DrawnShape& shape) {
+    const std::vector<Vec2>& line = shape.rings[0];
+    const double gap = line.empty() ? 0 : (line.back() - line.front()).norm();
+    if (gap > tolerance_) {
+      refuse(shape, fmt::format("the line is open, with {:.3g} m between its ends; close it, leave "
+                                "its layer out, raise \"tolerance\" (m), or say \"lines\": "
+                                "\"polygonize\" where lines divide the plane into bodies",
+                                gap));
+    }
+    add(shape);
+  }
+
+  void add(const DrawnShape& shape) {
+    Outline outline{{}, shape.layer, shape.name, shape.place};
+    if (shape.rings.size() > 1 && !rules_.may_have_holes(shape.layer)) {
+      refuse(shape,
+             "has a hole, and rigid bodies have none; divide it into outlines without "
+             "holes, or give its bodies a \"mesh\"");
+    }
+    for (const auto& ring : shape.rings) {
+      outline.rings.push_back(cleaned(ring));
+      try {
+        const Polygon polygon(outline.rings.back());
+        if (outline.rings.size() == 1) polygons_.push_back(polygon);
+      } catch (const InvalidPolygon& error) {
+        refuse(shape, fmt::format("{}; correct the drawing there", error.what()));
+      }
+    }
+    outlines_.push_back(std::move(outline));
+  }
+
+  void add_faces() {
+    std::vector<std::vector<Vec2>> lines;
+    for (const DrawnShape& shape : shapes_) {
+      if (shape.kind == DrawnShape::Kind::line) lines.push_back(shape.rings[0]);
+    }
+    for (auto& rings : faces_between(std::move(lines), tolerance_)) {
+      DrawnShape face{DrawnShape::Kind::area, std::move(rings), "", "", ""};
+      const Vec2& corner = face.rings[0][0];
+      face.place =
+          fmt::format("the face with the corner ({:.6g}, {:.6g}) m", corner.x(), corner.y());
+      label(face);
+      add(face);
+    }
+  }
+
+  void label(DrawnShape& face) const {
+    const DrawnShape* found = nullptr;
+    for (const DrawnShape& shape : shapes_) {
+      if (shape.kind != DrawnShape::Kind::label || shape.rings[0].empty()) continue;
+      if (!strictly_inside(cleaned(face.rings[0]), shape.rings[0][0])) continue;
+      if (found != nullptr) {
+        refuse(shape, fmt::format("is a second label of one face, besides {}; take one away",
+                                  shown_place(found->place, found->layer)));
+      }
+      found = &shape;
+    }
+    if (found == nullptr) return;
+    face.layer = found->layer;
+    face.name = found->name;
+  }
+
+  void refuse_covered() const {
+    std::vector<Box> boxes;
+    for (const Polygon& polygon : polygons_) boxes.push_back(bounding_box(polygon));
+    std::vector<BoxPair> pairs;
+    BoxGrid().find_pairs(boxes, pairs);
+    for (const BoxPair& pair : pairs) {
+      const Polygon &a = polygons_[pair.first], &b = polygons_[pair.second];
+      if (outlines_[pair.first].rings.size() + outlines_[pair.second].rings.size() > 2) continue;
+      double shared = 0;
+      for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
+        shared += area(part.vertices);
+      }
+      const double smaller = std::min(area_moments(a).area, area_moments(b).area);
+      if (!(shared > kCovered * smaller)) continue;
+      const Outline &first = outlines_[pair.first], &second = outlines_[pair.second];
+      refuse(second, fmt::format("covers {:.2g} % of {} (or is covered so); delete one of them, "
+                                 "move them apart, or leave a layer out",
+                                 100 * shared / smaller, shown_place(first.place, first.layer)));
+    }
+  }
+
+  const OutlineRules& rules_;
+  std::vector<DrawnShape> shapes_;  // in m
+  double tolerance_ = 0;
+  std::vector<Outline> outlines_;
+  std::vector<Polygon> polygons_;  // the outer rings of the outlines
+};
+
+}  // namespace
+
+std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules) {
+  return OutlineMaker(shapes, rules).make();
+}
+
+}  // namespace apothem

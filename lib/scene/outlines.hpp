@@ -1,0 +1,45 @@
+// Outlines of bodies, from the shapes of a drawing.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apothem/scene/drawing.hpp"
+
+namespace apothem {
+
+/// A drawing that cannot be turned into bodies: the shape, what is wrong with it, and a remedy.
+class BadOutline : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct OutlineRules {
+  double scale = 1;            ///< m per unit of the drawing
+  Vec2 offset = Vec2::Zero();  ///< m, added to the scaled coordinates
+  bool polygonize = false;     ///< take the faces between lines
+  /// Ends of lines that are closer than this meet, and vertices that follow each other are one, m.
+  /// A millionth of the drawing's extent if it is not given.
+  std::optional<double> tolerance;
+  std::set<std::string> ignored;  ///< layers that are left out
+  /// Whether the bodies of a layer may have holes.
+  std::function<bool(const std::string& layer)> may_have_holes;
+};
+
+struct Outline {
+  std::vector<std::vector<Vec2>> rings;  ///< m; the outer one, then holes; not closed by a vertex
+  std::string layer, name;               ///< may be empty
+  std::string place;                     ///< in the drawing
+};
+
+/// The simple polygons of a drawing. Equal coordinates stay equal to the bit. A line is an outline
+/// if its ends meet; with `polygonize` the faces between lines are outlines, and a label inside of
+/// a face gives it its layer and name. Throws BadOutline for open lines, holes, rings that are no
+/// simple polygons, outlines that cover each other, and drawings without any.
+std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules);
+
+}  // namespace apothem
