@@ -197,7 +197,7 @@ void print_failures(const Plan& plan, const std::vector<RunRecord>& records) {
   if (failures > 0) fmt::print(stderr, "apothem: --retry-failed repeats the runs that failed\n");
 }
 
-std::string in_words(const std::map<RunState, size_t>& counts) {
+std::string counts_in_words(const std::map<RunState, size_t>& counts) {
   std::vector<std::string> parts;
   for (const auto& [state, count] : counts) {
     parts.push_back(fmt::format("{} {}", count, name_of(state)));
@@ -226,7 +226,7 @@ class Sweep {
       make_tables();
     } else if (!options_.quiet) {
       fmt::print("part {}: {}; tables follow when all parts are there\n", options_.shard,
-                 in_words(counts));
+                 counts_in_words(counts));
     }
     if (!whole || counts.count(RunState::interrupted)) {
       fmt::print(stderr, "apothem: interrupted; the same command continues\n");
@@ -284,7 +284,7 @@ class Sweep {
     }
     if (options_.quiet) return counts;
     fmt::print("{} runs: {}; tables in {}/runs.csv and summary.csv\n", records.size(),
-               in_words(counts), study_.settings().folder);
+               counts_in_words(counts), study_.settings().folder);
     if (plotted == Plotted::no_gnuplot) {
       fmt::print("no picture: install gnuplot-nox\n");
     }

@@ -101,7 +101,8 @@ std::string csv_cell(const std::string& text) {
 
 std::string csv_row(const std::vector<std::string>& cells) {
   std::string row;
-  for (const std::string& cell : cells) row += (&cell == &cells.front() ? "" : ",") + csv_cell(cell);
+  for (const std::string& cell : cells)
+    row += (&cell == &cells.front() ? "" : ",") + csv_cell(cell);
   return row + "\n";
 }
 

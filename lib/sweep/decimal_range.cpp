@@ -81,7 +81,8 @@ std::vector<std::string> decimal_range(std::string_view from, std::string_view t
   }
   const auto steps = static_cast<size_t>((b - a) / d);
   if (steps >= most) {
-    throw BadNumber(fmt::format("the range has {} values; at most {} are allowed", steps + 1, most));
+    throw BadNumber(
+        fmt::format("the range has {} values; at most {} are allowed", steps + 1, most));
   }
   std::vector<std::string> values;
   values.reserve(steps + 1);

@@ -63,15 +63,10 @@ void refuse_repeated(const Variation& variation, const std::string& where) {
   std::set<nlohmann::json> known;
   for (const std::string& value : variation.values) {
     if (known.insert(nlohmann::json::parse(value)).second) continue;
-    throw SceneError(where, 0, "",
-                     fmt::format("\"{}\" has the value {} twice; give it once", variation.path, value));
+    throw SceneError(
+        where, 0, "",
+        fmt::format("\"{}\" has the value {} twice; give it once", variation.path, value));
   }
-}
-
-// As it stands in a key and in a picture: strings without their quotes.
-std::string plain(const std::string& value) {
-  const nlohmann::json json = nlohmann::json::parse(value);
-  return json.is_string() ? json.get<std::string>() : value;
 }
 
 bool is_safe(char c) {
@@ -84,7 +79,7 @@ std::string folder_key(const std::vector<std::string>& names,
                        const std::vector<std::string>& values) {
   std::string full, key;
   for (size_t i = 0; i < names.size(); ++i) {
-    full += fmt::format("{}{}={}", i == 0 ? "" : ",", names[i], plain(values[i]));
+    full += fmt::format("{}{}={}", i == 0 ? "" : ",", names[i], without_quotes(values[i]));
   }
   for (const char c : full) key += is_safe(c) ? c : '_';
   if (key == full && key.size() <= kLongestKey && key[0] != '.') return key;
@@ -160,13 +155,15 @@ Variation parse_variation(const std::string& text, const std::string& where) {
 VariationTable read_variation_table(const std::string& file) {
   const std::vector<CsvRow> rows = read_csv(file);
   if (rows.size() < 2) {
-    throw SceneError(file, 0, "", "has no rows; its first line names paths, each further one a run");
+    throw SceneError(file, 0, "",
+                     "has no rows; its first line names paths, each further one a run");
   }
   VariationTable table{rows.front().cells, {}};
   std::vector<int> lines;
   for (const std::string& path : table.paths) {
     if (path.empty()) {
-      throw SceneError(file, rows.front().line, "", "a column has no path of the scene as its name");
+      throw SceneError(file, rows.front().line, "",
+                       "a column has no path of the scene as its name");
     }
   }
   for (size_t i = 1; i < rows.size(); ++i) {
@@ -181,9 +178,9 @@ VariationTable read_variation_table(const std::string& file) {
     std::vector<std::string>& values = table.rows.emplace_back();
     for (size_t c = 0; c < row.cells.size(); ++c) {
       if (row.cells[c].empty()) {
-        throw SceneError(file, row.line, "",
-                         fmt::format("there is no value for \"{}\"; every cell needs one",
-                                     table.paths[c]));
+        throw SceneError(
+            file, row.line, "",
+            fmt::format("there is no value for \"{}\"; every cell needs one", table.paths[c]));
       }
       try {
         values.push_back(parse_setting(table.paths[c] + "=" + row.cells[c], file).value);
@@ -208,8 +205,7 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
     }
   }
   if (plan.paths.empty()) {
-    throw SceneError("sweep", 0, "",
-                     "nothing varies; give --vary PATH=A,B,C or --table FILE.csv");
+    throw SceneError("sweep", 0, "", "nothing varies; give --vary PATH=A,B,C or --table FILE.csv");
   }
   std::set<std::string> known;
   for (const std::string& path : plan.paths) {
@@ -237,6 +233,11 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
     plan.runs.push_back({folder_key(names, values), std::move(values)});
   }
   return plan;
+}
+
+std::string without_quotes(const std::string& value) {
+  const nlohmann::json parsed = nlohmann::json::parse(value);
+  return parsed.is_string() ? parsed.get<std::string>() : value;
 }
 
 bool is_seed(const std::string& path) { return tail(path, 1) == "seed"; }

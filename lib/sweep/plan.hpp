@@ -47,6 +47,9 @@ inline constexpr size_t kMostRuns = 1'000'000;
 /// or if there are more than kMostRuns.
 Plan make_plan(const VariationTable& table, const std::vector<Variation>& variations);
 
+/// A value as people read it: a string without its quotes, all else as JSON.
+std::string without_quotes(const std::string& value);
+
 /// Whether a path is that of a seed: its last key is "seed". Runs that differ only in seeds repeat
 /// each other.
 bool is_seed(const std::string& path);

@@ -11,13 +11,6 @@
 namespace apothem {
 namespace {
 
-using nlohmann::json;
-
-std::string shown(const std::string& value) {
-  const json parsed = json::parse(value);
-  return parsed.is_string() ? parsed.get<std::string>() : value;
-}
-
 // Where the values of the first path stand on the x axis: numbers at their places, others at 1, 2,
 // ... in the order of the plan.
 struct Abscissa {
@@ -28,14 +21,14 @@ struct Abscissa {
 Abscissa abscissa_of(const SummaryTable& table) {
   Abscissa result;
   const bool numbers = std::all_of(table.rows.begin(), table.rows.end(), [](const SummaryRow& row) {
-    return json::parse(row.values.front()).is_number();
+    return nlohmann::json::parse(row.values.front()).is_number();
   });
   for (const SummaryRow& row : table.rows) {
     const std::string& value = row.values.front();
     if (numbers) {
-      result.places[value] = json::parse(value).get<double>();
+      result.places[value] = nlohmann::json::parse(value).get<double>();
     } else if (result.places.emplace(value, result.names.size() + 1).second) {
-      result.names.push_back(shown(value));
+      result.names.push_back(without_quotes(value));
     }
   }
   return result;
@@ -46,7 +39,7 @@ std::string label_of(const SummaryTable& table, const SummaryRow& row) {
   const std::vector<std::string> names = short_names(table.paths);
   std::string label;
   for (size_t i = 1; i < names.size(); ++i) {
-    label += fmt::format("{}{} = {}", i == 1 ? "" : ", ", names[i], shown(row.values[i]));
+    label += fmt::format("{}{} = {}", i == 1 ? "" : ", ", names[i], without_quotes(row.values[i]));
   }
   return label;
 }

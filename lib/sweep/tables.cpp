@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "apothem/output/files.hpp"
 #include "apothem/sweep/csv.hpp"
@@ -30,10 +29,7 @@ std::string cell_of(const Measure& value) {
 // Strings without their quotes, as in a table of variations.
 std::vector<std::string> cells_of(const std::vector<std::string>& values) {
   std::vector<std::string> cells;
-  for (const std::string& value : values) {
-    const nlohmann::json json = nlohmann::json::parse(value);
-    cells.push_back(json.is_string() ? json.get<std::string>() : value);
-  }
+  for (const std::string& value : values) cells.push_back(without_quotes(value));
   return cells;
 }
 
