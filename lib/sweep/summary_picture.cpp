@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 namespace apothem {
 namespace {
@@ -68,6 +69,28 @@ void sort_by_x(Curve& curve) {
   }
 }
 
+// Limits of an axis on which gnuplot would find nothing but one value; else nothing, so that it
+// chooses them itself.
+std::optional<Vec2> limits_of(double low, double high) {
+  if (low < high) return {};
+  const double room = low == 0 ? 1 : 0.1 * std::abs(low);
+  return Vec2(low - room, high + room);
+}
+
+void set_limits(CurvePanel& panel) {
+  double left = HUGE_VAL, right = -HUGE_VAL, low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Curve& curve : panel.curves) {
+    for (size_t i = 0; i < curve.x.size(); ++i) {
+      left = std::min(left, curve.x[i]);
+      right = std::max(right, curve.x[i]);
+      low = std::min(low, curve.low[i]);
+      high = std::max(high, curve.high[i]);
+    }
+  }
+  panel.x_range = limits_of(left, right);
+  panel.y_range = limits_of(low, high);
+}
+
 CurvePanel panel_of(const SummaryTable& table, size_t column, const Abscissa& abscissa) {
   CurvePanel panel;
   panel.x_label = table.paths.front();
@@ -95,6 +118,7 @@ CurvePanel panel_of(const SummaryTable& table, size_t column, const Abscissa& ab
   }
   std::erase_if(panel.curves, [](const Curve& curve) { return curve.x.empty(); });
   for (Curve& curve : panel.curves) sort_by_x(curve);
+  set_limits(panel);
   return panel;
 }
 

@@ -169,7 +169,7 @@ TEST_CASE("keys are short, legal and different", "[sweep]") {
         Words{"coefficient", "0.seed", "1.seed"});
   CHECK(short_names({"seed", "fill.seed"}) == Words{"seed", "fill.seed"});
   const Plan plan = make_plan(
-      {}, {parse_variation(R"(a="x/y","x\\y","x y",[1],"..",..,"é")", "--vary"),
+      {}, {parse_variation(R"(a="x/y","x\\y","x y",[1],"..","é")", "--vary"),
            parse_variation("b=" + std::string(300, 'c') + "," + std::string(301, 'c'), "--vary")});
   std::set<std::string> keys;
   for (const std::string& key : keys_of(plan)) {

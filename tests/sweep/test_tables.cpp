@@ -194,6 +194,20 @@ TEST_CASE("the picture has a panel for each measure and a line for each other va
   CHECK(summary_figure(summarise(study.plan, study.records, {})).panels[0].curves[0].x ==
         std::vector<double>{0.1, 0.3, 0.4, 0.5});
 
+  // A single place needs limits, and so do equal values.
+  CHECK_FALSE(figure.panels[0].x_range);
+  CHECK_FALSE(figure.panels[0].y_range);
+  study.plan =
+      make_plan({}, {parse_variation("mu=0.5", "--vary"), parse_variation("seed=1..6", "--vary")});
+  for (RunRecord& record : study.records) {
+    for (auto& [name, value] : record.measures) value = 2.;
+  }
+  const CurvePanel single = summary_figure(summarise(study.plan, study.records, {})).panels[0];
+  REQUIRE(single.x_range);
+  CHECK(*single.x_range == Vec2(0.45, 0.55));
+  REQUIRE(single.y_range);
+  CHECK(*single.y_range == Vec2(1.8, 2.2));
+
   study.plan = make_plan({}, {parse_variation("seed=1..6", "--vary")});
   CHECK(summary_figure(summarise(study.plan, study.records, {})).panels.empty());
 }
