@@ -78,6 +78,7 @@ std::vector<std::string> command_of(const Study& study, const PlannedRun& run, b
 // Starts a program whose output goes to a descriptor. Returns 0 or the number of the error.
 int spawn(std::vector<std::string>& words, int output, pid_t& process) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -199,6 +199,7 @@ void print_failures(const Plan& plan, const std::vector<RunRecord>& records) {
 
 std::string counts_in_words(const std::map<RunState, size_t>& counts) {
   std::vector<std::string> parts;
+  parts.reserve(counts.size());
   for (const auto& [state, count] : counts) {
     parts.push_back(fmt::format("{} {}", count, name_of(state)));
   }

@@ -46,7 +46,7 @@ class CsvParser {
       return read_quoted();
     }
     const size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
-    const std::string cell = without_blanks(text_.substr(at_, end - at_));
+    std::string cell = without_blanks(text_.substr(at_, end - at_));
     at_ = end;
     return cell;
   }

@@ -89,25 +89,15 @@ std::string folder_key(const std::vector<std::string>& names,
   return key + "-" + hash;
 }
 
-std::vector<std::string> parts_of(const std::string& path) {
-  std::vector<std::string> parts;
-  size_t start = 0;
-  for (size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', start)) {
-    parts.push_back(path.substr(start, dot - start));
-    start = dot + 1;
-  }
-  parts.push_back(path.substr(start));
-  return parts;
-}
-
 // The last `count` parts of a path.
 std::string tail(const std::string& path, size_t count) {
-  const std::vector<std::string> parts = parts_of(path);
-  std::string text;
-  for (size_t i = parts.size() - std::min(count, parts.size()); i < parts.size(); ++i) {
-    text += (text.empty() ? "" : ".") + parts[i];
+  size_t start = path.size();
+  for (size_t i = 0; i < count; ++i) {
+    const size_t dot = start == 0 ? std::string::npos : path.rfind('.', start - 1);
+    if (dot == std::string::npos) return path;
+    start = dot;
   }
-  return text;
+  return path.substr(start + 1);
 }
 
 void refuse_repeated_rows(const VariationTable& table, const std::vector<int>& lines,

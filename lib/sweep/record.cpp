@@ -24,9 +24,9 @@ bool is_taken(const RunRecord& record, const std::string& name) {
 }
 
 std::string free_name(const RunRecord& record, const Json& expectation) {
-  const std::string quantity = expectation.at("quantity");
+  std::string quantity = expectation.at("quantity");
   if (!is_taken(record, quantity)) return quantity;
-  const std::string take = quantity + " " + expectation.at("take").get<std::string>();
+  std::string take = quantity + " " + expectation.at("take").get<std::string>();
   if (!is_taken(record, take)) return take;
   int number = 2;
   while (is_taken(record, fmt::format("{} {}", take, number))) ++number;

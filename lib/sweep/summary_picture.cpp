@@ -64,6 +64,7 @@ void sort_by_x(Curve& curve) {
                    [&](size_t i, size_t j) { return curve.x[i] < curve.x[j]; });
   for (std::vector<double>* values : {&curve.y, &curve.low, &curve.high, &curve.x}) {
     std::vector<double> sorted;
+    sorted.reserve(order.size());
     for (const size_t i : order) sorted.push_back((*values)[i]);
     *values = std::move(sorted);
   }

@@ -133,6 +133,7 @@ SummaryTable summarise(const Plan& plan, const std::vector<RunRecord>& records,
   std::map<std::vector<std::string>, size_t> known;
   for (size_t r = 0; r < records.size(); ++r) {
     std::vector<std::string> values;
+    values.reserve(places.size());
     for (const size_t i : places) values.push_back(plan.runs[r].values[i]);
     const auto [group, added] = known.emplace(values, groups.size());
     if (added) {

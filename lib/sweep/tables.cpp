@@ -29,6 +29,7 @@ std::string cell_of(const Measure& value) {
 // Strings without their quotes, as in a table of variations.
 std::vector<std::string> cells_of(const std::vector<std::string>& values) {
   std::vector<std::string> cells;
+  cells.reserve(values.size());
   for (const std::string& value : values) cells.push_back(without_quotes(value));
   return cells;
 }

@@ -200,7 +200,6 @@ TEST_CASE("a file that the scene names belongs to it", "[sweep]") {
   };
   square("1");
   std::string text = kLongFall;
-  text.replace(text.find("[[0,0],[1,0],[1,1],[0,1]]"), 25, R"("stone.json")");
   text.replace(text.find("1e-6"), 4, "1e-2");
   const Words sweep{"sweep",  folder.write("scene.json", text),
                     "--vary", "bodies.stone.polygon=stone.json,[[0,0],[1,0],[1,1]]",
@@ -212,6 +211,15 @@ TEST_CASE("a file that the scene names belongs to it", "[sweep]") {
   CHECK(again.code == 0);
   CHECK(says(again.err, "1 of 2 runs are done anew"));
   CHECK(run(sweep, folder).err.empty());
+  // All runs share a file of the scene itself.
+  text.replace(text.find("[[0,0],[1,0],[1,1],[0,1]]"), 25, R"("stone.json")");
+  const Words shared{"sweep",  folder.write("named.json", text),
+                     "--vary", "gravity.1=-1,-2",
+                     "-o",     folder / "shared"};
+  REQUIRE(run(shared, folder).code == 0);
+  CHECK(run(shared, folder).err.empty());
+  square("1");
+  CHECK(says(run(shared, folder).err, "2 of 2 runs are done anew"));
 }
 
 TEST_CASE("shards give the tables of one go, also at the same time", "[sweep]") {

@@ -180,5 +180,9 @@ TEST_CASE("keys are short, legal and different", "[sweep]") {
                                 "._+-=,") == std::string::npos);
     CHECK(key[0] != '.');
   }
-  CHECK(keys_of(make_plan({}, {parse_variation(".=1,2", "--vary")}))[0][0] == '_');
+  CHECK(short_names({".x", "x", "y.x", "a.", "."}) == Words{".x", "x", "y.x", "a.", "."});
+  CHECK(
+      keys_of(make_plan({}, {parse_variation(".x=1", "--vary"), parse_variation("x=1", "--vary")}))
+          .front()
+          .starts_with("_x=1,x=1-"));
 }
