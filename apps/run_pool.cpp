@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -24,28 +24,6 @@ namespace {
 constexpr const char* kProgramItself = "/proc/self/exe";
 
 std::string messages_of(const std::string& folder) { return folder + "/messages.txt"; }
-
-// Signals that wait until they are asked for, while this exists.
-class HeldSignals {
- public:
-  HeldSignals() {
-    sigemptyset(&held_);
-    for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&held_, signal);
-    sigprocmask(SIG_BLOCK, &held_, &before_);
-  }
-  HeldSignals(const HeldSignals&) = delete;
-  HeldSignals& operator=(const HeldSignals&) = delete;
-  ~HeldSignals() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
-  /// The next one, or a negative number if there was none for a while.
-  [[nodiscard]] int next() const {
-    const timespec while_waiting{0, 200'000'000};
-    return sigtimedwait(&held_, nullptr, &while_waiting);
-  }
-
- private:
-  sigset_t held_{}, before_{};
-};
 
 // The last line by which the program has named an error.
 std::string last_error(const std::string& file) {
@@ -101,19 +79,31 @@ int spawn(std::vector<std::string>& words, int output, pid_t& process) {
 
 }  // namespace
 
+HeldSignals::HeldSignals() {
+  sigemptyset(&held_);
+  for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&held_, signal);
+  sigprocmask(SIG_BLOCK, &held_, &before_);
+}
+
+HeldSignals::~HeldSignals() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+int HeldSignals::next() const {
+  const timespec while_waiting{0, 200'000'000};
+  return sigtimedwait(&held_, nullptr, &while_waiting);
+}
+
 RunPool::RunPool(const Study& study, int jobs, bool retry_failed)
     : study_(study), jobs_(static_cast<size_t>(jobs)), retry_failed_(retry_failed) {}
 
 bool RunPool::work(const std::vector<const PlannedRun*>& runs,
                    const std::function<void(const Progress&)>& report) {
-  const HeldSignals signals;
   const auto begin = std::chrono::steady_clock::now();
   progress_.total = runs.size();
   size_t next = 0;
   while (true) {
     while (!interrupted_ && children_.size() < jobs_ && next < runs.size()) start(*runs[next++]);
     if (children_.empty()) break;
-    const int signal = signals.next();
+    const int signal = signals_.next();
     interrupted_ = interrupted_ || signal == SIGINT || signal == SIGTERM;
     // Again and again: a run that is still reading its scene does not heed the signal.
     for (const Child& child : children_) {

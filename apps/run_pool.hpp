@@ -4,7 +4,7 @@
 
 #include <sys/types.h>
 
-#include <chrono>
+#include <csignal>
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,6 +13,22 @@
 
 namespace apothem {
 
+/// SIGINT, SIGTERM and SIGCHLD wait until they are asked for, while this exists.
+class HeldSignals {
+ public:
+  HeldSignals();
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals();
+  /// The next one, or a negative number if there was none for 0.2 s.
+  [[nodiscard]] int next() const;
+
+ private:
+  sigset_t held_{}, before_{};
+};
+
+/// While it exists, SIGINT and SIGTERM do not end the program: the tables of a study are complete
+/// too before they do.
 class RunPool {
  public:
   /// `jobs`: processes at a time. Runs that have failed are repeated only with `retry_failed`.
@@ -44,6 +60,7 @@ class RunPool {
   void collect();
   bool is_over(const Child& child, int status);
 
+  HeldSignals signals_;
   const Study& study_;
   size_t jobs_;
   bool retry_failed_;
