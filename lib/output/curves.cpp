@@ -121,9 +121,10 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
     script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
                           quoted(panel.x_label), quoted(panel.y_label));
     script += x_tics(panel);
-    // Bars at the ends of the axes need room.
+    // Bars at the ends of the axes need room, and small values all their digits.
     script += has_bars(panel) ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
-                              : "unset offsets\n";
+                                "set format y '%g'\n"
+                              : "unset offsets\nset format y\n";
     script += fmt::format("plot {} {}", range(panel.x_range), range(panel.y_range));
     for (size_t c = 0; c < panel.curves.size(); ++c) {
       const Curve& curve = panel.curves[c];
