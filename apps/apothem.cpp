@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
     return exit_code::done;
   }
   if (app.got_subcommand("run")) return run_command(options.run);
+  if (app.got_subcommand("sweep")) return sweep_command(options.sweep);
   if (app.got_subcommand("check")) return check_command(options.check);
   if (app.got_subcommand("mesh")) return mesh_command(options.mesh);
   if (app.got_subcommand("polygon")) return polygon_command(options.polygon);

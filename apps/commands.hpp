@@ -16,7 +16,8 @@ namespace apothem {
 /// The exit codes of the program, which its users may rely on.
 namespace exit_code {
 inline constexpr int done = 0;  ///< everything succeeded
-/// An expectation of a scene, or an expected value of a file of pairs, was not met.
+/// An expectation of a scene, or an expected value of a file of pairs, was not met; or runs of a
+/// study have failed.
 inline constexpr int missed = 1;
 inline constexpr int bad_input = 2;  ///< the command line or an input file is wrong
 inline constexpr int unstable = 3;   ///< unstable, or outside the range of the method
@@ -53,6 +54,27 @@ int run_command(const RunOptions& options);
 
 /// The settings of --set. Throws SceneError, at the scene.
 std::vector<Setting> settings_of(const std::vector<std::string>& texts, const std::string& scene);
+
+/// Options of `apothem sweep`.
+struct SweepOptions {
+  std::string scene;              ///< scene file
+  std::vector<std::string> vary;  ///< PATH=A,B,C or PATH=FROM..TO[:STEP]
+  std::string table;              ///< CSV file with rows of values; empty: none
+  std::vector<std::string> set;   ///< PATH=VALUE, the same for all runs
+  std::string from;               ///< DIR or DIR@TIME of another run to begin with
+  std::string folder;             ///< folder of the study; empty: out/NAME-sweep
+  int jobs = 0;                   ///< runs at a time; 0: one for each core
+  std::string shard;              ///< I/N, the part of the runs to do; empty: all
+  std::string survival;           ///< MEASURE[:EVENT]; empty: no exponential fit
+  std::string workflow;           ///< write a workflow for this tool instead; empty: none
+  int shards = 0;                 ///< parts of the workflow; 0: by the number of runs
+  bool retry_failed = false;
+  bool collect = false;  ///< make the tables of what there is, without running
+  bool dry_run = false;  ///< list the runs
+  bool quiet = false;
+};
+/// Does many runs of a scene with varied values and writes their tables.
+int sweep_command(const SweepOptions& options);
 
 /// Options of `apothem check`.
 struct CheckOptions {

@@ -83,6 +83,52 @@ void add_run(CLI::App& app, RunOptions& o) {
   sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
 }
 
+void add_sweep(CLI::App& app, SweepOptions& o) {
+  CLI::App* sub = app.add_subcommand("sweep", "Run a scene many times with varied values");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  sub->add_option("--vary", o.vary,
+                  "Values of a path of the scene, again and again: PATH=A,B,C or "
+                  "PATH=FROM..TO[:STEP], like contact.friction.coefficient=0.1..0.5:0.1. All "
+                  "combinations are run; a path that ends in seed repeats them")
+      ->type_name("PATH=VALUES")
+      ->allow_extra_args(false);
+  sub->add_option("--table", o.table, "Values that go together: CSV, the first line names paths")
+      ->type_name("FILE");
+  add_settings(sub, o.set);
+  sub->add_option("--from", o.from, "Begin all runs with the state of the run in this folder")
+      ->type_name("DIR[@TIME]");
+  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME-sweep)")
+      ->type_name("DIR");
+  sub->add_option("--jobs", o.jobs, "Runs at a time (default: one for each core)")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 4096));
+  CLI::Option* shard = sub->add_option("--shard", o.shard, "Part I of N of the runs only, I from 1")
+                           ->type_name("I/N");
+  sub->add_flag("--retry-failed", o.retry_failed, "Repeat the runs that have failed");
+  sub->add_option("--survival", o.survival,
+                  "Exponential fit of a number measure, the exposure until an event; EVENT is the "
+                  "yes/no measure that says whether it has happened (default: always)")
+      ->type_name("MEASURE[:EVENT]");
+  CLI::Option* collect =
+      sub->add_flag("--collect", o.collect, "Make the tables of what there is; run nothing")
+          ->excludes(shard);
+  CLI::Option* workflow =
+      sub->add_option("--workflow", o.workflow, "Write a workflow for this tool; run nothing")
+          ->check(CLI::IsMember({"snakemake"}))
+          ->excludes(shard)
+          ->excludes(collect);
+  sub->add_option("--shards", o.shards, "Parts of the workflow (default: by the number of runs)")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 100000))
+      ->needs(workflow);
+  sub->add_flag("--dry-run", o.dry_run, "List the runs and what there is of them; run nothing")
+      ->excludes(collect)
+      ->excludes(workflow);
+  sub->add_flag("--quiet", o.quiet, "No progress and no summary");
+}
+
 void add_check(CLI::App& app, CheckOptions& o) {
   CLI::App* sub = app.add_subcommand("check", "Validate a scene and print what a run would do");
   sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
@@ -211,12 +257,14 @@ void add_completion(CLI::App& app, CompletionOptions& o) {
 
 void add_commands(CLI::App& app, Options& options) {
   app.footer(
-      "Exit codes: 0 done; 1 an expectation or a tolerance was missed; 2 bad input or usage; 3 "
+      "Exit codes: 0 done; 1 an expectation or a tolerance was missed, or runs of a sweep failed; "
+      "2 bad input or usage; 3 "
       "the simulation became unstable or left the range of the method; 4 the system failed; 130 "
       "interrupted.");
   app.set_version_flag("--version", std::string("apothem ") + kVersion);
   app.require_subcommand(1);
   add_run(app, options.run);
+  add_sweep(app, options.sweep);
   add_check(app, options.check);
   add_contact(app, options.contact);
   add_polygon(app, options.polygon);

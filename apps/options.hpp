@@ -13,6 +13,7 @@ namespace apothem {
 /// What the command line asks of each sub-command.
 struct Options {
   RunOptions run;
+  SweepOptions sweep;
   CheckOptions check;
   ContactOptions contact;
   PolygonOptions polygon;

@@ -3,6 +3,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 
@@ -30,7 +31,16 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+std::string table_with_bars(const CurvePanel& panel, const Curve& curve) {
+  std::string text = fmt::format("{},{},low,high\n", panel.x_label, panel.y_label);
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    text += fmt::format("{},{},{},{}\n", curve.x[i], curve.y[i], curve.low[i], curve.high[i]);
+  }
+  return text;
+}
+
 std::string table(const CurvePanel& panel, const Curve& curve) {
+  if (curve.style == CurveStyle::error_bars) return table_with_bars(panel, curve);
   std::string text = fmt::format("{},{}\n", panel.x_label, panel.y_label);
   for (size_t i = 0; i < curve.x.size(); ++i) {
     fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{}\n"), curve.x[i], curve.y[i]);
@@ -56,10 +66,30 @@ std::string style(const Curve& curve) {
       return "with lines lw 1.8 " + colour;
     case CurveStyle::dashed:
       return "with lines lw 1.8 dt (9,6) " + colour;
+    case CurveStyle::error_bars: {
+      // Where the colours are used up, the points differ.
+      constexpr std::array kPoints{7, 5, 9, 13, 11};
+      const size_t point = static_cast<size_t>(curve.colour) / kColours.size() % kPoints.size();
+      return fmt::format("with yerrorlines pt {} ps 0.9 lw 1.5 {}", kPoints[point], colour);
+    }
     case CurveStyle::marks:
       break;
   }
   return "with points pt 6 ps 1.2 lw 1.5 " + colour;
+}
+
+bool has_bars(const CurvePanel& panel) {
+  return std::any_of(panel.curves.begin(), panel.curves.end(),
+                     [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
+}
+
+// Names at the places 1, 2, ... of the x axis, or its numbers.
+std::string x_tics(const CurvePanel& panel) {
+  std::string names;
+  for (size_t i = 0; i < panel.x_names.size(); ++i) {
+    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(panel.x_names[i]), i + 1);
+  }
+  return names.empty() ? "set xtics autofreq\n" : fmt::format("set xtics ({})\n", names);
 }
 
 std::string plot_script(const CurveFigure& figure,
@@ -90,11 +120,17 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
     script += repeats ? "unset key\n" : kKey;
     script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
                           quoted(panel.x_label), quoted(panel.y_label));
+    script += x_tics(panel);
+    // Bars at the ends of the axes need room, and small values all their digits.
+    script += has_bars(panel) ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
+                                "set format y '%g'\n"
+                              : "unset offsets\nset format y\n";
     script += fmt::format("plot {} {}", range(panel.x_range), range(panel.y_range));
     for (size_t c = 0; c < panel.curves.size(); ++c) {
       const Curve& curve = panel.curves[c];
-      script += fmt::format("{}{} every ::1 using 1:2 {} {}", c == 0 ? " " : ", \\\n  ",
-                            quoted(files[p][c]), style(curve),
+      script += fmt::format("{}{} every ::1 using {} {} {}", c == 0 ? " " : ", \\\n  ",
+                            quoted(files[p][c]),
+                            curve.style == CurveStyle::error_bars ? "1:2:3:4" : "1:2", style(curve),
                             curve.label.empty() ? "notitle" : "title " + quoted(curve.label));
     }
     script += '\n';

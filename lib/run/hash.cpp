@@ -48,6 +48,12 @@ std::string scene_hash(const Scene& scene) {
   return hash.text();
 }
 
+std::string text_hash(std::string_view text) {
+  Hash hash;
+  hash.add(text.data(), text.size());
+  return hash.text();
+}
+
 std::string state_hash(const State& state) {
   Hash hash;
   hash.add(&state.time, sizeof state.time);

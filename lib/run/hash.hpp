@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "apothem/model/state.hpp"
 #include "apothem/scene/scene.hpp"
@@ -11,6 +12,9 @@ namespace apothem {
 /// Of the scene as read, with its settings and what stands in files of their own: polygons, meshes
 /// and drawings.
 std::string scene_hash(const Scene& scene);
+
+/// Of a text.
+std::string text_hash(std::string_view text);
 
 /// Of time, places, velocities and forces.
 std::string state_hash(const State& state);

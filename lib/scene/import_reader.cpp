@@ -10,8 +10,8 @@
 #include <set>
 
 #include "apothem/scene/outlines.hpp"
-#include "apothem/scene/value_maker.hpp"
 #include "apothem/scene/polygon_value.hpp"
+#include "apothem/scene/value_maker.hpp"
 
 namespace apothem {
 namespace {

@@ -43,7 +43,9 @@ TEST_CASE("a misspelt command line says what it may have meant and where help is
   for (const Case& c : std::initializer_list<Case>{
            {{"rum"}, "unknown command \"rum\"; did you mean \"run\"?", "see apothem --help"},
            {{"polygn", "a.wkt"}, "did you mean \"polygon\"?", "see apothem --help"},
-           {{"xyzzy"}, "unknown command \"xyzzy\" (known: run, check,", "see apothem --help"},
+           {{"xyzzy"},
+            "unknown command \"xyzzy\" (known: run, sweep, check,",
+            "see apothem --help"},
            {{"scene.json"}, "did you mean \"apothem run scene.json\"?", "see apothem --help"},
            {{"--versoin"}, "did you mean \"--version\"?", "see apothem --help"},
            {{"run"}, "SCENE is required", "see apothem run --help"},

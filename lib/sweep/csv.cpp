@@ -1,0 +1,109 @@
+#include "apothem/sweep/csv.hpp"
+
+#include "apothem/scene/json.hpp"
+
+namespace apothem {
+namespace {
+
+std::string without_blanks(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos
+             ? ""
+             : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+class CsvParser {
+ public:
+  CsvParser(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+
+  std::vector<CsvRow> parse() {
+    std::vector<CsvRow> rows;
+    while (at_ < text_.size()) {
+      CsvRow row = read_row();
+      if (row.cells.size() > 1 || !row.cells.front().empty()) rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+
+ private:
+  CsvRow read_row() {
+    CsvRow row{line_, {}};
+    while (true) {
+      row.cells.push_back(read_cell());
+      const bool more = at_ < text_.size() && text_[at_] == ',';
+      if (at_ < text_.size()) ++at_;
+      if (!more) break;
+    }
+    ++line_;
+    return row;
+  }
+
+  // Stops at a comma, at the end of a line or at the end of the file.
+  std::string read_cell() {
+    const size_t start = text_.find_first_not_of(" \t", at_);
+    if (start != std::string::npos && text_[start] == '"') {
+      at_ = start + 1;
+      return read_quoted();
+    }
+    const size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
+    std::string cell = without_blanks(text_.substr(at_, end - at_));
+    at_ = end;
+    return cell;
+  }
+
+  std::string read_quoted() {
+    const int start = line_;
+    std::string cell;
+    for (; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '"') {
+        if (text_.compare(at_, 2, "\"\"") != 0) break;
+        ++at_;
+      }
+      if (text_[at_] == '\n') ++line_;
+      cell += text_[at_];
+    }
+    if (at_ == text_.size()) fail(start, "the quotes of this cell do not end");
+    ++at_;
+    const size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
+    if (!without_blanks(text_.substr(at_, end - at_)).empty()) {
+      fail(line_, "text follows the quotes of a cell; quotes within quotes are doubled: \"\"");
+    }
+    at_ = end;
+    return cell;
+  }
+
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw SceneError(file_, line, "", what);
+  }
+
+  const std::string& text_;
+  const std::string& file_;
+  size_t at_ = 0;
+  int line_ = 1;
+};
+
+}  // namespace
+
+std::vector<CsvRow> read_csv(const std::string& file) {
+  const std::string text = read_text(file, kLargestJson);
+  return CsvParser(text, file).parse();
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) {
+    if (c == '"') cell += c;
+    cell += c;
+  }
+  return cell + "\"";
+}
+
+std::string csv_row(const std::vector<std::string>& cells) {
+  std::string row;
+  for (const std::string& cell : cells)
+    row += (&cell == &cells.front() ? "" : ",") + csv_cell(cell);
+  return row + "\n";
+}
+
+}  // namespace apothem

@@ -1,0 +1,210 @@
+#include "apothem/sweep/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apothem/output/files.hpp"
+#include "apothem/run/hash.hpp"
+
+namespace apothem {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kNote = "/sweep.json";
+
+bool there(const std::string& file) {
+  std::error_code error;
+  return fs::exists(file, error);
+}
+
+void take_away(const std::string& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw SystemFailure(file, error.value());
+}
+
+// The content of a JSON file; null if it is absent or damaged.
+Json json_of(const std::string& file) {
+  if (!there(file)) return nullptr;
+  try {
+    return Json::parse(read_text(file), nullptr, /*allow_exceptions=*/false);
+  } catch (const SceneError&) {
+    return nullptr;
+  }
+}
+
+// All strings in a JSON value.
+void add_strings(const JsonValue& value, std::vector<std::string>& strings) {
+  if (value.type == JsonValue::Type::string) strings.push_back(value.string);
+  for (const JsonValue& item : value.items) add_strings(item, strings);
+}
+
+// Hashes the files that strings name, relative to the scene. Which strings name files is a matter
+// of the scene's reader; one that only looks like it costs no more than a needless repetition.
+void add_files(const JsonValue& value, const fs::path& folder,
+               std::map<std::string, std::string>& files) {
+  constexpr size_t kLongestName = 4096;  // bytes, as of Linux
+  std::vector<std::string> strings;
+  add_strings(value, strings);
+  for (const std::string& name : strings) {
+    if (name.empty() || name.size() > kLongestName || files.count(name)) continue;
+    std::error_code error;
+    const fs::path file = folder / name;
+    if (!fs::is_regular_file(file, error)) continue;
+    try {
+      files[name] = text_hash(read_text(file.string()));
+    } catch (const SceneError&) {
+      // The run itself says what is wrong with it.
+    }
+  }
+}
+
+RunState state_of_exit(const Json& ending) {
+  if (ending.value("signal", 0) != 0) return RunState::crashed;
+  switch (ending.value("exit_code", -1)) {
+    case 0:
+    case 1:
+      return RunState::done;
+    case 2:
+      return RunState::refused;
+    case 3:
+      return RunState::unstable;
+    case 4:
+      return RunState::failed;
+    case 130:
+      return RunState::interrupted;
+    default:
+      return RunState::crashed;
+  }
+}
+
+// Of a run whose end nobody has noted: what its own files say.
+RunState state_of_files(const std::string& folder) {
+  const Json json = json_of(folder + "/run.json");
+  if (!json.is_object()) return RunState::interrupted;
+  for (const RunState state : {RunState::done, RunState::unstable, RunState::failed}) {
+    if (json.value("status", "") == name_of(state)) return state;
+  }
+  return RunState::interrupted;
+}
+
+}  // namespace
+
+const char* name_of(RunState state) {
+  switch (state) {
+    case RunState::missing:
+      return "missing";
+    case RunState::changed:
+      return "changed";
+    case RunState::interrupted:
+      return "interrupted";
+    case RunState::done:
+      return "done";
+    case RunState::unstable:
+      return "unstable";
+    case RunState::failed:
+      return "failed";
+    case RunState::refused:
+      return "refused";
+    case RunState::crashed:
+      return "crashed";
+  }
+  return "";
+}
+
+bool has_failed(RunState state) {
+  return state == RunState::unstable || state == RunState::failed || state == RunState::refused ||
+         state == RunState::crashed;
+}
+
+Study::Study(StudySettings settings, Plan plan)
+    : settings_(std::move(settings)), plan_(std::move(plan)) {
+  for (const Setting& s : settings_.fixed) {
+    if (std::find(plan_.paths.begin(), plan_.paths.end(), s.path) == plan_.paths.end()) continue;
+    throw SceneError(
+        "--set", 0, "",
+        fmt::format("\"{}\" is varied; leave it out of --set or of the variations", s.path));
+  }
+  const std::string text = read_text(settings_.scene, kLargestJson);
+  const fs::path folder = fs::path(settings_.scene).parent_path();
+  JsonValue document = parse_json(text, settings_.scene);
+  for (const Setting& s : settings_.fixed) apply_setting(document, s, settings_.scene);
+  add_files(document, folder, files_);
+  common_ = text_hash(text);
+  for (const Setting& s : settings_.fixed) common_ += "\n" + s.text();
+  common_ += "\nfrom " + settings_.from;
+  for (const auto& [name, hash] : files_) common_ += fmt::format("\n{} {}", name, hash);
+  for (const PlannedRun& run : plan_.runs) {
+    for (const std::string& value : run.values) {
+      if (value.find('"') == std::string::npos) continue;
+      add_files(parse_json(value, settings_.scene), folder, files_);
+    }
+  }
+}
+
+std::string Study::folder_of(const PlannedRun& run) const {
+  return settings_.folder + "/runs/" + run.key;
+}
+
+std::vector<Setting> Study::settings_of(const PlannedRun& run) const {
+  std::vector<Setting> all = settings_.fixed;
+  for (size_t i = 0; i < plan_.paths.size(); ++i) all.push_back({plan_.paths[i], run.values[i]});
+  return all;
+}
+
+// What a run is made of, without reading its bodies: that may take long and may fail.
+std::string Study::identity_of(const PlannedRun& run) const {
+  std::string text = common_;
+  for (size_t i = 0; i < plan_.paths.size(); ++i) {
+    text += fmt::format("\n{}={}", plan_.paths[i], run.values[i]);
+    if (run.values[i].find('"') == std::string::npos) continue;
+    std::vector<std::string> strings;
+    add_strings(parse_json(run.values[i], settings_.scene), strings);
+    for (const std::string& name : strings) {
+      if (const auto file = files_.find(name); file != files_.end()) text += "\n" + file->second;
+    }
+  }
+  return text_hash(text);
+}
+
+RunState Study::state_of(const PlannedRun& run) const {
+  const std::string folder = folder_of(run);
+  const Json note = json_of(folder + kNote);
+  if (!note.is_object()) {
+    const bool results = there(folder + "/run.json") || there(folder + "/checkpoint.json");
+    return results ? RunState::changed : RunState::missing;
+  }
+  if (note.value("identity", "") != identity_of(run)) return RunState::changed;
+  return note.contains("ended") ? state_of_exit(note["ended"]) : state_of_files(folder);
+}
+
+std::string Study::message_of(const PlannedRun& run) const {
+  const Json note = json_of(folder_of(run) + kNote);
+  if (!note.is_object() || !note.contains("ended")) return "";
+  return note["ended"].value("message", "");
+}
+
+void Study::begin(const PlannedRun& run, bool resume) const {
+  const std::string folder = folder_of(run);
+  create_folder(folder);
+  take_away(folder + "/run.json");
+  if (!resume) take_away(folder + "/checkpoint.json");
+  write_file(folder + kNote, Json{{"identity", identity_of(run)}}.dump(2) + "\n");
+}
+
+void Study::end(const PlannedRun& run, const RunEnding& ending) const {
+  Json note{{"identity", identity_of(run)}};
+  Json& ended = note["ended"];
+  ended["exit_code"] = ending.exit_code;
+  if (ending.signal != 0) ended["signal"] = ending.signal;
+  if (!ending.message.empty()) ended["message"] = ending.message;
+  write_file(folder_of(run) + kNote,
+             note.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace apothem
