@@ -95,7 +95,9 @@ void add_sweep(CLI::App& app, SweepOptions& o) {
   sub->add_option("--table", o.table, "Values that go together: CSV, the first line names paths")
       ->type_name("FILE");
   add_settings(sub, o.set);
-  sub->add_option("--from", o.from, "Begin all runs with the state of the run in this folder")
+  sub->add_option("--from", o.from,
+                  "Begin all runs with the state of the run in this folder, "
+                  "or each with the fitting run of the study in it")
       ->type_name("DIR[@TIME]");
   sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME-sweep)")
       ->type_name("DIR");

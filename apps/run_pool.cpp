@@ -48,7 +48,7 @@ std::vector<std::string> command_of(const Study& study, const PlannedRun& run, b
   words.insert(words.end(), {"-o", study.folder_of(run), "--threads", "1", "--quiet"});
   words.emplace_back(resume ? "--resume" : "--overwrite");
   if (!resume && !study.settings().from.empty()) {
-    words.insert(words.end(), {"--from", study.settings().from});
+    words.insert(words.end(), {"--from", study.from_of(run)});
   }
   return words;
 }

@@ -81,9 +81,8 @@ Study study_of(const SweepOptions& options) {
   StudySettings settings{options.scene, settings_of(options.set, options.scene), options.from,
                          options.folder};
   std::vector<Setting> first = settings.fixed;
-  for (size_t i = 0; i < plan.paths.size(); ++i) {
-    first.push_back({plan.paths[i], plan.runs.front().values[i]});
-  }
+  const std::vector<Setting>& varied = plan.runs.front().settings;
+  first.insert(first.end(), varied.begin(), varied.end());
   const Scene scene = read_scene(options.scene, first);
   if (settings.folder.empty()) settings.folder = "out/" + scene.model.name + "-sweep";
   return {std::move(settings), std::move(plan)};

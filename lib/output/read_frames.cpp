@@ -90,8 +90,9 @@ Frame read_frame(const std::string& folder, double time, double latest) {
     frame.mesh.nodes.emplace_back(Vec2(p[0], p[1]) - frame.displacement[i]);
   }
   vtkDataArray* body = array(grid->GetCellData(), "body");
-  vtkDataArray* stress = array(grid->GetCellData(), "stress");
-  vtkDataArray* across = array(grid->GetCellData(), "stress_zz");
+  // Only scenes with meshes have stresses.
+  vtkDataArray* stress = grid->GetCellData()->GetArray("stress");
+  vtkDataArray* across = stress ? array(grid->GetCellData(), "stress_zz") : nullptr;
   vtkDataArray* part = array(grid->GetCellData(), "part");
   vtkNew<vtkIdList> corners;
   std::vector<std::vector<int>> parts;  // of the body or element at hand
@@ -102,6 +103,10 @@ Frame read_frame(const std::string& folder, double time, double latest) {
     frame.mesh.add_element(joined(parts));
     parts.clear();
     frame.body.push_back(static_cast<int>(body->GetTuple1(c)));
+    if (!stress) {
+      frame.stress.emplace_back();
+      continue;
+    }
     frame.stress.push_back({stress->GetComponent(c, 0), stress->GetComponent(c, 1),
                             stress->GetComponent(c, 2), across->GetTuple1(c)});
   }

@@ -69,6 +69,8 @@ void refuse_repeated(const Variation& variation, const std::string& where) {
   }
 }
 
+bool is_label(const std::string& column) { return column[0] == '#'; }
+
 bool is_safe(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
          std::string_view("._+-=,").find(c) != std::string_view::npos;
@@ -184,7 +186,16 @@ VariationTable read_variation_table(const std::string& file) {
 }
 
 Plan make_plan(const VariationTable& table, const std::vector<Variation>& variations) {
-  Plan plan{table.paths, {}};
+  Plan plan;
+  // Where the table has labels, its other columns follow from them.
+  std::vector<size_t> listed;
+  const bool labels = std::ranges::any_of(table.paths, is_label);
+  for (size_t i = 0; i < table.paths.size(); ++i) {
+    if (labels && !is_label(table.paths[i])) continue;
+    listed.push_back(i);
+    plan.paths.push_back(labels ? table.paths[i].substr(1) : table.paths[i]);
+  }
+  const size_t labelled = plan.paths.size();
   size_t runs = std::max<size_t>(table.rows.size(), 1);
   for (const Variation& v : variations) {
     plan.paths.push_back(v.path);
@@ -197,8 +208,11 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
   if (plan.paths.empty()) {
     throw SceneError("sweep", 0, "", "nothing varies; give --vary PATH=A,B,C or --table FILE.csv");
   }
+  std::vector<std::string> all = table.paths;
+  all.insert(all.end(), plan.paths.begin() + static_cast<std::ptrdiff_t>(labelled),
+             plan.paths.end());
   std::set<std::string> known;
-  for (const std::string& path : plan.paths) {
+  for (const std::string& path : all) {
     if (!known.insert(path).second) {
       throw SceneError("--vary", 0, "",
                        fmt::format("\"{}\" is varied twice; give all its values at once", path));
@@ -219,8 +233,23 @@ Plan make_plan(const VariationTable& table, const std::vector<Variation>& variat
     combinations = std::move(longer);
   }
   plan.runs.reserve(combinations.size());
-  for (std::vector<std::string>& values : combinations) {
-    plan.runs.push_back({folder_key(names, values), std::move(values)});
+  std::set<std::string> keys;
+  for (const std::vector<std::string>& values : combinations) {
+    PlannedRun run;
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (!is_label(all[i])) run.settings.push_back({all[i], values[i]});
+    }
+    for (const size_t i : listed) run.values.push_back(values[i]);
+    run.values.insert(run.values.end(),
+                      values.begin() + static_cast<std::ptrdiff_t>(table.paths.size()),
+                      values.end());
+    run.key = folder_key(names, run.values);
+    if (!keys.insert(run.key).second) {
+      throw SceneError(
+          "--table", 0, "",
+          fmt::format("two rows have the labels of \"{}\"; give each row its own", run.key));
+    }
+    plan.runs.push_back(std::move(run));
   }
   return plan;
 }

@@ -19,9 +19,10 @@ struct Variation {
 /// `where` as its place: the option that the text comes from.
 Variation parse_variation(const std::string& text, const std::string& where);
 
-/// Rows of values that go together.
+/// Rows of values that go together. A column whose name begins with # is a label: it sets nothing
+/// in the scene but names its row. Where there are labels, results are listed by them alone.
 struct VariationTable {
-  std::vector<std::string> paths;              ///< of the columns
+  std::vector<std::string> paths;              ///< of the columns; or labels, with their #
   std::vector<std::vector<std::string>> rows;  ///< JSON
 };
 
@@ -32,10 +33,12 @@ VariationTable read_variation_table(const std::string& file);
 struct PlannedRun {
   std::string key;                  ///< name of its folder, unique in the plan
   std::vector<std::string> values;  ///< JSON, one for each path of the plan
+  std::vector<Setting> settings;    ///< of the scene
 };
 
 struct Plan {
-  std::vector<std::string> paths;  ///< those of the table first
+  std::vector<std::string>
+      paths;  ///< by which results are listed: labels, or paths of the table; others
   std::vector<PlannedRun> runs;
 };
 

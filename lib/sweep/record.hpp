@@ -12,7 +12,7 @@
 namespace apothem {
 
 /// A value that a run has measured: a number, yes or no, or nothing.
-using Measure = std::variant<std::monostate, bool, double>;
+using MeasuredValue = std::variant<std::monostate, bool, double>;
 
 /// A row of the table of runs.
 struct RunRecord {
@@ -24,7 +24,7 @@ struct RunRecord {
   std::string message;  ///< why it has failed
   /// The `measures` of run.json, then the values of the expectations by their quantity. A name that
   /// is taken gets its take after it, then a number.
-  std::vector<std::pair<std::string, Measure>> measures;
+  std::vector<std::pair<std::string, MeasuredValue>> measures;
 };
 
 /// The record of a run as it stands on disk. A run that is done without a run.json counts as

@@ -125,11 +125,14 @@ bool has_failed(RunState state) {
 Study::Study(StudySettings settings, Plan plan)
     : settings_(std::move(settings)), plan_(std::move(plan)) {
   for (const Setting& s : settings_.fixed) {
-    if (std::find(plan_.paths.begin(), plan_.paths.end(), s.path) == plan_.paths.end()) continue;
+    const std::vector<Setting>& varied = plan_.runs.front().settings;
+    if (std::ranges::find(varied, s.path, &Setting::path) == varied.end()) continue;
     throw SceneError(
         "--set", 0, "",
         fmt::format("\"{}\" is varied; leave it out of --set or of the variations", s.path));
   }
+  find_beginnings();
+  for (const PlannedRun& run : plan_.runs) static_cast<void>(from_of(run));  // throws without one
   const std::string text = read_text(settings_.scene, kLargestJson);
   const fs::path folder = fs::path(settings_.scene).parent_path();
   JsonValue document = parse_json(text, settings_.scene);
@@ -140,9 +143,9 @@ Study::Study(StudySettings settings, Plan plan)
   common_ += "\nfrom " + settings_.from;
   for (const auto& [name, hash] : files_) common_ += fmt::format("\n{} {}", name, hash);
   for (const PlannedRun& run : plan_.runs) {
-    for (const std::string& value : run.values) {
-      if (value.find('"') == std::string::npos) continue;
-      add_files(parse_json(value, settings_.scene), folder, files_);
+    for (const Setting& s : run.settings) {
+      if (s.value.find('"') == std::string::npos) continue;
+      add_files(parse_json(s.value, settings_.scene), folder, files_);
     }
   }
 }
@@ -153,23 +156,63 @@ std::string Study::folder_of(const PlannedRun& run) const {
 
 std::vector<Setting> Study::settings_of(const PlannedRun& run) const {
   std::vector<Setting> all = settings_.fixed;
-  for (size_t i = 0; i < plan_.paths.size(); ++i) all.push_back({plan_.paths[i], run.values[i]});
+  all.insert(all.end(), run.settings.begin(), run.settings.end());
   return all;
 }
 
 // What a run is made of, without reading its bodies: that may take long and may fail.
 std::string Study::identity_of(const PlannedRun& run) const {
   std::string text = common_;
-  for (size_t i = 0; i < plan_.paths.size(); ++i) {
-    text += fmt::format("\n{}={}", plan_.paths[i], run.values[i]);
-    if (run.values[i].find('"') == std::string::npos) continue;
+  for (const Setting& s : run.settings) {
+    text += fmt::format("\n{}={}", s.path, s.value);
+    if (s.value.find('"') == std::string::npos) continue;
     std::vector<std::string> strings;
-    add_strings(parse_json(run.values[i], settings_.scene), strings);
+    add_strings(parse_json(s.value, settings_.scene), strings);
     for (const std::string& name : strings) {
       if (const auto file = files_.find(name); file != files_.end()) text += "\n" + file->second;
     }
   }
   return text_hash(text);
+}
+
+std::string Study::from_of(const PlannedRun& run) const {
+  if (beginnings_.empty()) return settings_.from;
+  const std::vector<Setting> own = settings_of(run);
+  const auto has = [&](const std::string& path, const std::string& value) {
+    return std::ranges::any_of(own, [&](const Setting& s) {
+      return s.path == path && Json::parse(s.value) == Json::parse(value);
+    });
+  };
+  std::vector<std::string> found;
+  for (const auto& [folder, settings] : beginnings_) {
+    if (std::ranges::all_of(settings, [&](const Setting& s) { return has(s.path, s.value); })) {
+      found.push_back(folder);
+    }
+  }
+  if (found.size() == 1) return found.front();
+  throw SceneError(
+      settings_.from, 0, "",
+      fmt::format("{} finished runs of this study have the values of \"{}\"; one has to, "
+                  "so that the run can begin with it",
+                  found.size(), run.key));
+}
+
+// The finished runs of a study whose folder stands in place of that of a run, with their settings.
+void Study::find_beginnings() {
+  std::error_code error;
+  const std::string runs = settings_.from + "/runs";
+  if (settings_.from.empty() || !fs::is_directory(runs, error)) return;
+  for (const auto& entry : fs::directory_iterator(runs)) {
+    const std::string folder = entry.path().string();
+    const Json json = json_of(folder + "/run.json");
+    if (!json.is_object() || json.value("status", "") != "done") continue;
+    std::vector<Setting>& settings = beginnings_[folder];
+    for (const auto& [path, value] : json["set"].items()) settings.push_back({path, value.dump()});
+  }
+  if (beginnings_.empty()) {
+    throw SceneError(settings_.from, 0, "",
+                     "holds a study without a finished run; do its runs first");
+  }
 }
 
 RunState Study::state_of(const PlannedRun& run) const {

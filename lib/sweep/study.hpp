@@ -16,8 +16,10 @@ namespace apothem {
 struct StudySettings {
   std::string scene;           ///< file
   std::vector<Setting> fixed;  ///< the same for all runs; those of the plan come after them
-  std::string from;            ///< DIR[@TIME] of the run that all runs begin with; empty: none
-  std::string folder;          ///< of the study
+  /// DIR[@TIME] of the run that all runs begin with; or DIR of a study, of which each run begins
+  /// with the finished run whose settings are among its own. Empty: none.
+  std::string from;
+  std::string folder;  ///< of the study
 };
 
 /// How a process that worked on a run has ended.
@@ -46,7 +48,8 @@ bool has_failed(RunState state);
 
 class Study {
  public:
-  /// Throws SceneError if the scene file cannot be read, or if a path is both fixed and varied.
+  /// Throws SceneError if the scene file cannot be read, if a path is both fixed and varied, or if
+  /// a run finds none, or several, to begin with.
   Study(StudySettings settings, Plan plan);
 
   [[nodiscard]] const StudySettings& settings() const { return settings_; }
@@ -54,6 +57,8 @@ class Study {
   [[nodiscard]] std::string folder_of(const PlannedRun& run) const;
   /// The fixed ones and those of the run, in the order in which they apply.
   [[nodiscard]] std::vector<Setting> settings_of(const PlannedRun& run) const;
+  /// DIR[@TIME] of the run that it begins with; empty: none.
+  [[nodiscard]] std::string from_of(const PlannedRun& run) const;
   [[nodiscard]] RunState state_of(const PlannedRun& run) const;
   /// What sweep.json says about a run that has failed; else empty.
   [[nodiscard]] std::string message_of(const PlannedRun& run) const;
@@ -66,10 +71,12 @@ class Study {
 
  private:
   [[nodiscard]] std::string identity_of(const PlannedRun& run) const;
+  void find_beginnings();
 
   StudySettings settings_;
   Plan plan_;
-  std::string common_;                        // identity of what all runs share
+  std::map<std::string, std::vector<Setting>> beginnings_;  // folders of runs to begin with
+  std::string common_;                                      // identity of what all runs share
   std::map<std::string, std::string> files_;  // hashes of files that the scene and the plan name
 };
 

@@ -9,7 +9,7 @@
 namespace apothem {
 namespace {
 
-const Measure* find_measure(const RunRecord& record, const std::string& name) {
+const MeasuredValue* find_measure(const RunRecord& record, const std::string& name) {
   for (const auto& [known, value] : record.measures) {
     if (known == name) return &value;
   }
@@ -17,13 +17,14 @@ const Measure* find_measure(const RunRecord& record, const std::string& name) {
 }
 
 // The value of a measure of a run that is done.
-Measure value_of(const RunRecord& record, const std::string& name) {
-  const Measure* value = record.state == RunState::done ? find_measure(record, name) : nullptr;
-  return value ? *value : Measure();
+MeasuredValue value_of(const RunRecord& record, const std::string& name) {
+  const MeasuredValue* value =
+      record.state == RunState::done ? find_measure(record, name) : nullptr;
+  return value ? *value : MeasuredValue();
 }
 
 // A number, or yes as 1 and no as 0.
-std::optional<double> number_of(const Measure& value) {
+std::optional<double> number_of(const MeasuredValue& value) {
   if (const auto* yes = std::get_if<bool>(&value)) return *yes ? 1 : 0;
   if (const auto* number = std::get_if<double>(&value)) return *number;
   return {};
@@ -105,7 +106,7 @@ std::vector<MeasureName> measure_names(const std::vector<RunRecord>& records) {
   for (MeasureName& measure : names) {
     bool yes = false, number = false;
     for (const RunRecord& record : records) {
-      const Measure* value = find_measure(record, measure.name);
+      const MeasuredValue* value = find_measure(record, measure.name);
       yes = yes || (value && std::holds_alternative<bool>(*value));
       number = number || (value && std::holds_alternative<double>(*value));
     }

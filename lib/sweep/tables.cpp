@@ -20,7 +20,7 @@ std::string cell_of(double value) { return std::isnan(value) ? "" : fmt::format(
 
 std::string cell_of(const std::optional<double>& value) { return value ? cell_of(*value) : ""; }
 
-std::string cell_of(const Measure& value) {
+std::string cell_of(const MeasuredValue& value) {
   if (const auto* yes = std::get_if<bool>(&value)) return *yes ? "true" : "false";
   if (const auto* number = std::get_if<double>(&value)) return cell_of(*number);
   return "";
@@ -101,7 +101,7 @@ std::string runs_csv(const Plan& plan, const std::vector<RunRecord>& records) {
     row.insert(row.end(), {name_of(r.state), r.stopped_by, cell_of(r.time), cell_of(r.wall_time),
                            r.scene_hash, r.final_state_hash});
     for (const MeasureName& m : measures) {
-      Measure found;
+      MeasuredValue found;
       for (const auto& [name, value] : r.measures) {
         if (name == m.name) found = value;
       }

@@ -389,6 +389,30 @@ TEST_CASE("all runs may begin with the state of another run, and tables give row
   CHECK(column(folder / "study/runs.csv", "time [s]") == Words{"0.5", "1"});
 }
 
+TEST_CASE("each run may begin with the fitting run of another study", "[sweep]") {
+  const Folder folder;
+  std::string text = kLongFall;
+  text.replace(text.find("2e-7"), 4, "1e-2");
+  const std::string scene = folder.write("scene.json", text);
+  const Words gravities{"--vary", "gravity=[0,-1],[0,-2]"};
+  REQUIRE(run(joined({"sweep", scene}, {gravities, {"-o", folder / "first"}}), folder).code == 0);
+  const Result r = run(joined({"sweep", scene}, {gravities,
+                                                 {"--vary", "time.end=0.5,1", "--from",
+                                                  folder / "first", "-o", folder / "second"}}),
+                       folder);
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  const Words speeds = column(folder / "second/runs.csv", "stone.vy");
+  REQUIRE(speeds.size() == 4);
+  const double expected[]{-1.5, -2, -3, -4};
+  for (size_t i = 0; i < 4; ++i) CHECK(std::stod(speeds[i]) == Approx(expected[i]));
+  const Result none = run({"sweep", scene, "--vary", "gravity=[0,-3]", "--from", folder / "first",
+                           "-o", folder / "third"},
+                          folder);
+  CHECK(none.code == 2);
+  CHECK(says(none.err, "0 finished runs"));
+}
+
 TEST_CASE("mistakes are named with their remedy before anything runs", "[sweep]") {
   const Folder folder;
   const std::string scene = folder.write("pull.json", kPulledCells);

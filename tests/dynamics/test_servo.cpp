@@ -35,7 +35,7 @@ std::string box(const std::string& mesh, const std::string& press, double end) {
 TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo]") {
   const bool meshed = GENERATE(false, true);
   const Folder folder;
-  const double end = meshed && scaled(2) < 2 ? .02 : 1.5;
+  const double end = meshed && scaled(2) < 2 ? .02 : 3;
   const Scene scene = read_scene(
       folder.write("scene.json", box(meshed ? "mesh" : "", R"("stress": 4e4, "length": 1, "history": [[0, 0], [0.5, 1]])", end)));
   Run run(scene, {.folder = ""});
@@ -50,8 +50,8 @@ TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo
   }
   if (end < 1) return;
   // 4e4 Pa on 1 m x 0.5 m.
-  CHECK(run.state().force(1)[1] == Approx(2e4).epsilon(1e-6));
-  CHECK(std::abs(run.state().pose_rate(1)[1]) < 1e-6);
+  CHECK(run.state().force(1)[1] == Approx(2e4).epsilon(1e-5));
+  CHECK(std::abs(run.state().pose_rate(1)[1]) < 1e-5);
 }
 
 TEST_CASE("the force of a servo wall follows its history", "[servo]") {

@@ -123,6 +123,24 @@ TEST_CASE("a table gives rows, and each goes with all other values", "[sweep]") 
   CHECK(plan.runs[2].values == Words{"[0,-1]", "\"plain\"", "1"});
 }
 
+TEST_CASE("labels of a table stand for its other columns", "[sweep]") {
+  const Folder folder;
+  const std::string file = folder.write(
+      "t.csv", "#width,a.polygon,b\n2,\"[[0,0],[1,0],[1,1]]\",5\n3,\"[[0,0],[2,0],[1,1]]\",6\n");
+  const Plan plan = make_plan(read_variation_table(file), {parse_variation("seed=1,2", "--vary")});
+  CHECK(plan.paths == Words{"width", "seed"});
+  REQUIRE(plan.runs.size() == 4);
+  CHECK(plan.runs[3].values == Words{"3", "2"});
+  CHECK(plan.runs[3].key == "width=3,seed=2");
+  REQUIRE(plan.runs[3].settings.size() == 3);
+  CHECK(plan.runs[3].settings[0].path == "a.polygon");
+  CHECK(plan.runs[3].settings[1].value == "6");
+  CHECK(plan.runs[3].settings[2].path == "seed");
+  const std::string twice = folder.write("u.csv", "#width,b\n2,5\n2,6\n");
+  CHECK_THROWS_WITH(make_plan(read_variation_table(twice), {}),
+                    Catch::Matchers::Contains("two rows have the labels"));
+}
+
 TEST_CASE("bad tables are refused at their line", "[sweep]") {
   const Folder folder;
   const std::vector<std::pair<std::string, std::string>> wrong{

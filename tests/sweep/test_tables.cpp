@@ -68,13 +68,13 @@ TEST_CASE("run.json may have measures, and has the values of expectations", "[sw
            { "quantity": "b.y", "take": "min", "value": 2.5 },
            { "quantity": "b.y", "take": "min", "value": null } ])"));
   REQUIRE(full.measures.size() == 7);
-  CHECK(full.measures[0] == std::pair<std::string, Measure>("count", 3.));
-  CHECK(full.measures[1] == std::pair<std::string, Measure>("jam", false));
-  CHECK(full.measures[2] == std::pair<std::string, Measure>("a.x", std::monostate()));
-  CHECK(full.measures[3] == std::pair<std::string, Measure>("a.x last", 7.));
-  CHECK(full.measures[4] == std::pair<std::string, Measure>("b.y", 1.5));
-  CHECK(full.measures[5] == std::pair<std::string, Measure>("b.y min", 2.5));
-  CHECK(full.measures[6] == std::pair<std::string, Measure>("b.y min 2", std::monostate()));
+  CHECK(full.measures[0] == std::pair<std::string, MeasuredValue>("count", 3.));
+  CHECK(full.measures[1] == std::pair<std::string, MeasuredValue>("jam", false));
+  CHECK(full.measures[2] == std::pair<std::string, MeasuredValue>("a.x", std::monostate()));
+  CHECK(full.measures[3] == std::pair<std::string, MeasuredValue>("a.x last", 7.));
+  CHECK(full.measures[4] == std::pair<std::string, MeasuredValue>("b.y", 1.5));
+  CHECK(full.measures[5] == std::pair<std::string, MeasuredValue>("b.y min", 2.5));
+  CHECK(full.measures[6] == std::pair<std::string, MeasuredValue>("b.y min 2", std::monostate()));
   CHECK_THROWS_AS(parsed_record("{}"), std::runtime_error);
   CHECK_THROWS_AS(parsed_record("{"), std::runtime_error);
 }
