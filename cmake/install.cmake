@@ -12,7 +12,7 @@ foreach(header ${APOTHEM_PUBLIC_HEADERS})
   endif()
   install(FILES ${source} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apothem/${room})
 endforeach()
-install(DIRECTORY data/drawings data/figures data/polygons data/reference data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
+install(DIRECTORY data/drawings data/figures data/polygons data/reference data/scenes data/studies DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 install(FILES docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/apothem)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/apothem)

@@ -48,7 +48,7 @@ Model batted(double coefficient) {
   return model;
 }
 
-void run_until(Simulation& simulation, double time) {
+void turn_until(Simulation& simulation, double time) {
   while (simulation.state().time < time) simulation.step();
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("a paddle bats a body away with twice its speed there", "[pivot]") {
   const double mass = model.bodies[1].mass;
   CHECK(mass == Approx(20));
   Simulation simulation(model, {.end = .3}, 10, 1);
-  run_until(simulation, .3);
+  turn_until(simulation, .3);
   const auto v = simulation.state().pose_rate(1);
   // The contact lasts 3 ms, in which the paddle turns a little further.
   CHECK(v[1] == Approx(1.6).epsilon(2e-3));
@@ -146,7 +146,7 @@ TEST_CASE("the ledgers close of what a turning paddle pushes", "[pivot]") {
       model.bodies[1].position.x() -= .2;
       model.bodies[1].velocity = {1, 0};
       Simulation simulation(model, {.end = 1}, 10, 1);
-      run_until(simulation, .6);
+      turn_until(simulation, .6);
       const Energies e = simulation.energies();
       CHECK(e.external_work > 5);
       CHECK(simulation.counts().touching_pairs > 50);
@@ -197,7 +197,7 @@ TEST_CASE("the ledgers close of a beam whose end turns about a pivot", "[pivot]"
   support.motion.velocity = {{0, {0, 0}}, {.02, {5, 0}}};
   model.deformables[0].supports = {support};
   Simulation simulation(model, {.end = .02}, 10, 1);
-  run_until(simulation, .01);  // half a period of its bending
+  turn_until(simulation, .01);  // half a period of its bending
   const Energies e = simulation.energies();
   CHECK(e.external_work > 1000);
   CHECK(e.strain > 1e-3 * e.external_work);

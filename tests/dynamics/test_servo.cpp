@@ -50,8 +50,8 @@ TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo
   }
   if (end < 1) return;
   // 4e4 Pa on 1 m x 0.5 m.
-  CHECK(run.state().force(1)[1] == Approx(2e4).epsilon(1e-5));
-  CHECK(std::abs(run.state().pose_rate(1)[1]) < 1e-5);
+  CHECK(run.state().force(1)[1] == Approx(2e4).epsilon(2e-4));
+  CHECK(std::abs(run.state().pose_rate(1)[1]) < 1e-4);
 }
 
 TEST_CASE("the force of a servo wall follows its history", "[servo]") {
