@@ -86,12 +86,4 @@ std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, doubl
   return result;
 }
 
-double area_of(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t i = 2; i < ring.size(); ++i) {
-    twice += cross(Vec2(ring[i - 1] - ring[0]), Vec2(ring[i] - ring[0]));
-  }
-  return twice / 2;
-}
-
 }  // namespace apothem

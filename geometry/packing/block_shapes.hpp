@@ -30,7 +30,4 @@ std::vector<Vec2> normalised(std::vector<Vec2> ring);
 std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, double angle,
                          double scale);
 
-/// The area of a counter-clockwise ring, m^2.
-double area_of(const std::vector<Vec2>& ring);
-
 }  // namespace apothem

@@ -30,8 +30,8 @@ struct BoxPair {
 class BoxGrid {
  public:
   /// Replaces the content of `pairs` by all pairs of boxes that overlap or touch, in ascending
-  /// order. Memory is kept between calls. Empty boxes overlap nothing. No box may have a NaN; this is
-  /// not checked.
+  /// order. Memory is kept between calls. Empty boxes overlap nothing. No box may have a NaN; this
+  /// is not checked.
   void find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs);
 
  private:

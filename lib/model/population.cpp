@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "apothem/geometry/polygon/ring_area.hpp"
+
 namespace apothem {
 namespace {
 
@@ -23,11 +25,7 @@ double area_within(std::vector<Vec2> ring, const std::vector<Vec2>& convex) {
     }
     ring.swap(rest);
   }
-  double twice = 0;
-  for (size_t i = 2; i < ring.size(); ++i) {
-    twice += cross(Vec2(ring[i - 1] - ring[0]), Vec2(ring[i] - ring[0]));
-  }
-  return twice / 2;
+  return ring_area(ring);
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "apothem/geometry/polygon/ring_area.hpp"
 #include "apothem/model/columns.hpp"
 #include "apothem/model/rotation.hpp"
 
@@ -36,14 +35,6 @@ std::vector<Vec2> corners_of(const Model& model, const State& state, BodyIndex b
     ring.push_back(of.mesh.nodes[node] + state.node(of.first_node + node));
   }
   return ring;
-}
-
-double ring_area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t i = 2; i < ring.size(); ++i) {
-    twice += cross(Vec2(ring[i - 1] - ring[0]), Vec2(ring[i] - ring[0]));
-  }
-  return twice / 2;
 }
 
 // Mean stress of a mesh, and its area.

@@ -10,6 +10,7 @@
 #include "apothem/fem/kinds.hpp"
 #include "apothem/geometry/packing/block_shapes.hpp"
 #include "apothem/geometry/packing/voronoi_blocks.hpp"
+#include "apothem/geometry/polygon/ring_area.hpp"
 #include "apothem/scene/polygon_value.hpp"
 #include "apothem/scene/value_maker.hpp"
 
@@ -466,7 +467,7 @@ class Fill {
     make_.add(way, "polygon", make_.ring(ring));
     const bool cells = element_->kind == ElementKind::polygon;
     if (cells) {
-      const double count = std::max(1., std::round(area_of(ring) / (mesh_size_ * mesh_size_)));
+      const double count = std::max(1., std::round(ring_area(ring) / (mesh_size_ * mesh_size_)));
       make_.add(way, "cells", make_.number(count));
       make_.add(way, "seed", make_.number(static_cast<double>(number)));
     } else {

@@ -36,8 +36,9 @@ TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo
   const bool meshed = GENERATE(false, true);
   const Folder folder;
   const double end = meshed && scaled(2) < 2 ? .02 : 3;
-  const Scene scene = read_scene(
-      folder.write("scene.json", box(meshed ? "mesh" : "", R"("stress": 4e4, "length": 1, "history": [[0, 0], [0.5, 1]])", end)));
+  const Scene scene = read_scene(folder.write(
+      "scene.json", box(meshed ? "mesh" : "",
+                        R"("stress": 4e4, "length": 1, "history": [[0, 0], [0.5, 1]])", end)));
   Run run(scene, {.folder = ""});
   double most = 0;
   while (run.state().time < end - 1e-9) {

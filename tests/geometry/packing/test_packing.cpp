@@ -6,6 +6,7 @@
 #include "apothem/geometry/packing/block_shapes.hpp"
 #include "apothem/geometry/packing/voronoi_blocks.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
+#include "apothem/geometry/polygon/ring_area.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 #include "support.hpp"
 
@@ -124,7 +125,7 @@ TEST_CASE("shapes of blocks are simple, about their centroid, and of area 1", "[
       CHECK(angle < 2.3 + 1e-9);
     }
     for (const Ring& ring : {quad, convex, cross_shape(random.uniform(.2, 3))}) {
-      CHECK(area_of(ring) == Approx(1).epsilon(1e-12));
+      CHECK(ring_area(ring) == Approx(1).epsilon(1e-12));
       const AreaMoments m = area_moments(Polygon(ring));
       CHECK((ring[0] + m.centroid).norm() < 1e-13);
     }
@@ -200,7 +201,7 @@ TEST_CASE("Voronoi blocks fill a region, or leave the gap", "[packing]") {
     const std::vector<Ring> blocks = voronoi_blocks(region, options, gap);
     REQUIRE(blocks.size() == 40);
     double area = 0;
-    for (const Ring& ring : blocks) area += area_of(ring);
+    for (const Ring& ring : blocks) area += ring_area(ring);
     if (gap == 0) {
       CHECK(area == Approx(5).epsilon(1e-12));
       continue;
