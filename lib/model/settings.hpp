@@ -53,14 +53,14 @@ struct StopRule {
 inline constexpr const char* kStoppedOutside = "outside";
 
 /// Ways to reduce a column to one number, by the names in scenes; in the order of Reduction::Take.
-inline constexpr std::array kTakes{"first",   "last", "min",    "max",
-                                   "max_abs", "mean", "change", "slope"};
+inline constexpr std::array kTakes{"first", "last",     "min",      "max",  "max_abs",
+                                   "mean",  "increase", "decrease", "slope"};
 
 /// A column of a history, reduced to one number.
 struct Reduction {
-  /// largest: of the absolute value; mean: over time; change: from the first row to the last;
-  /// slope: per s, of the straight line of least squares.
-  enum class Take { first, last, minimum, maximum, largest, mean, change, slope };
+  /// largest: of the absolute value; mean: over time; increase and decrease: from the first row to
+  /// the last; slope: per s, of the straight line of least squares.
+  enum class Take { first, last, minimum, maximum, largest, mean, increase, decrease, slope };
   std::string quantity;  ///< column of history.csv, energy.csv or momentum.csv, no unit
   Take take = Take::last;
   std::optional<double> from, until;  ///< time window, s

@@ -244,8 +244,10 @@ double reduce(const Reduction& reduction, const std::string& folder) {
       return std::max(-minimum(), maximum());
     case Reduction::Take::mean:
       return mean(t, y, from, until);
-    case Reduction::Take::change:
+    case Reduction::Take::increase:
       return y[until - 1] - y[from];
+    case Reduction::Take::decrease:
+      return y[from] - y[until - 1];
     case Reduction::Take::slope:
       return slope(t, y, from, until);
   }

@@ -284,6 +284,14 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   CHECK(evaluate({"one.y", Take::last, {}, {}, top - .97 * .97, 1e-12}, folder.path()).met);
   CHECK(evaluate({"one.y", Take::maximum, {}, 0.55, top - .53 * .53, 1e-12}, folder.path()).met);
   CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, 0, 1}, folder.path()));
+  const auto reduced = [&](Take take) { return reduce({"one.y", take, {}, {}}, folder.path()); };
+  CHECK(reduced(Take::increase) == Approx(1.03 * 1.03 - .97 * .97));
+  CHECK(reduced(Take::decrease) == Approx(.97 * .97 - 1.03 * 1.03));
+  CHECK(reduced(Take::slope) == Approx(.06));
+  // The trapezoid rule is too low by h^2/6.
+  const double mean = top - (std::pow(1.03, 3) + std::pow(.97, 3)) / 6 - .01 / 6;
+  CHECK(reduced(Take::mean) == Approx(mean).epsilon(1e-12));
+  CHECK(reduce({"time", Take::last, {}, {}}, folder.path()) == Approx(2));
 }
 
 TEST_CASE("a full disk costs the block, not the file", "[output]") {
