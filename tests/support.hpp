@@ -15,6 +15,9 @@ namespace apothem::test {
 inline const std::string kSource = APOTHEM_SOURCE;    // the project's folder
 inline const std::string kProgram = APOTHEM_PROGRAM;  // the program under test
 
+/// Whether the sanitizers are at work, which make everything 20 times slower.
+inline constexpr bool kSanitized = APOTHEM_TEST_DIVISOR > 1;
+
 /// Fewer random cases under the sanitizers, which are 20 times slower.
 inline int scaled(int cases) { return std::max(1, cases / APOTHEM_TEST_DIVISOR); }
 

@@ -302,7 +302,8 @@ TEST_CASE("Hertz: two half discs", "[equilibrium]") {
   };
   for (const Case& c : cases) {
     if (c.lengthy && !test::long_run()) continue;
-    const Hertz found = hertz(c.b_over_radius, c.cells, c.stiffness);
+    const Hertz found = hertz(c.b_over_radius, test::kSanitized ? 4 : c.cells, c.stiffness);
+    if (test::kSanitized) continue;  // too coarse to compare
     INFO("b/R " << c.b_over_radius << ", cells " << c.cells << ", k/E " << c.stiffness);
     CAPTURE(found.peak, found.half_width, found.balance, found.iterations);
     CHECK(std::abs(found.peak - 1) < c.peak);

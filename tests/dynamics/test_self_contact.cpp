@@ -201,7 +201,7 @@ namespace {
 
 void check_fold(const char* name, Model (*make)(double, ElementShape, double), double speed,
                 double end) {
-  if (scaled(2) < 2) {  // under the sanitizers only the first steps
+  if (kSanitized) {  // under the sanitizers only the first steps
     CHECK(run(make(1e6, ElementShape::triangle, speed), {}, end / 20).what.empty());
     return;
   }
@@ -256,7 +256,7 @@ TEST_CASE("friction and dashpots of a body with itself keep momenta and close th
   model.contact.friction = {.3, 6e5};
   model.contact.damping = {.2, .2, .05};
   Simulation simulation(model, {.end = .15}, 1, 1);
-  const double end = scaled(2) < 2 ? .01 : .15;
+  const double end = kSanitized ? .01 : .15;
   while (simulation.state().time < end) simulation.step();
   const Momenta p = simulation.momenta();
   for (const double error : {p.x_error, p.y_error, p.angular_error}) CHECK(std::abs(error) < 1e-9);

@@ -35,7 +35,7 @@ std::string box(const std::string& mesh, const std::string& press, double end) {
 TEST_CASE("a servo wall holds its force, and its work is on the ledger", "[servo]") {
   const bool meshed = GENERATE(false, true);
   const Folder folder;
-  const double end = meshed && scaled(2) < 2 ? .02 : 3;
+  const double end = meshed && kSanitized ? .02 : 3;
   const Scene scene = read_scene(folder.write(
       "scene.json", box(meshed ? "mesh" : "",
                         R"("stress": 4e4, "length": 1, "history": [[0, 0], [0.5, 1]])", end)));

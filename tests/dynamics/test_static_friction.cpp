@@ -334,7 +334,9 @@ TEST_CASE("Cattaneo and Mindlin: two cylinders, pressed and sheared", "[static_f
   for (const Case& c : {Case{.025, 10, .2, .02, .05, false}, Case{.0125, 25, .1, .01, .03, true},
                         Case{.0125, 25, .2, .01, .03, true}}) {
     if (c.lengthy && !long_run()) continue;
-    const Sheared found = cylinders(c.pressed, c.cells, .3, c.sheared, c.lengthy ? 6 : 3);
+    const int cells = test::kSanitized ? 3 : c.cells;
+    const Sheared found = cylinders(c.pressed, cells, .3, c.sheared, c.lengthy ? 6 : 3);
+    if (test::kSanitized) continue;  // too coarse to compare
     const std::string text = fmt::format(
         "a/R {}, {} cells over a: T/(mu N) {:.4f}, c/a {:.4f} of {:.4f}, error of q {:.4f}, of p "
         "{:.4f}, {} steps of relaxation\n",

@@ -28,7 +28,7 @@ TEST_CASE("bodies come and leave, and the ledgers stay closed", "[population]") 
   const Folder folder;
   const std::string mesh = meshed ? R"(, "mesh": { "size": 0.2, "element": "T3" })" : "";
   Run run(scene_in(folder, hopper("remove", "", mesh)), {.folder = ""});
-  const double end = meshed ? scaled(2) < 2 ? .05 : 1.2 : 3;
+  const double end = meshed ? kSanitized ? .05 : 1.2 : 3;
   const BodyIndex total = 2 + 36;
   REQUIRE(static_cast<BodyIndex>(run.state().absent.size()) == total);
   double moved = 0;

@@ -174,9 +174,9 @@ TEST_CASE("what a fill cannot do is one error with its place and a remedy", "[fi
   const std::string quads = R"("shapes": [ { "quadrilateral": {} } ], )";
   CHECK_THAT(error_of(quads + R"("diameter": 0.5, "count": 500)"),
              Contains("/fill/0: ") && Contains(" of 500 blocks could be placed"));
-  CHECK_THAT(error_of(R"("arrangement": "dense", )" + quads +
-                      R"("diameter": 0.5, "solid_fraction": 0.999)"),
-             Contains("blocks could be placed") && Contains("of their size"));
+  CHECK_THAT(
+      error_of(R"("arrangement": "dense", )" + quads + R"("diameter": 1, "solid_fraction": 0.999)"),
+      Contains("blocks could be placed") && Contains("of their size"));
   CHECK_THAT(error_of(quads + R"("diameter": 0.5)"), Contains("\"count\" or \"solid_fraction\""));
   CHECK_THAT(error_of(quads + R"("count": 5)"), Contains("diameter"));
   CHECK_THAT(error_of(quads + R"("count": 5, "diameter": -1)"), Contains("/fill/0/diameter"));

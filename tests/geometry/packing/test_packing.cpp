@@ -137,7 +137,7 @@ TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
   const Kind kind = GENERATE(Kind::quads, Kind::polygons, Kind::crosses, Kind::sizes);
   for (const double gap : {0., .01}) {
     RandomNumbers random(7);
-    const int count = scaled(2) < 2 ? 40 : 120;
+    const int count = kSanitized ? 30 : 120;
     const std::vector<Block> many = blocks_of(kind, random, count);
     CAPTURE(static_cast<int>(kind), gap);
     {
@@ -153,7 +153,7 @@ TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
       REQUIRE(a.placed == 30);
       check_all(a.rings, kRegion, {kHole, kObstacle}, gap);
     }
-    if (kind == Kind::sizes) continue;
+    if (kind == Kind::sizes || (kSanitized && kind == Kind::polygons)) continue;
     {
       PackingSpace space = space_with(gap);
       std::vector<Block> dense = blocks_of(kind, random, count / 2);
