@@ -78,9 +78,10 @@ void say_run_time(const Scene& scene, const Simulation& simulation, const Trial&
 void say_output(const Scene& scene, bool empty_history) {
   const OutputSettings& output = scene.output;
   const size_t bodies = output.track.size() + output.track_deformables.size();
-  say("output", fmt::format("{} frames, histories of {} bodies and {} points every {:g} s",
-                            output.frames + 1, bodies, output.points.size(),
-                            output.history_interval.value_or(scene.time.end / 1000)));
+  say("output",
+      fmt::format("{} frames, histories of {} bodies, {} points and {} regions every {:g} s",
+                  output.frames + 1, bodies, output.points.size(), scene.model.regions.size(),
+                  output.history_interval.value_or(scene.time.end / 1000)));
   if (empty_history) {
     say("",
         "history.csv will hold the time alone: name up to a few bodies in output.history.track "

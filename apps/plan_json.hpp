@@ -13,7 +13,7 @@ namespace apothem {
 struct PlanEstimates {
   std::optional<Trial> trial;  ///< of scenes that are not static
   bool damped = false;         ///< something but friction ends a motion
-  bool empty_history = false;  ///< nothing is tracked
+  bool empty_history = false;  ///< nothing is tracked, and there are no regions
   std::vector<std::string> warnings;
 };
 PlanEstimates estimates_of(const Scene& scene);

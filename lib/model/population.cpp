@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/polygon/ring_area.hpp"
 
 namespace apothem {
@@ -33,8 +34,7 @@ double area_within(std::vector<Vec2> ring, const std::vector<Vec2>& convex) {
 bool Region::contains(const Vec2& point) const {
   return std::ranges::any_of(parts, [&](const std::vector<Vec2>& part) {
     for (size_t k = 0; k < part.size(); ++k) {
-      const Vec2 along = part[(k + 1) % part.size()] - part[k];
-      if (cross(along, Vec2(point - part[k])) < 0) return false;
+      if (orientation(part[k], part[(k + 1) % part.size()], point) < 0) return false;
     }
     return true;
   });

@@ -33,7 +33,7 @@ struct Region {
   std::vector<std::vector<Vec2>> parts;  ///< convex rings that divide it, model coordinates, m
   double area = 0;                       ///< m^2
 
-  /// Whether a point is inside, or on its border.
+  /// Whether a point is inside, or on its border: exact, because it has no tolerance.
   [[nodiscard]] bool contains(const Vec2& point) const;
   /// The area that a simple ring has in common with it, m^2.
   [[nodiscard]] double overlap(const std::vector<Vec2>& ring) const;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
 #include "apothem/run/hash.hpp"
@@ -50,6 +51,34 @@ TEST_CASE("bodies come and leave, and the ledgers stay closed", "[population]") 
     CHECK(run.state().pose_rate(b).norm() == 0);
     CHECK(run.state().force(b).norm() == 0);
   }
+}
+
+TEST_CASE("bodies leave a hopper through its opening only, by exact predicates", "[population]") {
+  const Folder folder;
+  Run run(scene_in(folder, hopper("keep")), {.folder = ""});
+  const std::vector<Vec2> left{{-3, 0}, {-.7, 0}, {-2, 1.3}, {-3, 1.3}},
+      right{{.7, 0}, {3, 0}, {3, 1.3}, {2, 1.3}};
+  const BodyIndex total = 2 + 36;
+  const auto centre = [&](BodyIndex b) { return Vec2(run.state().pose(b).head<2>()); };
+  std::vector<Vec2> before(static_cast<size_t>(total), Vec2(0, 6));
+  int passed = 0;
+  const double end = kSanitized ? .5 : 3;
+  while (run.state().time < end) {
+    run.step();
+    for (BodyIndex b = 2; b < total; ++b) {
+      if (run.state().is_absent(b)) continue;
+      Vec2& last = before[static_cast<size_t>(b)];
+      const Vec2 now = centre(b);
+      REQUIRE_FALSE(strictly_inside(left, now));
+      REQUIRE_FALSE(strictly_inside(right, now));
+      if (last.y() >= 0 && now.y() < 0) {
+        ++passed;
+        REQUIRE(segments_meet(last, now, {-.7, 0}, {.7, 0}));
+      }
+      last = now;
+    }
+  }
+  if (!kSanitized) CHECK(passed > 20);
 }
 
 TEST_CASE("a world can stop a run, or let bodies go", "[population]") {

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""Tables of the hopper and of the heap from the folders that `apothem sweep` has written.
+
+    tables.py jam FLOWS [--reference quad,0.5]   jam probability, discharge rate, energy, blocks outside
+    tables.py hazard FLOWS                       jams per discharged block, in windows of blocks
+    tables.py pairs FLOWS OTHERS                 the same seeds and widths in two studies
+    tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
+    tables.py repose HEAPS                       angle of repose
+
+FLOWS are made from hopper-flow.json, HEAPS from repose.json. Intervals are for 95 %.
+"""
+
+import argparse
+import csv
+import math
+import pathlib
+
+D, RHO, G = 0.1, 2000.0, 9.81  # m, kg/m^3, m/s^2
+MASS = RHO * math.pi * D**2 / 4  # kg, mean of a block
+
+
+def wilson(k, n, z=1.959964):
+    centre = (k + z * z / 2) / (n + z * z)
+    half = z / (n + z * z) * math.sqrt(k * (n - k) / n + z * z / 4)
+    return centre - half, centre + half
+
+
+# Quantiles of Student's distribution for 95 %, by degrees of freedom.
+STUDENT = {1: 12.71, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262,
+           10: 2.228, 12: 2.179, 15: 2.131, 20: 2.086, 30: 2.042, 60: 2.000, 10**9: 1.960}
+
+
+def mean(values):
+    """Mean, standard error and half of the t interval."""
+    n = len(values)
+    m = sum(values) / n
+    if n < 2:
+        return m, math.nan, math.nan
+    error = math.sqrt(sum((v - m)**2 for v in values) / (n - 1) / n)
+    t = STUDENT[max(k for k in STUDENT if k <= n - 1)]
+    return m, error, t * error
+
+
+def columns(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    names = [name.split(" [")[0] for name in rows[0]]
+    return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(names)}
+
+
+class Flow:
+    """A run of hopper-flow.json."""
+
+    def __init__(self, folder, row):
+        self.width = float(row["D/d"])
+        self.seed = int(row["fill.0.seed"])
+        self.jammed = row["jammed"] == "true"
+        self.emptied = row["emptied"] == "true"
+        self.discharged = -int(float(row["discharged"]))
+        self.outside = int(float(row.get("outside") or 0))
+        self.cpu = float(row["wall_time [s]"])
+        run = folder / "runs" / row["run"]
+        history = columns(run / "history.csv")
+        self.times, self.counts = history["time"], history["bin.count"]
+        energy = columns(run / "energy.csv")
+        self.fallen = max(abs(v) for v in energy["gravity"])  # J, potential energy that was set free
+        self.error = max(abs(v) for v in energy["total_error"])
+
+    def rate(self):
+        """Blocks per second from 10 to 60 % discharged, or nothing."""
+        first = self.counts[0]
+
+        def when(share):
+            for time, count in zip(self.times, self.counts):
+                if count <= (1 - share) * first:
+                    return time, count
+            return None
+
+        start, end = when(.1), when(.6)
+        if not self.emptied or not start or not end:
+            return None
+        return (start[1] - end[1]) / (end[0] - start[0])
+
+
+def flows(folder):
+    folder = pathlib.Path(folder)
+    with open(folder / "runs.csv", newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+    return [Flow(folder, row) for row in rows]
+
+
+def by_width(runs):
+    groups = {}
+    for run in runs:
+        groups.setdefault(run.width, []).append(run)
+    return sorted(groups.items())
+
+
+def reference(text):
+    """Rows of the independent study for "shape,mu", by width."""
+    if not text:
+        return {}
+    shape, mu = text.split(",")
+    path = pathlib.Path(__file__).resolve().parent.parent / "reference" / "jam_box2d.csv"
+    with open(path, newline="", encoding="utf-8") as file:
+        return {float(r["D_over_d"]): r for r in csv.DictReader(file)
+                if r["shape"] == shape and float(r["mu"]) == float(mu)}
+
+
+def jam(args):
+    other = reference(args.reference)
+    print("D/d  jammed   probability           rate, 1/s        energy error  outside  neither  s per run"
+          + ("   reference: jammed  probability     rate" if other else ""))
+    for width, runs in by_width(flows(args.folder)):
+        k, n = sum(r.jammed for r in runs), len(runs)
+        low, high = wilson(k, n)
+        rates = [r.rate() for r in runs if r.rate()]
+        rate = "-"
+        if rates:
+            m, _, half = mean(rates)
+            rate = f"{m:.1f}" + (f" +- {half:.1f}" if len(rates) > 1 else "") + f" ({len(rates)})"
+        error = max(r.error / r.fallen for r in runs)
+        line = (f"{width:<4g} {k:>3}/{n:<3}  {k / n:.2f} ({low:.2f} to {high:.2f})  {rate:<18} {error:.1e}"
+                f"      {sum(r.outside for r in runs):<8} {sum(not (r.jammed or r.emptied) for r in runs):<7}"
+                f"  {sum(r.cpu for r in runs) / n:.0f}")
+        if width in other:
+            o = other[width]
+            line += (f"          {o['jammed']}/{o['n']}  {int(o['jammed']) / int(o['n']):.2f}"
+                     f" ({float(o['lo']):.2f} to {float(o['hi']):.2f})  {o['rate'] or '-'}")
+        print(line)
+
+
+def hazard(args):
+    windows = [(0, 20), (20, 60), (60, 120), (120, 300)]
+    print("D/d  jams per discharged block, with the number of jams, for blocks "
+          + ", ".join(f"{a} to {b}" for a, b in windows))
+    for width, runs in by_width(flows(args.folder)):
+        cells = []
+        for a, b in windows:
+            exposure = sum(max(0, min(r.discharged, b) - a) for r in runs)
+            jams = sum(r.jammed and a <= r.discharged < b for r in runs)
+            cells.append(f"{jams / exposure:.4f} ({jams})" if exposure else "-")
+        print(f"{width:<4g} " + "   ".join(cells))
+
+
+def pairs(args):
+    one = {(r.width, r.seed): r.jammed for r in flows(args.folder)}
+    two = {(r.width, r.seed): r.jammed for r in flows(args.other)}
+    print("D/d  both  first only  second only  neither  p of no difference (exact, McNemar)")
+    for width in sorted({key[0] for key in one} & {key[0] for key in two}):
+        keys = [key for key in one if key in two and key[0] == width]
+        b = sum(one[k] and not two[k] for k in keys)
+        c = sum(two[k] and not one[k] for k in keys)
+        tail = sum(math.comb(b + c, i) for i in range(min(b, c) + 1)) / 2**(b + c)
+        both = sum(one[k] and two[k] for k in keys)
+        print(f"{width:<4g} {both:<5} {b:<11} {c:<12} {len(keys) - both - b - c:<8} {min(1, 2 * tail):.3f}")
+
+
+def line_fit(points):
+    """Weighted line y = a + b x through (x, y, standard error), and the covariances of a and b."""
+    w = [1 / e**2 for _, _, e in points]
+    sx = sum(wi * x for wi, (x, _, _) in zip(w, points))
+    sy = sum(wi * y for wi, (_, y, _) in zip(w, points))
+    sxx = sum(wi * x * x for wi, (x, _, _) in zip(w, points))
+    sxy = sum(wi * x * y for wi, (x, y, _) in zip(w, points))
+    det = sum(w) * sxx - sx * sx
+    return (sxx * sy - sx * sxy) / det, (sum(w) * sxy - sx * sy) / det
+
+
+def beverloo(args):
+    rho_b = RHO * args.solid_fraction
+    points = []
+    print("D/d  rate, 1/s  (W / (rho_b sqrt(g)))^(2/3) / d")
+    for width, runs in by_width(flows(args.folder)):
+        rates = [r.rate() for r in runs if r.rate()]
+        if len(rates) < 3:
+            continue
+        m, error, _ = mean(rates)
+        y = (m * MASS / (rho_b * math.sqrt(G)))**(2 / 3) / D
+        points.append((width, y, 2 / 3 * y * error / m))
+        print(f"{width:<4g} {m:<10.1f} {y:.3f} +- {points[-1][2]:.3f}")
+    if len(points) < 3:
+        raise SystemExit("tables.py: fewer than three widths have three runs that emptied")
+
+    def constants(some):
+        a, b = line_fit(some)
+        return b**1.5, -a / b
+
+    c, k = constants(points)
+    # Errors by leaving out one width at a time (jackknife).
+    left = [constants(points[:i] + points[i + 1:]) for i in range(len(points))]
+    n = len(points)
+    spread = [math.sqrt((n - 1) / n * sum((v[j] - sum(u[j] for u in left) / n)**2 for v in left)) for j in (0, 1)]
+    print(f"C = {c:.2f} +- {spread[0]:.2f}, k = {k:.2f} +- {spread[1]:.2f}, rho_b = {rho_b:.0f} kg/m^3")
+
+
+def repose(args):
+    angles = []
+    with open(pathlib.Path(args.folder) / "runs.csv", newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["status"] != "done":
+                continue
+            # Area of the blocks over their solid fraction: a triangle on a plate of 3.2 m.
+            area = float(row["heap"]) * 3.2 * 4 / float(row["core"])
+            angles.append(math.degrees(math.atan(4 * area / 3.2**2)))
+            print(f"seed {row['fill.0.seed']}: {row['blocks']} blocks, solid fraction {float(row['core']):.3f},"
+                  f" angle {angles[-1]:.1f} degrees" + ("" if row["at rest"] == "true" else ", not at rest"))
+    m, _, half = mean(angles)
+    print(f"angle of repose {m:.1f} +- {half:.1f} degrees ({len(angles)} heaps)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    for command in (jam, hazard, pairs, beverloo, repose):
+        sub = commands.add_parser(command.__name__)
+        sub.add_argument("folder")
+        sub.set_defaults(command=command)
+        if command is pairs:
+            sub.add_argument("other")
+        if command is jam:
+            sub.add_argument("--reference", metavar="SHAPE,MU", help="quad,0.5 or cross,0.0: rows of jam_box2d.csv beside ours")
+        if command is beverloo:
+            sub.add_argument("--solid-fraction", type=float, default=0.8, help="of the resting blocks (0.8)")
+    args = parser.parse_args()
+    args.command(args)
+
+
+if __name__ == "__main__":
+    main()
