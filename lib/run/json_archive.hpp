@@ -41,7 +41,7 @@ class JsonWriter final : public Archive {
   void numbers(const char* name, std::vector<double>& values) override {
     key(name);
     text_ += '[';
-    for (const double v : values) {
+    for (const double& v : values) {
       if (&v != values.data()) text_ += ',';
       add(v);
       if (sink_ && text_.size() > kBlock) flush();
