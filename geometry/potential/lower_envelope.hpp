@@ -31,12 +31,13 @@ struct Line {
   Real operator()(const Vec<Real>& x) const { return gradient.dot(x) + height; }
 };
 
-/// The part of the polygon where side(x) >= 0 if `closed`, otherwise where side(x) > 0.
+/// The part of the polygon where side(x) >= 0 if `closed`, otherwise where side(x) > 0, in the
+/// memory of `inside`.
 template <class Real>
-std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
-                            bool closed) {
-  std::vector<Vec<Real>> inside;
-  if (polygon.empty()) return inside;
+void clip_into(const std::vector<Vec<Real>>& polygon, const Line<Real>& side, bool closed,
+               std::vector<Vec<Real>>& inside) {
+  inside.clear();
+  if (polygon.empty()) return;
   inside.reserve(polygon.size() + 2);
   const auto keep = [&](const Real& d) { return d > 0 || (closed && d == 0); };
   const Vec<Real>* p = &polygon.back();
@@ -48,6 +49,13 @@ std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Re
     p = &q;
     dp = dq;
   }
+}
+/// The same in memory of its own.
+template <class Real>
+std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Real>& side,
+                            bool closed) {
+  std::vector<Vec<Real>> inside;
+  clip_into(polygon, side, closed, inside);
   return inside;
 }
 
@@ -57,10 +65,12 @@ std::vector<Vec<Real>> clip(const std::vector<Vec<Real>>& polygon, const Line<Re
 template <class Real>
 std::vector<Vec<Real>> face(std::vector<Vec<Real>> polygon, const std::vector<Line<Real>>& lines,
                             size_t e) {
+  std::vector<Vec<Real>> part;
   for (size_t j = 1; j < lines.size() && !polygon.empty(); ++j) {
     const size_t k = (e + j) % lines.size();
-    polygon = clip(
-        polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height}, k > e);
+    clip_into(polygon, {lines[k].gradient - lines[e].gradient, lines[k].height - lines[e].height},
+              k > e, part);
+    polygon.swap(part);
   }
   return polygon;
 }

@@ -101,9 +101,11 @@ void scale(Potential& potential, double factor) {
   potential.top *= factor;
 }
 
-Skeleton skeleton_of(const Polygon& polygon) {
+using SkeletonSource = std::function<Skeleton()>;
+
+Skeleton skeleton_of(const Polygon& polygon, const SkeletonSource& source) {
   try {
-    Skeleton skeleton = straight_skeleton(polygon);
+    Skeleton skeleton = source();
     if (skeleton.roof_height > kThinnest * bounding_box(polygon).extent()) return skeleton;
   } catch (const SkeletonFailure& failure) {
     throw InvalidPolygon(failure.what(), 0);
@@ -124,8 +126,9 @@ Potential sloped_lines(const Polygon& polygon, double reference) {
 using Reference = PotentialChoice::Reference;
 
 // The potential of a polygon that is not convex as the roof of its straight skeleton over r.
-Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) {
-  const Skeleton skeleton = skeleton_of(polygon);
+Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice,
+                         const SkeletonSource& source) {
+  const Skeleton skeleton = skeleton_of(polygon, source);
   const double reference = choice.reference == Reference::length ? choice.length
                            : choice.reference == Reference::inscribed_circle
                                ? largest_inscribed_circle(polygon).radius
@@ -143,12 +146,13 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice) 
 
 // The potential of a polygon that is not convex as the distance to its boundary over r. A skeleton
 // is needed only if r is the height of the roof.
-Potential field_potential(const Polygon& polygon, const PotentialChoice& choice) {
+Potential field_potential(const Polygon& polygon, const PotentialChoice& choice,
+                          const SkeletonSource& source) {
   const InscribedCircle circle = largest_inscribed_circle(polygon);
   const double reference = choice.reference == Reference::length ? choice.length
                            : choice.reference == Reference::inscribed_circle
                                ? circle.radius
-                               : skeleton_of(polygon).roof_height;
+                               : skeleton_of(polygon, source).roof_height;
   Potential potential = sloped_lines(polygon, reference);
   potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
   potential.top_points = circle.centres;
@@ -156,10 +160,11 @@ Potential field_potential(const Polygon& polygon, const PotentialChoice& choice)
   return potential;
 }
 
-Potential distance_potential(const Polygon& polygon, const PotentialChoice& choice) {
+Potential distance_potential(const Polygon& polygon, const PotentialChoice& choice,
+                             const SkeletonSource& source) {
   if (!polygon.is_convex()) {
-    return choice.field == PotentialChoice::Field::roof ? roof_potential(polygon, choice)
-                                                        : field_potential(polygon, choice);
+    return choice.field == PotentialChoice::Field::roof ? roof_potential(polygon, choice, source)
+                                                        : field_potential(polygon, choice, source);
   }
   Potential potential = envelope_potential(polygon, inward_normals(polygon));
   const double inradius = potential.top;
@@ -203,9 +208,20 @@ InscribedCircle inscribed_circle(const Polygon& polygon) {
   return {potential.top, std::move(potential.top_points)};
 }
 
+bool needs_skeleton(const PotentialChoice& choice) {
+  return choice.kind == PotentialChoice::Kind::distance &&
+         (choice.field == PotentialChoice::Field::roof ||
+          choice.reference == PotentialChoice::Reference::roof);
+}
+
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice) {
+  return make_potential(polygon, choice, [&] { return straight_skeleton(polygon); });
+}
+
+Potential make_potential(const Polygon& polygon, const PotentialChoice& choice,
+                         const std::function<Skeleton()>& skeleton) {
   return choice.kind == PotentialChoice::Kind::area ? area_potential(polygon)
-                                                    : distance_potential(polygon, choice);
+                                                    : distance_potential(polygon, choice, skeleton);
 }
 
 Potential translated(Potential potential, const Vec2& shift) {

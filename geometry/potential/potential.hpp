@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -76,6 +77,14 @@ struct PotentialChoice {
 /// - if the polygon is not convex, its straight skeleton is needed and none can be found. The
 ///   distance field needs the skeleton only for Reference::roof.
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice = {});
+
+/// True if a polygon that is not convex needs its straight skeleton for this potential.
+bool needs_skeleton(const PotentialChoice& choice);
+
+/// The same with a skeleton that comes from elsewhere. `skeleton` is called only if it is needed,
+/// and may throw SkeletonFailure.
+Potential make_potential(const Polygon& polygon, const PotentialChoice& choice,
+                         const std::function<Skeleton()>& skeleton);
 
 /// The same potential in coordinates whose origin is moved by `shift`, m: all points minus `shift`.
 Potential translated(Potential potential, const Vec2& shift);

@@ -114,6 +114,21 @@ std::optional<SkeletonParts> decode(const Message& message) {
   return SkeletonParts{std::move(nodes), std::move(faces)};
 }
 
+CgalAnswer answer_of(const Message& message) {
+  if (message.empty()) return {std::nullopt, "CGAL found no skeleton"};
+  std::optional<SkeletonParts> parts = decode(message);
+  if (!parts) return {std::nullopt, "CGAL's answer was cut off"};
+  return {std::move(parts), ""};
+}
+
+// Rings that one child works on, one after the other.
+struct Share {
+  std::vector<size_t> rings;
+  size_t done = 0;
+
+  [[nodiscard]] bool finished() const { return done == rings.size(); }
+};
+
 }  // namespace
 
 CgalAnswer ask_cgal(const Ring& ring, bool exact, double seconds, const Progress& progress) {
@@ -129,10 +144,49 @@ CgalAnswer ask_cgal(const Ring& ring, bool exact, double seconds, const Progress
   if (const std::string failure = answer.failure(); !failure.empty()) {
     return {std::nullopt, "CGAL " + failure};
   }
-  if (answer.numbers.empty()) return {std::nullopt, "CGAL found no skeleton"};
-  std::optional<SkeletonParts> parts = decode(answer.numbers);
-  if (!parts) return {std::nullopt, "CGAL's answer was cut off"};
-  return {std::move(parts), ""};
+  return answer_of(answer.numbers);
+}
+
+std::vector<CgalAnswer> ask_cgal(const std::vector<Ring>& rings, double seconds, int processes,
+                                 const Progress& progress) {
+  std::vector<CgalAnswer> answers(rings.size());
+  std::vector<Share> shares(static_cast<size_t>(std::max(processes, 1)));
+  for (size_t i = 0; i < rings.size(); ++i) shares[i % shares.size()].rings.push_back(i);
+  while (true) {
+    std::erase_if(shares, [](const Share& share) { return share.finished(); });
+    if (shares.empty()) return answers;
+    std::vector<ChildWork> works;
+    for (const Share& share : shares) {
+      works.emplace_back([&](const SendNumbers& send) {
+        for (size_t k = share.done; k < share.rings.size(); ++k) {
+          Message message = cgal_skeleton<CGAL::Exact_predicates_inexact_constructions_kernel>(
+              rings[share.rings[k]]);
+          message.insert(message.begin(), static_cast<double>(message.size()));
+          send(message);
+        }
+      });
+    }
+    const std::vector<ChildAnswer> sent = run_in_children(works, seconds, [&] {
+      if (progress) progress({"CGAL", std::nullopt});
+    });
+    for (size_t s = 0; s < shares.size(); ++s) {
+      Share& share = shares[s];
+      const Message& numbers = sent[s].numbers;
+      for (size_t at = 0; at < numbers.size() && !share.finished(); ++share.done) {
+        const auto size = static_cast<size_t>(numbers[at]);
+        if (numbers.size() - at - 1 < size) break;
+        const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(at + 1);
+        answers[share.rings[share.done]] =
+            answer_of(Message(first, first + static_cast<std::ptrdiff_t>(size)));
+        at += 1 + size;
+      }
+      if (share.finished()) continue;
+      const std::string failure = sent[s].failure();
+      answers[share.rings[share.done]] = {
+          std::nullopt, failure.empty() ? "CGAL's answer was cut off" : "CGAL " + failure};
+      ++share.done;
+    }
+  }
 }
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// CGAL's straight skeleton, made in a child process. This header is private to the construction of
+// CGAL's straight skeletons, made in child processes. This header is private to the construction of
 // the straight skeleton.
 #pragma once
 
@@ -21,5 +21,10 @@ struct CgalAnswer {
 /// a wrong skeleton. It is killed after `seconds` of processor time, and if `progress` throws.
 CgalAnswer ask_cgal(const std::vector<Vec2>& ring, bool exact, double seconds,
                     const Progress& progress);
+
+/// Asks CGAL for the skeletons of many rings, with up to `processes` children at the same time. The
+/// time limit holds for each ring, and a ring on which a child fails takes no other ring with it.
+std::vector<CgalAnswer> ask_cgal(const std::vector<std::vector<Vec2>>& rings, double seconds,
+                                 int processes, const Progress& progress);
 
 }  // namespace apothem

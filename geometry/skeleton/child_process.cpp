@@ -13,6 +13,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 
 namespace apothem {
 namespace {
@@ -61,8 +62,7 @@ double mapped_bytes() {
 
 // The child has inherited the program's signal handlers and must not run any of them. An interrupt
 // from the terminal reaches it too; the parent sees it as well and ends the child.
-[[noreturn]] void work_as_child(int file, const std::function<void(const SendNumbers&)>& work,
-                                double seconds, pid_t parent) {
+[[noreturn]] void work_as_child(int file, const ChildWork& work, double seconds, pid_t parent) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTERM, SIGINT}) {
     std::signal(signal, SIG_DFL);
   }
@@ -90,35 +90,6 @@ double mapped_bytes() {
   _exit(0);
 }
 
-// Reads the numbers that come through the pipe until it is closed. Returns false if nothing has
-// come for kWait * seconds by the clock.
-bool read_to_end(int file, double seconds, const std::function<void()>& meanwhile,
-                 std::vector<double>& numbers) {
-  std::vector<char> bytes;
-  char buffer[65536];
-  const auto patience = std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds));
-  Clock::time_point deadline = Clock::now() + patience;
-  bool ended = false;
-  while (!ended) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-    if (left.count() <= 0) break;
-    pollfd wait{file, POLLIN, 0};
-    const int ready = poll(&wait, 1, static_cast<int>(std::min<long long>(left.count(), kLook)));
-    if (meanwhile) meanwhile();
-    if (ready <= 0) continue;
-    const ssize_t count = read(file, buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    ended = count <= 0;
-    if (!ended) bytes.insert(bytes.end(), buffer, buffer + count);
-    deadline = Clock::now() + patience;
-  }
-  numbers.resize(bytes.size() / sizeof(double));
-  std::copy_n(bytes.data(), numbers.size() * sizeof(double),
-              reinterpret_cast<char*>(numbers.data()));
-  return ended;
-}
-
 // An open file, closed at the end of its scope.
 class File {
  public:
@@ -126,6 +97,7 @@ class File {
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   ~File() { close(file_); }
+  [[nodiscard]] int number() const { return file_; }
 
  private:
   int file_;
@@ -157,6 +129,80 @@ class Child {
   bool waited_ = false;
 };
 
+// A child at work, and what it has sent so far.
+class Worker {
+ public:
+  // Starts the child.
+  Worker(const ChildWork& work, double seconds)
+      : patience_(static_cast<long long>(1000 * kWait * seconds)) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return;
+    const pid_t parent = getpid();
+    const pid_t id = fork();
+    if (id == 0) {
+      close(ends[0]);
+      work_as_child(ends[1], work, seconds, parent);
+    }
+    close(ends[1]);
+    pipe_ = std::make_unique<File>(ends[0]);
+    if (id < 0) return;
+    child_ = std::make_unique<Child>(id);
+    deadline_ = Clock::now() + patience_;
+    reading_ = true;
+  }
+
+  [[nodiscard]] bool reading() const { return reading_; }
+  [[nodiscard]] int file() const { return pipe_->number(); }
+  // Time that is left to the next sign of life.
+  [[nodiscard]] std::chrono::milliseconds left() const {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
+  }
+  // Ends a child that has sent nothing for too long.
+  void give_up() {
+    child_->end();
+    reading_ = false;
+    silent_ = true;
+  }
+  // Reads what is there.
+  void read() {
+    char buffer[65536];
+    const ssize_t count = ::read(pipe_->number(), buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) return;
+    if (count > 0) bytes_.insert(bytes_.end(), buffer, buffer + count);
+    reading_ = count > 0;
+    deadline_ = Clock::now() + patience_;
+  }
+
+  // Waits for the end of the child.
+  ChildAnswer answer() {
+    using End = ChildAnswer::End;
+    ChildAnswer answer;
+    if (!child_) return answer;
+    answer.numbers.resize(bytes_.size() / sizeof(double));
+    std::copy_n(bytes_.data(), answer.numbers.size() * sizeof(double),
+                reinterpret_cast<char*>(answer.numbers.data()));
+    const int status = child_->wait();
+    if (silent_) {
+      answer.end = End::silent;
+    } else if (WIFSIGNALED(status)) {
+      answer.end = WTERMSIG(status) == SIGXCPU ? End::silent : End::crashed;
+      answer.signal = WTERMSIG(status);
+    } else {
+      answer.end = WEXITSTATUS(status) == 0 ? End::finished : End::failed;
+    }
+    return answer;
+  }
+
+ private:
+  std::chrono::milliseconds patience_;
+  std::unique_ptr<File> pipe_;
+  std::unique_ptr<Child> child_;
+  Clock::time_point deadline_;
+  std::vector<char> bytes_;
+  bool reading_ = false;
+  bool silent_ = false;
+};
+
 }  // namespace
 
 std::string ChildAnswer::failure() const {
@@ -175,33 +221,38 @@ std::string ChildAnswer::failure() const {
   return "could not be started in a child process";
 }
 
-ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds,
+ChildAnswer run_in_child(const ChildWork& work, double seconds,
                          const std::function<void()>& meanwhile) {
-  using End = ChildAnswer::End;
-  ChildAnswer answer;
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return answer;
-  const pid_t parent = getpid();
-  Child child(fork());
-  if (child.id() == 0) {
-    close(ends[0]);
-    work_as_child(ends[1], work, seconds, parent);
+  return std::move(run_in_children({work}, seconds, meanwhile).front());
+}
+
+std::vector<ChildAnswer> run_in_children(const std::vector<ChildWork>& works, double seconds,
+                                         const std::function<void()>& meanwhile) {
+  std::vector<Worker> workers;
+  workers.reserve(works.size());
+  for (const ChildWork& work : works) workers.emplace_back(work, seconds);
+  while (true) {
+    std::vector<pollfd> waits;
+    std::vector<Worker*> waiting;
+    long long wait = kLook;
+    for (Worker& worker : workers) {
+      if (worker.reading() && worker.left().count() <= 0) worker.give_up();
+      if (!worker.reading()) continue;
+      waits.push_back({worker.file(), POLLIN, 0});
+      waiting.push_back(&worker);
+      wait = std::min<long long>(wait, worker.left().count() + 1);
+    }
+    if (waits.empty()) break;
+    const int ready = poll(waits.data(), waits.size(), static_cast<int>(wait));
+    if (meanwhile) meanwhile();
+    if (ready <= 0) continue;
+    for (size_t i = 0; i < waits.size(); ++i) {
+      if (waits[i].revents != 0) waiting[i]->read();
+    }
   }
-  close(ends[1]);
-  const File pipe(ends[0]);
-  if (child.id() < 0) return answer;
-  const bool ended = read_to_end(ends[0], seconds, meanwhile, answer.numbers);
-  if (!ended) child.end();
-  const int status = child.wait();
-  if (!ended) {
-    answer.end = End::silent;
-  } else if (WIFSIGNALED(status)) {
-    answer.end = WTERMSIG(status) == SIGXCPU ? End::silent : End::crashed;
-    answer.signal = WTERMSIG(status);
-  } else {
-    answer.end = WEXITSTATUS(status) == 0 ? End::finished : End::failed;
-  }
-  return answer;
+  std::vector<ChildAnswer> answers;
+  for (Worker& worker : workers) answers.push_back(worker.answer());
+  return answers;
 }
 
 }  // namespace apothem

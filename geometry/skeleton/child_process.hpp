@@ -1,4 +1,4 @@
-// A function that runs work in a child process, so that the program survives if the work crashes,
+// Functions that run work in child processes, so that the program survives if the work crashes,
 // never ends or takes too much memory.
 #pragma once
 
@@ -24,13 +24,20 @@ struct ChildAnswer {
 /// Sends numbers to the parent process. The work may call it any number of times.
 using SendNumbers = std::function<void(const std::vector<double>&)>;
 
+/// Work for a child process.
+using ChildWork = std::function<void(const SendNumbers&)>;
+
 /// Runs `work` in a child process, whose standard output and standard error are discarded. The
 /// child is killed if it sends nothing for `seconds` of processor time (rounded up), or for ten
 /// times that by the clock. It may take 4 GB of memory in addition to what the parent has mapped.
 /// Failures of the child are reported in the answer and not by an exception. `meanwhile` is called
 /// several times a second; if it throws, the child is killed and the exception passed on. The child
 /// does not outlive the parent.
-ChildAnswer run_in_child(const std::function<void(const SendNumbers&)>& work, double seconds,
+ChildAnswer run_in_child(const ChildWork& work, double seconds,
                          const std::function<void()>& meanwhile = {});
+
+/// Runs several works at the same time, each as run_in_child does. The limits hold for each child.
+std::vector<ChildAnswer> run_in_children(const std::vector<ChildWork>& works, double seconds,
+                                         const std::function<void()>& meanwhile = {});
 
 }  // namespace apothem

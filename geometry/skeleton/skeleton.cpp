@@ -5,9 +5,9 @@
 #include <map>
 #include <random>
 
-#include "apothem/geometry/skeleton/cgal_skeleton.hpp"
 #include "apothem/geometry/skeleton/convex_skeleton.hpp"
 #include "apothem/geometry/skeleton/polish.hpp"
+#include "apothem/geometry/skeleton/skeleton_search.hpp"
 #include "apothem/geometry/skeleton/wavefront.hpp"
 
 namespace apothem {
@@ -115,8 +115,20 @@ std::string describe(const std::vector<std::string>& failures) {
 // The search for a skeleton that passes the laws.
 class Search {
  public:
-  Search(const Polygon& polygon, const Progress& progress)
-      : polygon_(polygon), progress_(progress), frame_(polygon), ring_(frame_.inward(polygon)) {}
+  Search(const Polygon& polygon, std::optional<CgalAnswer> first_answer, const Progress& progress)
+      : polygon_(polygon),
+        progress_(progress),
+        frame_(polygon),
+        ring_(frame_.inward(polygon)),
+        first_answer_(std::move(first_answer)) {}
+
+  // What CGAL is asked first, if the search begins with CGAL.
+  [[nodiscard]] std::optional<FirstQuestion> first_question() const {
+    if (polygon_.size() > kMany || polygon_.is_convex() || !simple_polygon(ring_)) {
+      return std::nullopt;
+    }
+    return FirstQuestion{ring_, time_limit(ring_.size(), kAttempts[0].exact)};
+  }
 
   Skeleton run() {
     if (polygon_.is_convex() && try_convex()) return std::move(found_);
@@ -155,7 +167,10 @@ class Search {
     const Ring input = jittered(ring_, attempt.jitter, ++seed_);
     if (!simple_polygon(input)) return fail("the outline is not simple in scaled coordinates");
     CgalAnswer answer =
-        ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact), progress_);
+        first_answer_
+            ? std::move(*first_answer_)
+            : ask_cgal(input, attempt.exact, time_limit(input.size(), attempt.exact), progress_);
+    first_answer_.reset();
     if (!answer.parts) return fail(answer.failure);
     found_ = assemble(std::move(*answer.parts));
     found_.exact = attempt.exact;
@@ -184,6 +199,7 @@ class Search {
   const Progress& progress_;
   Frame frame_;
   Ring ring_;  // in the frame's coordinates
+  std::optional<CgalAnswer> first_answer_;
   unsigned seed_ = 0;
   std::vector<std::string> failures_;
   Skeleton found_;
@@ -200,8 +216,18 @@ void require_few_vertices(std::size_t vertices) {
 }
 
 Skeleton straight_skeleton(const Polygon& polygon, const Progress& progress) {
+  return straight_skeleton(polygon, std::nullopt, progress);
+}
+
+std::optional<FirstQuestion> first_question(const Polygon& polygon) {
+  if (polygon.size() > kMany) return std::nullopt;
+  return Search(polygon, std::nullopt, {}).first_question();
+}
+
+Skeleton straight_skeleton(const Polygon& polygon, std::optional<CgalAnswer> first_answer,
+                           const Progress& progress) {
   require_few_vertices(polygon.vertices().size());
-  return Search(polygon, progress).run();
+  return Search(polygon, std::move(first_answer), progress).run();
 }
 
 }  // namespace apothem

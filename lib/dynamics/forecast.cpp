@@ -11,8 +11,6 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kFew = 10000;  // bodies; among more, falls end on those that are not free
-
 // A body as the formulas see it.
 struct Block {
   double mass, density;
@@ -40,6 +38,7 @@ class Blocks {
     if (g_ > 0) down_ = model.gravity.normalized();
     for (const RigidBody& body : model.bodies) add(body);
     for (const DeformableBody& body : model.deformables) add(body);
+    if (!blocks_.empty()) divide();
   }
 
   Forecast forecast(std::span<const double> slopes) const {
@@ -152,16 +151,39 @@ class Blocks {
     blocks_.push_back(b);
   }
 
+  // Divides the breadth of the scene into strips about as broad as a body. Each has the bodies that
+  // reach into it.
+  void divide() {
+    double right = -HUGE_VAL, breadth = 0;
+    for (const Block& b : blocks_) {
+      left_ = std::min(left_, b.left), right = std::max(right, b.right);
+      breadth += (b.right - b.left) / static_cast<double>(blocks_.size());
+    }
+    strip_ = std::max(breadth, (right - left_) / static_cast<double>(blocks_.size()));
+    if (!(strip_ > 0) || !std::isfinite(strip_)) strip_ = HUGE_VAL;
+    strips_.resize(strip_of(right) + 1);
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      const size_t last = strip_of(blocks_[i].right);
+      for (size_t k = strip_of(blocks_[i].left); k <= last; ++k) strips_[k].push_back(i);
+    }
+  }
+  [[nodiscard]] size_t strip_of(double across) const {
+    return static_cast<size_t>(std::max(0., (across - left_) / strip_));
+  }
+
   // Free fall onto the next body below, 0 if there is none, m.
   [[nodiscard]] double fall(const Block& b) const {
+    if (!(g_ > 0)) return 0;
     double gap = HUGE_VAL;
-    const bool few = blocks_.size() <= kFew;
-    for (const Block& other : blocks_) {
-      if (&other == &b || (!few && other.free) || other.right <= b.left || b.right <= other.left)
-        continue;
-      if (other.bottom > b.bottom) gap = std::min(gap, std::max(0., other.top - b.bottom));
+    const size_t last = strip_of(b.right);
+    for (size_t k = strip_of(b.left); k <= last; ++k) {
+      for (const size_t i : strips_[k]) {
+        const Block& other = blocks_[i];
+        if (&other == &b || other.right <= b.left || b.right <= other.left) continue;
+        if (other.bottom > b.bottom) gap = std::min(gap, std::max(0., other.top - b.bottom));
+      }
     }
-    return g_ > 0 && std::isfinite(gap) ? gap : 0;
+    return std::isfinite(gap) ? gap : 0;
   }
 
   const Model& model_;
@@ -169,6 +191,8 @@ class Blocks {
   Vec2 down_{0, -1};
   double fastest_ = 0;  // of bodies with prescribed motion, m/s
   std::vector<Block> blocks_;
+  double left_ = HUGE_VAL, strip_ = HUGE_VAL;  // where the first strip begins, its breadth, m
+  std::vector<std::vector<size_t>> strips_;
 };
 
 }  // namespace

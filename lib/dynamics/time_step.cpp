@@ -75,6 +75,12 @@ double flat_mobility(const RigidBody& body) {
 
 namespace {
 
+// A bound of lambda / k_n of two bodies, or of a body with each of a group.
+template <class Flat>
+double flat_bound(const FlatEdges& a, const Flat& b) {
+  return std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
+}
+
 // Bounds of some bodies.
 struct FlatGroup {
   std::vector<int> members;
@@ -85,10 +91,6 @@ struct FlatGroup {
     longest = std::max(longest, f.longest);
     mobility = std::max(mobility, f.mobility);
     slope = std::max(slope, f.slope);
-  }
-  // Of lambda / k_n of a body with each of these.
-  [[nodiscard]] double bound(const FlatEdges& f) const {
-    return std::min(f.longest, longest) * (f.mobility + mobility) * (f.slope + slope);
   }
 };
 
@@ -115,7 +117,7 @@ StepLimit contact_step_limit(const Model& model) {
   const std::vector<FlatGroup> groups = groups_by_length(all);
   const auto bound = [&](int i) {
     double most = 0;
-    for (const FlatGroup& group : groups) most = std::max(most, group.bound(all[i]));
+    for (const FlatGroup& group : groups) most = std::max(most, flat_bound(all[i], group));
     return most * table.stiffest();
   };
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
@@ -127,8 +129,9 @@ StepLimit contact_step_limit(const Model& model) {
   for (const auto& [minus_bound, i] : order) {
     if (!(-minus_bound > worst)) break;
     for (const FlatGroup& group : groups) {
-      if (!(group.bound(all[i]) * table.stiffest() > worst)) continue;
+      if (!(flat_bound(all[i], group) * table.stiffest() > worst)) continue;
       for (const int j : group.members) {
+        if (!(flat_bound(all[i], all[j]) * table.stiffest() > worst)) continue;
         if (i == j || (!model.bodies[i].can_move() && !model.bodies[j].can_move())) continue;
         const double lambda = flat_contact(all[i], all[j]) * table.between(i, j).normal_stiffness;
         if (lambda > worst) {

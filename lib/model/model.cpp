@@ -39,8 +39,12 @@ int Model::node_count() const {
 }
 
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model) {
+  set_shape(body, polygon, make_potential(polygon, model.contact.potential), model);
+}
+
+void set_shape(RigidBody& body, const Polygon& polygon, Potential potential, const Model& model) {
   const AreaMoments moments = area_moments(polygon);
-  body.potential = translated(make_potential(polygon, model.contact.potential), moments.centroid);
+  body.potential = translated(std::move(potential), moments.centroid);
   body.inradius = polygon.is_convex() ? inscribed_circle(polygon).radius
                                       : body.potential.top / body.potential.steepest;
   body.area = moments.area;

@@ -84,5 +84,7 @@ struct Model {
 /// Fills shape, mass, inertia and position of a body from a polygon in world coordinates.
 /// Throws InvalidPolygon if the contact law cannot take the polygon.
 void set_shape(RigidBody& body, const Polygon& polygon, const Model& model);
+/// The same with the potential of the polygon in its local coordinates.
+void set_shape(RigidBody& body, const Polygon& polygon, Potential potential, const Model& model);
 
 }  // namespace apothem

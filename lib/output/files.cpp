@@ -35,11 +35,26 @@ void create_folder(const std::string& folder) {
 }
 
 void write_file(const std::string& file, std::string_view content) {
+  write_file(file, [&](const FileSink& sink) { sink(content); });
+}
+
+void write_file(const std::string& file, const std::function<void(const FileSink&)>& write) {
   const std::string partial = file + ".partial";
   const int descriptor = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) throw SystemFailure(file, errno);
-  int error = write_all(descriptor, content);
-  if (::close(descriptor) != 0 && error == 0) error = errno;
+  try {
+    write([&](std::string_view part) {
+      if (const int error = write_all(descriptor, part); error != 0) {
+        throw SystemFailure(file, error);
+      }
+    });
+  } catch (...) {
+    ::close(descriptor);
+    ::unlink(partial.c_str());
+    throw;
+  }
+  int error = 0;
+  if (::close(descriptor) != 0) error = errno;
   if (error == 0 && std::rename(partial.c_str(), file.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(partial.c_str());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -23,6 +24,13 @@ void create_folder(const std::string& folder);
 /// Writes a temporary file beside `file` and then renames it, so that an older file is replaced at
 /// once. Throws SystemFailure; the older file is then intact.
 void write_file(const std::string& file, std::string_view content);
+
+/// Takes a part of a file.
+using FileSink = std::function<void(std::string_view)>;
+
+/// The same with a content that comes in parts. Exceptions of `write` are passed on, and leave the
+/// older file as it is.
+void write_file(const std::string& file, const std::function<void(const FileSink&)>& write);
 
 /// A file that grows by whole blocks. A block that cannot be written in full is removed again. All
 /// functions throw SystemFailure.

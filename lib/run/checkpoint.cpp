@@ -58,13 +58,16 @@ std::string state_file(const std::string& folder, StateFile kind) {
 
 void write_state(const std::string& folder, StateFile kind, const Scene& scene,
                  const std::string& scene_hash, Simulation& simulation, RunProgress& progress) {
-  JsonWriter archive;
   std::string hash = scene_hash;
   std::vector<Setting> settings = scene.settings;
   ModelRecord record = record_of(simulation);
-  archive("scene_hash", hash)("settings", settings)("model", record)("progress", progress)(
-      "simulation", simulation);
-  write_file(state_file(folder, kind), archive.json().dump() + "\n");
+  write_file(state_file(folder, kind), [&](const auto& sink) {
+    JsonWriter archive(sink);
+    archive("scene_hash", hash)("settings", settings)("model", record)("progress", progress)(
+        "simulation", simulation);
+    archive.finish();
+    sink("\n");
+  });
 }
 
 RunProgress read_progress(const std::string& folder) {

@@ -1,52 +1,106 @@
 // Archives as JSON: checkpoints are written and read with these. Private to the room.
 #pragma once
 
+#include <charconv>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
 
 namespace apothem {
 
-/// Numbers are written so that they read back to the same double; infinity becomes null.
+/// Writes the text of a JSON object. Numbers are written so that they read back to the same double;
+/// infinity becomes null.
 class JsonWriter final : public Archive {
  public:
-  [[nodiscard]] const nlohmann::json& json() const { return root_; }
+  /// Takes a part of the text.
+  using Sink = std::function<void(std::string_view)>;
+
+  /// Collects the text if there is no sink.
+  explicit JsonWriter(Sink sink = {}) : sink_(std::move(sink)) {}
+
+  /// Writes the end of the object. Nothing may be written after that.
+  void finish() {
+    text_ += '}';
+    if (sink_) flush();
+  }
+  /// What has been collected, as JSON.
+  [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(text_ + '}'); }
 
  protected:
-  void number(const char* name, double& value) override { at(name) = of(value); }
-  void integer(const char* name, std::int64_t& value) override { at(name) = value; }
-  void text(const char* name, std::string& value) override { at(name) = value; }
+  void number(const char* name, double& value) override { key(name), add(value); }
+  void integer(const char* name, std::int64_t& value) override {
+    key(name), text_ += std::to_string(value);
+  }
+  void text(const char* name, std::string& value) override { key(name), add(value); }
   void numbers(const char* name, std::vector<double>& values) override {
-    nlohmann::json list = nlohmann::json::array();
-    for (const double v : values) list.push_back(of(v));
-    at(name) = std::move(list);
+    key(name);
+    text_ += '[';
+    for (const double& v : values) {
+      if (&v != values.data()) text_ += ',';
+      add(v);
+      if (sink_ && text_.size() > kBlock) flush();
+    }
+    text_ += ']';
   }
-  void enter(const char* name) override {
-    stack_.push_back(&(at(name) = nlohmann::json::object()));
-  }
+  void enter(const char* name) override { key(name), open('{', '}'); }
   size_t enter_list(const char* name, size_t size) override {
-    nlohmann::json& list = at(name) = nlohmann::json::array();
-    list.get_ref<nlohmann::json::array_t&>().reserve(size);  // its items are pointed to
-    stack_.push_back(&list);
+    key(name), open('[', ']');
     return size;
   }
-  void enter_item() override {
-    stack_.back()->push_back(nlohmann::json::object());
-    stack_.push_back(&stack_.back()->back());
+  void enter_item() override { separate(), open('{', '}'); }
+  void leave() override {
+    text_ += levels_.back().end;
+    levels_.pop_back();
+    if (sink_ && text_.size() > kBlock) flush();
   }
-  void leave() override { stack_.pop_back(); }
 
  private:
-  static nlohmann::json of(double value) {
-    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-  }
-  nlohmann::json& at(const char* name) { return (*stack_.back())[name]; }
+  static constexpr size_t kBlock = 1 << 20;
 
-  nlohmann::json root_ = nlohmann::json::object();
-  std::vector<nlohmann::json*> stack_{&root_};
+  struct Level {
+    char end;
+    bool empty;
+  };
+  void open(char start, char end) {
+    text_ += start;
+    levels_.push_back({end, true});
+  }
+  void separate() {
+    if (!levels_.back().empty) text_ += ',';
+    levels_.back().empty = false;
+  }
+  void key(const char* name) {
+    separate();
+    add(std::string(name));
+    text_ += ':';
+  }
+  void add(const std::string& value) { text_ += nlohmann::json(value).dump(); }
+  void add(double value) {
+    if (!std::isfinite(value)) {
+      text_ += "null";
+      return;
+    }
+    char digits[32];
+    const std::string_view shortest(
+        digits, static_cast<size_t>(std::to_chars(digits, std::end(digits), value).ptr - digits));
+    text_ += shortest;
+    // A whole number stays a floating-point number, because an integer has no -0.
+    if (shortest.find_first_of(".e") == std::string_view::npos) text_ += ".0";
+  }
+  void flush() {
+    sink_(text_);
+    text_.clear();
+  }
+
+  Sink sink_;
+  std::string text_ = "{";
+  std::vector<Level> levels_{{'}', true}};
 };
 
 /// Throws nlohmann::json::exception or ArchiveMismatch if something is missing or of another kind.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "apothem/mesh/boundary.hpp"
 #include "apothem/mesh/measure.hpp"
@@ -14,6 +15,18 @@
 #include "apothem/scene/polygon_value.hpp"
 
 namespace apothem {
+
+std::string numbered(const std::string& name, int number) {
+  return fmt::format("{}-{}", name, number);
+}
+
+void BodyReader::add(const JsonValue& alike, std::vector<Polygon> polygons) {
+  series_.push_back(
+      {shapes_.size(), shapes_.size() + polygons.size(), alike, in_.string(*alike.find("name"))});
+  values_.resize(values_.size() + polygons.size(), &series_.back().value);
+  shapes_.reserve(shapes_.size() + polygons.size());
+  for (Polygon& polygon : polygons) shapes_.emplace_back(std::move(polygon));
+}
 
 void BodyReader::add(const std::vector<JsonValue>& bodies) {
   for (const JsonValue& value : bodies) {
@@ -32,13 +45,34 @@ void BodyReader::read() {
     box.include(own.x1, own.y1);
   }
   model_.origin = local_origin(box);
+  const Potentials potentials = find_potentials();
+  model_.bodies.reserve(shapes_.size());
+  size_t polygons = 0;
+  auto series = series_.begin();
+  const auto name_of_series = [&](size_t i) {
+    while (series != series_.end() && i >= series->end) ++series;
+    if (series == series_.end() || i < series->first) return;
+    const auto at = std::ranges::find(series->value.keys, "name") - series->value.keys.begin();
+    series->value.items[at].string = numbered(series->name, static_cast<int>(i - series->first));
+  };
   for (size_t i = 0; i < shapes_.size(); ++i) {
+    name_of_series(i);
     if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
-      rigid_body(*values_[i], *polygon);
+      rigid_body(*values_[i], *polygon,
+                 [&, number = polygons++] { return potentials.make(number); });
     } else {
       deformable_body(*values_[i], std::move(std::get<MeshSpec>(shapes_[i])));
     }
   }
+}
+
+Potentials BodyReader::find_potentials() const {
+  std::vector<const Polygon*> polygons;
+  for (const Shape& shape : shapes_) {
+    if (const auto* polygon = std::get_if<Polygon>(&shape)) polygons.push_back(polygon);
+  }
+  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
+  return {std::move(polygons), model_.contact.potential, processors};
 }
 
 std::vector<std::vector<Vec2>> BodyReader::outlines() const {
@@ -106,7 +140,8 @@ Box BodyReader::extent(const JsonValue& value, const Shape& shape) const {
   return box;
 }
 
-void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
+void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon,
+                            const PotentialSource& potential) {
   JsonObject object(in_, value);
   RigidBody body;
   name_and_material(object, body.name, body.material);
@@ -117,7 +152,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
   if (const JsonValue* v = object.optional("materials")) {
     features_.add(Feature::element_materials, v, place());
   }
-  give_shape(value, polygon, body);
+  give_shape(value, polygon, potential, body);
   if (const JsonValue* v = object.optional("position")) {
     body.position = in_.vec2(*v, "m") - model_.origin;
   }
@@ -135,7 +170,8 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon) {
 
 // Potential, mass and inertia. A polygon for which the area potential is not defined is left
 // without them, because the scene is refused as soon as all of it has been read.
-void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body) {
+void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon,
+                            const PotentialSource& potential, RigidBody& body) {
   const JsonValue& outline = *value.find("polygon");
   if (polygon.size() > 3) {
     const bool ring = outline.type == JsonValue::Type::array && outline.items.size() > 3;
@@ -143,7 +179,7 @@ void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon, Rigi
     if (features_.uses(Feature::area_potential)) return;
   }
   try {
-    set_shape(body, polygon, model_);
+    set_shape(body, polygon, potential(), model_);
   } catch (const InvalidPolygon& error) {
     refuse_polygon(in_, outline, error);
   }

@@ -2,17 +2,23 @@
 // a mesh.
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <string>
 #include <unordered_set>
 #include <variant>
 #include <vector>
 
+#include "apothem/geometry/potential/potentials.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/scene/compatibility.hpp"
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/mesh_reader.hpp"
 
 namespace apothem {
+
+/// The name of one of many bodies.
+std::string numbered(const std::string& name, int number);
 
 class BodyReader {
  public:
@@ -24,6 +30,9 @@ class BodyReader {
   /// Reads the shapes of bodies, which are then the next ones in the list of bodies. The values
   /// must outlive this object. Throws SceneError.
   void add(const std::vector<JsonValue>& bodies);
+  /// Adds rigid bodies that have all but their names and polygons in common, which are then the
+  /// next ones in the list. `alike` is one of them, without a number in its name.
+  void add(const JsonValue& alike, std::vector<Polygon> polygons);
   /// The rings around all bodies so far, where they start, in world coordinates, m.
   [[nodiscard]] std::vector<std::vector<Vec2>> outlines() const;
   /// Reads all bodies, when all shapes are known. Throws SceneError.
@@ -43,8 +52,13 @@ class BodyReader {
   Box extent(const JsonValue& value, const Shape& shape) const;
   [[nodiscard]] std::vector<Vec2> moved(const JsonValue& value, std::vector<Vec2> points,
                                         const Vec2& centre) const;
-  void rigid_body(const JsonValue& value, const Polygon& polygon);
-  void give_shape(const JsonValue& value, const Polygon& polygon, RigidBody& body);
+  using PotentialSource = std::function<Potential()>;
+
+  /// Of all polygons, in their order.
+  [[nodiscard]] Potentials find_potentials() const;
+  void rigid_body(const JsonValue& value, const Polygon& polygon, const PotentialSource& potential);
+  void give_shape(const JsonValue& value, const Polygon& polygon, const PotentialSource& potential,
+                  RigidBody& body);
   void deformable_body(const JsonValue& value, MeshSpec spec);
   void place_mesh(JsonObject& object, Mesh& mesh) const;
   void name_and_material(JsonObject& object, std::string& name, MaterialIndex& material);
@@ -60,12 +74,20 @@ class BodyReader {
   /// The place in the scene's list of the body that is being read.
   [[nodiscard]] int place() const { return static_cast<int>(names_.size()) - 1; }
 
+  // Bodies that have all but their names and polygons in common.
+  struct Series {
+    size_t first, end;  // their places in the list
+    JsonValue value;    // of the body that is being read
+    std::string name;
+  };
+
   const JsonReader& in_;
   const JsonValue& materials_;
   Model& model_;
   UsedFeatures& features_;
   std::vector<const JsonValue*> values_;  // of all bodies
   std::vector<Shape> shapes_;
+  std::deque<Series> series_;
   std::vector<std::string> names_;
   std::unordered_set<std::string> known_names_;
   std::vector<std::string> rigid_pointers_;

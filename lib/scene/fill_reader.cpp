@@ -11,6 +11,7 @@
 #include "apothem/geometry/packing/block_shapes.hpp"
 #include "apothem/geometry/packing/voronoi_blocks.hpp"
 #include "apothem/geometry/polygon/ring_area.hpp"
+#include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/polygon_value.hpp"
 #include "apothem/scene/value_maker.hpp"
 
@@ -79,7 +80,11 @@ class Fill {
       arranged_ == Arranged::voronoi ? add_cells(obstacles, filled)
                                      : add_blocks(obstacles, random, filled, batch == 0);
     }
-    filled.batch = static_cast<int>(filled.bodies.size()) / filled.batches;
+    filled.batch = filled.count / filled.batches;
+    if (!element_) {
+      filled.alike = body(name_);
+      make_.add(filled.alike, "polygon", make_.ring({}));
+    }
     return filled;
   }
 
@@ -396,7 +401,7 @@ class Fill {
     refuse_shortfall(blocks, found, space.area());
     for (size_t i = 0; i < blocks.size(); ++i) {
       const std::vector<Vec2>& ring = found.rings[i];
-      filled.bodies.push_back(body(filled.bodies.size(), ring));
+      add_body(filled, ring);
       if (stays) obstacles.push_back(ring);
     }
   }
@@ -439,7 +444,7 @@ class Fill {
                    "a cell of the region overlaps a body of the scene; keep bodies out of "
                    "the region");
         }
-        filled.bodies.push_back(body(filled.bodies.size(), ring));
+        add_body(filled, ring);
         obstacles.push_back(ring);
       }
     } catch (const std::invalid_argument& error) {
@@ -447,16 +452,26 @@ class Fill {
     }
   }
 
-  // As it would stand in the scene.
-  [[nodiscard]] JsonValue body(size_t number, const std::vector<Vec2>& ring) const {
-    JsonValue body = make_.object();
-    make_.add(body, "name", make_.string(fmt::format("{}-{}", name_, number)));
-    make_.add(body, "material", *value_.find("material"));
+  void add_body(Filled& filled, const std::vector<Vec2>& ring) const {
+    const int number = filled.count++;
     if (!element_) {
-      make_.add(body, "polygon", make_.ring(ring));
-    } else {
-      make_.add(body, "mesh", mesh_value(ring, number));
+      try {
+        filled.polygons.emplace_back(ring);
+      } catch (const InvalidPolygon& error) {
+        refuse_polygon(in_, value_, error);
+      }
+      return;
     }
+    JsonValue body = this->body(numbered(name_, number));
+    make_.add(body, "mesh", mesh_value(ring, static_cast<size_t>(number)));
+    filled.bodies.push_back(std::move(body));
+  }
+
+  // As it would stand in the scene, but for its shape.
+  [[nodiscard]] JsonValue body(const std::string& name) const {
+    JsonValue body = make_.object();
+    make_.add(body, "name", make_.string(name));
+    make_.add(body, "material", *value_.find("material"));
     if (velocity_) make_.add(body, "velocity", *velocity_);
     if (spin_) make_.add(body, "spin", *spin_);
     return body;

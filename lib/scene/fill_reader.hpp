@@ -5,13 +5,17 @@
 #include <vector>
 
 #include "apothem/geometry/packing/arrange.hpp"
+#include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/scene/json.hpp"
 
 namespace apothem {
 
-/// The bodies of one fill.
+/// The bodies of one fill, batch after batch: bodies with meshes, or rigid ones.
 struct Filled {
-  std::vector<JsonValue> bodies;  ///< as they would stand in the scene, batch after batch
+  std::vector<JsonValue> bodies;  ///< with meshes: as they would stand in the scene
+  JsonValue alike;                ///< rigid: what all of them have in common
+  std::vector<Polygon> polygons;  ///< rigid: their polygons
+  int count = 0;                  ///< number of bodies
   int batch = 0;                  ///< number of bodies in a batch
   int batches = 1;                ///< the first is there from the start
   double every = 0;               ///< s, least time between two batches

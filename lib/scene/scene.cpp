@@ -46,7 +46,10 @@ class SceneReader {
     if (list) bodies.add(list->items);
     std::vector<Filled> filled;
     if (fills) filled = FillReader(in_, bodies.outlines()).read(*fills);
-    for (const Filled& fill : filled) bodies.add(fill.bodies);
+    for (Filled& fill : filled) {
+      fill.polygons.empty() ? bodies.add(fill.bodies)
+                            : bodies.add(fill.alike, std::move(fill.polygons));
+    }
     bodies.read();
     scene_.rigid_pointers = bodies.rigid_pointers();
     add_inflows(bodies, list ? list->items.size() : 0, filled);
@@ -108,7 +111,7 @@ class SceneReader {
   void add_inflows(const BodyReader& bodies, size_t place, const std::vector<Filled>& filled) {
     for (const Filled& fill : filled) {
       const size_t first = place;
-      place += fill.bodies.size();
+      place += static_cast<size_t>(fill.count);
       if (fill.batches == 1) continue;
       Inflow inflow{fill.every, {}};
       for (int batch = 1; batch < fill.batches; ++batch) {

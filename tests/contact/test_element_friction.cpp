@@ -165,7 +165,8 @@ TEST_CASE("elements stick with k_s, slip at mu times the normal force, and remem
   JsonWriter writer;
   writer("contacts", *bodies.contacts);
   Bodies other = element_on_wall(.5);
-  JsonLoader loader(writer.json());
+  const nlohmann::json json = writer.json();
+  JsonLoader loader(json);
   loader("contacts", *other.contacts);
   other.pose_rate = bodies.pose_rate;
   other.contacts->refresh(other.kinematics());

@@ -184,7 +184,8 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   JsonWriter writer;
   writer("contacts", *bodies.contacts);
   Bodies other = block_on_floor();
-  JsonLoader loader(writer.json());
+  const nlohmann::json json = writer.json();
+  JsonLoader loader(json);
   loader("contacts", *other.contacts);
   other.pose_rate = bodies.pose_rate;
   other.contacts->refresh(other.kinematics());

@@ -1,0 +1,125 @@
+#include "apothem/geometry/polygon/similar_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+// Units in the last place of the largest coordinate by which vertices of copies may differ: those
+// of both polygons are rounded, after a rotation of a few roundings.
+constexpr double kUlps = 16;
+// Vertices that differ by more than this share of the polygon's size are never similar, however
+// coarse the coordinates are.
+constexpr double kFarthest = 1e-11;
+// Intervals of the logarithm of perimeter / size, and its error.
+constexpr double kInterval = 1e-6, kError = 1e-9;
+// Comparisons of vertices, per vertex, after which a polygon counts as an original. Only polygons
+// that are nearly periodic need more than a few.
+constexpr std::int64_t kMostComparisons = 256;
+
+// a conj(b), as complex numbers.
+Vec2 times_conjugate(const Vec2& a, const Vec2& b) {
+  return {a.x() * b.x() + a.y() * b.y(), a.y() * b.x() - a.x() * b.y()};
+}
+
+Vec2 mirrored_if(bool mirrored, const Vec2& p) { return {p.x(), mirrored ? -p.y() : p.y()}; }
+
+}  // namespace
+
+SimilarShapes::Shape SimilarShapes::shape_of(const Polygon& polygon) {
+  const Box box = bounding_box(polygon);
+  double largest = 0;
+  for (const double x : {box.x0, box.y0, box.x1, box.y1}) largest = std::max(largest, std::abs(x));
+  Shape shape{-1,           polygon.local_vertices(), Vec2::Zero(), 0, 0,
+              box.extent(), kUlps * 0x1p-52 * largest};
+  const double n = polygon.size();
+  for (const Vec2& v : shape.arms) shape.mean += v / n;
+  double squares = 0;
+  for (size_t i = 0; i < shape.arms.size(); ++i) {
+    shape.perimeter += (shape.arms[i] - shape.arms[i == 0 ? shape.arms.size() - 1 : i - 1]).norm();
+  }
+  for (Vec2& v : shape.arms) {
+    v -= shape.mean;
+    squares += v.squaredNorm();
+  }
+  shape.size = std::sqrt(squares);
+  return shape;
+}
+
+std::optional<Similarity> SimilarShapes::aligned(const Shape& from, const Shape& to, int first,
+                                                 bool mirrored, double tolerance) {
+  const int n = static_cast<int>(from.arms.size());
+  const auto original = [&](int k) {
+    const int i = mirrored ? first - k : first + k;
+    return mirrored_if(mirrored, from.arms[i < 0 ? i + n : i >= n ? i - n : i]);
+  };
+  // The rotation that fits best in the sense of least squares.
+  Vec2 turn = Vec2::Zero();
+  double squares = 0;
+  for (int k = 0; k < n; ++k) {
+    const Vec2 p = original(k);
+    turn += times_conjugate(to.arms[k], p);
+    squares += p.squaredNorm();
+  }
+  turn /= squares;
+  for (int k = 0; k < n; ++k) {
+    const Vec2 p = original(k);
+    const Vec2 image(turn.x() * p.x() - turn.y() * p.y(), turn.y() * p.x() + turn.x() * p.y());
+    if (!((image - to.arms[k]).norm() <= tolerance)) return std::nullopt;
+  }
+  Similarity map{n, first, mirrored, turn, Vec2::Zero()};
+  map.shift = to.mean - map(from.mean);
+  return map;
+}
+
+std::optional<Similarity> SimilarShapes::similarity(const Shape& from, const Shape& to) {
+  const double scale = to.size / from.size;
+  const double tolerance = std::min(to.noise + scale * from.noise, kFarthest * to.extent);
+  const int n = static_cast<int>(from.arms.size());
+  // The lengths of the arms tell soon that two polygons are not aligned.
+  std::int64_t left = kMostComparisons * n;
+  for (const bool mirrored : {false, true}) {
+    for (int first = 0; first < n && left > 0; ++first) {
+      int same = 0;
+      for (int i = first; same < n; ++same, --left) {
+        const double length = scale * from.arms[i].norm();
+        if (!(std::abs(to.arms[same].norm() - length) <= 2 * tolerance)) break;
+        i = mirrored ? (i == 0 ? n : i) - 1 : (i + 1 == n ? 0 : i + 1);
+      }
+      --left;
+      if (same < n) continue;
+      if (auto map = aligned(from, to, first, mirrored, tolerance)) return map;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<SimilarShapes::Original> SimilarShapes::add(const Polygon& polygon) {
+  Shape shape = shape_of(polygon);
+  shape.index = count_++;
+  const double kind = std::log(shape.perimeter / shape.size) / kInterval;
+  const double error = kError / kInterval;
+  const auto key = [&](double x) {
+    return std::pair(polygon.size(), static_cast<std::int64_t>(std::floor(x)));
+  };
+  std::optional<std::pair<int, Similarity>> found;
+  for (const auto& k : {key(kind - error), key(kind + error)}) {
+    const auto members = by_kind_.find(k);
+    if (members == by_kind_.end()) continue;
+    for (const int i : members->second) {
+      if (found && found->first <= i) break;
+      if (auto map = similarity(originals_[i], shape)) {
+        found = {i, *map};
+        break;
+      }
+    }
+  }
+  if (found) return Original{originals_[found->first].index, found->second};
+  const int number = static_cast<int>(originals_.size());
+  by_kind_[key(kind)].push_back(number);
+  originals_.push_back(std::move(shape));
+  return std::nullopt;
+}
+
+}  // namespace apothem

@@ -1,0 +1,45 @@
+// The potentials of many polygons. What takes long to find, the straight skeleton, is found once
+// for all polygons that are copies of each other (similar_shapes.hpp, skeletons.hpp).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apothem/geometry/polygon/similar_shapes.hpp"
+#include "apothem/geometry/potential/potential.hpp"
+#include "apothem/geometry/skeleton/skeletons.hpp"
+
+namespace apothem {
+
+/// Makes the potentials of polygons, each as make_potential does. They depend on the order of the
+/// polygons by round-off only: the first one of several copies is the original.
+class Potentials {
+ public:
+  /// Finds what the potentials have in common, with up to `processes` child processes at the same
+  /// time. The polygons must outlive this object. Polygons for which there is no potential are no
+  /// error yet.
+  Potentials(std::vector<const Polygon*> polygons, const PotentialChoice& choice, int processes,
+             const Progress& progress = {});
+
+  /// The potential of a polygon. Throws InvalidPolygon as make_potential does. May be called by
+  /// several threads at the same time.
+  [[nodiscard]] Potential make(size_t polygon) const;
+
+  /// Number of distinct polygons whose skeletons were constructed.
+  [[nodiscard]] size_t distinct() const { return skeletons_.size(); }
+
+ private:
+  // Where the skeleton of a polygon comes from.
+  struct Source {
+    size_t skeleton;
+    std::optional<Similarity> map;  // nothing for an original
+  };
+  [[nodiscard]] Skeleton skeleton_of(size_t polygon) const;
+
+  std::vector<const Polygon*> polygons_;
+  PotentialChoice choice_;
+  std::vector<std::optional<Source>> sources_;  // of polygons whose potential needs a skeleton
+  std::vector<SkeletonOrFailure> skeletons_;    // of originals
+};
+
+}  // namespace apothem

@@ -1,0 +1,35 @@
+// The straight skeletons of many polygons.
+//
+// CGAL constructs them in a few child processes that run at the same time. The time limit is that
+// of a single polygon; if a child fails on one polygon, another child goes on with the next one.
+// The result is the same for any number of child processes.
+//
+// The skeleton of a copy of a polygon is the image of the skeleton of the original: its faces are
+// the same, and its inner nodes are mapped by the similarity and then corrected with the lines of
+// the copy's own edges. Its vertices are those of the copy to the last bit.
+#pragma once
+
+#include <exception>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "apothem/geometry/polygon/similar_shapes.hpp"
+#include "apothem/geometry/skeleton/skeleton.hpp"
+
+namespace apothem {
+
+/// A skeleton, or the exception that straight_skeleton would have thrown.
+using SkeletonOrFailure = std::variant<Skeleton, std::exception_ptr>;
+
+/// Constructs the straight skeleton of each polygon as straight_skeleton does, with up to
+/// `processes` child processes at the same time.
+std::vector<SkeletonOrFailure> straight_skeletons(const std::vector<const Polygon*>& polygons,
+                                                  int processes, const Progress& progress = {});
+
+/// Returns the image of a skeleton for a copy of its polygon, or nothing if that image does not
+/// obey the laws of skeletons.
+std::optional<Skeleton> copied_skeleton(const Skeleton& original, const Similarity& map,
+                                        const Polygon& copy);
+
+}  // namespace apothem
