@@ -93,6 +93,33 @@ TEST_CASE("a run that was stopped while bodies rub continues bit for bit", "[res
   }
 }
 
+TEST_CASE("crosses that share their skeleton go on bit for bit, on any number of threads",
+          "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, R"({ "gravity": [0, -10],
+    "materials": { "rock": { "density": 2000 } },
+    "contact": { "normal_stiffness": 1e7, "friction": { "coefficient": 0.5 } },
+    "bodies": [ { "name": "floor", "material": "rock", "motion": "fixed",
+                  "polygon": [[-1, -0.5], [2, -0.5], [2, 0], [-1, 0]] } ],
+    "fill": [ { "name": "cross", "material": "rock", "region": [[0, 0], [0.6, 0], [0.6, 1.2], [0, 1.2]],
+                "shapes": [ { "cross": {} } ], "diameter": { "uniform": [0.08, 0.1] },
+                "arrangement": "lattice", "count": 12, "velocity": [0, -3] } ],
+    "time": { "end": 0.06, "accuracy": 0.1 }, "output": { "frames": 1 } })");
+  Run whole(scene, {.folder = folder / "whole"});
+  REQUIRE(whole.run() == Run::Status::done);
+  REQUIRE(whole.simulation().contacts().size() > 0);
+  for (const int threads : {2, 3}) {
+    Run again(scene, {.folder = "", .threads = threads});
+    REQUIRE(again.run() == Run::Status::done);
+    CHECK(state_hash(again.state()) == state_hash(whole.state()));
+  }
+  Run first(scene, {.folder = folder / "parts"});
+  REQUIRE(first.run(.03) == Run::Status::done);
+  Run second(scene, {.folder = folder / "parts", .threads = 2, .resume = true});
+  REQUIRE(second.run() == Run::Status::done);
+  check_same(second, whole);
+}
+
 TEST_CASE("what is loaded is what was saved, to the last bit", "[resume]") {
   for (const NamedScene& named : stopped_scenes()) {
     INFO(named.name);
