@@ -91,19 +91,18 @@ class Splitter {
     const double dx = of_a ? offset_.x() : -offset_.x();
     const double dy = of_a ? offset_.y() : -offset_.y();
     Half sum;
-    sum.weight += walk_runs<true>(
-        x, y, dx, dy, near, rows, spare, work_.edge,
-        [&](int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
-            const SegmentMoments<double>& moments) {
-          Half& half = work_.halves.emplace_back();
-          accumulate(edge, moments, s1 - s0, half);
-          sum.add(half);
-          if (s0 == 0 && edge.first == 0) sum.enter(e);
-          ends.add(edge, s0, s1);
-          add_run(of_a, e, edge, s0, s1, half);
-          work_.crossed.push_back(edge0);
-          work_.crossed.push_back(edge1);
-        });
+    sum.weight += walk_runs<true>(x, y, dx, dy, near, rows, spare, work_.edge,
+                                  [&](int e, const PlacedEdge& edge, double s0, int edge0,
+                                      double s1, int edge1, const SegmentMoments<double>& moments) {
+                                    Half& half = work_.halves.emplace_back();
+                                    accumulate(edge, moments, s1 - s0, half);
+                                    sum.add(half);
+                                    if (s0 == 0 && edge.first == 0) sum.enter(e);
+                                    ends.add(edge, s0, s1);
+                                    add_run(of_a, e, edge, s0, s1, half);
+                                    work_.crossed.push_back(edge0);
+                                    work_.crossed.push_back(edge1);
+                                  });
     return sum;
   }
 
@@ -293,10 +292,9 @@ class Splitter {
 
 }  // namespace
 
-PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
-                             const Vec2& offset, PatchWorkspace& workspace,
-                             std::vector<BoundaryRun>& runs, std::vector<PairIntegral>& patches,
-                             NearEdges& near) {
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches, NearEdges& near) {
   patches.clear();
   Splitter splitter(a, b, offset, workspace, runs);
   const PairIntegral whole = splitter.find_runs(near);
@@ -312,9 +310,9 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
   return whole;
 }
 
-PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
-                             const Vec2& offset, PatchWorkspace& workspace,
-                             std::vector<BoundaryRun>& runs, std::vector<PairIntegral>& patches) {
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches) {
   NearEdges all;
   return contact_patches(a, b, offset, workspace, runs, patches, all);
 }

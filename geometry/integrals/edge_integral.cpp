@@ -16,17 +16,16 @@ namespace {
 
 // The integrals of phi of y along the edges of x.
 Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    std::uint64_t near, const double* rows, double* spare,
-                    EdgeWorkspace& workspace, RunEnds& ends) {
+                    std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
+                    RunEnds& ends) {
   Half half;
-  half.weight += walk_runs<false>(
-      x, y, dx, dy, near, rows, spare, workspace,
-      [&](int e, const PlacedEdge& edge, double s0, int, double s1, int,
-          const SegmentMoments<double>& moments) {
-        accumulate(edge, moments, s1 - s0, half);
-        if (s0 == 0 && edge.first == 0) half.enter(e);
-        ends.add(edge, s0, s1);
-      });  // a NaN is added, so that it is never taken for "no contact"
+  half.weight += walk_runs<false>(x, y, dx, dy, near, rows, spare, workspace,
+                                  [&](int e, const PlacedEdge& edge, double s0, int, double s1, int,
+                                      const SegmentMoments<double>& moments) {
+                                    accumulate(edge, moments, s1 - s0, half);
+                                    if (s0 == 0 && edge.first == 0) half.enter(e);
+                                    ends.add(edge, s0, s1);
+                                  });  // a NaN is added, so that it is never taken for "no contact"
   return half;
 }
 

@@ -91,9 +91,9 @@ struct EdgeWorkspace {
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if
 /// that is known (near_edges.hpp); the result does not depend on it. If nothing is known and both
-/// polygons are convex and apart, it gets the margin by which they are. `offset` is the origin of a's frame minus the origin of b's
-/// frame, m. If a coordinate is not finite, the result is not finite either. Nothing is allocated
-/// after the first calls with polygons of a given size.
+/// polygons are convex and apart, it gets the margin by which they are. `offset` is the origin of
+/// a's frame minus the origin of b's frame, m. If a coordinate is not finite, the result is not
+/// finite either. Nothing is allocated after the first calls with polygons of a given size.
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near);
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,

@@ -28,6 +28,9 @@ struct Row {
 // kept and never counts as outside.
 template <class Real>
 bool clip(const Row<Real>& row, Real& s0, Real& s1) {
+  int outside = 0;  // counted without branches, because which edges are outside is unpredictable
+  for (int i = 0; i < row.size; ++i) outside |= int{row.a[i] < 0} & int{row.b[i] < 0};
+  if (outside) return false;
   s0 = 0;
   s1 = 1;
   for (int i = 0; i < row.size; ++i) {
@@ -38,7 +41,6 @@ bool clip(const Row<Real>& row, Real& s0, Real& s1) {
       const Real s = a / (a - b);
       if (!(s >= s1)) s1 = s;
     } else {
-      if (a < 0 && b < 0) return false;
       const Real s = a / (a - b);
       if (!(s <= s0)) s0 = s;
     }
@@ -110,12 +112,42 @@ inline void height_row(const PlacedPotential& y, double px, double py, double* r
   if (y.capped) row[y.size] = 1;
 }
 
+// `heights`, below, for two polygons with n vertices each: the compiler unrolls these loops and
+// makes vectors of them. A row has `width` entries.
+template <int n, int width>
+double heights_of(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                  double* rows) {
+  double highest[n], outside[n];
+  for (int i = 0; i < n; ++i) highest[i] = -HUGE_VAL, outside[i] = 1;
+  for (int v = 0; v < n; ++v) {
+    const double px = x.x[v] + dx;
+    const double py = x.y[v] + dy;
+    double* const row = rows + v * width;
+    for (int i = 0; i < n; ++i) {
+      const double h = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
+      row[i] = h;
+      highest[i] = h > highest[i] ? h : highest[i];
+      outside[i] = h < 0 ? outside[i] : 0;
+    }
+    if (width > n) row[n] = 1;
+  }
+  for (int i = 0; i < width; ++i) rows[n * width + i] = rows[i];
+  double gap = 0;
+  for (int i = 0; i < n; ++i) {
+    if (outside[i] > 0) gap = std::max(gap, -highest[i]);
+  }
+  return gap;
+}
+
 // Writes the heights of the vertices of x over the edges of y: one row per vertex, with y.size
 // entries (and one more if phi is limited to 1), and the first row again at the end. Returns how
 // far outside one edge of y all of x lies, in the unit of the heights, so that the polygons are
 // apart; or 0 if there is no such edge.
 inline double heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                       double* rows) {
+  if (x.size == 4 && y.size == 4) {
+    return y.capped ? heights_of<4, 5>(x, y, dx, dy, rows) : heights_of<4, 4>(x, y, dx, dy, rows);
+  }
   const int n = y.size;
   const int width = n + (y.capped ? 1 : 0);
   for (int v = 0; v < x.size; ++v) {
@@ -402,10 +434,17 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
     const PlacedEdge edge(x, y, e, dx, dy);
     const Row<double> row = row_of(edge, e, y, rows, spare);
     double s0, s1;
-    if (!clip(row, s0, s1)) return;
     SegmentMoments<double> moments;
-    walk_envelope(row, s0, s1,
-                  [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
+    const auto integrate = [&](const Row<double>& r) {
+      if (!clip(r, s0, s1)) return false;
+      walk_envelope(r, s0, s1, [&](double u1, double v1, double u2, double v2) {
+        moments.add(u1, v1, u2, v2);
+      });
+      return true;
+    };
+    // With a number that the compiler knows, loops over the edges of a quadrilateral are unrolled.
+    const bool four = row.lines == 4 && row.size == 4;
+    if (!(four ? integrate({row.a, row.b, 4, 4}) : integrate(row))) return;
     if constexpr (crossings) {
       run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
     } else {

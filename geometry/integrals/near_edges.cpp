@@ -41,8 +41,8 @@ double distance2(const Segment& s, const Segment& t) {
            (cross(along, Vec2(other.to - line.from)) > 0);
   };
   if (separates(s, t) && separates(t, s)) return 0;
-  return std::min({distance2(s.from, t), distance2(s.to, t), distance2(t.from, s),
-                   distance2(t.to, s)});
+  return std::min(
+      {distance2(s.from, t), distance2(s.to, t), distance2(t.from, s), distance2(t.to, s)});
 }
 
 // Even-odd rule.
@@ -71,7 +71,10 @@ void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, doub
              std::vector<Segment>& segments, double& rest2) {
   segments.clear();
   for (int e = 0; e < x.size; ++e) {
-    Segment s{Vec2(x.x[e], x.y[e]) + shift, Vec2(x.x[e + 1], x.y[e + 1]) + shift, {}, e,
+    Segment s{Vec2(x.x[e], x.y[e]) + shift,
+              Vec2(x.x[e + 1], x.y[e + 1]) + shift,
+              {},
+              e,
               std::numeric_limits<double>::infinity()};
     s.box.include(s.from.x(), s.from.y());
     s.box.include(s.to.x(), s.to.y());
@@ -104,8 +107,8 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const Vec2 zero = Vec2::Zero();
   const Box box_a = box_of(a, offset);
   const Box box_b = box_of(b, zero);
-  const double size = (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) +
-                      (box_b.y1 - box_b.y0);
+  const double size =
+      (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) + (box_b.y1 - box_b.y0);
   double finite = size;
   for (int i = 0; i < a.size; ++i) finite += 0 * (a.x[i] + offset.x()) + 0 * (a.y[i] + offset.y());
   for (int i = 0; i < b.size; ++i) finite += 0 * b.x[i] + 0 * b.y[i];

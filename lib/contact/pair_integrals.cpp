@@ -7,8 +7,13 @@ namespace apothem {
 namespace {
 
 constexpr double kPairTime = 200;  // ns
-constexpr double kNear = .1;       // distance of edges that are near, of the smaller inradius
 constexpr double kMoved = .99;     // of the margin, beyond which near edges are found again
+// The margin is larger where bodies move faster, so that near edges are found again after some tens
+// of evaluations, and smaller in packs at rest, where few edges are near. Of the smaller inradius:
+constexpr double kSmallestMargin = 1. / 1024;
+constexpr double kLargestMargin = 1. / 8;
+constexpr int kSoon = 32;
+constexpr int kLate = 256;
 
 }  // namespace
 
@@ -57,13 +62,21 @@ void PairIntegrals::find_near(size_t p, const Vec2& between) {
   const double moved = std::abs(shift.x()) + std::abs(shift.y()) +
                        std::abs(turn_a - near.angle_a) * shapes.radius(a) +
                        std::abs(turn_b - near.angle_b) * shapes.radius(b);
-  if (moved < kMoved * near.edges.margin) return;
-  near = {{}, between, turn_a, turn_b};
+  const bool known = moved < kMoved * near.edges.margin;
+  const bool narrow = near.edges.none() || near.share <= kSmallestMargin;
+  near.age = std::min(near.age + 1, kLate);
+  if (known && (narrow || near.age < kLate)) return;
+  if (known) {
+    near.share /= 4;
+  } else if (near.edges.margin > 0 && !near.edges.none() && near.age < kSoon) {
+    near.share = std::min(2 * near.share, kLargestMargin);
+  }
+  near = {{}, between, turn_a, turn_b, near.share, 0};
   if (!surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
   if (view_a.convex() && view_b.convex()) return;  // pair_integral tells their distance
-  const double margin = kNear * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  const double margin = near.share * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
   near.edges = near_edges(view_a, view_b, between, margin);
 }
 

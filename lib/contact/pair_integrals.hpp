@@ -45,11 +45,15 @@ class PairIntegrals {
   [[nodiscard]] bool too_deep(size_t pair) const;
 
  private:
+  static constexpr double kFirstMargin = 1. / 64;
+
   // Edges of a pair that are near the other body, and where the bodies were when they were found.
   struct Near {
     NearEdges edges;
     Vec2 between = Vec2::Zero();
     double angle_a = 0, angle_b = 0;
+    double share = kFirstMargin;  // the margin asked for, of the smaller inradius
+    int age = 0;                  // evaluations since then
   };
   struct Worker {
     PatchWorkspace workspace;
