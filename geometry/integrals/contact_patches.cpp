@@ -1,6 +1,7 @@
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -20,19 +21,27 @@ class Splitter {
            PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
       : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
 
-  /// Finds all runs. Returns false if a coordinate is not finite.
-  bool find_runs() {
+  /// Finds all runs and returns what pair_integral returns.
+  PairIntegral find_runs(NearEdges& near) {
     runs_.clear();
     work_.halves.clear();
     work_.crossed.clear();
     const double dx = offset_.x();
     const double dy = offset_.y();
     const HeightRows height = height_rows(a_, b_, work_.edge.values);
-    if (b_.convex() && heights(a_, b_, dx, dy, height.of_a)) return true;
-    if (a_.convex() && heights(b_, a_, -dx, -dy, height.of_b)) return true;
-    const bool finite = trace(true, height.of_a, height.spare);
+    if (b_.convex() && separated(heights(a_, b_, dx, dy, height.of_a), a_, b_, b_.steepest, near)) {
+      return {};
+    }
+    if (a_.convex() &&
+        separated(heights(b_, a_, -dx, -dy, height.of_b), a_, b_, a_.steepest, near)) {
+      return {};
+    }
+    RunEnds ends(work_.edge.ends);
+    const Half half_a = trace(true, near.of_a, height.of_a, height.spare, ends);
     of_a_ = size();
-    return trace(false, height.of_b, height.spare) && finite;
+    const size_t middle = ends.used();
+    const Half half_b = trace(false, near.of_b, height.of_b, height.spare, ends);
+    return edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle);
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
@@ -75,65 +84,29 @@ class Splitter {
 
  private:
   // Finds the runs on the edges of a inside b if `of_a`, otherwise those on the edges of b inside
-  // a. Returns false if a coordinate is not finite.
-  bool trace(bool of_a, const double* rows, double* spare) {
+  // a. Returns their sum, with a weight that is NaN if a coordinate is not finite.
+  Half trace(bool of_a, std::uint64_t near, const double* rows, double* spare, RunEnds& ends) {
     const PlacedPotential& x = of_a ? a_ : b_;
     const PlacedPotential& y = of_a ? b_ : a_;
     const double dx = of_a ? offset_.x() : -offset_.x();
     const double dy = of_a ? offset_.y() : -offset_.y();
-    if (y.roof) {
-      const PlacedRoof<double> roof = placed_roof(y);
-      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
-               work_.edge.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
-               SegmentMoments<double> moments;
-               work_.edge.roof.runs([&](double u1, double v1, double u2,
-                                        double v2) { add_piece(y, u1, v1, u2, v2, moments); },
-                                    [&](double s0, int edge0, double s1, int edge1) {
-                                      add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
-                                      moments = {};
-                                    });
-             }) == 0;
-    }
-    if (y.distance) {
-      const PlacedDistance<double> field = placed_distance(y);
-      return edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
-               SegmentMoments<double> moments;
-               work_.edge.distance.runs(field, edge.px, edge.py, edge.ex, edge.ey, moments,
-                                        [&](double s0, int edge0, double s1, int edge1) {
-                                          add_run(of_a, e, edge, s0, edge0, s1, edge1, moments);
-                                          moments = {};
-                                        });
-             }) == 0;
-    }
-    for (int e = 0; e < x.size; ++e) {
-      const PlacedEdge edge(x, y, e, dx, dy);
-      const Row<double> row = row_of(edge, e, y, rows, spare);
-      double s0, s1;
-      if (!clip(row, s0, s1)) continue;
-      SegmentMoments<double> moments;
-      walk_envelope(row, s0, s1, [&](double u1, double v1, double u2, double v2) {
-        moments.add(u1, v1, u2, v2);
-      });
-      add_run(of_a, e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false),
-              moments);
-    }
-    return true;
+    Half sum;
+    sum.weight += walk_runs<true>(x, y, dx, dy, near, rows, spare, work_.edge,
+                                  [&](int e, const PlacedEdge& edge, double s0, int edge0,
+                                      double s1, int edge1, const SegmentMoments<double>& moments) {
+                                    Half& half = work_.halves.emplace_back();
+                                    accumulate(edge, moments, s1 - s0, half);
+                                    sum.add(half);
+                                    if (s0 == 0 && edge.first == 0) sum.enter(e);
+                                    ends.add(edge, s0, s1);
+                                    add_run(of_a, e, edge, s0, s1, half);
+                                    work_.crossed.push_back(edge0);
+                                    work_.crossed.push_back(edge1);
+                                  });
+    return sum;
   }
 
-  // The edge of the other polygon that clips an edge at s, or -1 if the edge itself ends there.
-  static int clipped_by(const Row<double>& row, double s, bool entering) {
-    for (int i = 0; i < row.size; ++i) {
-      const double a = row.a[i];
-      const double b = row.b[i];
-      if ((a < 0) == entering && (b < 0) != entering && a / (a - b) == s) return i;
-    }
-    return -1;
-  }
-
-  void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
-               const SegmentMoments<double>& moments) {
-    Half& half = work_.halves.emplace_back();
-    accumulate(edge, moments, s1 - s0, half);
+  void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, double s1, const Half& half) {
     const PairIntegral pair = of_a ? combine(half, {}, arm_) : combine({}, half, arm_);
     const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // to a's reference point
     const Vec2 base = Vec2(edge.qx, edge.qy) + shift;
@@ -141,8 +114,6 @@ class Splitter {
     runs_.push_back({of_a, e, 0, edge.share(s0), edge.share(s1), base + s0 * along,
                      base + s1 * along, pair.force, pair.moment_a, pair.moment_b, pair.weight,
                      pair.centre, half.length, half.largest});
-    work_.crossed.push_back(edge0);
-    work_.crossed.push_back(edge1);
   }
 
   int root(int run) {
@@ -321,30 +292,29 @@ class Splitter {
 
 }  // namespace
 
-void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
-                     std::vector<PairIntegral>& patches) {
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches, NearEdges& near) {
   patches.clear();
   Splitter splitter(a, b, offset, workspace, runs);
-  const bool finite = splitter.find_runs();
-  if (!finite) runs.clear();
-  if (!finite || (a.convex() && b.convex())) {  // at most one patch
-    const PairIntegral pair = pair_integral(a, b, offset, workspace.edge);
-    if (pair.touching()) {
-      patches.push_back(pair);
-    } else {
-      runs.clear();
-    }
-    return;
-  }
-  double weight = 0;
-  for (const BoundaryRun& run : runs) weight += run.weight;
-  if (weight <= 0) {
-    runs.clear();
-    return;
+  const PairIntegral whole = splitter.find_runs(near);
+  const bool finite = !std::isnan(whole.weight);
+  if (!finite || !whole.touching()) runs.clear();
+  if (!whole.touching()) return whole;
+  if (!finite || (a.convex() && b.convex())) {
+    patches.push_back(whole);
+    return whole;
   }
   splitter.group();
   splitter.sum(splitter.number(), patches);
+  return whole;
+}
+
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches) {
+  NearEdges all;
+  return contact_patches(a, b, offset, workspace, runs, patches, all);
 }
 
 PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,

@@ -58,19 +58,22 @@ struct PatchWorkspace {
   std::vector<edge_detail::Extent> extents;   ///< extents per patch
 };
 
-/// Splits a pair of polygons into its contact patches. The arguments a, b and offset are those of
-/// pair_integral. The runs are ordered by their edges, those of a first, and the patches by their
-/// first run. A pair that does not touch has neither. The sum over the patches equals the result of
-/// pair_integral to round-off; the patch of two convex polygons equals it to the last bit. If a
-/// coordinate is not finite, there is one patch that is not finite, and no run. Nothing is
-/// allocated after the first calls.
+/// Splits a pair of polygons into its contact patches. The arguments a, b, offset and near are
+/// those of pair_integral, and so is the result. The runs are ordered by their edges, those of a
+/// first, and the patches by their first run. A pair that does not touch has neither. The sum over
+/// the patches equals the result of pair_integral to round-off; the patch of two convex polygons
+/// equals it to the last bit. If a coordinate is not finite, there is one patch that is not finite,
+/// and no run. Nothing is allocated after the first calls.
 ///
 /// Round-off may make the two boundaries disagree about a crossing, if a vertex lies on an edge or
 /// edges lie on each other. A loose end of a run is then joined to the loose end that is nearest
 /// along both boundaries.
-void contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
-                     std::vector<PairIntegral>& patches);
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches, NearEdges& near);
+PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             std::vector<PairIntegral>& patches);
 
 /// The runs and contact patches of two polygons.
 struct PatchResult {

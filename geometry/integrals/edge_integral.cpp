@@ -14,145 +14,47 @@ using namespace edge_detail;
 
 namespace {
 
-// The end points of the clipped edges, in a buffer that never shrinks.
-class Pieces {
- public:
-  explicit Pieces(std::vector<double>& buffer) : buffer_(buffer) {}
-  void reserve(int more) {
-    const size_t size = used_ + 4 * static_cast<size_t>(more);
-    if (buffer_.size() < size) buffer_.resize(size);
-  }
-  void add(const PlacedEdge& e, double s0, double s1) {
-    double* const end = buffer_.data() + used_;
-    end[0] = e.qx + s0 * e.ex, end[1] = e.qy + s0 * e.ey;
-    end[2] = e.qx + s1 * e.ex, end[3] = e.qy + s1 * e.ey;
-    used_ += 4;
-  }
-  [[nodiscard]] size_t used() const { return used_; }
-  [[nodiscard]] const double* data() const { return buffer_.data(); }
-
- private:
-  std::vector<double>& buffer_;
-  size_t used_ = 0;
-};
-
-// Combines the integrals along the edges of a and of b, and adds the breadth of the clipped edges.
-// The first `middle` numbers of `pieces` belong to edges of a. `offset` is that of pair_integral.
-PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                  const Half& of_a, const Half& of_b, const Pieces& pieces, size_t middle) {
-  const Vec2 r = arm(a, b, offset);
-  PairIntegral pair = combine(of_a, of_b, r);
-  pair.depth = depth(a, b, of_a, of_b);
-  const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
-  if (size > 0) {
-    const double nx = pair.force.x() / size;
-    const double ny = pair.force.y() / size;
-    Extent extent;
-    const auto project = [&](size_t from, size_t to, double shift) {
-      for (const double* p = pieces.data() + from; p != pieces.data() + to; p += 2) {
-        extent.include(nx * p[1] - ny * p[0] + shift);
-      }
-    };
-    project(0, middle, 0);
-    const double shift = nx * r.y() - ny * r.x();
-    project(middle, pieces.used(), shift);
-    pair.breadth = extent.high - extent.low;
-    pair.middle = (extent.high + extent.low) / 2 - shift;
-  }
-  return pair;
-}
-
-// Integrates phi of y, which is convex, along the edges of x: the lower envelope of y's linear
-// functions on the part of each edge that lies inside y.
-Half integrate_envelope(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                        const double* rows, double* spare, Pieces& pieces) {
+// The integrals of phi of y along the edges of x.
+Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                    std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
+                    RunEnds& ends) {
   Half half;
-  pieces.reserve(x.size);
-  for (int e = 0; e < x.size; ++e) {
-    const PlacedEdge edge(x, y, e, dx, dy);
-    const Row<double> row = row_of(edge, e, y, rows, spare);
-    double s0, s1;
-    if (!clip(row, s0, s1)) continue;
-    SegmentMoments<double> moments;
-    walk_envelope(row, s0, s1,
-                  [&](double u1, double v1, double u2, double v2) { moments.add(u1, v1, u2, v2); });
-    accumulate(edge, moments, s1 - s0, half);
-    if (s0 == 0 && edge.first == 0) half.enter(e);
-    pieces.add(edge, s0, s1);
-  }
+  half.weight += walk_runs<false>(x, y, dx, dy, near, rows, spare, workspace,
+                                  [&](int e, const PlacedEdge& edge, double s0, int, double s1, int,
+                                      const SegmentMoments<double>& moments) {
+                                    accumulate(edge, moments, s1 - s0, half);
+                                    if (s0 == 0 && edge.first == 0) half.enter(e);
+                                    ends.add(edge, s0, s1);
+                                  });  // a NaN is added, so that it is never taken for "no contact"
   return half;
-}
-
-// Integrates phi of y, which is not convex, along the edges of x. For every edge that may enter y
-// it calls along(edge, inside, start), which returns the integrals of phi along the edge, adds the
-// share of the edge inside y to `inside` and sets `start` to 0 if its start is inside. An edge may
-// enter y several times.
-template <class Along>
-Half integrate_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                     const Along& along) {
-  Half half;
-  half.weight += edges_near(x, y, dx, dy, [&](int e, const PlacedEdge& edge) {
-    double inside = 0;
-    double start = 1;
-    const SegmentMoments<double> moments = along(edge, inside, start);
-    accumulate(edge, moments, inside, half);
-    if (start == 0 && edge.first == 0) half.enter(e);
-  });  // a NaN is added, so that it is never taken for "no contact"
-  return half;
-}
-
-Half integrate_roof(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    RoofTrace<double>& trace, Pieces& pieces) {
-  const PlacedRoof<double> roof = placed_roof(y);
-  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside, double& start) {
-    trace.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
-    SegmentMoments<double> moments;
-    trace.pieces([&](double u1, double v1, double u2, double v2) {
-      add_piece(y, u1, v1, u2, v2, moments);
-      inside += u2 - u1;
-      start = std::min(start, u1);
-      pieces.reserve(1);
-      pieces.add(edge, u1, u2);
-    });
-    return moments;
-  });
-}
-
-Half integrate_distance(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                        DistanceTrace<double>& trace, Pieces& pieces) {
-  const PlacedDistance<double> field = placed_distance(y);
-  return integrate_edges(x, y, dx, dy, [&](const PlacedEdge& edge, double& inside, double& start) {
-    return trace.integrate(field, edge.px, edge.py, edge.ex, edge.ey, [&](double u1, double u2) {
-      inside += u2 - u1;
-      start = std::min(start, u1);
-      pieces.reserve(1);
-      pieces.add(edge, u1, u2);
-    });
-  });
 }
 
 }  // namespace
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                           EdgeWorkspace& workspace) {
+                           EdgeWorkspace& workspace, NearEdges& near) {
   const HeightRows height = height_rows(a, b, workspace.values);
   const double dx = offset.x();
   const double dy = offset.y();
-  if (b.convex() && heights(a, b, dx, dy, height.of_a)) return {};
-  if (a.convex() && heights(b, a, -dx, -dy, height.of_b)) return {};
+  if (b.convex() && separated(heights(a, b, dx, dy, height.of_a), a, b, b.steepest, near)) {
+    return {};
+  }
+  if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
+    return {};
+  }
+  RunEnds ends(workspace.ends);
+  const Half of_a =  // in the frame of b
+      integrate_runs(a, b, dx, dy, near.of_a, height.of_a, height.spare, workspace, ends);
+  const size_t middle = ends.used();
+  const Half of_b =  // in the frame of a
+      integrate_runs(b, a, -dx, -dy, near.of_b, height.of_b, height.spare, workspace, ends);
+  return join(a, b, offset, of_a, of_b, ends, middle);
+}
 
-  Pieces pieces(workspace.pieces);
-  const auto half = [&](const PlacedPotential& x, const PlacedPotential& y, double x0, double y0,
-                        const double* rows) {
-    if (y.roof) return integrate_roof(x, y, x0, y0, workspace.roof, pieces);
-    if (y.distance) return integrate_distance(x, y, x0, y0, workspace.distance, pieces);
-    return integrate_envelope(x, y, x0, y0, rows, height.spare, pieces);
-  };
-  const Half of_a = half(a, b, dx, dy, height.of_a);  // in the frame of b
-  const size_t middle = pieces.used();
-  const Half of_b = half(b, a, -dx, -dy, height.of_b);  // in the frame of a
-
-  return join(a, b, offset, of_a, of_b, pieces, middle);
+PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace) {
+  NearEdges all;
+  return pair_integral(a, b, offset, workspace, all);
 }
 
 namespace {
@@ -287,11 +189,10 @@ class FineLines {
   std::vector<Fine> gx_, gy_;
 };
 
-// integrate_envelope in long double, for polygons at their given positions.
-Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces& pieces) {
+// integrate_runs in long double, for polygons at their given positions.
+Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnds& ends) {
   const FineLines lines(y);
   Half half;
-  pieces.reserve(x.size);
   for (int e = 0; e < x.size; ++e) {
     const BasicEdge<Fine> edge(x, y, e, 0, 0);
     const std::vector<Fine> from = lines.at(edge.px, edge.py);
@@ -313,18 +214,18 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Pieces
                {static_cast<double>(moments.sum), static_cast<double>(moments.first),
                 static_cast<double>(moments.largest)},
                1, half);
-    pieces.add(part, 0, 1);
+    ends.add(part, 0, 1);
   }
   return half;
 }
 
 PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
                              EdgeWorkspace& workspace) {
-  Pieces pieces(workspace.pieces);
-  const Half of_a = integrate_needle(a, b, pieces);
-  const size_t middle = pieces.used();
-  const Half of_b = integrate_needle(b, a, pieces);
-  return join(a, b, Vec2::Zero(), of_a, of_b, pieces, middle);
+  RunEnds ends(workspace.ends);
+  const Half of_a = integrate_needle(a, b, ends);
+  const size_t middle = ends.used();
+  const Half of_b = integrate_needle(b, a, ends);
+  return join(a, b, Vec2::Zero(), of_a, of_b, ends, middle);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "apothem/geometry/integrals/near_edges.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
 #include "apothem/geometry/potential/potential.hpp"
 #include "apothem/geometry/skeleton/roof.hpp"
@@ -83,14 +84,18 @@ struct PairIntegral {
 /// Memory that the kernel works in. Keep one per thread.
 struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
-  std::vector<double> pieces;  ///< end points of the clipped edges
+  std::vector<double> ends;    ///< ends of the parts of edges inside the other polygon
   RoofTrace<double> roof;      ///< memory for polygons with a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
 };
 
-/// Computes the integrals of a pair. `offset` is the origin of a's frame minus the origin of b's
-/// frame, m. If a coordinate is not finite, the result is not finite either. Nothing is allocated
-/// after the first calls with polygons of a given size.
+/// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if
+/// that is known (near_edges.hpp); the result does not depend on it. If nothing is known and both
+/// polygons are convex and apart, it gets the margin by which they are. `offset` is the origin of
+/// a's frame minus the origin of b's frame, m. If a coordinate is not finite, the result is not
+/// finite either. Nothing is allocated after the first calls with polygons of a given size.
+PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace, NearEdges& near);
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace);
 

@@ -28,6 +28,9 @@ struct Row {
 // kept and never counts as outside.
 template <class Real>
 bool clip(const Row<Real>& row, Real& s0, Real& s1) {
+  int outside = 0;  // counted without branches, because which edges are outside is unpredictable
+  for (int i = 0; i < row.size; ++i) outside |= int{row.a[i] < 0} & int{row.b[i] < 0};
+  if (outside) return false;
   s0 = 0;
   s1 = 1;
   for (int i = 0; i < row.size; ++i) {
@@ -38,7 +41,6 @@ bool clip(const Row<Real>& row, Real& s0, Real& s1) {
       const Real s = a / (a - b);
       if (!(s >= s1)) s1 = s;
     } else {
-      if (a < 0 && b < 0) return false;
       const Real s = a / (a - b);
       if (!(s <= s0)) s0 = s;
     }
@@ -97,6 +99,11 @@ void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
   }
 }
 
+// Growth of a box, relative to its extent, beyond which rounding lets nothing reach into it.
+inline constexpr double kFarAway = 1e-9;
+// Error of a distance between two polygons, relative to their sizes; amply.
+inline constexpr double kRoundOff = 1e-12;
+
 // Heights of a point over the edges of y divided by the reference length, and 1 if phi is limited.
 inline void height_row(const PlacedPotential& y, double px, double py, double* row) {
   for (int i = 0; i < y.size; ++i) {
@@ -105,23 +112,60 @@ inline void height_row(const PlacedPotential& y, double px, double py, double* r
   if (y.capped) row[y.size] = 1;
 }
 
+// `heights`, below, for two polygons with n vertices each: the compiler unrolls these loops and
+// makes vectors of them. A row has `width` entries.
+template <int n, int width>
+double heights_of(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                  double* rows) {
+  double highest[n], outside[n];
+  for (int i = 0; i < n; ++i) highest[i] = -HUGE_VAL, outside[i] = 1;
+  for (int v = 0; v < n; ++v) {
+    const double px = x.x[v] + dx;
+    const double py = x.y[v] + dy;
+    double* const row = rows + v * width;
+    for (int i = 0; i < n; ++i) {
+      const double h = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
+      row[i] = h;
+      highest[i] = h > highest[i] ? h : highest[i];
+      outside[i] = h < 0 ? outside[i] : 0;
+    }
+    if (width > n) row[n] = 1;
+  }
+  for (int i = 0; i < width; ++i) rows[n * width + i] = rows[i];
+  double gap = 0;
+  for (int i = 0; i < n; ++i) {
+    if (outside[i] > 0) gap = std::max(gap, -highest[i]);
+  }
+  return gap;
+}
+
 // Writes the heights of the vertices of x over the edges of y: one row per vertex, with y.size
-// entries (and one more if phi is limited to 1), and the first row again at the end. Returns true
-// if all of x lies outside one edge of y, so that the polygons are apart.
-inline bool heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    double* rows) {
+// entries (and one more if phi is limited to 1), and the first row again at the end. Returns how
+// far outside one edge of y all of x lies, in the unit of the heights, so that the polygons are
+// apart; or 0 if there is no such edge.
+inline double heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                      double* rows) {
+  if (x.size == 4 && y.size == 4) {
+    return y.capped ? heights_of<4, 5>(x, y, dx, dy, rows) : heights_of<4, 4>(x, y, dx, dy, rows);
+  }
   const int n = y.size;
   const int width = n + (y.capped ? 1 : 0);
   for (int v = 0; v < x.size; ++v) {
     height_row(y, x.x[v] + dx, x.y[v] + dy, rows + v * width);
   }
   for (int i = 0; i < width; ++i) rows[x.size * width + i] = rows[i];
+  double gap = 0;
   for (int i = 0; i < n; ++i) {
     int outside = 0;
-    for (int v = 0; v < x.size; ++v) outside += rows[v * width + i] < 0;
-    if (outside == x.size) return true;
+    double highest = -HUGE_VAL;
+    for (int v = 0; v < x.size; ++v) {
+      const double h = rows[v * width + i];
+      outside += h < 0;
+      highest = h > highest ? h : highest;
+    }
+    if (outside == x.size) gap = std::max(gap, -highest);
   }
-  return false;
+  return gap;
 }
 
 // The integrals of phi of y along the edges of x, in the frame of y, without the sign of Eq. 7.
@@ -226,11 +270,17 @@ inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, 
   half.largest = std::max(half.largest, m.largest);
 }
 
-/// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. Returns 0, or
-/// NaN without any call if a coordinate is not finite.
+/// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. `near` are the
+/// edges that are not known to keep away, as in NearEdges. Returns 0, or NaN without any call if a
+/// coordinate is not finite. Edges that are left out are so far away that no rounding could let
+/// them enter; hence the calls that find something do not depend on `near`.
 template <class Along>
 double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                  const Along& along) {
+                  std::uint64_t near, const Along& along) {
+  if (near != NearEdges::kAll) {
+    for_each_edge(near, x.size, [&](int e) { along(e, PlacedEdge(x, y, e, dx, dy)); });
+    return 0;
+  }
   Box box;
   double finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
   for (int i = 0; i < y.size; ++i) {
@@ -239,6 +289,7 @@ double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx,
   }
   for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
   if (!(finite == 0)) return finite;
+  box = box.grown(kFarAway * box.extent());
   for (int e = 0; e < x.size; ++e) {
     const PlacedEdge edge(x, y, e, dx, dy);
     Box own;
@@ -336,10 +387,135 @@ inline double depth(const PlacedPotential& a, const PlacedPotential& b, const Ha
   return std::max(of_a.largest / b.steepest, of_b.largest / a.steepest);
 }
 
+/// The edge of the other polygon that clips an edge at s, or -1 if the edge itself ends there.
+inline int clipped_by(const Row<double>& row, double s, bool entering) {
+  for (int i = 0; i < row.size; ++i) {
+    const double a = row.a[i];
+    const double b = row.b[i];
+    if ((a < 0) == entering && (b < 0) != entering && a / (a - b) == s) return i;
+  }
+  return -1;
+}
+
+/// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
+/// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
+/// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
+/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y. Returns 0, or
+/// NaN without any call if y is not convex and a coordinate is not finite.
+template <bool crossings, class Run>
+double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                 std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
+                 const Run& run) {
+  if (y.roof) {
+    const PlacedRoof<double> roof = placed_roof(y);
+    return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {
+      workspace.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
+      SegmentMoments<double> moments;
+      workspace.roof.runs([&](double u1, double v1, double u2,
+                              double v2) { add_piece(y, u1, v1, u2, v2, moments); },
+                          [&](double s0, int edge0, double s1, int edge1) {
+                            run(e, edge, s0, edge0, s1, edge1, moments);
+                            moments = {};
+                          });
+    });
+  }
+  if (y.distance) {
+    const PlacedDistance<double> field = placed_distance(y);
+    return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {
+      SegmentMoments<double> moments;
+      workspace.distance.runs(field, edge.px, edge.py, edge.ex, edge.ey, moments,
+                              [&](double s0, int edge0, double s1, int edge1) {
+                                run(e, edge, s0, edge0, s1, edge1, moments);
+                                moments = {};
+                              });
+    });
+  }
+  for_each_edge(near, x.size, [&](int e) {
+    const PlacedEdge edge(x, y, e, dx, dy);
+    const Row<double> row = row_of(edge, e, y, rows, spare);
+    double s0, s1;
+    SegmentMoments<double> moments;
+    const auto integrate = [&](const Row<double>& r) {
+      if (!clip(r, s0, s1)) return false;
+      walk_envelope(r, s0, s1, [&](double u1, double v1, double u2, double v2) {
+        moments.add(u1, v1, u2, v2);
+      });
+      return true;
+    };
+    // With a number that the compiler knows, loops over the edges of a quadrilateral are unrolled.
+    const bool four = row.lines == 4 && row.size == 4;
+    if (!(four ? integrate({row.a, row.b, 4, 4}) : integrate(row))) return;
+    if constexpr (crossings) {
+      run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
+    } else {
+      run(e, edge, s0, -1, s1, -1, moments);
+    }
+  });
+  return 0;
+}
+
 /// The extent of a set of points across a force, m.
 struct Extent {
   double low = HUGE_VAL, high = -HUGE_VAL;
   void include(double t) { low = std::min(low, t), high = std::max(high, t); }
 };
+
+/// The ends of runs, in a buffer that never shrinks.
+class RunEnds {
+ public:
+  explicit RunEnds(std::vector<double>& buffer) : buffer_(buffer) {}
+  void add(const PlacedEdge& e, double s0, double s1) {
+    if (buffer_.size() < used_ + 4) buffer_.resize(2 * (used_ + 4));
+    double* const end = buffer_.data() + used_;
+    end[0] = e.qx + s0 * e.ex, end[1] = e.qy + s0 * e.ey;
+    end[2] = e.qx + s1 * e.ex, end[3] = e.qy + s1 * e.ey;
+    used_ += 4;
+  }
+  /// Number of coordinates.
+  [[nodiscard]] size_t used() const { return used_; }
+  [[nodiscard]] const double* data() const { return buffer_.data(); }
+
+ private:
+  std::vector<double>& buffer_;
+  size_t used_ = 0;
+};
+
+/// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
+/// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.
+inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                         const Half& of_a, const Half& of_b, const RunEnds& ends, size_t middle) {
+  const Vec2 r = arm(a, b, offset);
+  PairIntegral pair = combine(of_a, of_b, r);
+  pair.depth = depth(a, b, of_a, of_b);
+  const double size = std::sqrt(pair.force.x() * pair.force.x() + pair.force.y() * pair.force.y());
+  if (size > 0) {
+    const double nx = pair.force.x() / size;
+    const double ny = pair.force.y() / size;
+    Extent extent;
+    const auto project = [&](size_t from, size_t to, double shift) {
+      for (const double* p = ends.data() + from; p != ends.data() + to; p += 2) {
+        extent.include(nx * p[1] - ny * p[0] + shift);
+      }
+    };
+    project(0, middle, 0);
+    const double shift = nx * r.y() - ny * r.x();
+    project(middle, ends.used(), shift);
+    pair.breadth = extent.high - extent.low;
+    pair.middle = (extent.high + extent.low) / 2 - shift;
+  }
+  return pair;
+}
+
+/// True if both polygons are convex and apart; then `near` gets the margin, if it is not known.
+inline bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
+                      double steepest, NearEdges& near) {
+  if (!(gap > 0)) return false;
+  if (near.margin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 &&
+      b.radius > 0) {
+    const double margin = gap / steepest - kRoundOff * (a.radius + b.radius);
+    if (margin > kRoundOff * (a.radius + b.radius)) near = {0, 0, margin};
+  }
+  return true;
+}
 
 }  // namespace apothem::edge_detail

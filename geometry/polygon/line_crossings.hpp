@@ -19,6 +19,7 @@ class LineCrossings {
   void set(int nodes, const Real* x, const Real* y, const Real& px, const Real& py, const Real& ex,
            const Real& ey) {
     side_.resize(nodes);
+    left_.resize(nodes);
     x_ = x, y_ = y, px_ = px, py_ = py, ex_ = ex, ey_ = ey;
     inverse_ = 1 / (ex * ex + ey * ey);
   }
@@ -28,14 +29,19 @@ class LineCrossings {
     const Real px = px_, py = py_, ex = ex_, ey = ey_;  // copies: no reload in the loop
     Real* const side = side_.data();
     for (int i = first; i < last; ++i) side[i] = ex * (y_[i] - py) - ey * (x_[i] - px);
+    unsigned char* const left = left_.data();
+    for (int i = first; i < last; ++i) left[i] = side[i] >= 0;
   }
+
+  /// True if the line crosses the arc from node a to node b, both of which have been placed.
+  [[nodiscard]] bool crosses(int a, int b) const { return left_[a] != left_[b]; }
 
   /// Calls crossing(s, share) if the line crosses the arc from node a to node b, both of which have
   /// been placed. The crossing is the point p + s e of the line; `share` is its position on the
   /// arc, 0 at a and 1 at b.
   template <class Crossing>
   void cross(int a, int b, const Crossing& crossing) const {
-    if ((side_[a] >= 0) == (side_[b] >= 0)) return;
+    if (!crosses(a, b)) return;
     const Real w = side_[a] / (side_[a] - side_[b]);
     const Real start = along(a);
     crossing(start + w * (along(b) - start), w);
@@ -51,6 +57,7 @@ class LineCrossings {
   const Real* y_ = nullptr;
   Real px_, py_, ex_, ey_, inverse_;
   std::vector<Real> side_;  // per node: distance from the line times |e|, positive on the left
+  std::vector<unsigned char> left_;  // per node: whether it is on the left or on the line
 };
 
 }  // namespace apothem

@@ -51,19 +51,14 @@ class RoofTrace {
              const Real& ey) {
     lines_.set(roof.nodes, roof.x, roof.y, px, py, ex, ey);
     crossings_.clear();
-    const auto cross_arc = [&](int k) {
-      const auto [a, b] = (*roof.arcs)[k];
-      const Real& start = roof.values[a];
-      const Real& end = roof.values[b];
-      lines_.cross(a, b, [&](const Real& s, const Real& w) {
-        crossings_.push_back({s, start + w * (end - start), k < roof.boundary ? k : -1});
-      });
-    };
     lines_.place(0, roof.boundary);
-    for (int k = 0; k < roof.boundary; ++k) cross_arc(k);
-    if (crossings_.empty()) return;  // the line misses the polygon
+    add_crossings(roof, 0, roof.boundary);
+    if (outside()) {
+      crossings_.clear();
+      return;
+    }
     lines_.place(roof.boundary, roof.nodes);
-    for (int k = roof.boundary; k < static_cast<int>(roof.arcs->size()); ++k) cross_arc(k);
+    add_crossings(roof, roof.boundary, static_cast<int>(roof.arcs->size()));
     std::sort(crossings_.begin(), crossings_.end(),
               [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
   }
@@ -113,8 +108,43 @@ class RoofTrace {
     Real s, value;
     int edge;  // index of the crossed edge of the polygon, or -1 for another arc
   };
+
+  // Adds the crossings with the arcs first to last - 1. Those that are crossed are listed first,
+  // without a branch, because which ones these are cannot be predicted.
+  void add_crossings(const PlacedRoof<Real>& roof, int first, int last) {
+    crossed_.resize(roof.arcs->size() + 1);
+    const std::array<int, 2>* const arcs = roof.arcs->data();
+    int* const crossed = crossed_.data();
+    int count = 0;
+    for (int k = first; k < last; ++k) {
+      crossed[count] = k;
+      count += lines_.crosses(arcs[k][0], arcs[k][1]);
+    }
+    for (int i = 0; i < count; ++i) {
+      const int k = crossed[i];
+      const auto [a, b] = arcs[k];
+      const Real& start = roof.values[a];
+      const Real& end = roof.values[b];
+      lines_.cross(a, b, [&](const Real& s, const Real& w) {
+        crossings_.push_back({s, start + w * (end - start), k < roof.boundary ? k : -1});
+      });
+    }
+  }
+
+  // True if the segment lies outside the polygon, by its crossings with the boundary: none of them
+  // on the segment, and an even number before it.
+  [[nodiscard]] bool outside() const {
+    bool even = true;
+    for (const Crossing& c : crossings_) {
+      if (!(c.s <= 0) && !(c.s >= 1)) return false;
+      if (c.s <= 0) even = !even;
+    }
+    return even;
+  }
+
   LineCrossings<Real> lines_;
   std::vector<Crossing> crossings_;
+  std::vector<int> crossed_;  // numbers of arcs that the line crosses
 };
 
 }  // namespace apothem

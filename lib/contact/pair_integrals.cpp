@@ -7,25 +7,121 @@ namespace apothem {
 namespace {
 
 constexpr double kPairTime = 200;  // ns
+constexpr double kMoved = .99;     // of the margin, beyond which near edges are found again
+// The margin is larger where bodies move faster, so that near edges are found again after some tens
+// of evaluations, and smaller in packs at rest, where few edges are near. Of the smaller inradius:
+constexpr double kSmallestMargin = 1. / 1024;
+constexpr double kLargestMargin = 1. / 8;
+constexpr int kSoon = 32;
+constexpr int kLate = 256;
 
 }  // namespace
 
+// Pairs that were there before keep what is known of their edges.
+void PairIntegrals::take(std::span<const BoxPair> pairs) {
+  std::swap(pairs_, pairs_before_);
+  std::swap(near_, near_before_);
+  pairs_.assign(pairs.begin(), pairs.end());
+  near_.assign(pairs_.size(), {});
+  size_t old = 0;
+  for (size_t p = 0; p < pairs_.size(); ++p) {
+    while (old < pairs_before_.size() && pairs_before_[old] < pairs_[p]) ++old;
+    if (old == pairs_before_.size()) break;
+    if (pairs_before_[old] == pairs_[p]) near_[p] = near_before_[old];
+  }
+}
+
 void PairIntegrals::evaluate() {
-  const PlacedShapes& shapes = surfaces_.shapes();
-  const std::vector<Box>& boxes = shapes.boxes();
   integrals_.resize(pairs_.size());
+  if (split_ != Split::none) parts_.resize(pairs_.size());
+  for (Worker& worker : workers_) {
+    worker.runs.clear();
+    worker.patches.clear();
+  }
+  const std::vector<Box>& boxes = surfaces_.shapes().boxes();
   threads_.chunks(static_cast<int>(pairs_.size()), kPairTime, [&](int first, int end, int worker) {
-    EdgeWorkspace& workspace = workspaces_[worker];
     for (int p = first; p < end; ++p) {
       const auto [a, b] = pairs_[p];
       if (apart(boxes[a], boxes[b])) {
         integrals_[p] = {};
       } else {
-        integrals_[p] =
-            pair_integral(shapes.view(a), shapes.view(b), surfaces_.between(a, b), workspace);
+        evaluate(p, worker);
       }
     }
   });
+}
+
+// Finds the near edges anew if the bodies have moved against each other by more than the margin.
+void PairIntegrals::find_near(size_t p, const Vec2& between) {
+  const auto [a, b] = pairs_[p];
+  const PlacedShapes& shapes = surfaces_.shapes();
+  Near& near = near_[p];
+  const double turn_a = surfaces_.pose(a)[2];
+  const double turn_b = surfaces_.pose(b)[2];
+  const Vec2 shift = between - near.between;
+  const double moved = std::abs(shift.x()) + std::abs(shift.y()) +
+                       std::abs(turn_a - near.angle_a) * shapes.radius(a) +
+                       std::abs(turn_b - near.angle_b) * shapes.radius(b);
+  const bool known = moved < kMoved * near.edges.margin;
+  const bool narrow = near.edges.none() || near.share <= kSmallestMargin;
+  near.age = std::min(near.age + 1, kLate);
+  if (known && (narrow || near.age < kLate)) return;
+  if (known) {
+    near.share /= 4;
+  } else if (near.edges.margin > 0 && !near.edges.none() && near.age < kSoon) {
+    near.share = std::min(2 * near.share, kLargestMargin);
+  }
+  near = {{}, between, turn_a, turn_b, near.share, 0};
+  if (!surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
+  const PlacedPotential view_a = shapes.view(a);
+  const PlacedPotential view_b = shapes.view(b);
+  if (view_a.convex() && view_b.convex()) return;  // pair_integral tells their distance
+  const double margin = near.share * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  near.edges = near_edges(view_a, view_b, between, margin);
+}
+
+void PairIntegrals::evaluate(size_t p, int index) {
+  const auto [a, b] = pairs_[p];
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const Vec2 between = surfaces_.between(a, b);
+  find_near(p, between);
+  NearEdges& near = near_[p].edges;
+  if (near.none()) {
+    integrals_[p] = {};
+    return;
+  }
+  const PlacedPotential view_a = shapes.view(a);
+  const PlacedPotential view_b = shapes.view(b);
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  const bool split = split_ == Split::all ||
+                     (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
+  if (!split) {
+    integrals_[p] = pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+    if (split_ != Split::none) parts_[p] = {};
+    return;
+  }
+  integrals_[p] = contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
+                                  worker.pair_patches, near);
+  parts_[p] = {index, static_cast<int>(worker.patches.size()),
+               static_cast<int>(worker.pair_patches.size()), static_cast<int>(worker.runs.size()),
+               static_cast<int>(worker.pair_runs.size())};
+  worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
+                        worker.pair_patches.end());
+  worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+}
+
+std::span<const PairIntegral> PairIntegrals::patches(size_t pair) const {
+  if (parts_.empty() || parts_[pair].worker < 0) return {&integrals_[pair], 1};
+  const Parts& parts = parts_[pair];
+  return std::span(workers_[static_cast<size_t>(parts.worker)].patches)
+      .subspan(static_cast<size_t>(parts.first_patch), static_cast<size_t>(parts.patches));
+}
+
+std::span<const BoundaryRun> PairIntegrals::runs(size_t pair) const {
+  if (parts_.empty() || parts_[pair].worker < 0) return {};
+  const Parts& parts = parts_[pair];
+  return std::span(workers_[static_cast<size_t>(parts.worker)].runs)
+      .subspan(static_cast<size_t>(parts.first_run), static_cast<size_t>(parts.runs));
 }
 
 double PairIntegrals::energy(const PairTable& table) const {

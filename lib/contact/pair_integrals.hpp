@@ -8,7 +8,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/pair_table.hpp"
 #include "apothem/execution/parallel.hpp"
-#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "apothem/geometry/integrals/contact_patches.hpp"
 
 namespace apothem {
 
@@ -18,10 +18,13 @@ inline constexpr double kDeepestPhi = 0.95;
 
 class PairIntegrals {
  public:
-  PairIntegrals(const Surfaces& surfaces, int threads)
-      : surfaces_(surfaces), threads_(threads), workspaces_(threads_.count()) {}
+  /// Which touching pairs are split into contact patches.
+  enum class Split { none, not_convex, all };
 
-  void take(std::span<const BoxPair> pairs) { pairs_.assign(pairs.begin(), pairs.end()); }
+  PairIntegrals(const Surfaces& surfaces, int threads, Split split = Split::none)
+      : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
+
+  void take(std::span<const BoxPair> pairs);
   /// Integrals of all pairs; the result of a pair depends on that pair alone.
   void evaluate();
 
@@ -29,6 +32,10 @@ class PairIntegrals {
   /// One for each pair, for unit stiffness; force on the first one, moments about the reference
   /// points.
   [[nodiscard]] const PairIntegral& operator[](size_t pair) const { return integrals_[pair]; }
+  /// The patches of a touching pair: the whole pair if it is not split.
+  [[nodiscard]] std::span<const PairIntegral> patches(size_t pair) const;
+  /// The runs of a touching pair; none if it is not split.
+  [[nodiscard]] std::span<const BoundaryRun> runs(size_t pair) const;
   /// Energy of all pairs for unit thickness, N. Not for every step.
   [[nodiscard]] double energy(const PairTable& table) const;
 
@@ -38,11 +45,41 @@ class PairIntegrals {
   [[nodiscard]] bool too_deep(size_t pair) const;
 
  private:
+  static constexpr double kFirstMargin = 1. / 64;
+
+  // Edges of a pair that are near the other body, and where the bodies were when they were found.
+  struct Near {
+    NearEdges edges;
+    Vec2 between = Vec2::Zero();
+    double angle_a = 0, angle_b = 0;
+    double share = kFirstMargin;  // the margin asked for, of the smaller inradius
+    int age = 0;                  // evaluations since then
+  };
+  struct Worker {
+    PatchWorkspace workspace;
+    // Of the pairs that it has split.
+    std::vector<BoundaryRun> runs;
+    std::vector<PairIntegral> patches;
+    // Of the pair at hand.
+    std::vector<BoundaryRun> pair_runs;
+    std::vector<PairIntegral> pair_patches;
+  };
+  // The patches and runs of a pair, of those that a worker has found. Worker -1: not split.
+  struct Parts {
+    int worker = -1;
+    int first_patch = 0, patches = 0, first_run = 0, runs = 0;
+  };
+  void evaluate(size_t pair, int worker);
+  void find_near(size_t pair, const Vec2& between);
+
   const Surfaces& surfaces_;
   Threads threads_;
-  std::vector<BoxPair> pairs_;
-  std::vector<EdgeWorkspace> workspaces_;
+  Split split_;
+  std::vector<BoxPair> pairs_, pairs_before_;
+  std::vector<Near> near_, near_before_;  // of each pair
+  std::vector<Worker> workers_;
   std::vector<PairIntegral> integrals_;
+  std::vector<Parts> parts_;  // of each pair, if pairs are split
 };
 
 }  // namespace apothem

@@ -121,12 +121,8 @@ void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
   if (!rough && !damped) return;
   const PlacedShapes& shapes = surfaces_.shapes();
   const PairMotion motion(surfaces_, now, a, b);
-  runs_.clear();
-  if (edgewise() || !shapes.view(a).convex() || !shapes.view(b).convex()) {
-    contact_patches(shapes.view(a), shapes.view(b), motion.between, workspace_, runs_, patches_);
-  } else {
-    patches_.assign(1, pairs[pair]);
-  }
+  runs_ = pairs.runs(pair);
+  patches_ = pairs.patches(pair);
   const PairHistory* const before = find_before(a, b);
   const std::span<const Spring> springs = memory.before(polygon_kernel, a, b);
   find_shares(before);

@@ -5,6 +5,7 @@
 //   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "apothem/contact/law.hpp"
@@ -136,10 +137,9 @@ class PatchTangential {
   History now_, before_;
   Place place_;  // of the next pair of the step before
   std::vector<TangentialForce> forces_, forces_before_;
-  // Of the pair at hand; kept for their memory.
-  PatchWorkspace workspace_;
-  std::vector<BoundaryRun> runs_;
-  std::vector<PairIntegral> patches_;
+  // Of the pair at hand.
+  std::span<const BoundaryRun> runs_;
+  std::span<const PairIntegral> patches_;
   size_t ancestors_ = 0;
   std::vector<double> shares_;  // of each ancestor that goes to each patch of now
   std::vector<Spring> springs_;

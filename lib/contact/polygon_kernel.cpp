@@ -7,12 +7,23 @@
 
 namespace apothem {
 
+namespace {
+
+// What friction and damping need.
+PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
+  if (!table.rough() && !table.damped()) return PairIntegrals::Split::none;
+  return law.friction_law == FrictionLaw::per_edge ? PairIntegrals::Split::all
+                                                   : PairIntegrals::Split::not_convex;
+}
+
+}  // namespace
+
 PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
                              const PairTable& table, double thickness, int threads)
     : surfaces_(surfaces),
       table_(table),
       thickness_(thickness),
-      pairs_(surfaces, threads),
+      pairs_(surfaces, threads, split(law, table)),
       onset_(surfaces, table, thickness),
       body_stiffness_(static_cast<size_t>(surfaces.rigid_count())) {
   if (table.rough() || table.damped()) {

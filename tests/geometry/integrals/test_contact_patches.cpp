@@ -462,3 +462,66 @@ TEST_CASE("a polygon inside the other is one patch", "[patches]") {
   CHECK(inside.runs.size() == 12);
   for (const BoundaryRun& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
 }
+
+TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][near]") {
+  samples::Random random(91);
+  int apart = 0, touching = 0, skipped = 0;
+  for (int i = 0; i < (test::long_run() ? 20'000 : test::scaled(3000)); ++i) {
+    const auto shape = [&] {
+      return random.integer(0, 2) ? samples::random_star_shaped(random, random.integer(4, 70), .5)
+                                  : samples::random_convex(random, random.integer(3, 8));
+    };
+    const Polygon a = shape(), b = shape();
+    const auto about_centre = [](const Polygon& p, PotentialChoice::Field field) {
+      return translated(make_potential(p, {.field = field}), area_moments(p).centroid);
+    };
+    const auto field = PotentialChoice::Field(random.integer(0, 1));
+    const Potential potential_a = about_centre(a, field), potential_b = about_centre(b, field);
+    PlacedShapes placed;
+    placed.add(potential_a);
+    placed.add(potential_b);
+    double angle_a = random.uniform(0, 6), angle_b = random.uniform(0, 6);
+    Vec2 offset(random.uniform(-2, 2), random.uniform(-2, 2));
+    placed.place(0, 0, 0, angle_a);
+    placed.place(1, 0, 0, angle_b);
+    const double margin = random.integer(0, 1) ? random.uniform(0, .2) : 1e-3;
+    NearEdges near = near_edges(placed.view(0), placed.view(1), offset, margin);
+    REQUIRE(near.margin > 0);
+    // Bodies move by less than the margin.
+    const double moves = .99 * near.margin / 3;
+    const double direction = random.uniform(0, 6);
+    offset += moves * Vec2(std::cos(direction), std::sin(direction));
+    placed.place(0, 0, 0, angle_a + moves / placed.radius(0));
+    placed.place(1, 0, 0, angle_b - moves / placed.radius(1));
+    EdgeWorkspace memory;
+    const PairIntegral whole = pair_integral(placed.view(0), placed.view(1), offset, memory);
+    apart += near.none();
+    touching += whole.touching();
+    skipped += near.of_a != NearEdges::kAll && near.of_b != NearEdges::kAll;
+    REQUIRE(!(near.none() && whole.touching()));
+    if (!whole.touching()) continue;
+    PatchResult s;
+    const auto same = [&](const PairIntegral& p) {
+      REQUIRE(p.force == whole.force);
+      REQUIRE(p.moment_a == whole.moment_a);
+      REQUIRE(p.moment_b == whole.moment_b);
+      REQUIRE(p.weight == whole.weight);
+      REQUIRE(p.centre == whole.centre);
+      REQUIRE(p.depth == whole.depth);
+      REQUIRE(p.breadth == whole.breadth);
+      REQUIRE(p.middle == whole.middle);
+      REQUIRE(p.own_length_a == whole.own_length_a);
+      REQUIRE(p.own_length_b == whole.own_length_b);
+      REQUIRE(p.inside_a == whole.inside_a);
+      REQUIRE(p.inside_b == whole.inside_b);
+    };
+    same(pair_integral(placed.view(0), placed.view(1), offset, memory, near));
+    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches,
+                         near));
+    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches));
+  }
+  INFO(apart << " apart, " << touching << " touching, " << skipped << " with edges left out");
+  CHECK(apart > 20);
+  CHECK(touching > 100);
+  CHECK(skipped > 100);
+}

@@ -1,0 +1,139 @@
+#include "apothem/geometry/integrals/near_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "apothem/geometry/integrals/edge_integral.hpp"
+
+namespace apothem {
+
+namespace {
+
+// An edge of a polygon in the frame of b.
+struct Segment {
+  Vec2 from, to;
+  Box box;
+  int edge;
+  double distance2;  // squared distance from the other polygon, or a lower bound of it, m^2
+};
+
+double distance2(const Box& a, const Box& b) {
+  const double dx = std::max({0., a.x0 - b.x1, b.x0 - a.x1});
+  const double dy = std::max({0., a.y0 - b.y1, b.y0 - a.y1});
+  return dx * dx + dy * dy;
+}
+
+double distance2(const Vec2& point, const Segment& s) {
+  const Vec2 along = s.to - s.from;
+  const Vec2 arm = point - s.from;
+  const double length2 = along.squaredNorm();  // 0 if rounding has merged two vertices
+  const double share = length2 > 0 ? std::clamp(arm.dot(along) / length2, 0., 1.) : 0;
+  return (arm - share * along).squaredNorm();
+}
+
+// Segments that cross up to round-off have an end that is as near as that, or cross clearly.
+double distance2(const Segment& s, const Segment& t) {
+  const auto separates = [](const Segment& line, const Segment& other) {
+    const Vec2 along = line.to - line.from;
+    return (cross(along, Vec2(other.from - line.from)) > 0) !=
+           (cross(along, Vec2(other.to - line.from)) > 0);
+  };
+  if (separates(s, t) && separates(t, s)) return 0;
+  return std::min(
+      {distance2(s.from, t), distance2(s.to, t), distance2(t.from, s), distance2(t.to, s)});
+}
+
+// Even-odd rule.
+bool inside(const Vec2& p, const PlacedPotential& y, const Vec2& shift) {
+  bool result = false;
+  for (int k = 0; k < y.size; ++k) {
+    const double dy0 = y.y[k] + shift.y() - p.y();
+    const double dy1 = y.y[k + 1] + shift.y() - p.y();
+    if ((dy0 > 0) == (dy1 > 0)) continue;
+    const double dx0 = y.x[k] + shift.x() - p.x();
+    const double dx1 = y.x[k + 1] + shift.x() - p.x();
+    if ((dx0 * dy1 - dx1 * dy0 > 0) == (dy1 > dy0)) result = !result;
+  }
+  return result;
+}
+
+Box box_of(const PlacedPotential& p, const Vec2& shift) {
+  Box box;
+  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + shift.x(), p.y[i] + shift.y());
+  return box;
+}
+
+// The edges of x whose boxes are nearer than `margin` to the box of the other polygon. Lowers
+// `rest2` to the squared distance of the others.
+void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, double margin2,
+             std::vector<Segment>& segments, double& rest2) {
+  segments.clear();
+  for (int e = 0; e < x.size; ++e) {
+    Segment s{Vec2(x.x[e], x.y[e]) + shift,
+              Vec2(x.x[e + 1], x.y[e + 1]) + shift,
+              {},
+              e,
+              std::numeric_limits<double>::infinity()};
+    s.box.include(s.from.x(), s.from.y());
+    s.box.include(s.to.x(), s.to.y());
+    const double d2 = distance2(s.box, other);
+    if (d2 > margin2) {
+      rest2 = std::min(rest2, d2);
+    } else {
+      segments.push_back(s);
+    }
+  }
+}
+
+std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& other,
+                     const Vec2& shift, double margin2, double& rest2) {
+  std::uint64_t set = 0;
+  for (const Segment& s : segments) {
+    if (s.distance2 <= margin2 || inside(s.from, other, shift)) {
+      set |= std::uint64_t{1} << (s.edge % 64);
+    } else {
+      rest2 = std::min(rest2, s.distance2);
+    }
+  }
+  return set;
+}
+
+}  // namespace
+
+NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                     double margin) {
+  const Vec2 zero = Vec2::Zero();
+  const Box box_a = box_of(a, offset);
+  const Box box_b = box_of(b, zero);
+  const double size =
+      (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) + (box_b.y1 - box_b.y0);
+  double finite = size;
+  for (int i = 0; i < a.size; ++i) finite += 0 * (a.x[i] + offset.x()) + 0 * (a.y[i] + offset.y());
+  for (int i = 0; i < b.size; ++i) finite += 0 * b.x[i] + 0 * b.y[i];
+  // Distances are rounded; what is no farther away than that is near.
+  const double round = 1e-12 * size;
+  if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};
+  const double margin2 = margin * margin;
+  static thread_local std::vector<Segment> of_a, of_b;
+  double rest2 = std::numeric_limits<double>::infinity();
+  collect(a, offset, box_b, margin2, of_a, rest2);
+  collect(b, zero, box_a, margin2, of_b, rest2);
+  for (Segment& s : of_a) {
+    for (Segment& t : of_b) {
+      const double known = std::max(s.distance2, t.distance2);
+      if (!(distance2(s.box, t.box) < known)) continue;
+      const double d2 = distance2(s, t);
+      s.distance2 = std::min(s.distance2, d2);
+      t.distance2 = std::min(t.distance2, d2);
+    }
+  }
+  NearEdges result;
+  result.of_a = select(of_a, b, zero, margin2, rest2);
+  result.of_b = select(of_b, a, offset, margin2, rest2);
+  result.margin = (result.none() ? std::sqrt(rest2) : margin) - round;
+  return result;
+}
+
+}  // namespace apothem

@@ -1,0 +1,46 @@
+// Which edges of two polygons are near the other polygon. Bodies move little in a step, so it is
+// found once in many steps; the contact kernel then looks at these edges only. Most pairs of
+// polygons whose boxes overlap have none.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "apothem/geometry/polygon/point.hpp"
+
+namespace apothem {
+
+struct PlacedPotential;
+
+/// The edges of a pair of polygons that may be nearer than `margin` to the other polygon, its
+/// interior included. Bit i mod 64 of a set stands for all edges i with that remainder. All others
+/// are farther away than the margin, and remain outside as long as the polygons have moved by
+/// less than it.
+struct NearEdges {
+  static constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  std::uint64_t of_a = kAll;  ///< edges of a
+  std::uint64_t of_b = kAll;  ///< edges of b
+  double margin = 0;          ///< m; 0 if nothing is known
+  /// True if the polygons are apart by the margin.
+  [[nodiscard]] bool none() const { return of_a == 0 && of_b == 0; }
+};
+
+/// Finds the edges of two polygons that are nearer than `margin` (m) to the other one. If there are
+/// none, the margin of the result is larger, and is a lower bound of the distance of the polygons.
+/// The arguments a, b and offset are those of pair_integral. A coordinate that is not finite makes
+/// all edges near and the margin 0.
+NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                     double margin);
+
+/// Calls f(edge) for the edges of a polygon with `size` edges that a set stands for, in ascending
+/// order.
+template <class F>
+void for_each_edge(std::uint64_t set, int size, const F& f) {
+  for (int first = 0; first < size; first += 64) {
+    std::uint64_t rest = set;
+    if (size - first < 64) rest &= (std::uint64_t{1} << (size - first)) - 1;
+    for (; rest != 0; rest &= rest - 1) f(first + std::countr_zero(rest));
+  }
+}
+
+}  // namespace apothem
