@@ -251,6 +251,7 @@ std::vector<ChildAnswer> run_in_children(const std::vector<ChildWork>& works, do
     }
   }
   std::vector<ChildAnswer> answers;
+  answers.reserve(workers.size());
   for (Worker& worker : workers) answers.push_back(worker.answer());
   return answers;
 }

@@ -12,14 +12,14 @@ using samples::Random;
 namespace {
 
 // How a copy is made of a polygon.
-struct Motion {
+struct ShapeMotion {
   double angle = 0, scale = 1;
   Vec2 shift = Vec2::Zero();
   bool mirrored = false;
   int first = 0;  // vertex that becomes vertex 0
 };
 
-Polygon copied(const Polygon& polygon, const Motion& m) {
+Polygon moved_copy(const Polygon& polygon, const ShapeMotion& m) {
   std::vector<Vec2> ring = polygon.vertices();
   std::rotate(ring.begin(), ring.begin() + m.first, ring.end());
   for (Vec2& v : ring) {
@@ -28,13 +28,13 @@ Polygon copied(const Polygon& polygon, const Motion& m) {
   return Polygon(ring);
 }
 
-Motion any_motion(Random& random, int vertices) {
+ShapeMotion any_shape_motion(Random& random, int vertices) {
   return {random.uniform(0, 7), random.uniform(.1, 10),
           Vec2(random.uniform(-50, 50), random.uniform(-50, 50)), random.integer(0, 1) == 1,
           random.integer(0, vertices - 1)};
 }
 
-std::vector<Polygon> uneven_shapes() {
+std::vector<Polygon> uneven_polygons() {
   Random random(5);
   std::vector<Polygon> shapes{test::cross_shape(), test::l_shape(), test::comb(3), test::spiral()};
   for (int i = 0; i < 8; ++i) {
@@ -44,13 +44,13 @@ std::vector<Polygon> uneven_shapes() {
   return shapes;
 }
 
-std::vector<const Polygon*> pointers(const std::vector<Polygon>& polygons) {
+std::vector<const Polygon*> polygon_pointers(const std::vector<Polygon>& polygons) {
   std::vector<const Polygon*> result;
   for (const Polygon& p : polygons) result.push_back(&p);
   return result;
 }
 
-void require_same_bits(const Potential& a, const Potential& b) {
+void require_same_potential(const Potential& a, const Potential& b) {
   REQUIRE(a.vertices == b.vertices);
   REQUIRE(a.gradients == b.gradients);
   REQUIRE(a.top == b.top);
@@ -68,12 +68,12 @@ void require_same_bits(const Potential& a, const Potential& b) {
 
 TEST_CASE("copies of a polygon are recognised, wherever they start", "[similar]") {
   Random random(17);
-  for (const Polygon& shape : uneven_shapes()) {
+  for (const Polygon& shape : uneven_polygons()) {
     SimilarShapes shapes;
     REQUIRE_FALSE(shapes.add(shape));
     for (int i = 0; i < test::scaled(40); ++i) {
-      const Motion m = any_motion(random, shape.size());
-      const Polygon copy = copied(shape, m);
+      const ShapeMotion m = any_shape_motion(random, shape.size());
+      const Polygon copy = moved_copy(shape, m);
       const auto found = shapes.add(copy);
       REQUIRE(found);
       REQUIRE(found->index == 0);
@@ -124,18 +124,18 @@ TEST_CASE("the first one of several copies is the original", "[similar]") {
   SimilarShapes shapes;
   CHECK_FALSE(shapes.add(l));
   CHECK_FALSE(shapes.add(cross));
-  CHECK(shapes.add(copied(cross, {.angle = 1, .scale = 3}))->index == 1);
-  CHECK(shapes.add(copied(l, {.angle = 2, .mirrored = true}))->index == 0);
-  CHECK(shapes.add(copied(cross, {.angle = 3}))->index == 1);
+  CHECK(shapes.add(moved_copy(cross, {.angle = 1, .scale = 3}))->index == 1);
+  CHECK(shapes.add(moved_copy(l, {.angle = 2, .mirrored = true}))->index == 0);
+  CHECK(shapes.add(moved_copy(cross, {.angle = 3}))->index == 1);
 }
 
 TEST_CASE("the skeleton of a copy is the one it would get by itself", "[similar][skeleton]") {
   Random random(23);
-  for (const Polygon& shape : uneven_shapes()) {
+  for (const Polygon& shape : uneven_polygons()) {
     const Skeleton original = straight_skeleton(shape);
     for (int i = 0; i < test::scaled(10); ++i) {
-      const Motion m = any_motion(random, shape.size());
-      const Polygon copy = copied(shape, m);
+      const ShapeMotion m = any_shape_motion(random, shape.size());
+      const Polygon copy = moved_copy(shape, m);
       SimilarShapes shapes;
       shapes.add(shape);
       const auto found = shapes.add(copy);
@@ -166,7 +166,7 @@ TEST_CASE("forces of copies agree with those of polygons that have their own ske
           "[similar]") {
   using Field = PotentialChoice::Field;
   Random random(31);
-  const std::vector<Polygon> shapes = uneven_shapes();
+  const std::vector<Polygon> shapes = uneven_polygons();
   for (const PotentialChoice& choice :
        {PotentialChoice{},
         PotentialChoice{.reference = PotentialChoice::Reference::inscribed_circle},
@@ -174,11 +174,12 @@ TEST_CASE("forces of copies agree with those of polygons that have their own ske
     int touching = 0;
     for (int i = 0; i < test::scaled(60); ++i) {
       const Polygon& shape = shapes[random.integer(0, static_cast<int>(shapes.size()) - 1)];
-      Motion ma = any_motion(random, shape.size()), mb = any_motion(random, shape.size());
+      ShapeMotion ma = any_shape_motion(random, shape.size()),
+                  mb = any_shape_motion(random, shape.size());
       ma.shift *= .01, mb.shift = ma.shift + Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
       ma.scale = random.uniform(.8, 1.2), mb.scale = random.uniform(.8, 1.2);
-      const std::vector<Polygon> list{shape, copied(shape, ma), copied(shape, mb)};
-      const Potentials potentials(pointers(list), choice, 1);
+      const std::vector<Polygon> list{shape, moved_copy(shape, ma), moved_copy(shape, mb)};
+      const Potentials potentials(polygon_pointers(list), choice, 1);
       REQUIRE(potentials.distinct() == 1);
       const Polygon &a = list[1], &b = list[2];
       const Potential of_a = potentials.make(1), of_b = potentials.make(2);
@@ -206,27 +207,28 @@ TEST_CASE("forces of copies agree with those of polygons that have their own ske
 TEST_CASE("potentials have the same bits for any number of child processes", "[similar]") {
   Random random(41);
   std::vector<Polygon> list;
-  const std::vector<Polygon> shapes = uneven_shapes();
+  const std::vector<Polygon> shapes = uneven_polygons();
   for (int i = 0; i < 60; ++i) {
     const Polygon& shape = shapes[static_cast<size_t>(i) % shapes.size()];
-    list.push_back(copied(shape, any_motion(random, shape.size())));
+    list.push_back(moved_copy(shape, any_shape_motion(random, shape.size())));
     list.push_back(samples::random_star_shaped(random, 9, .3));
     list.push_back(samples::random_convex(random, 5));
   }
-  const Potentials one(pointers(list), {}, 1), three(pointers(list), {}, 3);
+  const Potentials one(polygon_pointers(list), {}, 1), three(polygon_pointers(list), {}, 3);
   CHECK(one.distinct() <= shapes.size() + 60);
   CHECK(one.distinct() == three.distinct());
   for (size_t i = 0; i < list.size(); ++i) {
-    require_same_bits(one.make(i), three.make(i));
+    require_same_potential(one.make(i), three.make(i));
     // An original, and what has no skeleton, is as if it stood alone.
-    if (i < shapes.size() || i % 3 != 0) require_same_bits(one.make(i), make_potential(list[i]));
+    if (i < shapes.size() || i % 3 != 0)
+      require_same_potential(one.make(i), make_potential(list[i]));
   }
 }
 
 TEST_CASE("a polygon without a potential does not harm the others", "[similar]") {
   const std::vector<Polygon> list{test::cross_shape(), Polygon({{0, 0}, {1, 0}, {.5, 1e-300}}),
-                                  copied(test::cross_shape(), {.angle = 1})};
-  const Potentials potentials(pointers(list), {}, 2);
+                                  moved_copy(test::cross_shape(), {.angle = 1})};
+  const Potentials potentials(polygon_pointers(list), {}, 2);
   CHECK(potentials.distinct() == 1);
   CHECK(potentials.make(0).roof);
   CHECK_THROWS_AS(potentials.make(1), InvalidPolygon);
