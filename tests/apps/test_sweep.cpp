@@ -39,7 +39,7 @@ const std::string kLongFall =
         R"({ "name": "long", "materials": { "rock": { "density": 2000 } }, "gravity": [0, -10],
   "bodies": [ { "name": "stone", "material": "rock", "polygon": [[0,0],[1,0],[1,1],[0,1]] } ],
   "time": { "end": 1, "step": )") +
-    (kSanitized ? "2e-6" : "2e-7") +
+    (test::kSanitized ? "2e-6" : "2e-7") +
     R"( }, "output": { "frames": 1, "history": { "interval": 0.1 } },
   "expect": [ { "quantity": "stone.vy", "take": "last", "value": 0, "tolerance": 100 } ] })";
 

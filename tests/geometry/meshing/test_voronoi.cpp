@@ -233,7 +233,7 @@ TEST_CASE("every shape is tiled exactly", "[voronoi]") {
     const Polygon region(shape.ring);
     for (const int cells : {1, 2, 3, 20, 150}) {
       for (const int lloyd : {0, 20}) {
-        if (kSanitized && cells > 20) continue;
+        if (test::kSanitized && cells > 20) continue;
         INFO(shape.name << ", " << cells << " cells, " << lloyd << " Lloyd steps");
         const VoronoiOptions options{.cells = cells, .seed = 7, .lloyd = lloyd};
         const Found found = lawful(region, voronoi_mesh(region, options), cells, .1);
@@ -270,7 +270,7 @@ TEST_CASE("every point of the region lies in exactly one cell", "[voronoi]") {
       CHECK(holding == (contains(local, p) ? 1 : 0));
       inside += holding > 0;
     }
-    CHECK((inside > 0 || kSanitized || std::string(shape.name) == "slanted strip"));
+    CHECK((inside > 0 || test::kSanitized || std::string(shape.name) == "slanted strip"));
   }
 }
 
