@@ -55,7 +55,7 @@ TEST_CASE("bodies come and leave, and the ledgers stay closed", "[population]") 
 
 TEST_CASE("bodies leave a hopper through its opening only, by exact predicates", "[population]") {
   const Folder folder;
-  Run run(scene_in(folder, hopper("keep")), {.folder = ""});
+  Run run(scene_in(folder, hopper("remove")), {.folder = ""});
   const std::vector<Vec2> left{{-3, 0}, {-.7, 0}, {-2, 1.3}, {-3, 1.3}},
       right{{.7, 0}, {3, 0}, {3, 1.3}, {2, 1.3}};
   const BodyIndex total = 2 + 36;
