@@ -56,7 +56,7 @@ class Flow:
         self.seed = int(row["fill.0.seed"])
         self.jammed = row["jammed"] == "true"
         self.emptied = row["emptied"] == "true"
-        self.discharged = -int(float(row["discharged"]))
+        self.discharged = int(float(row["discharged"]))
         self.outside = int(float(row.get("outside") or 0))
         self.cpu = float(row["wall_time [s]"])
         run = folder / "runs" / row["run"]
