@@ -24,6 +24,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/exact/overlap.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
+  geometry/integrals/near_edges.hpp
   geometry/integrals/edge_trace.hpp
   geometry/integrals/penetration.hpp
   geometry/meshing/delaunay_mesh.hpp
