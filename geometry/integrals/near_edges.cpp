@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "apothem/geometry/integrals/edge_integral.hpp"
 
@@ -11,13 +10,7 @@ namespace apothem {
 
 namespace {
 
-// An edge of a polygon in the frame of b.
-struct Segment {
-  Vec2 from, to;
-  Box box;
-  int edge;
-  double distance2;  // squared distance from the other polygon, or a lower bound of it, m^2
-};
+using Segment = NearEdgesWorkspace::Segment;
 
 double distance2(const Box& a, const Box& b) {
   const double dx = std::max({0., a.x0 - b.x1, b.x0 - a.x1});
@@ -103,7 +96,7 @@ std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& othe
 }  // namespace
 
 NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     double margin) {
+                     double margin, NearEdgesWorkspace& workspace) {
   const Vec2 zero = Vec2::Zero();
   const Box box_a = box_of(a, offset);
   const Box box_b = box_of(b, zero);
@@ -116,7 +109,7 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const double round = 1e-12 * size;
   if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};
   const double margin2 = margin * margin;
-  static thread_local std::vector<Segment> of_a, of_b;
+  auto& [of_a, of_b] = workspace;
   double rest2 = std::numeric_limits<double>::infinity();
   collect(a, offset, box_b, margin2, of_a, rest2);
   collect(b, zero, box_a, margin2, of_b, rest2);

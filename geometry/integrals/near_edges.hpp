@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "apothem/geometry/polygon/point.hpp"
 
@@ -25,12 +26,24 @@ struct NearEdges {
   [[nodiscard]] bool none() const { return of_a == 0 && of_b == 0; }
 };
 
+/// Memory for near_edges. One for each thread, used again for many pairs.
+struct NearEdgesWorkspace {
+  /// An edge of a polygon in the frame of b.
+  struct Segment {
+    Vec2 from, to;
+    Box box;
+    int edge;
+    double distance2;  ///< squared distance from the other polygon, or a lower bound of it, m^2
+  };
+  std::vector<Segment> of_a, of_b;
+};
+
 /// Finds the edges of two polygons that are nearer than `margin` (m) to the other one. If there are
 /// none, the margin of the result is larger, and is a lower bound of the distance of the polygons.
 /// The arguments a, b and offset are those of pair_integral. A coordinate that is not finite makes
 /// all edges near and the margin 0.
 NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     double margin);
+                     double margin, NearEdgesWorkspace& workspace);
 
 /// Calls f(edge) for the edges of a polygon with `size` edges that a set stands for, in ascending
 /// order.

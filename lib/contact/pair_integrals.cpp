@@ -52,7 +52,7 @@ void PairIntegrals::evaluate() {
 }
 
 // Finds the near edges anew if the bodies have moved against each other by more than the margin.
-void PairIntegrals::find_near(size_t p, const Vec2& between) {
+void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace& workspace) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   Near& near = near_[p];
@@ -77,14 +77,15 @@ void PairIntegrals::find_near(size_t p, const Vec2& between) {
   const PlacedPotential view_b = shapes.view(b);
   if (view_a.convex() && view_b.convex()) return;  // pair_integral tells their distance
   const double margin = near.share * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
-  near.edges = near_edges(view_a, view_b, between, margin);
+  near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
 void PairIntegrals::evaluate(size_t p, int index) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 between = surfaces_.between(a, b);
-  find_near(p, between);
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  find_near(p, between, worker.near_edges);
   NearEdges& near = near_[p].edges;
   if (near.none()) {
     integrals_[p] = {};
@@ -92,7 +93,6 @@ void PairIntegrals::evaluate(size_t p, int index) {
   }
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
-  Worker& worker = workers_[static_cast<size_t>(index)];
   const bool split = split_ == Split::all ||
                      (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
   if (!split) {

@@ -57,6 +57,7 @@ class PairIntegrals {
   };
   struct Worker {
     PatchWorkspace workspace;
+    NearEdgesWorkspace near_edges;
     // Of the pairs that it has split.
     std::vector<BoundaryRun> runs;
     std::vector<PairIntegral> patches;
@@ -70,7 +71,7 @@ class PairIntegrals {
     int first_patch = 0, patches = 0, first_run = 0, runs = 0;
   };
   void evaluate(size_t pair, int worker);
-  void find_near(size_t pair, const Vec2& between);
+  void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
   const Surfaces& surfaces_;
   Threads threads_;

@@ -485,7 +485,8 @@ TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][ne
     placed.place(0, 0, 0, angle_a);
     placed.place(1, 0, 0, angle_b);
     const double margin = random.integer(0, 1) ? random.uniform(0, .2) : 1e-3;
-    NearEdges near = near_edges(placed.view(0), placed.view(1), offset, margin);
+    NearEdgesWorkspace memory;
+    NearEdges near = near_edges(placed.view(0), placed.view(1), offset, margin, memory);
     REQUIRE(near.margin > 0);
     // Bodies move by less than the margin.
     const double moves = .99 * near.margin / 3;
