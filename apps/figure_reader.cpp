@@ -240,7 +240,7 @@ class FigureReader {
       in_.fail(value, "must give either \"scene\" or \"reference\"");
     }
     if (scene) {
-      frame(object, source, *scene);
+      frame(object, source, *scene, *panel.quantity);
     } else {
       const JsonValue& column = object.required("column", "a column");
       const JsonValue& size = object.required("cell", "[width, height] of the cells in m");
@@ -251,7 +251,8 @@ class FigureReader {
     object.finish();
   }
 
-  void frame(JsonObject& object, FieldSource& source, const JsonValue& name) {
+  void frame(JsonObject& object, FieldSource& source, const JsonValue& name,
+             const FieldQuantity& quantity) {
     const JsonValue& time = object.required("time", "s");
     if (const JsonValue* v = object.optional("compare")) {
       JsonObject compare(in_, *v);
@@ -264,7 +265,10 @@ class FigureReader {
     }
     const Scene scene = scene_of(name);
     source.scene = name.string;
-    if (scene.model.deformables.empty()) in_.fail(name, "has no body with a mesh to show");
+    if (scene.model.deformables.empty() && (!quantity.nodal || source.compared)) {
+      in_.fail(name, source.compared ? "has no body with a mesh to compare"
+                                     : "has no body with a mesh, and rigid bodies have no stress");
+    }
     source.rigid = static_cast<int>(scene.model.bodies.size());
     source.statics = scene.time.statics;
     source.frame = frame_time(time, scene);

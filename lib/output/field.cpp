@@ -49,7 +49,7 @@ Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid) {
     }
   }
   for (size_t e = 0; e < frame.body.size(); ++e) {
-    field.blank.push_back(frame.body[e] < rigid);
+    field.blank.push_back(!quantity.nodal && frame.body[e] < rigid);
     if (!quantity.nodal) field.values.push_back(quantity.value({frame.stress[e]}));
   }
   return field;

@@ -59,11 +59,11 @@ struct Field {
   Mesh mesh;                   ///< deformed mesh, m
   bool nodal = false;          ///< whether values belong to nodes, not to cells
   std::vector<double> values;  ///< one per node if `nodal`, otherwise one per cell
-  std::vector<bool> blank;     ///< one per cell: whether it has no value, like a rigid body
+  std::vector<bool> blank;     ///< one per cell: no value, like the stress of a rigid body
 };
 
 /// The field of a quantity in a frame. The first `rigid` bodies of the frame are rigid and have no
-/// values.
+/// stress.
 Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid);
 
 /// A table of values in rectangular cells of the same size, one per row.

@@ -299,7 +299,7 @@ TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reprodu
   }
 }
 
-TEST_CASE("the stress of the impacted beam is that of the independent code", "[reproduce]") {
+TEST_CASE("the stress of the impacted beam is that of the independent code", "[reproduce][slow]") {
   const Folder folder;
   const Result r = run({"reproduce", "fig-28", "--verify", "-o", folder / "out"}, folder);
   INFO(r.out << r.err);

@@ -275,7 +275,7 @@ TEST_CASE("a flat punch dragged over a row of elements loses force to their bord
 }
 
 TEST_CASE("energy of two oblique discs: a floor, or the step squared",
-          "[element_kernel][contact][deformable]") {
+          "[element_kernel][contact][deformable][slow]") {
   // Node against node, and in general position, where edges and faces come and go.
   for (const Oblique& o : {Oblique{6, 20, .5}, Oblique{8, 40, .35}}) {
     for (const ForceDistribution distribution :

@@ -101,7 +101,7 @@ TEST_CASE("an impact keeps the energy to 1e-4 at the usual step, and with its sq
   }
 }
 
-TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_energy]") {
+TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_energy][slow]") {
   for (const char* distribution : {"resultant", "integrated"}) {
     for (const char* name : kScenes) {
       for (const char* shape : kShapes) {
@@ -123,7 +123,7 @@ TEST_CASE("potentials of elements lose energy at any step", "[surface][impact_en
 // is first seen after (1 - theta) dt, and -k (v dt)^2 theta (1 - theta)/2 is missing.
 // Without the correction of such steps, that is.
 TEST_CASE("a flat impact is as accurate as others, with the correction of onsets",
-          "[surface][impact_energy]") {
+          "[surface][impact_energy][slow]") {
   for (const char* shape : kShapes) {
     Json json = shipped("block-on-foundation", shape);
     json["bodies"][1]["angle"] = 0;

@@ -153,7 +153,7 @@ TEST_CASE("a body deep inside another one at the start is refused", "[surface]")
   }
 }
 
-TEST_CASE("thin bodies go on beyond their collars with order 2", "[surface]") {
+TEST_CASE("thin bodies go on beyond their collars with order 2", "[surface][slow]") {
   for (const Named& body : thin_bodies()) {
     const Model model = thin_model(body, Against::floor, 3e-4, 60);
     const Result coarse = collide(model, .1, 2e-3), fine = collide(model, .05, 2e-3);

@@ -174,6 +174,7 @@ TEST_CASE("a frame is read back as it was written", "[field]") {
   const Field major = field_of(frame, quantity("s1"), 1);
   const Field sink = field_of(frame, quantity("uy"), 1);
   CHECK(major.blank[0]);
+  CHECK_FALSE(sink.blank[0]);
   for (int e = 0; e < 8; ++e) {
     CHECK_FALSE(major.blank[1 + e]);
     CHECK(frame.stress[1 + e].xx == stress[e].xx);

@@ -219,7 +219,7 @@ TEST_CASE("an edge touches the border of a cell in the middle", "[distance-volum
   }
 }
 
-TEST_CASE("distance fields where features of lattice shapes coincide", "[distance-volume]") {
+TEST_CASE("distance fields where features of lattice shapes coincide", "[distance-volume][slow]") {
   int touching = 0;
   on_lattice([&](const Polygon& a, const Polygon& b, const Polygon& moved, int number) {
     const double length = number % 2 == 0 ? .3 : 10;
