@@ -6,12 +6,14 @@
     tables.py pairs FLOWS OTHERS                 the same seeds and widths in two studies
     tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
     tables.py repose HEAPS                       angle of repose
+    tables.py cost PACKS                         time per body and step, and what takes it
 
-FLOWS are made from hopper-flow.json, HEAPS from repose.json. Intervals are for 95 %.
+FLOWS are made from hopper-flow.json, HEAPS from repose.json, PACKS from pack.json. Intervals are for 95 %.
 """
 
 import argparse
 import csv
+import json
 import math
 import pathlib
 
@@ -209,10 +211,24 @@ def repose(args):
     print(f"angle of repose {m:.1f} +- {half:.1f} degrees ({len(angles)} heaps)")
 
 
+def cost(args):
+    print("blocks  steps   ns per block and step  search  contact  rest   pairs, touching, per block")
+    with open(pathlib.Path(args.folder) / "runs.csv", newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+    for row in rows:
+        with open(pathlib.Path(args.folder) / "runs" / row["run"] / "run.json", encoding="utf-8") as file:
+            run = json.load(file)
+        n, time, pairs = int(row["blocks"]), run["wall_time"], run["pairs_per_step"]
+        total = time["total"] - time["output"]
+        print(f"{n:<7} {run['steps']:<7} {total / run['steps'] / n * 1e9:<22.0f} {time['search'] / total:<7.1%}"
+              f" {time['contact'] / total:<8.1%} {1 - (time['search'] + time['contact']) / total:<6.1%}"
+              f" {pairs['candidates'] / n:.2f}, {pairs['touching'] / n:.2f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for command in (jam, hazard, pairs, beverloo, repose):
+    for command in (jam, hazard, pairs, beverloo, repose, cost):
         sub = commands.add_parser(command.__name__)
         sub.add_argument("folder")
         sub.set_defaults(command=command)

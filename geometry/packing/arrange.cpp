@@ -86,6 +86,8 @@ Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks
 namespace {
 
 constexpr double kLooseFraction = .3;  // solid fraction at which blocks are inserted
+constexpr int kAttempts = 10;          // at inserting them, each with smaller blocks
+constexpr double kSmaller = .8;        // size of blocks in the next attempt
 constexpr double kFirstMove = .2;      // of a block's size
 constexpr double kAccepted = .4;       // share of moves that should succeed
 constexpr double kGrowth = .05;        // largest growth of a block in a sweep
@@ -104,11 +106,18 @@ class Growth {
   }
 
   Arrangement run() {
-    std::vector<Block> small = blocks_;
-    for (size_t i = 0; i < small.size(); ++i) small[i].scale *= parts_[i];
-    Arrangement result = insert_at_random(space_, random_, small);
-    if (result.placed < static_cast<int>(blocks_.size())) return result;
-    number_blocks(small);
+    Arrangement result;
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+      space_.clear();
+      std::vector<Block> small = blocks_;
+      for (size_t i = 0; i < small.size(); ++i) small[i].scale *= parts_[i];
+      result = insert_at_random(space_, random_, small);
+      number_blocks(small);
+      if (result.placed == static_cast<int>(blocks_.size())) break;
+      if (attempt == kAttempts) return result;
+      // Few large blocks may not fit into a winding region yet.
+      for (double& part : parts_) part *= kSmaller;
+    }
     for (size_t i = 0; i < blocks_.size(); ++i) places_.push_back(centroid(result.rings[i]));
     double missing = missing_area();
     for (int sweep = 1; missing > 0; ++sweep) {
