@@ -186,7 +186,7 @@ def beverloo(args):
 
     def constants(some):
         a, b = line_fit(some)
-        return b**1.5, -a / b
+        return (b**1.5, -a / b) if b > 0 else (math.nan, math.nan)  # rates that fall with the width
 
     c, k = constants(points)
     # Errors by leaving out one width at a time (jackknife).
