@@ -239,7 +239,10 @@ def main():
         if command is beverloo:
             sub.add_argument("--solid-fraction", type=float, default=0.8, help="of the resting blocks (0.8)")
     args = parser.parse_args()
-    args.command(args)
+    try:
+        args.command(args)
+    except FileNotFoundError as error:
+        raise SystemExit(f"tables.py: there is no {error.filename}; give a folder that `apothem sweep` has written") from None
 
 
 if __name__ == "__main__":

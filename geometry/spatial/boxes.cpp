@@ -8,6 +8,7 @@ namespace apothem {
 namespace {
 
 constexpr std::int32_t kEmpty = INT32_MIN;  // level of an empty box
+constexpr size_t kFew = 4;                  // boxes are few if they are less than one in so many
 
 bool is_empty(const Box& box) { return box.x1 < box.x0; }
 
@@ -20,69 +21,165 @@ size_t slot(std::int64_t column, std::int64_t row, int level, size_t mask) {
   return h & mask;
 }
 
-// Index of the cell that contains the coordinate x along one axis. Cells of level l have the size
-// 2^l.
-std::int64_t cell(double x, int level) { return std::llround(std::floor(std::ldexp(x, -level))); }
+// 2^e for exponents of normal numbers.
+double power_of_two(int e) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
+}
+
+// The integer below x, which is smaller than 2^62.
+std::int64_t floor_of(double x) {
+  const auto whole = static_cast<std::int64_t>(x);
+  return whole - static_cast<std::int64_t>(x < static_cast<double>(whole));
+}
+
+double farthest(const Box& box) {
+  return std::max({std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
+}
 
 }  // namespace
 
-void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs) {
-  pairs.clear();
-  const auto n = static_cast<std::int32_t>(boxes.size());
-  if (n == 0) return;
-  // No level is finer than 2^-50 of the largest coordinate, so that cell indices stay below 2^52.
-  double reach = 0;
-  for (const Box& box : boxes) {
-    if (is_empty(box)) continue;
-    reach =
-        std::max({reach, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
-  }
-  const int finest = reach > 0 ? std::ilogb(reach) - 50 : 0;
+// The level whose cells are just larger than the box.
+int BoxGrid::level_of(const Box& box) const {
+  const auto bits = std::bit_cast<std::uint64_t>(box.extent());
+  return std::max(static_cast<int>(bits >> 52) - 1022, finest_);
+}
 
-  const size_t mask = std::bit_ceil(static_cast<size_t>(2) * n) - 1;
-  heads_.assign(mask + 1, -1);
-  entries_.resize(n);
-  std::vector<int> levels;
-  for (std::int32_t i = 0; i < n; ++i) {
-    const Box& box = boxes[i];
-    if (is_empty(box)) {
-      entries_[i].level = kEmpty;
-      continue;
-    }
-    const double extent = box.extent();
-    const int level = extent > 0 ? std::max(std::ilogb(extent) + 1, finest) : finest;
-    if (std::find(levels.begin(), levels.end(), level) == levels.end()) levels.push_back(level);
-    Entry& entry = entries_[i];
-    entry = {cell((box.x0 + box.x1) / 2, level), cell((box.y0 + box.y1) / 2, level), -1, level};
-    std::int32_t& head = heads_[slot(entry.column, entry.row, level, mask)];
-    entry.next = head;
-    head = i;
+void BoxGrid::enter(std::int32_t i, const Box& box) {
+  Entry& entry = entries_[i];
+  if (is_empty(box)) {
+    entry.level = kEmpty;
+    return;
   }
+  const int level = level_of(box);
+  if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) levels_.push_back(level);
+  const double cells = power_of_two(-level);
+  std::int64_t column = floor_of((box.x0 + box.x1) / 2 * cells);
+  std::int64_t row = floor_of((box.y0 + box.y1) / 2 * cells);
+  std::int32_t& head = heads_[slot(column, row, level, mask_)];
+  entry = {column, row, head, level};
+  head = i;
+}
 
-  for (std::int32_t i = 0; i < n; ++i) {
-    const Box& box = boxes[i];
-    const int own = entries_[i].level;
-    if (own == kEmpty) continue;
-    for (const int level : levels) {
-      if (level < own) continue;
-      // A box of this level reaches at most half a cell beyond the cell that contains its centre.
-      const double half = std::ldexp(0.5, level);
-      const std::int64_t column1 = cell(box.x1 + half, level);
-      const std::int64_t row1 = cell(box.y1 + half, level);
-      for (std::int64_t column = cell(box.x0 - half, level); column <= column1; ++column) {
-        for (std::int64_t row = cell(box.y0 - half, level); row <= row1; ++row) {
-          for (std::int32_t j = heads_[slot(column, row, level, mask)]; j >= 0;
-               j = entries_[j].next) {
-            const Entry& other = entries_[j];
-            if (other.level != level || other.column != column || other.row != row) continue;
-            if (level == own && j >= i) continue;  // box j reports this pair
-            if (!apart(box, boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
-          }
-        }
+void BoxGrid::leave(std::int32_t i) {
+  const Entry& entry = entries_[i];
+  if (entry.level == kEmpty) return;
+  std::int32_t* link = &heads_[slot(entry.column, entry.row, entry.level, mask_)];
+  while (*link != i) link = &entries_[*link].next;
+  *link = entry.next;
+}
+
+template <class F>
+void BoxGrid::each_near(const Box& box, int level, const Entry* from, F&& f) const {
+  // A box of this level reaches at most half a cell beyond the cell that contains its centre.
+  const double half = power_of_two(level - 1), cells = power_of_two(-level);
+  std::int64_t column = floor_of((box.x0 - half) * cells);
+  const std::int64_t column1 = floor_of((box.x1 + half) * cells);
+  const std::int64_t row0 = floor_of((box.y0 - half) * cells);
+  const std::int64_t row1 = floor_of((box.y1 + half) * cells);
+  if (from) column = std::max(column, from->column);
+  for (; column <= column1; ++column) {
+    const bool first = from && column == from->column;
+    for (std::int64_t row = first ? std::max(row0, from->row) : row0; row <= row1; ++row) {
+      for (std::int32_t j = heads_[slot(column, row, level, mask_)]; j >= 0; j = entries_[j].next) {
+        const Entry& other = entries_[j];
+        if (other.level == level && other.column == column && other.row == row) f(j);
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+}
+
+void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs) {
+  pairs.clear();
+  levels_.clear();
+  const auto n = static_cast<std::int32_t>(boxes.size());
+  if (n == 0) return;
+  reach_ = 0;
+  for (const Box& box : boxes) {
+    if (!is_empty(box)) reach_ = std::max(reach_, farthest(box));
+  }
+  // No level is finer than 2^-50 of the largest coordinate, so that cell indices stay below 2^52.
+  finest_ = std::max(reach_ > 0 ? std::ilogb(reach_) - 50 : 0, -1000);
+  mask_ = std::bit_ceil(static_cast<size_t>(2) * n) - 1;
+  heads_.assign(mask_ + 1, -1);
+  entries_.resize(n);
+  is_changed_.assign(n, 0);
+  for (std::int32_t i = 0; i < n; ++i) enter(i, boxes[i]);
+
+  for (std::int32_t i = 0; i < n; ++i) {
+    const Box& box = boxes[i];
+    const Entry& own = entries_[i];
+    if (own.level == kEmpty) continue;
+    const auto report = [&](std::int32_t j) {
+      if (!apart(box, boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
+    };
+    for (const int level : levels_) {
+      if (level > own.level) each_near(box, level, nullptr, report);
+    }
+    each_near(box, own.level, &own, [&](std::int32_t j) {
+      const Entry& other = entries_[j];
+      // In one cell both find each other.
+      if (other.column == own.column && other.row == own.row && j >= i) return;
+      report(j);
+    });
+  }
+  sort(pairs);
+}
+
+void BoxGrid::find_pairs_again(const std::vector<Box>& boxes, std::span<const std::int32_t> changed,
+                               std::vector<BoxPair>& pairs) {
+  // Large boxes would look into too many cells of the small ones.
+  double cells = 0;
+  bool few = boxes.size() == entries_.size() && kFew * changed.size() < boxes.size();
+  for (size_t c = 0; few && c < changed.size(); ++c) {
+    const Box& box = boxes[changed[c]];
+    if (is_empty(box)) continue;
+    for (const int level : levels_) {
+      const double across = box.extent() * power_of_two(-level) + 3;
+      cells += across * across;
+    }
+    few = farthest(box) <= reach_ && cells < 16. * static_cast<double>(boxes.size());
+  }
+  if (!few) {
+    find_pairs(boxes, pairs);
+    return;
+  }
+  for (const std::int32_t i : changed) {
+    is_changed_[i] = 1;
+    leave(i);
+    enter(i, boxes[i]);
+  }
+  found_.clear();
+  for (const std::int32_t i : changed) {
+    if (entries_[i].level == kEmpty) continue;
+    const Box& box = boxes[i];
+    for (const int level : levels_) {
+      each_near(box, level, nullptr, [&](std::int32_t j) {
+        if (j == i || (is_changed_[j] && j > i)) return;  // box j reports this pair
+        if (!apart(box, boxes[j])) found_.push_back({std::min(i, j), std::max(i, j)});
+      });
+    }
+  }
+  std::erase_if(pairs,
+                [&](const BoxPair& p) { return is_changed_[p.first] || is_changed_[p.second]; });
+  for (const std::int32_t i : changed) is_changed_[i] = 0;
+  pairs.insert(pairs.end(), found_.begin(), found_.end());
+  sort(pairs);
+}
+
+// Counts the pairs of each first box: takes linear time, because few pairs share one.
+void BoxGrid::sort(std::vector<BoxPair>& pairs) {
+  ends_.assign(entries_.size() + 1, 0);
+  for (const BoxPair& pair : pairs) ++ends_[pair.first + 1];
+  for (size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
+  found_.resize(pairs.size());
+  for (const BoxPair& pair : pairs) found_[ends_[pair.first]++] = pair;
+  auto begin = found_.begin();
+  for (size_t i = 0; i + 1 < ends_.size(); ++i) {
+    const auto end = found_.begin() + ends_[i];
+    std::sort(begin, end);
+    begin = end;
+  }
+  pairs.swap(found_);
 }
 
 }  // namespace apothem

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "apothem/geometry/polygon/point.hpp"
@@ -33,6 +34,11 @@ class BoxGrid {
   /// order. Memory is kept between calls. Empty boxes overlap nothing. No box may have a NaN; this
   /// is not checked.
   void find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs);
+  /// The same where only some boxes, `changed` (ascending), are others than in the last call, and
+  /// `pairs` is what that has found. If they are few and not much larger than others, this takes
+  /// time linear in their number and in that of the pairs.
+  void find_pairs_again(const std::vector<Box>& boxes, std::span<const std::int32_t> changed,
+                        std::vector<BoxPair>& pairs);
 
  private:
   struct Entry {
@@ -40,8 +46,24 @@ class BoxGrid {
     std::int32_t next;         // next box in the same slot of the hash table, or -1
     std::int32_t level;        // the cells of this level have the size 2^level
   };
+  [[nodiscard]] int level_of(const Box& box) const;
+  void enter(std::int32_t i, const Box& box);
+  void leave(std::int32_t i);
+  void sort(std::vector<BoxPair>& pairs);
+  /// Calls f(j) for all boxes j of a level whose centres are in cells that a box and half a cell
+  /// around it touch; with `from` only in this entry's cell and in those behind it.
+  template <class F>
+  void each_near(const Box& box, int level, const Entry* from, F&& f) const;
+
   std::vector<Entry> entries_;       // one per box
   std::vector<std::int32_t> heads_;  // first box of each slot of the hash table, or -1
+  std::vector<int> levels_;          // that have boxes, or have had some
+  size_t mask_ = 0;                  // number of slots, a power of two, less one
+  double reach_ = 0;                 // largest coordinate
+  int finest_ = 0;                   // level
+  std::vector<std::int32_t> ends_;   // memory of `sort`: behind the pairs of each first box
+  std::vector<BoxPair> found_;
+  std::vector<char> is_changed_;  // of each box
 };
 
 }  // namespace apothem

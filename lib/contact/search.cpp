@@ -14,6 +14,16 @@ bool Search::stale(const Surfaces& surfaces) const {
 }
 
 void Search::search(Surfaces& surfaces) {
+  if (surfaces.has_outlines() || !search_again(surfaces)) search_all(surfaces);
+  pairs_.clear();
+  for (const BoxPair& pair : near_) {
+    if (surfaces.body(pair.first) == surfaces.body(pair.second)) continue;
+    if (!surfaces.responsive(pair.first) && !surfaces.responsive(pair.second)) continue;
+    pairs_.push_back(pair);
+  }
+}
+
+void Search::search_all(Surfaces& surfaces) {
   const std::vector<Box>& boxes = surfaces.shapes().boxes();
   kept_.clear();
   for (SurfaceIndex i = 0; i < surfaces.shapes().size(); ++i) {
@@ -31,11 +41,23 @@ void Search::search(Surfaces& surfaces) {
   for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
     if (!surfaces.is_present(i)) kept_[i] = Box();
   }
-  grid_.find_pairs(kept_, pairs_);
-  std::erase_if(pairs_, [&](const BoxPair& pair) {
-    return surfaces.body(pair.first) == surfaces.body(pair.second) ||
-           (!surfaces.responsive(pair.first) && !surfaces.responsive(pair.second));
-  });
+  grid_.find_pairs(kept_, near_);
+}
+
+// Gives new boxes to the surfaces that have left the inner half of the margins of theirs. The
+// others need none for as long again, so searches do not come more often for it.
+bool Search::search_again(const Surfaces& surfaces) {
+  const std::vector<Box>& boxes = surfaces.shapes().boxes();
+  if (kept_.size() != boxes.size()) return false;
+  changed_.clear();
+  for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
+    if (!surfaces.is_present(i)) continue;
+    if (!contains(kept_[i].grown(-surfaces.growth(i) / 2), boxes[i])) changed_.push_back(i);
+  }
+  if (kFew * changed_.size() >= boxes.size()) return false;
+  for (const SurfaceIndex i : changed_) kept_[i] = boxes[i].grown(surfaces.growth(i));
+  grid_.find_pairs_again(kept_, changed_, near_);
+  return true;
 }
 
 }  // namespace apothem

@@ -1,7 +1,8 @@
 // The broad phase: which pairs of surfaces are near each other.
 //
 // Every surface has a box, grown by half of its skin. The pairs of these boxes serve until a
-// surface leaves its grown box, so that most steps need no search.
+// surface leaves its grown box, so that most steps need no search, and a search looks only for the
+// partners of those that have moved.
 #pragma once
 
 #include <span>
@@ -25,8 +26,16 @@ class Search {
   [[nodiscard]] std::span<const BoxPair> pairs() const { return pairs_; }
 
  private:
+  static constexpr size_t kFew = 4;  // surfaces are few if they are less than one in so many
+
+  void search_all(Surfaces& surfaces);
+  /// False if too many have moved.
+  bool search_again(const Surfaces& surfaces);
+
   std::vector<Box> kept_;
+  std::vector<BoxPair> near_;  // pairs of boxes
   std::vector<BoxPair> pairs_;
+  std::vector<SurfaceIndex> changed_;
   BoxGrid grid_;
 };
 

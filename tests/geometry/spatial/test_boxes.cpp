@@ -32,3 +32,44 @@ TEST_CASE("the box grid finds what brute force finds", "[boxes]") {
     REQUIRE(found == expected);
   }
 }
+
+TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes]") {
+  samples::Random random(4);
+  int few = 0;
+  for (int round = 0; round < test::scaled(100); ++round) {
+    BoxGrid grid;
+    std::vector<BoxPair> found;
+    const double offset = round % 3 == 0 ? 0 : std::pow(10.0, random.uniform(0, 12));
+    const double sizes = round % 2 == 0 ? 1 : 3;  // ratio 1 : 10 or 1 : 1000
+    const auto box = [&] {
+      const double size = .3 * std::pow(10.0, random.uniform(-sizes, 0));
+      const double x = offset + random.uniform(-1, 1), y = -offset + random.uniform(-1, 1);
+      if (random.integer(0, 19) == 0) return Box();
+      return Box{x, y, x + size * random.uniform(0, 1), y + size * random.uniform(0, 1)};
+    };
+    std::vector<Box> boxes;
+    const int n = random.integer(1, 150);
+    for (int i = 0; i < n; ++i) boxes.push_back(box());
+    grid.find_pairs(boxes, found);
+    for (int again = 0; again < 10; ++again) {
+      std::vector<std::int32_t> changed;
+      const int part = random.integer(1, 30);
+      for (int i = 0; i < n; ++i) {
+        if (random.integer(0, part) != 0) continue;
+        changed.push_back(i);
+        boxes[i] = box();
+        if (random.integer(0, 40) == 0) boxes[i].x1 = 100 * std::abs(offset) + 1;  // out of reach
+      }
+      few += changed.size() < boxes.size() / 4;
+      grid.find_pairs_again(boxes, changed, found);
+      std::vector<BoxPair> expected;
+      for (int i = 0; i < n; ++i) {
+        for (int j = i + 1; j < n; ++j) {
+          if (!apart(boxes[i], boxes[j])) expected.push_back({i, j});
+        }
+      }
+      REQUIRE(found == expected);
+    }
+  }
+  CHECK(few > test::scaled(300));
+}
