@@ -24,7 +24,7 @@ MASS = RHO * math.pi * D**2 / 4  # kg, mean of a block
 def wilson(k, n, z=1.959964):
     centre = (k + z * z / 2) / (n + z * z)
     half = z / (n + z * z) * math.sqrt(k * (n - k) / n + z * z / 4)
-    return centre - half, centre + half
+    return max(0, centre - half), min(1, centre + half)
 
 
 # Quantiles of Student's distribution for 95 %, by degrees of freedom.

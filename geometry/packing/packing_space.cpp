@@ -79,24 +79,29 @@ PackingSpace::PackingSpace(const Polygon& outline, const std::vector<Polygon>& h
   }
 }
 
-template <class F>
-void PackingSpace::each_cell(const Box& box, F&& f) const {
+PackingSpace::Cells PackingSpace::cells_of(const Box& box) const {
   const auto index = [&](double x, double from, int count) {
-    return static_cast<int>(std::clamp(std::floor((x - from) / cell_), 0., count - 1.));
+    return static_cast<int>(std::clamp((x - from) / cell_, 0., count - 1.));
   };
-  const int x0 = index(box.x0, box_.x0, columns_), x1 = index(box.x1, box_.x0, columns_);
-  const int y0 = index(box.y0, box_.y0, rows_), y1 = index(box.y1, box_.y0, rows_);
-  for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) f(static_cast<size_t>(y) * static_cast<size_t>(columns_) + x);
+  return {index(box.x0, box_.x0, columns_), index(box.x1, box_.x0, columns_),
+          index(box.y0, box_.y0, rows_), index(box.y1, box_.y0, rows_)};
+}
+
+template <class F>
+void PackingSpace::each_cell(const Cells& cells, F&& f) const {
+  for (int y = cells.y0; y <= cells.y1; ++y) {
+    for (int x = cells.x0; x <= cells.x1; ++x) {
+      f(static_cast<size_t>(y) * static_cast<size_t>(columns_) + x);
+    }
   }
 }
 
 void PackingSpace::enter(size_t solid) {
-  each_cell(solids_[solid].box, [&](size_t cell) { cells_[cell].push_back(solid); });
+  each_cell(cells_of(boxes_[solid]), [&](size_t cell) { cells_[cell].push_back(solid); });
 }
 
 void PackingSpace::leave(size_t solid) {
-  each_cell(solids_[solid].box, [&](size_t cell) { std::erase(cells_[cell], solid); });
+  each_cell(cells_of(boxes_[solid]), [&](size_t cell) { std::erase(cells_[cell], solid); });
 }
 
 void PackingSpace::add_obstacle(const std::vector<Vec2>& ring) {
@@ -108,22 +113,26 @@ void PackingSpace::add_obstacle(const std::vector<Vec2>& ring) {
 
 void PackingSpace::add(std::vector<Vec2> ring) {
   const Box box = box_of(ring);
-  solids_.push_back({std::move(ring), box});
+  rings_.push_back(std::move(ring));
+  boxes_.push_back(box);
   seen_.push_back(0);
-  enter(solids_.size() - 1);
+  enter(boxes_.size() - 1);
 }
 
 void PackingSpace::move(int block, std::vector<Vec2> ring) {
   const size_t i = fixed_ + static_cast<size_t>(block);
-  leave(i);
-  solids_[i].box = box_of(ring);
-  solids_[i].ring = std::move(ring);
-  enter(i);
+  const Box box = box_of(ring);
+  const bool same_cells = cells_of(box) == cells_of(boxes_[i]);
+  if (!same_cells) leave(i);
+  boxes_[i] = box;
+  rings_[i] = std::move(ring);
+  if (!same_cells) enter(i);
 }
 
 void PackingSpace::clear() {
-  for (size_t i = fixed_; i < solids_.size(); ++i) leave(i);
-  solids_.resize(fixed_);
+  for (size_t i = fixed_; i < boxes_.size(); ++i) leave(i);
+  rings_.resize(fixed_);
+  boxes_.resize(fixed_);
   seen_.resize(fixed_);
 }
 
@@ -140,19 +149,18 @@ bool PackingSpace::is_free(const std::vector<Vec2>& ring, int except) const {
 bool PackingSpace::is_clear(const std::vector<Vec2>& ring, int except) const {
   const Box box = box_of(ring);
   const Box reach = box.grown(clearance_);
-  const size_t skipped = except < 0 ? solids_.size() : fixed_ + static_cast<size_t>(except);
+  const size_t skipped = except < 0 ? boxes_.size() : fixed_ + static_cast<size_t>(except);
   ++question_;
   bool clear = true;
-  each_cell(reach, [&](size_t cell) {
+  each_cell(cells_of(reach), [&](size_t cell) {
+    if (!clear) return;
     for (const size_t i : cells_[cell]) {
-      if (!clear) return;
-      if (i == skipped || seen_[i] == question_) continue;
+      if (i == skipped || apart(reach, boxes_[i]) || seen_[i] == question_) continue;
       seen_[i] = question_;
-      const Solid& other = solids_[i];
-      if (apart(reach, other.box)) continue;
-      clear = !borders_nearer(ring, box, other.ring, clearance_) &&
-              !(contains(other.box, box) && strictly_inside(other.ring, ring.front())) &&
-              !(contains(box, other.box) && strictly_inside(ring, other.ring.front()));
+      clear = !borders_nearer(ring, box, rings_[i], clearance_) &&
+              !(contains(boxes_[i], box) && strictly_inside(rings_[i], ring.front())) &&
+              !(contains(box, boxes_[i]) && strictly_inside(ring, rings_[i].front()));
+      if (!clear) return;
     }
   });
   return clear;

@@ -33,26 +33,29 @@ class PackingSpace {
   [[nodiscard]] double area() const { return area_; }
   /// What is kept between two blocks, m.
   [[nodiscard]] double clearance() const { return clearance_; }
-  [[nodiscard]] const std::vector<Vec2>& block(int i) const { return solids_[fixed_ + i].ring; }
+  [[nodiscard]] const std::vector<Vec2>& block(int i) const { return rings_[fixed_ + i]; }
 
  private:
-  struct Solid {
-    std::vector<Vec2> ring;
-    Box box;
+  struct Cells {
+    int x0, x1, y0, y1;
+    bool operator==(const Cells&) const = default;
   };
   [[nodiscard]] bool keeps_off_border(const std::vector<Vec2>& ring, const Box& box) const;
   void enter(size_t solid);
   void leave(size_t solid);
-  /// Calls f(cell) for every cell of the grid that a box touches.
+  /// The cells of the grid that a box touches.
+  [[nodiscard]] Cells cells_of(const Box& box) const;
   template <class F>
-  void each_cell(const Box& box, F&& f) const;
+  void each_cell(const Cells& cells, F&& f) const;
 
   std::vector<Vec2> outline_;
   Box box_;
   double area_, clearance_, cell_;
   int columns_, rows_;
-  std::vector<Solid> solids_;  // holes and obstacles, then blocks
-  size_t fixed_ = 0;           // number of holes and obstacles
+  // Of holes and obstacles, then of blocks.
+  std::vector<std::vector<Vec2>> rings_;
+  std::vector<Box> boxes_;
+  size_t fixed_ = 0;  // number of holes and obstacles
   std::vector<std::vector<size_t>> cells_;
   mutable std::vector<size_t> seen_;  // by which question each solid was looked at last
   mutable size_t question_ = 0;
