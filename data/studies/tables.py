@@ -7,6 +7,7 @@
     tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
     tables.py repose HEAPS                       angle of repose
     tables.py cost PACKS                         time per body and step, and what takes it
+    tables.py picture FILE.png LABEL=FLOWS ...   jam probability over the width, and discharge (with gnuplot)
 
 FLOWS are made from hopper-flow.json, HEAPS from repose.json, PACKS from pack.json. Intervals are for 95 %.
 """
@@ -16,6 +17,7 @@ import csv
 import json
 import math
 import pathlib
+import subprocess
 
 D, RHO, G = 0.1, 2000.0, 9.81  # m, kg/m^3, m/s^2
 MASS = RHO * math.pi * D**2 / 4  # kg, mean of a block
@@ -225,12 +227,70 @@ def cost(args):
               f" {pairs['candidates'] / n:.2f}, {pairs['touching'] / n:.2f}")
 
 
+def picture(args):
+    studies = [study.split("=", 1) for study in args.studies]
+    groups = [(label, by_width(flows(folder))) for label, folder in studies]
+    blocks, jams, curves = [], [], []
+
+    def block(lines):
+        blocks.append(f"$b{len(blocks)} << EOD\n" + "\n".join(lines) + "\nEOD\n")
+        return f"$b{len(blocks) - 1}"
+
+    def points(rows, label, colour, style):
+        aside = .03 * (len(jams) - 1)  # so that intervals do not lie on each other
+        data = block(f"{width + aside:g} {p:g} {low:g} {high:g}" for width, p, low, high in rows)
+        jams.append(f"{data} using 1:2:3:4 with yerrorlines lc {colour} pt 7 {style} title '{label}'")
+
+    for colour, (label, widths) in enumerate(groups, 1):
+        rows = []
+        for width, runs in widths:
+            k = sum(r.jammed for r in runs)
+            rows.append((width, k / len(runs), *wilson(k, len(runs))))
+        points(rows, label, colour, "")
+        for width, runs in widths:
+            if width != args.width:
+                continue
+            for i, r in enumerate(runs):
+                data = block(f"{t:g} {r.counts[0] - c:g}" for t, c in zip(r.times, r.counts))
+                title = f"title '{label}'" if i == 0 else "notitle"
+                curves.append(f"{data} using 1:2 with lines lc {colour} lw 0.7 {title}")
+    for i, text in enumerate(args.reference):
+        rows = [(width, int(r["jammed"]) / int(r["n"]), float(r["lo"]), float(r["hi"]))
+                for width, r in sorted(reference(text).items())]
+        points(rows, f"Box2D, {text.replace(',', ', mu ')}", len(groups) + 1 + i, "dt 2")
+    script = "".join(blocks) + f"""
+set terminal pngcairo noenhanced size 1500,700 font ',13'
+set output '{args.file}'
+set multiplot layout 1,2
+set bmargin 8
+set xlabel 'width of the opening D/d'
+set ylabel 'probability of a jam, with 95 % intervals'
+set yrange [0:1.02]
+set offsets 0.3, 0.3, 0, 0
+set key outside bottom center horizontal maxcols 2
+plot {", ".join(jams)}
+set xlabel 'time (s)'
+set ylabel 'blocks that have come out'
+set yrange [0:*]
+set offsets 0, 0, 0, 0
+set title 'D/d = {args.width:g}: each run'
+plot {", ".join(curves) if curves else "NaN notitle"}
+"""
+    subprocess.run(["gnuplot"], input=script, text=True, check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for command in (jam, hazard, pairs, beverloo, repose, cost):
+    for command in (jam, hazard, pairs, beverloo, repose, cost, picture):
         sub = commands.add_parser(command.__name__)
-        sub.add_argument("folder")
+        if command is picture:
+            sub.add_argument("file", metavar="FILE.png")
+            sub.add_argument("studies", metavar="LABEL=FLOWS", nargs="+")
+            sub.add_argument("--width", type=float, default=7, help="D/d of the discharge curves (7)")
+            sub.add_argument("--reference", metavar="SHAPE,MU", action="append", default=[], help="as for jam")
+        else:
+            sub.add_argument("folder")
         sub.set_defaults(command=command)
         if command is pairs:
             sub.add_argument("other")

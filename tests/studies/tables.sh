@@ -35,6 +35,11 @@ found=$(grep -o '([0-9]*)' hazard.txt | tr -d '()' | awk '{ n += $1 } END { prin
 tables beverloo flow | tee beverloo.txt
 grep -q '^C = ' beverloo.txt || fail "no fit"
 
+if command -v gnuplot >/dev/null; then
+  tables picture jam.png "some blocks"=flow --reference quad,0.5 --width 9
+  head -c 8 jam.png | grep -q PNG || fail "no picture"
+fi
+
 # 12 blocks in the trough.
 "$program" sweep "$studies/pack.json" --quiet --table <(printf '#blocks,fill.0.count\n12,12\n24,24\n') --set time.end=0.05 -o pack
 tables cost pack | tee cost.txt
