@@ -254,10 +254,10 @@ def picture(args):
                 data = block(f"{t:g} {r.counts[0] - c:g}" for t, c in zip(r.times, r.counts))
                 title = f"title '{label}'" if i == 0 else "notitle"
                 curves.append(f"{data} using 1:2 with lines lc {colour} lw 0.7 {title}")
-    for i, text in enumerate(args.reference):
+    for text in args.reference:
         rows = [(width, int(r["jammed"]) / int(r["n"]), float(r["lo"]), float(r["hi"]))
                 for width, r in sorted(reference(text).items())]
-        points(rows, f"Box2D, {text.replace(',', ', mu ')}", len(groups) + 1 + i, "dt 2")
+        points(rows, f"Box2D, {text.replace(',', ', mu ')}", "rgb 'black'", "dt 2")
     script = "".join(blocks) + f"""
 set terminal pngcairo noenhanced size 1500,700 font ',13'
 set output '{args.file}'
