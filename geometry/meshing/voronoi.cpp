@@ -28,9 +28,11 @@ Polygon local_polygon(const Polygon& region) {
   }
 }
 
-// Per site: whether an edge of the outline may come near its cell. The test uses the cell's box.
-std::vector<bool> cells_at_outline(const VoronoiDiagram& diagram, int sites,
-                                   const Polygon& region) {
+constexpr int kNone = -1;     // no edge of the outline comes near a cell
+constexpr int kSeveral = -2;  // more than one does
+
+// Per site: the edge of the outline that meets the box of its cell, kNone or kSeveral.
+std::vector<int> edges_near_cells(const VoronoiDiagram& diagram, int sites, const Polygon& region) {
   std::vector<Box> boxes;
   boxes.reserve(sites + region.size());
   for (int i = 0; i < sites; ++i) boxes.push_back(diagram.box_of(i));
@@ -41,9 +43,9 @@ std::vector<bool> cells_at_outline(const VoronoiDiagram& diagram, int sites,
   }
   std::vector<BoxPair> pairs;
   BoxGrid().find_pairs(boxes, pairs);
-  std::vector<bool> at_outline(sites, false);
+  std::vector<int> near(sites, kNone);
   for (const BoxPair& pair : pairs) {
-    if (pair.first >= sites || pair.second < sites || at_outline[pair.first]) continue;
+    if (pair.first >= sites || pair.second < sites || near[pair.first] == kSeveral) continue;
     const Box& box = boxes[pair.first];
     const int k = pair.second - sites;
     int left = 0, right = 0;
@@ -53,9 +55,23 @@ std::vector<bool> cells_at_outline(const VoronoiDiagram& diagram, int sites,
       left += side > 0;
       right += side < 0;
     }
-    at_outline[pair.first] = left < 4 && right < 4;
+    if (left < 4 && right < 4) near[pair.first] = near[pair.first] == kNone ? k : kSeveral;
   }
-  return at_outline;
+  return near;
+}
+
+// The part of a convex ring on the left of the line from p to q.
+std::vector<Vec2> left_part(const std::vector<Vec2>& ring, const Vec2& p, const Vec2& q) {
+  std::vector<Vec2> part;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2& a = ring[i];
+    const Vec2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
+    const double at_a = cross(q - p, a - p);
+    const double at_b = cross(q - p, b - p);
+    if (at_a >= 0) part.push_back(a);
+    if (at_a * at_b < 0) part.push_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  return part;
 }
 
 // The new position of a site that moves towards `target` and must not leave the ring. It is the
@@ -74,20 +90,31 @@ Vec2 walk(const Vec2& site, const Vec2& target, const std::vector<Vec2>& ring) {
   return site + exit / 2 * way;
 }
 
-// The sites after one step of Lloyd's iteration. The region is in local coordinates.
+// The sites after one step of Lloyd's iteration. The region is in local coordinates. Cells that
+// meet at most one edge of the outline are cut in double precision, which suffices to move sites.
+// The others are cut exactly, with their neighbours, which may get pieces of them.
 std::vector<Vec2> sites_after_step(const Polygon& region, const std::vector<Vec2>& sites) {
   const int n = static_cast<int>(sites.size());
   const VoronoiDiagram diagram(sites, bounding_box(region));
-  const std::vector<bool> at_outline = cells_at_outline(diagram, n, region);
+  const std::vector<int> near = edges_near_cells(diagram, n, region);
+  std::vector<bool> exact(n);
+  for (int i = 0; i < n; ++i) exact[i] = near[i] == kSeveral;
+  exact = diagram.with_neighbours(exact);
   std::vector<Vec2> moved = sites;
   const auto centroid = [](const std::vector<Vec2>& ring, const Vec2& site) -> Vec2 {
     const RingMoments m = ring_moments(ring, site);
     return site + m.first / m.area;
   };
   for (int i = 0; i < n; ++i) {
-    if (!at_outline[i]) moved[i] = centroid(diagram.whole_cell(i), sites[i]);
+    if (exact[i]) continue;
+    std::vector<Vec2> ring = diagram.whole_cell(i);
+    if (near[i] != kNone) ring = left_part(ring, region[near[i]], region.after(near[i]));
+    const Vec2 place = centroid(ring, sites[i]);
+    if (!is_finite(place)) continue;
+    if (near[i] == kNone || strictly_inside(region.vertices(), place)) moved[i] = place;
   }
-  Pieces pieces = diagram.cut(region, at_outline);
+  if (std::find(exact.begin(), exact.end(), true) == exact.end()) return moved;
+  Pieces pieces = diagram.cut(region, exact);
   join_pieces(pieces);
   for (const Piece& piece : pieces.list) {
     if (!piece.owned) continue;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <stdexcept>
 
 #include "apothem/geometry/meshing/polygon_mesh.hpp"
@@ -43,45 +44,60 @@ struct VoronoiDiagram::Parts {
     int centre, other;  // its two ends, as indices of `centres`
   };
 
-  std::vector<Vec2> sites;
-  std::vector<Exact::Point_2> centres;      // vertices of the diagram
+  std::vector<Vec2> sites;                  // with the four dummy sites at the end
   std::vector<Edge> edges;                  // edges of the diagram
   std::vector<std::vector<int>> cells;      // per site: its centres, counter-clockwise
   std::vector<std::array<int, 3>> triples;  // per centre: its three sites, ascending
+  std::vector<Vec2> centres;                // vertices of the diagram, in double precision
+
+  // A vertex of the diagram, exact.
+  [[nodiscard]] Exact::Point_2 exact_centre(int c) const {
+    const auto at = [&](int i) { return Exact::Point_2(sites[i].x(), sites[i].y()); };
+    const auto& [i, j, k] = triples[c];
+    return CGAL::circumcenter(at(i), at(j), at(k));
+  }
 };
 
 namespace {
 
+// The centre of the circle through three points.
+Vec2 circumcentre(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const Vec2 p = b - a;
+  const Vec2 q = c - a;
+  const Vec2 r = q.squaredNorm() * p - p.squaredNorm() * q;
+  return a + Vec2(-r.y(), r.x()) / (2 * cross(p, q));
+}
+
 VoronoiDiagram::Parts voronoi_parts(const std::vector<Vec2>& sites, const Box& box) {
   VoronoiDiagram::Parts parts;
+  const int n = static_cast<int>(sites.size());
   parts.sites = sites;
   parts.cells.resize(sites.size());
   // The dummy sites are so far away that every point of the region is nearer to any site.
   const double far = 4 * box.extent();
-  const Inexact::Point_2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
-  std::vector<std::pair<Inexact::Point_2, int>> points;
+  const Vec2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
   for (const double x : {-far, far}) {
-    for (const double y : {-far, far}) points.push_back({middle + Inexact::Vector_2(x, y), -1});
+    for (const double y : {-far, far}) parts.sites.push_back(middle + Vec2(x, y));
   }
-  for (size_t i = 0; i < sites.size(); ++i) {
-    points.push_back({{sites[i].x(), sites[i].y()}, static_cast<int>(i)});
+  std::vector<std::pair<Inexact::Point_2, int>> points;
+  points.reserve(parts.sites.size());
+  for (const Vec2& site : parts.sites) {
+    points.push_back({{site.x(), site.y()}, static_cast<int>(points.size())});
   }
   Delaunay delaunay(points.begin(), points.end());
   if (delaunay.number_of_vertices() != points.size()) {
     throw std::invalid_argument("two sites are the same point");
   }
-  const CGAL::Cartesian_converter<Inexact, Exact> exact;
   for (const auto face : delaunay.finite_face_handles()) {
     face->info() = static_cast<int>(parts.centres.size());
     std::array<int, 3>& triple = parts.triples.emplace_back();
     for (int k = 0; k < 3; ++k) triple[k] = face->vertex(k)->info();
     std::sort(triple.begin(), triple.end());
-    parts.centres.push_back(CGAL::circumcenter(exact(face->vertex(0)->point()),
-                                               exact(face->vertex(1)->point()),
-                                               exact(face->vertex(2)->point())));
+    const auto& [i, j, k] = triple;
+    parts.centres.push_back(circumcentre(parts.sites[i], parts.sites[j], parts.sites[k]));
   }
   for (const auto vertex : delaunay.finite_vertex_handles()) {
-    if (vertex->info() < 0) continue;
+    if (vertex->info() >= n) continue;
     const auto start = delaunay.incident_faces(vertex);
     auto face = start;
     do {
@@ -91,7 +107,7 @@ VoronoiDiagram::Parts voronoi_parts(const std::vector<Vec2>& sites, const Box& b
   for (const auto& [face, k] : delaunay.finite_edges()) {
     const int a = face->vertex(Delaunay::cw(k))->info();
     const int b = face->vertex(Delaunay::ccw(k))->info();
-    if (a >= 0 && b >= 0) parts.edges.push_back({a, b, face->info(), face->neighbor(k)->info()});
+    if (a < n && b < n) parts.edges.push_back({a, b, face->info(), face->neighbor(k)->info()});
   }
   return parts;
 }
@@ -113,11 +129,16 @@ class Cutter {
     for (int k = 0; k < n; ++k) {
       curves.emplace_back(Segments::Curve_2(outline_[k], outline_[k + 1 == n ? 0 : k + 1]), k);
     }
+    std::vector<std::optional<Exact::Point_2>> centres(diagram_.centres.size());
+    const auto centre = [&](int c) -> const Exact::Point_2& {
+      if (!centres[c]) centres[c] = diagram_.exact_centre(c);
+      return *centres[c];
+    };
     for (size_t e = 0; e < diagram_.edges.size(); ++e) {
       const VoronoiDiagram::Parts::Edge& edge = diagram_.edges[e];
       if (!wanted[edge.a] && !wanted[edge.b]) continue;
-      const Exact::Point_2& p = diagram_.centres[edge.centre];
-      const Exact::Point_2& q = diagram_.centres[edge.other];
+      const Exact::Point_2& p = centre(edge.centre);
+      const Exact::Point_2& q = centre(edge.other);
       if (p != q) curves.emplace_back(Segments::Curve_2(p, q), n + static_cast<int>(e));
     }
     Arrangement arrangement;
@@ -237,24 +258,24 @@ VoronoiDiagram::~VoronoiDiagram() = default;
 Box VoronoiDiagram::box_of(int site) const {
   Box box;
   for (const int c : parts_->cells[site]) {
-    const CGAL::Bbox_2 b = parts_->centres[c].bbox();
-    box.include(b.xmin(), b.ymin());
-    box.include(b.xmax(), b.ymax());
+    box.include(parts_->centres[c].x(), parts_->centres[c].y());
   }
   return box;
 }
 
 std::vector<Vec2> VoronoiDiagram::whole_cell(int site) const {
-  const std::vector<Vec2>& sites = parts_->sites;
   std::vector<Vec2> ring;
-  for (const int c : parts_->cells[site]) {
-    const auto& [i, j, k] = parts_->triples[c];
-    const Vec2 p = sites[j] - sites[i];
-    const Vec2 q = sites[k] - sites[i];
-    const Vec2 r = q.squaredNorm() * p - p.squaredNorm() * q;
-    ring.push_back(sites[i] + Vec2(-r.y(), r.x()) / (2 * cross(p, q)));
-  }
+  for (const int c : parts_->cells[site]) ring.push_back(parts_->centres[c]);
   return ring;
+}
+
+std::vector<bool> VoronoiDiagram::with_neighbours(const std::vector<bool>& marked) const {
+  std::vector<bool> result = marked;
+  for (const Parts::Edge& edge : parts_->edges) {
+    if (marked[edge.a]) result[edge.b] = true;
+    if (marked[edge.b]) result[edge.a] = true;
+  }
+  return result;
 }
 
 Pieces VoronoiDiagram::cut(const Polygon& region, const std::vector<bool>& wanted) const {

@@ -20,11 +20,14 @@ class VoronoiDiagram {
   VoronoiDiagram(const VoronoiDiagram&) = delete;
   VoronoiDiagram& operator=(const VoronoiDiagram&) = delete;
 
-  /// A box that contains the cell of a site.
+  /// The box around the cell of a site, in double precision.
   [[nodiscard]] Box box_of(int site) const;
 
-  /// The cell of a site without the outline, in double precision, which suffices to move sites.
+  /// The cell of a site without the outline, in double precision.
   [[nodiscard]] std::vector<Vec2> whole_cell(int site) const;
+
+  /// The marked sites and those whose cells share an edge with theirs.
+  [[nodiscard]] std::vector<bool> with_neighbours(const std::vector<bool>& marked) const;
 
   /// The pieces into which the outline of the region cuts the cells of the sites that are `wanted`.
   [[nodiscard]] Pieces cut(const Polygon& region, const std::vector<bool>& wanted) const;

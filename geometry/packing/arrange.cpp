@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "apothem/geometry/packing/block_shapes.hpp"
 
@@ -91,15 +92,27 @@ constexpr double kSmaller = .8;        // size of blocks in the next attempt
 constexpr double kFirstMove = .2;      // of a block's size
 constexpr double kAccepted = .4;       // share of moves that should succeed
 constexpr double kGrowth = .05;        // largest growth of a block in a sweep
-constexpr int kSweepsOfALook = 500;    // sweeps between looks at the growth
+constexpr int kSweepsOfALook = 500;    // between looks at the growth, at least
+constexpr int kMovesOfALook = 300000;  // the same, moves
 constexpr double kSlowest = 1e-3;      // growth of the missing area between two looks, at the end
+constexpr int kSweepsOfAChoice = 10;   // sweeps between choices of the blocks that move
+constexpr double kFew = .02;           // share of blocks still to grow from which on not all move
+constexpr double kAround = 10;         // of a block's size: how near to one of them a block moves
+constexpr double kRow = 8;             // of a block's size: height of the rows of the numbering
 
 // Blocks that grow and move at random, each as much as there is room.
 class Growth {
  public:
   Growth(PackingSpace& space, RandomNumbers& random, std::vector<Block> blocks, bool turns)
-      : space_(space), random_(random), blocks_(std::move(blocks)), turns_(turns) {
-    for (const Block& b : blocks_) solid_ += b.scale * b.scale;
+      : space_(space),
+        random_(random),
+        blocks_(std::move(blocks)),
+        turns_(turns),
+        count_(static_cast<int>(blocks_.size())) {
+    for (const Block& b : blocks_) {
+      solid_ += b.scale * b.scale;
+      size_ = std::max(size_, b.scale);
+    }
     const double start = std::min(1., std::sqrt(kLooseFraction * space.area() / solid_));
     parts_.assign(blocks_.size(), start);
     rates_.assign(blocks_.size(), kGrowth);
@@ -112,37 +125,57 @@ class Growth {
       std::vector<Block> small = blocks_;
       for (size_t i = 0; i < small.size(); ++i) small[i].scale *= parts_[i];
       result = insert_at_random(space_, random_, small);
-      number_blocks(small);
-      if (result.placed == static_cast<int>(blocks_.size())) break;
+      if (result.placed == count_) break;
       if (attempt == kAttempts) return result;
       // Few large blocks may not fit into a winding region yet.
       for (double& part : parts_) part *= kSmaller;
     }
-    for (size_t i = 0; i < blocks_.size(); ++i) places_.push_back(centroid(result.rings[i]));
+    const std::vector<int> order = put_in_order(result.rings);
     double missing = missing_area();
-    for (int sweep = 1; missing > 0; ++sweep) {
+    double missing_at_look = missing;
+    const int look = std::max(kSweepsOfALook, kMovesOfALook / count_);
+    for (int sweep = 0; missing > 0; ++sweep) {
+      if (sweep > 0 && sweep % look == 0) {
+        if (missing > missing_at_look * (1 - kSlowest)) break;
+        missing_at_look = missing;
+      }
+      if (sweep % kSweepsOfAChoice == 0) choose_movable();
       move_all();
       grow_all();
-      if (sweep % kSweepsOfALook != 0) continue;
-      const double now = missing_area();
-      if (now > missing * (1 - kSlowest)) break;
-      missing = now;
+      missing = missing_area();
     }
-    result.scale = std::sqrt(1 - missing_area() / solid_);
-    for (size_t i = 0; i < blocks_.size(); ++i) result.rings[i] = space_.block(numbers_[i]);
+    result.scale = std::sqrt(1 - missing / solid_);
+    for (int i = 0; i < count_; ++i) {
+      const std::span<const Vec2> ring = space_.block(i);
+      result.rings[order[i]].assign(ring.begin(), ring.end());
+    }
     return result;
   }
 
  private:
-  static Vec2 centroid(const std::vector<Vec2>& ring) {
-    return ring.front() + area_moments(Polygon(ring)).centroid;
-  }
-
-  // The space numbers blocks as they were inserted.
-  void number_blocks(const std::vector<Block>& inserted) {
-    numbers_.resize(inserted.size());
-    int next = 0;
-    for (const size_t i : by_size(inserted)) numbers_[i] = next++;
+  // Numbers the blocks so that neighbours in space are near each other in memory, and returns the
+  // number that each has had before.
+  std::vector<int> put_in_order(const std::vector<std::vector<Vec2>>& rings) {
+    for (const std::vector<Vec2>& ring : rings) {
+      places_.emplace_back(ring.front() + area_moments(Polygon(ring)).centroid);
+    }
+    std::vector<int> order(blocks_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int i, int j) {
+      const auto row = [&](int k) { return std::floor(places_[k].y() / (kRow * size_)); };
+      return std::tuple(row(i), places_[i].x(), i) < std::tuple(row(j), places_[j].x(), j);
+    });
+    const auto reorder = [&](auto& list) {
+      auto old = std::move(list);
+      list.clear();
+      for (const int i : order) list.push_back(std::move(old[i]));
+    };
+    reorder(blocks_);
+    reorder(parts_);
+    reorder(places_);
+    space_.clear();
+    for (const int i : order) space_.add(rings[i]);
+    return order;
   }
 
   [[nodiscard]] double missing_area() const {
@@ -153,35 +186,48 @@ class Growth {
     return sum;
   }
 
+  // Once few blocks are still to grow, only blocks around them need to make room.
+  void choose_movable() {
+    std::vector<int> small;
+    for (int i = 0; i < count_; ++i) {
+      if (parts_[i] < 1) small.push_back(i);
+    }
+    const bool few = static_cast<int>(small.size()) < kFew * count_;
+    movable_.clear();
+    for (int i = 0; i < count_; ++i) {
+      const auto near = [&](int k) { return (places_[i] - places_[k]).norm() < kAround * size_; };
+      if (!few || std::any_of(small.begin(), small.end(), near)) movable_.push_back(i);
+    }
+  }
+
   void move_all() {
     int accepted = 0;
-    for (size_t i = 0; i < blocks_.size(); ++i) {
+    for (const int i : movable_) {
       const double reach = move_ * parts_[i] * blocks_[i].scale;
       const double x = random_.uniform(-reach, reach);
       const Vec2 place = places_[i] + Vec2(x, random_.uniform(-reach, reach));
-      Block turned = blocks_[i];
-      if (turns_) turned.angle += random_.uniform(-move_, move_);
-      std::vector<Vec2> ring = ring_of(turned, place, parts_[i]);
-      if (!space_.is_free(ring, numbers_[i])) continue;
-      space_.move(numbers_[i], std::move(ring));
+      const double angle = blocks_[i].angle + (turns_ ? random_.uniform(-move_, move_) : 0);
+      place_into(blocks_[i].shape, place, angle, blocks_[i].scale * parts_[i], ring_);
+      if (!space_.is_free(ring_, i)) continue;
+      space_.move(i, ring_);
       places_[i] = place;
-      blocks_[i].angle = turned.angle;
+      blocks_[i].angle = angle;
       ++accepted;
     }
-    const double share = static_cast<double>(accepted) / static_cast<double>(blocks_.size());
+    const double share = static_cast<double>(accepted) / static_cast<double>(movable_.size());
     move_ = std::clamp(move_ * (share > kAccepted ? 1.05 : .95), 1e-4, .5);
   }
 
   void grow_all() {
-    for (size_t i = 0; i < blocks_.size(); ++i) {
+    for (int i = 0; i < count_; ++i) {
       if (parts_[i] == 1) continue;
       const double goal = std::min(1., parts_[i] * (1 + rates_[i]));
-      std::vector<Vec2> ring = ring_of(blocks_[i], places_[i], goal);
-      if (!space_.is_free(ring, numbers_[i])) {
+      place_into(blocks_[i].shape, places_[i], blocks_[i].angle, blocks_[i].scale * goal, ring_);
+      if (!space_.is_free(ring_, i)) {
         rates_[i] = std::max(rates_[i] / 2, 1e-6);
         continue;
       }
-      space_.move(numbers_[i], std::move(ring));
+      space_.move(i, ring_);
       parts_[i] = goal;
       rates_[i] = std::min(rates_[i] * 1.5, kGrowth);
     }
@@ -191,11 +237,14 @@ class Growth {
   RandomNumbers& random_;
   std::vector<Block> blocks_;
   bool turns_;
+  int count_;
   double solid_ = 0;           // area of all blocks at full size, m^2
+  double size_ = 0;            // of the largest, m
   std::vector<double> parts_;  // of its full size that each block has
   std::vector<double> rates_;  // at which it tries to grow
-  std::vector<int> numbers_;   // in the space
   std::vector<Vec2> places_;   // of the centroids
+  std::vector<int> movable_;   // blocks that move
+  std::vector<Vec2> ring_;     // of the block that is being tried
   double move_ = kFirstMove;
 };
 

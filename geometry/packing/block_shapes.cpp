@@ -75,14 +75,19 @@ std::vector<Vec2> normalised(std::vector<Vec2> ring) {
   return result;
 }
 
-std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, double angle,
-                         double scale) {
+void place_into(const std::vector<Vec2>& ring, const Vec2& place, double angle, double scale,
+                std::vector<Vec2>& result) {
   const double c = scale * std::cos(angle), s = scale * std::sin(angle);
-  std::vector<Vec2> result;
-  result.reserve(ring.size());
+  result.clear();
   for (const Vec2& v : ring) {
     result.emplace_back(place.x() + c * v.x() - s * v.y(), place.y() + s * v.x() + c * v.y());
   }
+}
+
+std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, double angle,
+                         double scale) {
+  std::vector<Vec2> result;
+  place_into(ring, place, angle, scale, result);
   return result;
 }
 

@@ -26,8 +26,11 @@ std::vector<Vec2> cross_shape(double arm);
 /// must be simple.
 std::vector<Vec2> normalised(std::vector<Vec2> ring);
 
-/// The ring turned by `angle` (rad), scaled and moved to `place`.
+/// The ring turned by `angle` (rad), scaled and moved to `place`. `place_into` writes it into
+/// `result`.
 std::vector<Vec2> placed(const std::vector<Vec2>& ring, const Vec2& place, double angle,
                          double scale);
+void place_into(const std::vector<Vec2>& ring, const Vec2& place, double angle, double scale,
+                std::vector<Vec2>& result);
 
 }  // namespace apothem

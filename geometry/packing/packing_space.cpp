@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -12,7 +13,7 @@ namespace {
 constexpr double kLeastClearance = 1e-9;  // of the size of a block
 constexpr double kMostCells = 4e6;
 
-Box box_of(const std::vector<Vec2>& ring) {
+Box box_of(std::span<const Vec2> ring) {
   Box box;
   for (const Vec2& v : ring) box.include(v.x(), v.y());
   return box;
@@ -42,7 +43,7 @@ bool nearer(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, double d
   return least < distance * distance;
 }
 
-bool borders_nearer(const std::vector<Vec2>& a, const Box& box_a, const std::vector<Vec2>& b,
+bool borders_nearer(std::span<const Vec2> a, const Box& box_a, std::span<const Vec2> b,
                     double distance) {
   const Box reach = box_a.grown(distance);
   for (size_t j = 0; j < b.size(); ++j) {
@@ -58,6 +59,35 @@ bool borders_nearer(const std::vector<Vec2>& a, const Box& box_a, const std::vec
     }
   }
   return false;
+}
+
+bool is_convex(std::span<const Vec2> ring) {
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2& b = ring[(i + 1) % ring.size()];
+    if (orientation(ring[i], b, ring[(i + 2) % ring.size()]) < 0) return false;
+  }
+  return true;
+}
+
+enum class Between { nothing, line, strip };
+
+// What separates a convex ring from another ring and is parallel to one of its edges: a strip wider
+// than `distance`, or at least a line.
+Between edge_between(std::span<const Vec2> convex, std::span<const Vec2> other, double distance) {
+  Between found = Between::nothing;
+  for (size_t i = 0; i < convex.size(); ++i) {
+    const Vec2& p = convex[i];
+    const Vec2 edge = convex[i + 1 == convex.size() ? 0 : i + 1] - p;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec2& v : other) {
+      least = std::min(least, cross(Vec2(v - p), edge));
+      if (least <= 0) break;
+    }
+    if (least <= 0) continue;
+    if (least * least > distance * distance * edge.squaredNorm()) return Between::strip;
+    found = Between::line;
+  }
+  return found;
 }
 
 }  // namespace
@@ -96,11 +126,11 @@ void PackingSpace::each_cell(const Cells& cells, F&& f) const {
   }
 }
 
-void PackingSpace::enter(size_t solid) {
+void PackingSpace::enter(int solid) {
   each_cell(cells_of(boxes_[solid]), [&](size_t cell) { cells_[cell].push_back(solid); });
 }
 
-void PackingSpace::leave(size_t solid) {
+void PackingSpace::leave(int solid) {
   each_cell(cells_of(boxes_[solid]), [&](size_t cell) { std::erase(cells_[cell], solid); });
 }
 
@@ -111,56 +141,86 @@ void PackingSpace::add_obstacle(const std::vector<Vec2>& ring) {
   ++fixed_;
 }
 
-void PackingSpace::add(std::vector<Vec2> ring) {
-  const Box box = box_of(ring);
-  rings_.push_back(std::move(ring));
-  boxes_.push_back(box);
+void PackingSpace::add(std::span<const Vec2> ring) {
+  points_.insert(points_.end(), ring.begin(), ring.end());
+  first_.push_back(points_.size());
+  boxes_.push_back(box_of(ring));
+  convex_.push_back(static_cast<char>(is_convex(ring)));
+  in_the_way_.push_back(-1);
   seen_.push_back(0);
-  enter(boxes_.size() - 1);
+  enter(static_cast<int>(boxes_.size()) - 1);
 }
 
-void PackingSpace::move(int block, std::vector<Vec2> ring) {
-  const size_t i = fixed_ + static_cast<size_t>(block);
+void PackingSpace::move(int block, std::span<const Vec2> ring) {
+  const int i = fixed_ + block;
   const Box box = box_of(ring);
   const bool same_cells = cells_of(box) == cells_of(boxes_[i]);
   if (!same_cells) leave(i);
   boxes_[i] = box;
-  rings_[i] = std::move(ring);
+  std::copy(ring.begin(), ring.end(), points_.begin() + static_cast<std::ptrdiff_t>(first_[i]));
   if (!same_cells) enter(i);
 }
 
 void PackingSpace::clear() {
-  for (size_t i = fixed_; i < boxes_.size(); ++i) leave(i);
-  rings_.resize(fixed_);
+  for (int i = fixed_; i < static_cast<int>(boxes_.size()); ++i) leave(i);
   boxes_.resize(fixed_);
+  convex_.resize(fixed_);
+  in_the_way_.resize(fixed_);
   seen_.resize(fixed_);
+  first_.resize(fixed_ + 1);
+  points_.resize(first_.back());
 }
 
-bool PackingSpace::keeps_off_border(const std::vector<Vec2>& ring, const Box& box) const {
+bool PackingSpace::keeps_off_border(std::span<const Vec2> ring, const Box& box) const {
   if (!contains(box_, box) || borders_nearer(ring, box, outline_, clearance_)) return false;
   return strictly_inside(outline_, ring.front());
 }
 
-bool PackingSpace::is_free(const std::vector<Vec2>& ring, int except) const {
+bool PackingSpace::is_free(std::span<const Vec2> ring, int except) const {
   const Box box = box_of(ring);
   return contains(box_, box) && is_clear(ring, except) && keeps_off_border(ring, box);
 }
 
-bool PackingSpace::is_clear(const std::vector<Vec2>& ring, int except) const {
+// Whether a ring, whose box may meet that of a solid, keeps its distance from it.
+bool PackingSpace::keeps_off(std::span<const Vec2> ring, const Box& box, bool convex,
+                             int solid) const {
+  const std::span<const Vec2> other = this->ring(solid);
+  if (convex) {
+    const Between there = edge_between(ring, other, clearance_);
+    if (there == Between::strip) return true;
+    if (convex_[solid] != 0) {
+      const Between here = edge_between(other, ring, clearance_);
+      if (here == Between::strip) return true;
+      // Two convex rings without a line between them that is parallel to an edge overlap.
+      if (there == Between::nothing && here == Between::nothing) return false;
+    }
+  }
+  return !borders_nearer(ring, box, other, clearance_) &&
+         !(contains(boxes_[solid], box) && strictly_inside(other, ring.front())) &&
+         !(contains(box, boxes_[solid]) && strictly_inside(ring, other.front()));
+}
+
+bool PackingSpace::is_clear(std::span<const Vec2> ring, int except) const {
   const Box box = box_of(ring);
   const Box reach = box.grown(clearance_);
-  const size_t skipped = except < 0 ? boxes_.size() : fixed_ + static_cast<size_t>(except);
+  const int own = except < 0 ? -1 : fixed_ + except;
+  const bool convex = own < 0 ? is_convex(ring) : convex_[own] != 0;
+  // What was in the way of a block is likely to be there again.
+  if (own >= 0 && in_the_way_[own] >= 0) {
+    const int last = in_the_way_[own];
+    if (!apart(reach, boxes_[last]) && !keeps_off(ring, box, convex, last)) return false;
+  }
   ++question_;
   bool clear = true;
   each_cell(cells_of(reach), [&](size_t cell) {
     if (!clear) return;
-    for (const size_t i : cells_[cell]) {
-      if (i == skipped || apart(reach, boxes_[i]) || seen_[i] == question_) continue;
+    for (const int i : cells_[cell]) {
+      if (i == own || apart(reach, boxes_[i]) || seen_[i] == question_) continue;
       seen_[i] = question_;
-      clear = !borders_nearer(ring, box, rings_[i], clearance_) &&
-              !(contains(boxes_[i], box) && strictly_inside(rings_[i], ring.front())) &&
-              !(contains(box, boxes_[i]) && strictly_inside(ring, rings_[i].front()));
-      if (!clear) return;
+      if (keeps_off(ring, box, convex, i)) continue;
+      clear = false;
+      if (own >= 0) in_the_way_[own] = i;
+      return;
     }
   });
   return clear;

@@ -2,6 +2,8 @@
 // block is taken only where it keeps its distance from all of them.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
@@ -18,13 +20,13 @@ class PackingSpace {
   /// Keeps blocks away from a simple ring and from all that is inside it.
   void add_obstacle(const std::vector<Vec2>& ring);
   /// True if a block may lie there. The block of number `except` is not in the way.
-  [[nodiscard]] bool is_free(const std::vector<Vec2>& ring, int except = -1) const;
+  [[nodiscard]] bool is_free(std::span<const Vec2> ring, int except = -1) const;
   /// The same, but the border of the region does not count.
-  [[nodiscard]] bool is_clear(const std::vector<Vec2>& ring, int except = -1) const;
+  [[nodiscard]] bool is_clear(std::span<const Vec2> ring, int except = -1) const;
   /// Puts a block there, which must be free. Blocks are numbered from 0.
-  void add(std::vector<Vec2> ring);
-  /// Moves a block to where it may lie.
-  void move(int block, std::vector<Vec2> ring);
+  void add(std::span<const Vec2> ring);
+  /// Moves a block to where it may lie. The ring has as many vertices as it had.
+  void move(int block, std::span<const Vec2> ring);
   /// Takes all blocks out.
   void clear();
 
@@ -33,16 +35,21 @@ class PackingSpace {
   [[nodiscard]] double area() const { return area_; }
   /// What is kept between two blocks, m.
   [[nodiscard]] double clearance() const { return clearance_; }
-  [[nodiscard]] const std::vector<Vec2>& block(int i) const { return rings_[fixed_ + i]; }
+  [[nodiscard]] std::span<const Vec2> block(int i) const { return ring(fixed_ + i); }
 
  private:
   struct Cells {
     int x0, x1, y0, y1;
     bool operator==(const Cells&) const = default;
   };
-  [[nodiscard]] bool keeps_off_border(const std::vector<Vec2>& ring, const Box& box) const;
-  void enter(size_t solid);
-  void leave(size_t solid);
+  [[nodiscard]] bool keeps_off_border(std::span<const Vec2> ring, const Box& box) const;
+  [[nodiscard]] bool keeps_off(std::span<const Vec2> ring, const Box& box, bool convex,
+                               int solid) const;
+  [[nodiscard]] std::span<const Vec2> ring(int solid) const {
+    return {points_.data() + first_[solid], points_.data() + first_[solid + 1]};
+  }
+  void enter(int solid);
+  void leave(int solid);
   /// The cells of the grid that a box touches.
   [[nodiscard]] Cells cells_of(const Box& box) const;
   template <class F>
@@ -53,12 +60,15 @@ class PackingSpace {
   double area_, clearance_, cell_;
   int columns_, rows_;
   // Of holes and obstacles, then of blocks.
-  std::vector<std::vector<Vec2>> rings_;
+  std::vector<Vec2> points_;      // vertices of all rings, one ring behind the other
+  std::vector<size_t> first_{0};  // per ring its first vertex, and the number of all
   std::vector<Box> boxes_;
-  size_t fixed_ = 0;  // number of holes and obstacles
-  std::vector<std::vector<size_t>> cells_;
-  mutable std::vector<size_t> seen_;  // by which question each solid was looked at last
-  mutable size_t question_ = 0;
+  std::vector<char> convex_;
+  int fixed_ = 0;  // number of holes and obstacles
+  std::vector<std::vector<int>> cells_;
+  mutable std::vector<int> in_the_way_;      // per solid: what has been in its way last, or -1
+  mutable std::vector<std::uint64_t> seen_;  // by which question each solid was looked at last
+  mutable std::uint64_t question_ = 0;
 };
 
 }  // namespace apothem

@@ -40,7 +40,7 @@ bool is_simple(const std::vector<Vec2>& ring) {
                            CGAL::Exact_predicates_inexact_constructions_kernel());
 }
 
-bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p) {
+bool strictly_inside(std::span<const Vec2> ring, const Vec2& p) {
   // The ray from p to the right is tested for crossings with all edges. Each edge counts with its
   // lower end but without its upper one, so that a vertex on the ray is counted correctly.
   bool inside = false;

@@ -6,6 +6,7 @@
 //   segments_meet(a, b, c, d) = segments_meet(c, d, a, b) = segments_meet(b, a, c, d)
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "apothem/geometry/polygon/point.hpp"
@@ -25,6 +26,6 @@ bool is_simple(const std::vector<Vec2>& ring);
 
 /// True if p lies inside the simple ring and not on it. The ring may be clockwise or
 /// counter-clockwise.
-bool strictly_inside(const std::vector<Vec2>& ring, const Vec2& p);
+bool strictly_inside(std::span<const Vec2> ring, const Vec2& p);
 
 }  // namespace apothem
