@@ -5,6 +5,7 @@
 #include "apothem/geometry/integrals/distance_volume.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
 #include "apothem/geometry/integrals/placement.hpp"
+#include "apothem/geometry/integrals/quad_pair.hpp"
 #include "apothem/geometry/polygon/boundary_inside.hpp"
 #include "apothem/geometry/potential/lower_envelope.hpp"
 
@@ -29,10 +30,47 @@ Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double d
   return half;
 }
 
+// pair_integral for two quadrilaterals.
+PairIntegral quad_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                           EdgeWorkspace& workspace, NearEdges& near) {
+  const double dx = offset.x();
+  const double dy = offset.y();
+  QuadEdges found;
+  with_widest([&]() __attribute__((always_inline)) {
+    trace_quads(a, b, dx, dy, found);
+    return 0.;
+  });
+  if (separated(found.gap_a, a, b, b.steepest, near) ||
+      separated(found.gap_b, a, b, a.steepest, near)) {
+    return {};
+  }
+  RunEnds ends(workspace.ends);
+  Half of_a, of_b;
+  int i = 0;
+  const auto add = [&](const PlacedPotential& x, const PlacedPotential& y, double shift_x,
+                       double shift_y, int first, Half& half) {
+    for (; i < found.count && found.parts[i].edge < first + 4; ++i) {
+      const QuadEdges::Part& part = found.parts[i];
+      const int e = part.edge - first;
+      const PlacedEdge edge(x, y, e, shift_x, shift_y);
+      accumulate(edge, {part.sum, part.first, part.largest}, part.s1 - part.s0, half);
+      half.inside ^= std::uint64_t{part.s0 == 0} << e;
+      ends.add(edge, part.s0, part.s1);
+    }
+  };
+  add(a, b, dx, dy, 0, of_a);
+  const size_t middle = ends.used();
+  add(b, a, -dx, -dy, 4, of_b);
+  return join(a, b, offset, of_a, of_b, ends, middle);
+}
+
 }  // namespace
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near) {
+  if (are_quads(a, b) && near.of_a == NearEdges::kAll && near.of_b == NearEdges::kAll) {
+    return quad_integral(a, b, offset, workspace, near);
+  }
   const HeightRows height = height_rows(a, b, workspace.values);
   const double dx = offset.x();
   const double dy = offset.y();
@@ -201,9 +239,9 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnd
     Fine s0, s1;
     if (!clip(row, s0, s1)) continue;
     const Fine share = s1 - s0;
-    SegmentMoments<Fine> moments;  // along the part of the edge inside y
-    walk_envelope(row, s0, s1, [&](Fine u1, Fine v1, Fine u2, Fine v2) {
-      moments.add((u1 - s0) / share, v1, (u2 - s0) / share, v2);
+    EnvelopeMoments<Fine> moments;  // along the part of the edge inside y
+    walk_envelope(row, s0, s1, true, [&](bool there, Fine u1, Fine v1, Fine u2, Fine v2) {
+      moments.add(there, (u1 - s0) / share, v1, (u2 - s0) / share, v2);
     });
     PlacedEdge part(x, y, e, 0, 0);
     part.qx = static_cast<double>(edge.qx + s0 * edge.ex);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "apothem/execution/pack.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
 
@@ -14,7 +15,8 @@ namespace apothem::edge_detail {
 
 // phi along an edge as the minimum of the linear functions a_i + s (b_i - a_i), s in [0, 1]. a_i
 // and b_i are the heights of the two ends of the edge over edge i of the other polygon, divided by
-// the reference length. The limit phi <= 1 is one more function, with a_i = b_i = 1.
+// the reference length. The limit phi <= 1 is one more function, with a_i = b_i = 1. A row of packs
+// is of several edges.
 template <class Real>
 struct Row {
   const Real* a;
@@ -25,79 +27,99 @@ struct Row {
 
 // Finds the interval of s in which the edge is inside the polygon; returns false if there is none.
 // One sign per node decides, by a half-open rule and without a tolerance. An edge with a NaN is
-// kept and never counts as outside.
+// kept and never counts as outside. Nothing here branches on what is unpredictable.
 template <class Real>
-bool clip(const Row<Real>& row, Real& s0, Real& s1) {
-  int outside = 0;  // counted without branches, because which edges are outside is unpredictable
-  for (int i = 0; i < row.size; ++i) outside |= int{row.a[i] < 0} & int{row.b[i] < 0};
-  if (outside) return false;
-  s0 = 0;
-  s1 = 1;
+APOTHEM_INLINE Truth<Real> clip(const Row<Real>& row, Real& s0, Real& s1) {
+  s0 = Real(0);
+  s1 = Real(1);
+  Truth<Real> outside = s0 > s1;
   for (int i = 0; i < row.size; ++i) {
-    const Real a = row.a[i];
-    const Real b = row.b[i];
-    if (a >= 0) {
-      if (b >= 0) continue;
-      const Real s = a / (a - b);
-      if (!(s >= s1)) s1 = s;
-    } else {
-      const Real s = a / (a - b);
-      if (!(s <= s0)) s0 = s;
-    }
+    const Real& a = row.a[i];
+    const Real& b = row.b[i];
+    outside = outside | ((a < Real(0)) & (b < Real(0)));
+    const Truth<Real> starts_inside = a >= Real(0);
+    const Real s = a / (a - b);
+    s1 = select(starts_inside & (!(b >= Real(0))) & (!(s >= s1)), s, s1);
+    s0 = select((!starts_inside) & (!(s <= s0)), s, s0);
   }
-  return !(s0 >= s1);
+  return (!outside) & (!(s0 >= s1));
 }
 
-// Calls piece(s, value, s_next, value_next) for every linear piece of phi, which is a concave lower
-// envelope, from s0 to s1.
+// Calls piece(there, s, value, s_next, value_next) for every linear piece of phi, which is a
+// concave lower envelope, from s0 to s1, where `inside` is true; `there` says in which lanes of a
+// pack there is such a piece.
 template <class Real, class Piece>
-void walk_envelope(const Row<Real>& row, Real s0, Real s1, const Piece& piece) {
-  const auto value = [&](int i, Real s) { return row.a[i] + s * (row.b[i] - row.a[i]); };
-  const auto slope = [&](int i) { return row.b[i] - row.a[i]; };
-  int line = 0;
-  Real height = value(0, s0);
+APOTHEM_INLINE void walk_envelope(const Row<Real>& row, const Real& s0, const Real& s1,
+                                  Truth<Real> inside, const Piece& piece) {
+  const auto slope_of = [&](int i) __attribute__((always_inline))->Real {
+    return row.b[i] - row.a[i];
+  };
+  Real base = row.a[0];
+  Real slope = slope_of(0);
+  Real height = base + s0 * slope;
   for (int i = 1; i < row.lines; ++i) {
-    const Real h = value(i, s0);
-    if (!(h >= height) || (h == height && slope(i) < slope(line))) {
-      line = i;
-      height = h;
-    }
+    const Real m = slope_of(i);
+    const Real h = row.a[i] + s0 * m;
+    const Truth<Real> lower = (!(h >= height)) | ((h == height) & (m < slope));
+    base = select(lower, row.a[i], base);
+    slope = select(lower, m, slope);
+    height = select(lower, h, height);
   }
-  for (Real s = s0;;) {
+  for (Real s = s0; any(inside);) {
     // The next function of the envelope is the one that falls faster than the present one and meets
     // it first. The fractions gap/fall are compared by cross-multiplication, which needs one
     // division per piece instead of one per function.
-    int next = -1;
+    Truth<Real> found = s < s;
     Real gap = s1 - s;
-    Real fall = 1;
+    Real fall(1);
+    Real next_base = base;
+    Real next_slope = slope;
     for (int i = 0; i < row.lines; ++i) {
-      const Real f = slope(line) - slope(i);
-      if (!(f > 0)) continue;
-      const Real g = std::max(value(i, s) - height, Real(0));
+      const Real m = slope_of(i);
+      const Real f = slope - m;
+      const Real above = row.a[i] + s * m - height;
+      const Real g = select(above < Real(0), Real(0), above);
       const Real left = g * fall;
       const Real right = gap * f;
-      if (left < right || (left == right && next >= 0 && slope(i) < slope(next))) {
-        next = i;
-        gap = g;
-        fall = f;
-      }
+      const Truth<Real> nearer =
+          (f > Real(0)) & ((left < right) | ((left == right) & found & (m < next_slope)));
+      gap = select(nearer, g, gap);
+      fall = select(nearer, f, fall);
+      next_base = select(nearer, row.a[i], next_base);
+      next_slope = select(nearer, m, next_slope);
+      found = found | nearer;
     }
-    if (next < 0) {
-      piece(s, height, s1, value(line, s1));
-      return;
-    }
-    const Real end = std::min(s + gap / fall, s1);
+    const Real meeting = s + gap / fall;
+    const Real end = select((!found) | (s1 < meeting), s1, meeting);
     // The value is that of the flatter of the two functions, because along a needle the other one
     // may be a million times steeper.
-    const bool flatter = std::abs(slope(next)) < std::abs(slope(line));
-    const Real end_height = value(flatter ? next : line, end);
-    if (end > s) piece(s, height, end, end_height);
+    const Truth<Real> flatter = found & (magnitude(next_slope) < magnitude(slope));
+    const Real end_height =
+        select(flatter, next_base, base) + end * select(flatter, next_slope, slope);
+    piece(inside & ((!found) | (end > s)), s, height, end, end_height);
+    inside = inside & found & (!(end >= s1));
     s = end;
     height = end_height;
-    line = next;
-    if (s >= s1) return;
+    base = next_base;
+    slope = next_slope;
   }
 }
+
+// phi integrated along edges, by the linear pieces that walk_envelope finds.
+template <class Real>
+struct EnvelopeMoments {
+  Real sum{0}, first{0}, largest{0};  // as in SegmentMoments
+
+  APOTHEM_INLINE void add(const Truth<Real>& there, const Real& u1, const Real& v1, const Real& u2,
+                          const Real& v2) {
+    const Real h = u2 - u1;
+    sum = select(there, sum + h * (v1 + v2) / Real(2), sum);
+    first = select(
+        there, first + h * (v1 * (Real(2) * u1 + u2) + v2 * (u1 + Real(2) * u2)) / Real(6), first);
+    const Real larger = select(v1 < v2, v2, v1);
+    largest = select(there & (largest < larger), larger, largest);
+  }
+};
 
 // Growth of a box, relative to its extent, beyond which rounding lets nothing reach into it.
 inline constexpr double kFarAway = 1e-9;
@@ -112,42 +134,12 @@ inline void height_row(const PlacedPotential& y, double px, double py, double* r
   if (y.capped) row[y.size] = 1;
 }
 
-// `heights`, below, for two polygons with n vertices each: the compiler unrolls these loops and
-// makes vectors of them. A row has `width` entries.
-template <int n, int width>
-double heights_of(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                  double* rows) {
-  double highest[n], outside[n];
-  for (int i = 0; i < n; ++i) highest[i] = -HUGE_VAL, outside[i] = 1;
-  for (int v = 0; v < n; ++v) {
-    const double px = x.x[v] + dx;
-    const double py = x.y[v] + dy;
-    double* const row = rows + v * width;
-    for (int i = 0; i < n; ++i) {
-      const double h = y.gx[i] * (px - y.x[i]) + y.gy[i] * (py - y.y[i]);
-      row[i] = h;
-      highest[i] = h > highest[i] ? h : highest[i];
-      outside[i] = h < 0 ? outside[i] : 0;
-    }
-    if (width > n) row[n] = 1;
-  }
-  for (int i = 0; i < width; ++i) rows[n * width + i] = rows[i];
-  double gap = 0;
-  for (int i = 0; i < n; ++i) {
-    if (outside[i] > 0) gap = std::max(gap, -highest[i]);
-  }
-  return gap;
-}
-
 // Writes the heights of the vertices of x over the edges of y: one row per vertex, with y.size
 // entries (and one more if phi is limited to 1), and the first row again at the end. Returns how
 // far outside one edge of y all of x lies, in the unit of the heights, so that the polygons are
 // apart; or 0 if there is no such edge.
 inline double heights(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                       double* rows) {
-  if (x.size == 4 && y.size == 4) {
-    return y.capped ? heights_of<4, 5>(x, y, dx, dy, rows) : heights_of<4, 4>(x, y, dx, dy, rows);
-  }
   const int n = y.size;
   const int width = n + (y.capped ? 1 : 0);
   for (int v = 0; v < x.size; ++v) {
@@ -434,17 +426,12 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
     const PlacedEdge edge(x, y, e, dx, dy);
     const Row<double> row = row_of(edge, e, y, rows, spare);
     double s0, s1;
-    SegmentMoments<double> moments;
-    const auto integrate = [&](const Row<double>& r) {
-      if (!clip(r, s0, s1)) return false;
-      walk_envelope(r, s0, s1, [&](double u1, double v1, double u2, double v2) {
-        moments.add(u1, v1, u2, v2);
-      });
-      return true;
-    };
-    // With a number that the compiler knows, loops over the edges of a quadrilateral are unrolled.
-    const bool four = row.lines == 4 && row.size == 4;
-    if (!(four ? integrate({row.a, row.b, 4, 4}) : integrate(row))) return;
+    if (!clip(row, s0, s1)) return;
+    EnvelopeMoments<double> found;
+    walk_envelope(row, s0, s1, true, [&](bool there, double u1, double v1, double u2, double v2) {
+      found.add(there, u1, v1, u2, v2);
+    });
+    const SegmentMoments<double> moments{found.sum, found.first, found.largest};
     if constexpr (crossings) {
       run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
     } else {

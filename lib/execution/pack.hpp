@@ -1,13 +1,17 @@
-// Arithmetic on packs of eight doubles (SIMD). A kernel that is a template of its number type can
-// be used with scalars, packs, complex numbers and long double.
+// Arithmetic on packs of doubles (SIMD). A kernel that is a template of its number type can be used
+// with scalars, packs, complex numbers and long double.
 //
-// The compiler's vector extension maps a pack to one AVX-512 register, to two AVX registers or to
-// four SSE2 registers. Each lane rounds like a scalar, because the code is compiled with
-// -ffp-contract=off; hence the results have the same bits with all of these instruction sets.
+// The compiler's vector extension maps a pack to as many registers as it needs: a pack of eight to
+// one AVX-512 register, to two AVX registers or to four SSE2 registers. Each lane rounds like a
+// scalar, because the code is compiled with -ffp-contract=off; hence the results have the same bits
+// with all of these instruction sets.
 #pragma once
 
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <cstring>
+#include <utility>
 
 // Forces inlining. A kernel is compiled once per instruction set, and every function that it calls
 // has to be inlined, so that it is compiled for the same instruction set.
@@ -15,33 +19,105 @@
 
 namespace apothem {
 
-/// Number of doubles in a pack.
-inline constexpr int kLanes = 8;
+/// One truth value for each lane of a pack.
+template <int lanes>
+struct MaskOf {
+  // GCC forgets the attribute of an alias that depends on a parameter.
+  typedef std::int64_t Vector
+      __attribute__((vector_size(8 * lanes)));  // NOLINT(modernize-use-using)
+  Vector m;                                     ///< all bits or none
 
-/// kLanes doubles with elementwise arithmetic. A default-constructed pack is not initialised.
-struct Pack {
-  using Vector = double __attribute__((vector_size(8 * kLanes)));
+  friend APOTHEM_INLINE MaskOf operator&(const MaskOf& a, const MaskOf& b) { return {a.m & b.m}; }
+  friend APOTHEM_INLINE MaskOf operator|(const MaskOf& a, const MaskOf& b) { return {a.m | b.m}; }
+  friend APOTHEM_INLINE MaskOf operator!(const MaskOf& a) { return {~a.m}; }
+};
+
+/// Doubles with elementwise arithmetic. A default-constructed pack is not initialised.
+template <int lanes>
+struct PackOf {
+  typedef double Vector __attribute__((vector_size(8 * lanes)));  // NOLINT(modernize-use-using)
+  using Mask = MaskOf<lanes>;
   Vector v;
 
-  Pack() = default;
-  APOTHEM_INLINE Pack(double x) : v{x, x, x, x, x, x, x, x} {}  // NOLINT: scalars mix with packs
-  APOTHEM_INLINE explicit Pack(Vector x) : v(x) {}
+  PackOf() = default;
+  APOTHEM_INLINE PackOf(double x) : v(x - Vector{}) {}  // NOLINT: scalars mix with packs
+  APOTHEM_INLINE explicit PackOf(const Vector& x) : v(x) {}
+  /// The doubles from `from` on, which need not be aligned.
+  static APOTHEM_INLINE PackOf load(const double* from) {
+    PackOf result;
+    std::memcpy(&result.v, from, sizeof(result.v));
+    return result;
+  }
+  APOTHEM_INLINE void store(double* to) const { std::memcpy(to, &v, sizeof(v)); }
 
-  friend APOTHEM_INLINE Pack operator+(const Pack& a, const Pack& b) { return Pack(a.v + b.v); }
-  friend APOTHEM_INLINE Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
-  friend APOTHEM_INLINE Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
-  friend APOTHEM_INLINE Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
-  friend APOTHEM_INLINE Pack operator-(const Pack& a) { return Pack(-a.v); }
-  APOTHEM_INLINE Pack& operator+=(const Pack& b) {
+  friend APOTHEM_INLINE PackOf operator+(const PackOf& a, const PackOf& b) {
+    return PackOf(a.v + b.v);
+  }
+  friend APOTHEM_INLINE PackOf operator-(const PackOf& a, const PackOf& b) {
+    return PackOf(a.v - b.v);
+  }
+  friend APOTHEM_INLINE PackOf operator*(const PackOf& a, const PackOf& b) {
+    return PackOf(a.v * b.v);
+  }
+  friend APOTHEM_INLINE PackOf operator/(const PackOf& a, const PackOf& b) {
+    return PackOf(a.v / b.v);
+  }
+  friend APOTHEM_INLINE PackOf operator-(const PackOf& a) { return PackOf(-a.v); }
+  APOTHEM_INLINE PackOf& operator+=(const PackOf& b) {
     v += b.v;
     return *this;
   }
+  friend APOTHEM_INLINE Mask operator<(const PackOf& a, const PackOf& b) { return {a.v < b.v}; }
+  friend APOTHEM_INLINE Mask operator>(const PackOf& a, const PackOf& b) { return {a.v > b.v}; }
+  friend APOTHEM_INLINE Mask operator<=(const PackOf& a, const PackOf& b) { return {a.v <= b.v}; }
+  friend APOTHEM_INLINE Mask operator>=(const PackOf& a, const PackOf& b) { return {a.v >= b.v}; }
+  friend APOTHEM_INLINE Mask operator==(const PackOf& a, const PackOf& b) { return {a.v == b.v}; }
 };
 
+/// Number of doubles in the pack of the finite elements.
+inline constexpr int kLanes = 8;
+using Pack = PackOf<kLanes>;
+
+/// What a comparison of numbers of this type gives.
+template <class Real>
+using Truth = decltype(std::declval<const Real&>() < std::declval<const Real&>());
+
+/// In each lane `a` where the mask is true, else `b`.
+template <int lanes>
+APOTHEM_INLINE PackOf<lanes> select(const MaskOf<lanes>& mask, const PackOf<lanes>& a,
+                                    const PackOf<lanes>& b) {
+  return PackOf<lanes>(mask.m ? a.v : b.v);
+}
+template <class Real>
+APOTHEM_INLINE Real select(bool mask, const Real& a, const Real& b) {
+  return mask ? a : b;
+}
+/// -1 if the mask is true in any lane, else 0.
+APOTHEM_INLINE int all_or_none(const MaskOf<4>& mask) {
+  using Half = std::int64_t __attribute__((vector_size(16)));
+  const Half low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
+  const Half both = low | __builtin_shufflevector(mask.m, mask.m, 2, 3);
+  return static_cast<int>(both[0] | both[1]);
+}
+/// True if the mask is true in any lane.
+APOTHEM_INLINE bool any(const MaskOf<4>& mask) { return all_or_none(mask) != 0; }
+APOTHEM_INLINE bool any(bool mask) { return mask; }
+
+/// The absolute value.
+template <int lanes>
+APOTHEM_INLINE PackOf<lanes> magnitude(const PackOf<lanes>& a) {
+  return select(a < PackOf<lanes>(0.), -a, a);
+}
+template <class Real>
+APOTHEM_INLINE Real magnitude(const Real& a) {
+  return a < Real(0) ? -a : a;
+}
+
 /// Square root of a number of any type that kernels use; of a pack, the square root of every lane.
-APOTHEM_INLINE Pack square_root(const Pack& a) {
-  Pack r;
-  for (int i = 0; i < kLanes; ++i) r.v[i] = std::sqrt(a.v[i]);
+template <int lanes>
+APOTHEM_INLINE PackOf<lanes> square_root(const PackOf<lanes>& a) {
+  PackOf<lanes> r;
+  for (int i = 0; i < lanes; ++i) r.v[i] = std::sqrt(a.v[i]);
   return r;
 }
 APOTHEM_INLINE double square_root(double a) { return std::sqrt(a); }

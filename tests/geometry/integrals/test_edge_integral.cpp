@@ -241,3 +241,42 @@ TEST_CASE("NaN never passes as no contact", "[edge]") {
   CHECK(pair_integral(fine, broken, {.1, .1}, workspace).touching());
   CHECK(pair_integral(fine, fine, {.1, std::nan("")}, workspace).touching());
 }
+
+TEST_CASE("quadrilaterals have the same bits four edges at a time and one by one", "[edge]") {
+  samples::Random random(11);
+  EdgeWorkspace workspace;
+  int touching = 0;
+  for (int i = 0; i < 4000; ++i) {
+    // Every fourth pair has edges that lie on each other.
+    const bool square = i % 4 == 0;
+    const Polygon a =
+        square ? Polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}) : samples::random_quad(random);
+    const Polygon b = square ? a : samples::random_quad(random);
+    const Vec2 offset = square ? Vec2(.25 * std::floor(random.uniform(-5, 6)),
+                                      .25 * std::floor(random.uniform(-5, 6)))
+                               : Vec2(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5));
+    const Potential potential_a = make_potential(a), potential_b = make_potential(b);
+    PlacedShapes shapes;
+    shapes.add(potential_a);
+    shapes.add(potential_b);
+    shapes.place(0, 0, 0, square ? 0 : random.uniform(0, 6));
+    shapes.place(1, 0, 0, 0);
+    NearEdges four, single{0xf, 0xf, 0};
+    const PairIntegral x = pair_integral(shapes.view(0), shapes.view(1), offset, workspace, four);
+    const PairIntegral y = pair_integral(shapes.view(0), shapes.view(1), offset, workspace, single);
+    CAPTURE(i, offset.x(), offset.y());
+    touching += x.touching();
+    check_bits(x, y);
+    CHECK(x.centre == y.centre);
+    CHECK(x.own_length_a == y.own_length_a);
+    CHECK(x.own_length_b == y.own_length_b);
+    CHECK(x.largest_phi == y.largest_phi);
+    CHECK(x.breadth == y.breadth);
+    CHECK(x.middle == y.middle);
+    CHECK(x.inside_a == y.inside_a);
+    CHECK(x.inside_b == y.inside_b);
+    CHECK(four.margin == single.margin);
+  }
+  CHECK(touching > 1000);
+  CHECK(touching < 3500);
+}
