@@ -22,23 +22,64 @@ void FrictionMemory::undo_step() {
   damping_loss_ = sums_before_.damping_loss;
 }
 
-// A spring whose contact is over.
-void FrictionMemory::skip() {
-  const Spring& spring = before_[next_++];
-  if (spring.accounted) lose(spring.energy());
+namespace {
+
+auto pair_of(const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); }
+
+// The springs of a pair, from `next` on; leaves `next` behind them. over(spring) for those whose
+// contact is over.
+template <class Over>
+std::span<const Spring> find(const std::vector<Spring>& springs, size_t& next,
+                             const std::tuple<int, int, int>& pair, const Over& over) {
+  while (next < springs.size() && pair_of(springs[next]) < pair) over(springs[next++]);
+  const size_t first = next;
+  while (next < springs.size() && pair_of(springs[next]) == pair) ++next;
+  return std::span(springs).subspan(first, next - first);
+}
+
+}  // namespace
+
+void SpringRange::begin(const std::vector<Spring>& before, size_t next) {
+  before_ = &before;
+  next_ = next;
+  lost_ = 0;
+  now_.clear();
+  energies_.clear();
+  losses_.clear();
+  damping_losses_.clear();
+}
+
+std::span<const Spring> SpringRange::before(int law, int a, int b) {
+  return find(*before_, next_, {law, a, b}, [&](const Spring& spring) {
+    if (spring.accounted) losses_.push_back(spring.energy());
+  });
+}
+
+void FrictionMemory::begin(SpringRange& range, int law, int a, int b) const {
+  const std::tuple pair(law, a, b);
+  const auto place = std::partition_point(before_.begin(), before_.end(),
+                                          [&](const Spring& s) { return pair_of(s) <= pair; });
+  range.begin(before_, static_cast<size_t>(place - before_.begin()));
+}
+
+void FrictionMemory::add(const SpringRange& range) {
+  next_ = std::max(next_, range.next_);
+  now_.insert(now_.end(), range.now_.begin(), range.now_.end());
+  for (size_t i = 0; i < range.now_.size(); ++i) {
+    energy_ += range.energies_[i];
+    if (!range.now_[i].accounted) balanced_ += range.energies_[i];
+  }
+  for (const double energy : range.losses_) loss_ += energy;
+  for (const double energy : range.damping_losses_) damping_loss_ += energy;
 }
 
 std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
-  const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
-  const std::tuple pair(law, a, b);
-  while (next_ < before_.size() && pair_of(before_[next_]) < pair) skip();
-  const size_t first = next_;
-  while (next_ < before_.size() && pair_of(before_[next_]) == pair) ++next_;
-  return std::span<const Spring>(before_).subspan(first, next_ - first);
+  return find(before_, next_, {law, a, b}, [&](const Spring& spring) {
+    if (spring.accounted) lose(spring.energy());
+  });
 }
 
 std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const {
-  const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
   const auto [first, end] =
       std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, a, b, 0}},
                        [&](const Spring& s, const Spring& t) { return pair_of(s) < pair_of(t); });
@@ -55,7 +96,9 @@ void FrictionMemory::inherit(std::vector<Spring> springs) {
 }
 
 void FrictionMemory::end_step(double work) {
-  while (next_ < before_.size()) skip();
+  for (; next_ < before_.size(); ++next_) {
+    if (before_[next_].accounted) lose(before_[next_].energy());
+  }
   loss_ -= work + (balanced_ - balanced_before_);
 }
 

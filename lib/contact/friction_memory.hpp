@@ -52,6 +52,36 @@ inline double slide(double force, double slip, double stiffness, double limit) {
   return std::clamp(force - stiffness * slip, -limit, limit);
 }
 
+/// The springs of a range of pairs in a step, for one thread. What it books is a list, so that sums
+/// do not depend on how pairs are divided.
+class SpringRange {
+ public:
+  /// Begins a step with the springs `before`, from `next` on.
+  void begin(const std::vector<Spring>& before, size_t next);
+  /// As the members of FrictionMemory.
+  [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
+  void keep(const Spring& spring) {
+    now_.push_back(spring);
+    energies_.push_back(spring.energy());
+  }
+  void lose(double energy) {
+    losses_.push_back(energy);
+    lost_ += energy;
+  }
+  void damp(double energy) { damping_losses_.push_back(energy); }
+  /// What has been lost since begin_pair(), J.
+  [[nodiscard]] double lost() const { return lost_; }
+  void begin_pair() { lost_ = 0; }
+
+ private:
+  friend class FrictionMemory;
+  const std::vector<Spring>* before_ = nullptr;
+  size_t next_ = 0;
+  double lost_ = 0;
+  std::vector<Spring> now_;
+  std::vector<double> energies_, losses_, damping_losses_;
+};
+
 class FrictionMemory {
  public:
   /// The springs of this step become those of the step before.
@@ -61,6 +91,11 @@ class FrictionMemory {
   /// The springs that a pair had in the step before, in the order of their parts; empty if it is
   /// new. Pairs must be asked for in ascending order.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
+  /// Has a range begin behind all springs of a pair in the step before; of the law of the range
+  /// that is added first.
+  void begin(SpringRange& range, int law, int a, int b) const;
+  /// Takes what a range has kept and booked. Ranges are added in ascending order.
+  void add(const SpringRange& range);
   /// Keeps a spring for the next step; in ascending order of the keys.
   void keep(const Spring& spring) {
     now_.push_back(spring);
@@ -95,8 +130,6 @@ class FrictionMemory {
   }
 
  private:
-  void skip();
-
   std::vector<Spring> now_, before_;
   size_t next_ = 0;                            // of the springs before
   double energy_ = 0;                          // of all springs, J

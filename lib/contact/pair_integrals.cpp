@@ -6,8 +6,7 @@
 namespace apothem {
 namespace {
 
-constexpr double kPairTime = 200;  // ns
-constexpr double kMoved = .99;     // of the margin, beyond which near edges are found again
+constexpr double kMoved = .99;  // of the margin, beyond which near edges are found again
 // The margin is larger where bodies move faster, so that near edges are found again after some tens
 // of evaluations, and smaller in packs at rest, where few edges are near. Of the smaller inradius:
 constexpr double kSmallestMargin = 1. / 1024;
@@ -31,24 +30,13 @@ void PairIntegrals::take(std::span<const BoxPair> pairs) {
   }
 }
 
-void PairIntegrals::evaluate() {
+void PairIntegrals::begin() {
   integrals_.resize(pairs_.size());
   if (split_ != Split::none) parts_.resize(pairs_.size());
   for (Worker& worker : workers_) {
     worker.runs.clear();
     worker.patches.clear();
   }
-  const std::vector<Box>& boxes = surfaces_.shapes().boxes();
-  threads_.chunks(static_cast<int>(pairs_.size()), kPairTime, [&](int first, int end, int worker) {
-    for (int p = first; p < end; ++p) {
-      const auto [a, b] = pairs_[p];
-      if (apart(boxes[a], boxes[b])) {
-        integrals_[p] = {};
-      } else {
-        evaluate(p, worker);
-      }
-    }
-  });
 }
 
 // Finds the near edges anew if the bodies have moved against each other by more than the margin.
@@ -80,9 +68,13 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
-void PairIntegrals::evaluate(size_t p, int index) {
+void PairIntegrals::evaluate_pair(size_t p, int index) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
+  if (apart(shapes.boxes()[static_cast<size_t>(a)], shapes.boxes()[static_cast<size_t>(b)])) {
+    integrals_[p] = {};
+    return;
+  }
   const Vec2 between = surfaces_.between(a, b);
   Worker& worker = workers_[static_cast<size_t>(index)];
   find_near(p, between, worker.near_edges);

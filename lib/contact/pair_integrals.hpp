@@ -25,8 +25,22 @@ class PairIntegrals {
       : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
 
   void take(std::span<const BoxPair> pairs);
-  /// Integrals of all pairs; the result of a pair depends on that pair alone.
-  void evaluate();
+  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls done(pair,
+  /// worker) for each, in ascending order within each thread; the lower worker has the lower pairs.
+  template <class F>
+  void evaluate(const F& done) {
+    begin();
+    threads_.chunks(static_cast<int>(pairs_.size()), kPairTime,
+                    [&](int first, int end, int worker) {
+                      for (int p = first; p < end; ++p) {
+                        evaluate_pair(static_cast<size_t>(p), worker);
+                        done(static_cast<size_t>(p), worker);
+                      }
+                    });
+  }
+  void evaluate() {
+    evaluate([](size_t, int) {});
+  }
 
   [[nodiscard]] const std::vector<BoxPair>& pairs() const { return pairs_; }
   /// One for each pair, for unit stiffness; force on the first one, moments about the reference
@@ -46,6 +60,7 @@ class PairIntegrals {
 
  private:
   static constexpr double kFirstMargin = 1. / 64;
+  static constexpr double kPairTime = 200;  // ns
 
   // Edges of a pair that are near the other body, and where the bodies were when they were found.
   struct Near {
@@ -70,7 +85,8 @@ class PairIntegrals {
     int worker = -1;
     int first_patch = 0, patches = 0, first_run = 0, runs = 0;
   };
-  void evaluate(size_t pair, int worker);
+  void begin();
+  void evaluate_pair(size_t pair, int worker);
   void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
   const Surfaces& surfaces_;

@@ -11,12 +11,14 @@ namespace {
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
 
+constexpr double kSlideTime = 250;  // of a touching pair, ns
+
 // The force of a spring after a slip in m: never beyond Coulomb's limit in N. What it loses is the
 // mean force times the slip that it does not follow.
-double follow(double force, double slip, double stiffness, double limit, FrictionMemory& memory) {
+double follow(double force, double slip, double stiffness, double limit, SpringRange& springs) {
   const double trial = force - stiffness * slip;
   const double next = std::clamp(trial, -limit, limit);
-  memory.lose((force + next) * (trial - next) / (2 * stiffness));
+  springs.lose((force + next) * (trial - next) / (2 * stiffness));
   return next;
 }
 
@@ -39,33 +41,87 @@ static void describe(Archive& archive, BoundaryRun& run) {
 }
 
 PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law,
-                                 const PairTable& table, double thickness)
+                                 const PairTable& table, double thickness, int threads)
     : surfaces_(surfaces),
       per_edge_(law.friction_law == FrictionLaw::per_edge),
       table_(table),
-      thickness_(thickness) {}
+      thickness_(thickness),
+      threads_(threads),
+      ranges_(static_cast<size_t>(threads_.count()), Range(*this)) {}
 
+// What a range has done stands behind what those before it have.
 void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
                             const Kinematics& now, double dt, FrictionMemory& memory) {
   std::swap(now_, before_);
   now_.clear();
-  place_ = {};
   std::swap(forces_, forces_before_);
   forces_.clear();
-  auto last = forces_before_.begin();
-  const auto release_until = [&](RigidIndex a, RigidIndex b) {
-    for (; last != forces_before_.end() && std::pair(last->a, last->b) < std::pair(a, b); ++last) {
-      release(*last, now, dt, memory);
+  for (Range& range : ranges_) memory.begin(range.springs, -1, 0, 0), range.begin({}, 0);
+  const int count = static_cast<int>(touching.size());
+  threads_.chunks(count, kSlideTime, [&](int first, int end, int worker) {
+    Range& range = ranges_[static_cast<size_t>(worker)];
+    if (first > 0 && first < end) {
+      const BoxPair last = pairs.pairs()[static_cast<size_t>(touching[first - 1])];
+      memory.begin(range.springs, polygon_kernel, last.first, last.second);
+      range.begin(place_behind(last), forces_behind(last));
     }
-  };
-  for (const int p : touching) {
-    const auto pair = static_cast<size_t>(p);
-    const auto [a, b] = pairs.pairs()[pair];
-    release_until(a, b);
-    const bool known = last != forces_before_.end() && last->a == a && last->b == b;
-    step_pair(pairs, pair, known ? &*last++ : nullptr, now, dt, memory);
+    for (int i = first; i < end; ++i) {
+      range.step_pair(pairs, static_cast<size_t>(touching[i]), now, dt);
+    }
+    if (end == count) range.release_until(std::numeric_limits<RigidIndex>::max(), 0, now, dt);
+  });
+  for (const Range& range : ranges_) {
+    memory.add(range.springs);
+    now_.add(range.now);
+    forces_.insert(forces_.end(), range.forces.begin(), range.forces.end());
   }
-  release_until(std::numeric_limits<RigidIndex>::max(), 0);
+}
+
+void PatchTangential::History::add(const History& other) {
+  pairs.insert(pairs.end(), other.pairs.begin(), other.pairs.end());
+  runs.insert(runs.end(), other.runs.begin(), other.runs.end());
+  dampers.insert(dampers.end(), other.dampers.begin(), other.dampers.end());
+}
+
+PatchTangential::Place PatchTangential::place_behind(const BoxPair& pair) const {
+  Place place;
+  for (const PairHistory& p : before_.pairs) {
+    if (BoxPair{p.a, p.b} > pair) break;
+    place.pass(p);
+  }
+  return place;
+}
+
+size_t PatchTangential::forces_behind(const BoxPair& pair) const {
+  const auto behind = std::partition_point(forces_before_.begin(), forces_before_.end(),
+                                           [&](const TangentialForce& f) {
+                                             return BoxPair{f.a, f.b} <= pair;
+                                           });
+  return static_cast<size_t>(behind - forces_before_.begin());
+}
+
+std::span<const TangentialForce> PatchTangential::from(const BoxPair& pair) const {
+  const auto place =
+      std::partition_point(forces_.begin(), forces_.end(), [&](const TangentialForce& f) {
+        return BoxPair{f.a, f.b} < pair;
+      });
+  return std::span(forces_).subspan(static_cast<size_t>(place - forces_.begin()));
+}
+
+void PatchTangential::Range::begin(const Place& place, size_t force) {
+  place_ = place;
+  last_ = force;
+  now.clear();
+  forces.clear();
+}
+
+void PatchTangential::Range::release_until(RigidIndex a, RigidIndex b, const Kinematics& kinematics,
+                                           double dt) {
+  const std::vector<TangentialForce>& before = all_.forces_before_;
+  for (; last_ < before.size() && BoxPair{before[last_].a, before[last_].b} < BoxPair{a, b};
+       ++last_) {
+    release(before[last_], kinematics, dt);
+  }
 }
 
 // What damping takes from the bodies in a step. Velocity Verlet sums the work of a force G by the
@@ -73,25 +129,25 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
 // against each other at both ends, the work on them is h^2/12 (G_1 - G_0) (a_0 + a_1) larger,
 // summed over a contact. The last one is known a step later, so that this part is of the step
 // before.
-void PatchTangential::book_damping(const TangentialForce* last, const TangentialForce& now,
-                                   const PairRate& rate, double dt, FrictionMemory& memory) {
-  double work = dt / 2 * now.damping.power(rate);
+void PatchTangential::Range::book_damping(const TangentialForce* last, const TangentialForce& force,
+                                          const PairRate& rate, double dt) {
+  double work = dt / 2 * force.damping.power(rate);
   if (last) {
     work += dt / 2 * last->damping.power(rate);
     work += dt / 12 * last->change_of_damping.power(rate - last->rate_before);
   }
-  memory.damp(-work);
+  springs.damp(-work);
 }
 
 // Of a pair that touches no more: in the first half of this step its last force has still acted.
-void PatchTangential::release(const TangentialForce& last, const Kinematics& now, double dt,
-                              FrictionMemory& memory) const {
-  const PairRate rate = PairMotion(surfaces_, now, last.a, last.b).rate;
-  memory.lose(-dt / 2 * (last.all.power(rate) - last.damping.power(rate)));
+void PatchTangential::Range::release(const TangentialForce& last, const Kinematics& kinematics,
+                                     double dt) {
+  const PairRate rate = PairMotion(all_.surfaces_, kinematics, last.a, last.b).rate;
+  springs.lose(-dt / 2 * (last.all.power(rate) - last.damping.power(rate)));
   TangentialForce gone{last.a, last.b};
   gone.compare_with(&last, rate, dt);
-  book_damping(&last, gone, rate, dt, memory);
-  book_damping(&gone, {}, rate, dt, memory);
+  book_damping(&last, gone, rate, dt);
+  book_damping(&gone, {}, rate, dt);
 }
 
 void PatchTangential::History::fields(Archive& archive) {
@@ -99,96 +155,103 @@ void PatchTangential::History::fields(Archive& archive) {
 }
 
 // Leaves place_ at the pair, if it was there before.
-const PatchTangential::PairHistory* PatchTangential::find_before(RigidIndex a, RigidIndex b) {
-  while (place_.pair < before_.pairs.size()) {
-    const PairHistory& pair = before_.pairs[place_.pair];
-    if (std::pair(pair.a, pair.b) == std::pair(a, b)) return &pair;
-    if (std::pair(pair.a, pair.b) > std::pair(a, b)) return nullptr;
-    ++place_.pair;
-    place_.run += static_cast<size_t>(pair.runs);
-    place_.damper += static_cast<size_t>(pair.patches);
+const PatchTangential::PairHistory* PatchTangential::Range::find_before(RigidIndex a,
+                                                                        RigidIndex b) {
+  while (place_.pair < all_.before_.pairs.size()) {
+    const PairHistory& pair = all_.before_.pairs[place_.pair];
+    if (BoxPair{pair.a, pair.b} == BoxPair{a, b}) return &pair;
+    if (BoxPair{pair.a, pair.b} > BoxPair{a, b}) return nullptr;
+    place_.pass(pair);
   }
   return nullptr;
 }
 
-void PatchTangential::step_pair(const PairIntegrals& pairs, size_t pair,
-                                const TangentialForce* last, const Kinematics& now, double dt,
-                                FrictionMemory& memory) {
+void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair,
+                                       const Kinematics& kinematics, double dt) {
   const auto [a, b] = pairs.pairs()[pair];
-  const PairLaw& law = table_.between(a, b);
+  const Surfaces& surfaces = all_.surfaces_;
+  const double thickness = all_.thickness_;
+  release_until(a, b, kinematics, dt);
+  const TangentialForce* last = nullptr;
+  if (last_ < all_.forces_before_.size()) {
+    const TangentialForce& next = all_.forces_before_[last_];
+    if (next.a == a && next.b == b) last = &next, ++last_;
+  }
+  const PairLaw& law = all_.table_.between(a, b);
   const bool rough = law.friction.coefficient > 0;
   const bool damped = law.damping.normal > 0 || law.damping.tangential > 0;
   if (!rough && !damped) return;
-  const PlacedShapes& shapes = surfaces_.shapes();
-  const PairMotion motion(surfaces_, now, a, b);
+  const PlacedShapes& shapes = surfaces.shapes();
+  const PairMotion motion(surfaces, kinematics, a, b);
   runs_ = pairs.runs(pair);
   patches_ = pairs.patches(pair);
   const PairHistory* const before = find_before(a, b);
-  const std::span<const Spring> springs = memory.before(polygon_kernel, a, b);
+  const std::span<const Spring> springs_before = springs.before(polygon_kernel, a, b);
   find_shares(before);
   if (damped) {
-    const std::span<const PatchDamper> dampers(before_.dampers);
+    const std::span<const PatchDamper> dampers(all_.before_.dampers);
     inherit(dampers.subspan(before ? place_.damper : 0, ancestors_), dampers_,
             [](PatchDamper& heir, double share, const PatchDamper& old, const PairIntegral&) {
               heir.add(share, old);
             });
   }
-  if (rough && !edgewise()) {
-    inherit(springs, springs_,
+  if (rough && !all_.edgewise()) {
+    inherit(springs_before, patch_springs_,
             [](Spring& heir, double share, const Spring& old, const PairIntegral& patch) {
               Vec2 tangent = tangent_of(patch.force);
               if (tangent == Vec2::Zero()) tangent = old.tangent;
               heir.force += share * old.force * tangent.dot(old.tangent);
             });
   }
-  const double lost = memory.loss();
+  springs.begin_pair();
   TangentialForce total{a, b};
   for (size_t j = 0; j < patches_.size(); ++j) {
     const PairIntegral& patch = patches_[j];
     if (damped) {
       PatchDamper& d = dampers_[j];
-      damp(law.damping.normal, law.normal_stiffness * thickness_, surfaces_, a, b, patch, motion,
+      damp(law.damping.normal, law.normal_stiffness * thickness, surfaces, a, b, patch, motion,
            last ? &last->rate : nullptr, dt, d);
       total.add_damping(d.damping);
     }
-    if (!rough || edgewise()) continue;
+    if (!rough || all_.edgewise()) continue;
     const double slopes =
         patch.own_length_a * shapes.slope(b) + patch.own_length_b * shapes.slope(a);
     const double error = kForceError * std::numeric_limits<double>::epsilon() *
                          (shapes.radius(a) + shapes.radius(b)) * slopes;
     const double closed =
-        now.finite && ancestors_ == 0 ? closed_share(motion, patch, slopes, dt) : 1;
+        kinematics.finite && ancestors_ == 0 ? closed_share(motion, patch, slopes, dt) : 1;
     resultant(motion, closed * dt, law, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
-              springs_[j], damped ? &dampers_[j] : nullptr, total, memory);
+              patch_springs_[j], damped ? &dampers_[j] : nullptr, total);
   }
-  if (rough && !edgewise() && !inherit_whole()) {
-    memory.lose(lost_by_balance(springs, last, total, motion.rate, dt) - (memory.loss() - lost));
+  if (rough && !all_.edgewise() && !inherit_whole()) {
+    const double known = springs.lost();
+    springs.lose(lost_by_balance(springs_before, last, total, motion.rate, dt) - known);
   }
-  if (rough && edgewise()) {
-    per_edge(motion, dt, law, {polygon_kernel, a, b, 0}, springs, total, memory);
+  if (rough && all_.edgewise()) {
+    per_edge(motion, dt, law, {polygon_kernel, a, b, 0}, springs_before, total);
   }
   if (damped) {
     total.compare_with(last, motion.rate, dt);
-    book_damping(last, total, motion.rate, dt, memory);
+    book_damping(last, total, motion.rate, dt);
   } else {
     dampers_.assign(patches_.size(), {});
   }
-  if (table_.damped()) {
-    now_.dampers.insert(now_.dampers.end(), dampers_.begin(), dampers_.end());
+  if (all_.table_.damped()) {
+    now.dampers.insert(now.dampers.end(), dampers_.begin(), dampers_.end());
   }
-  now_.runs.insert(now_.runs.end(), runs_.begin(), runs_.end());
-  now_.pairs.push_back({a, b, static_cast<int>(patches_.size()), static_cast<int>(runs_.size())});
-  forces_.push_back(total);
+  now.runs.insert(now.runs.end(), runs_.begin(), runs_.end());
+  now.pairs.push_back({a, b, static_cast<int>(patches_.size()), static_cast<int>(runs_.size())});
+  forces.push_back(total);
 }
 
 // What the patches before hand down to those of now: everything to the only heir, otherwise in
 // proportion to the normal forces of those that share boundary with it. Forces are neither invented
 // nor lost.
-void PatchTangential::find_shares(const PairHistory* before) {
+void PatchTangential::Range::find_shares(const PairHistory* before) {
   const size_t heirs = patches_.size();
   ancestors_ = before ? static_cast<size_t>(before->patches) : 0;
   if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return;
-  shared_length({before_.runs.data() + place_.run, static_cast<size_t>(before->runs)},
+  shared_length({all_.before_.runs.data() + place_.run, static_cast<size_t>(before->runs)},
                 before->patches, runs_, static_cast<int>(heirs), shares_);
   for (size_t i = 0; i < ancestors_; ++i) {
     double* const share = &shares_[i * heirs];
@@ -202,7 +265,7 @@ void PatchTangential::find_shares(const PairHistory* before) {
 }
 
 // True if every patch goes on alone, or there were none.
-bool PatchTangential::inherit_whole() const {
+bool PatchTangential::Range::inherit_whole() const {
   const size_t heirs = patches_.size();
   if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return true;
   if (ancestors_ != heirs) return false;
@@ -213,70 +276,72 @@ bool PatchTangential::inherit_whole() const {
 }
 
 template <class T, class Add>
-void PatchTangential::inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const {
-  now.assign(patches_.size(), {});
-  if (before.size() == 1 && now.size() == 1) {
-    now[0] = before[0];
+void PatchTangential::Range::inherit(std::span<const T> before, std::vector<T>& heirs,
+                                     Add&& add) const {
+  heirs.assign(patches_.size(), {});
+  if (before.size() == 1 && heirs.size() == 1) {
+    heirs[0] = before[0];
     return;
   }
   for (size_t i = 0; i < before.size(); ++i) {
-    for (size_t j = 0; j < now.size(); ++j) {
-      const double share = shares_[i * now.size() + j];
-      if (share > 0) add(now[j], share, before[i], patches_[j]);
+    for (size_t j = 0; j < heirs.size(); ++j) {
+      const double share = shares_[i * heirs.size() + j];
+      if (share > 0) add(heirs[j], share, before[i], patches_[j]);
     }
   }
 }
 
 // Where patches come, go, split or merge, springs do not know what they lose: what friction has
 // taken from the bodies and the springs do not store.
-double PatchTangential::lost_by_balance(std::span<const Spring> before, const TangentialForce* last,
-                                        const TangentialForce& now, const PairRate& rate,
-                                        double dt) const {
+double PatchTangential::Range::lost_by_balance(std::span<const Spring> before,
+                                               const TangentialForce* last,
+                                               const TangentialForce& force, const PairRate& rate,
+                                               double dt) const {
   const auto power = [&](const TangentialForce& f) {
     return f.all.power(rate) - f.damping.power(rate);
   };
-  double lost = -dt / 2 * ((last ? power(*last) : 0) + power(now));
+  double lost = -dt / 2 * ((last ? power(*last) : 0) + power(force));
   for (const Spring& spring : before) lost += spring.energy();
-  for (const Spring& spring : springs_) lost -= spring.energy();
+  for (const Spring& spring : patch_springs_) lost -= spring.energy();
   return lost;
 }
 
 // The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
 // number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 // slip against b: the sign of Eq. 12 is a misprint.
-void PatchTangential::resultant(const PairMotion& motion, double dt, const PairLaw& law,
-                                SpringKey key, const PairIntegral& patch, double force_error,
-                                Spring& spring, PatchDamper* damper, TangentialForce& total,
-                                FrictionMemory& memory) const {
+void PatchTangential::Range::resultant(const PairMotion& motion, double dt, const PairLaw& law,
+                                       SpringKey key, const PairIntegral& patch, double force_error,
+                                       Spring& spring, PatchDamper* damper,
+                                       TangentialForce& total) {
   spring.key = key;
-  spring.stiffness = law.friction.tangential_stiffness * thickness_;
+  spring.stiffness = law.friction.tangential_stiffness * all_.thickness_;
   spring.accounted = true;
   const double size = patch.force.norm();
   if (!(size > kNoResultant * patch.weight)) {
-    memory.lose(spring.energy());
+    springs.lose(spring.energy());
     spring.force = 0;
     if (damper) damper->tangential = 0;
-    memory.keep(spring);
+    springs.keep(spring);
     return;
   }
   const Vec2 tangent = tangent_of(patch.force);
   const Vec2 point = loading_point(patch);
-  Vec2 normal = law.normal_stiffness * thickness_ * patch.force;
+  Vec2 normal = law.normal_stiffness * all_.thickness_ * patch.force;
   if (damper) normal += damper->damping.force;
   const Vec2 velocity = motion.slip(point);
   double slip = velocity.dot(tangent);
   // The tangent is only as exact as the force: what it makes of an approach is no slip.
   if (std::abs(slip) <= velocity.norm() * force_error / size) slip = 0;
   const double limit = law.friction.coefficient * normal.norm();
-  spring.force = follow(spring.force, slip * dt, spring.stiffness, limit, memory);
+  spring.force = follow(spring.force, slip * dt, spring.stiffness, limit, springs);
   spring.tangent = tangent;
-  memory.keep(spring);
+  springs.keep(spring);
   total.add_spring(spring.force, spring.stiffness, tangent, point, motion.between);
   if (damper == nullptr || !(law.damping.tangential > 0)) return;
   // A first look, perhaps with the memory of another run, keeps the force.
   if (dt > 0) {
-    const double time = damping_time(law.damping.tangential, spring.stiffness, surfaces_, key.a,
-                                     key.b, point, tangent, motion);
+    const double time = damping_time(law.damping.tangential, spring.stiffness, all_.surfaces_,
+                                     key.a, key.b, point, tangent, motion);
     const double both = spring.force - time * spring.stiffness * slip;
     damper->tangential = std::clamp(both, -limit, limit) - spring.force;
   }
@@ -286,23 +351,24 @@ void PatchTangential::resultant(const PairMotion& motion, double dt, const PairL
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
-void PatchTangential::per_edge(const PairMotion& motion, double dt, const PairLaw& law,
-                               SpringKey key, std::span<const Spring> before,
-                               TangentialForce& total, FrictionMemory& memory) {
-  const double stiffness = law.friction.tangential_stiffness * thickness_;
-  const int edges_of_a = surfaces_.shapes().view(key.a).size;
+void PatchTangential::Range::per_edge(const PairMotion& motion, double dt, const PairLaw& law,
+                                      SpringKey key, std::span<const Spring> before,
+                                      TangentialForce& total) {
+  const double stiffness = law.friction.tangential_stiffness * all_.thickness_;
+  const int edges_of_a = all_.surfaces_.shapes().view(key.a).size;
   auto old = before.begin();
-  const auto lost = [&] { memory.lose((old++)->energy()); };  // of an edge that is free again
+  const auto lost = [&] { springs.lose((old++)->energy()); };  // of an edge that is free again
   for (const BoundaryRun& run : runs_) {
     key.part = run.of_a ? run.edge : edges_of_a + run.edge;
     while (old != before.end() && old->key < key) lost();
     double spring = 0;
     if (old != before.end() && old->key == key) spring = (old++)->force;
     const Vec2 tangent = tangent_of(run.force);
-    spring = follow(spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
-                    law.friction.coefficient * law.normal_stiffness * thickness_ * run.force.norm(),
-                    memory);
-    memory.keep({key, spring, stiffness, tangent, true});
+    spring =
+        follow(spring, motion.slip(run.centre).dot(tangent) * dt, stiffness,
+               law.friction.coefficient * law.normal_stiffness * all_.thickness_ * run.force.norm(),
+               springs);
+    springs.keep({key, spring, stiffness, tangent, true});
     total.add_spring(spring, stiffness, tangent, run.centre, motion.between);
   }
   while (old != before.end()) lost();

@@ -13,6 +13,7 @@
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_table.hpp"
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
 namespace apothem {
@@ -59,7 +60,7 @@ class PatchTangential {
  public:
   /// `thickness` in m.
   PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
-                  double thickness);
+                  double thickness, int threads);
 
   /// One step further: see Kernel::slide. `touching`: the pairs in contact. Books what friction
   /// loses.
@@ -74,6 +75,9 @@ class PatchTangential {
 
   /// Of the touching pairs with friction or damping, ascending.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
+
+  /// The same from a pair on.
+  [[nodiscard]] std::span<const TangentialForce> from(const BoxPair& pair) const;
 
   /// Where the next pair is looked for first: pairs must be asked for in ascending order.
   struct Cursor {
@@ -96,6 +100,7 @@ class PatchTangential {
     std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
     std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
     void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
+    void add(const History& other);
     void fields(Archive& archive);
   };
   /// Takes over what the patches of another simulation remember.
@@ -108,42 +113,70 @@ class PatchTangential {
  private:
   struct Place {  // in a History
     size_t pair = 0, run = 0, damper = 0;
+    void pass(const PairHistory& p) {
+      ++pair;
+      run += static_cast<size_t>(p.runs);
+      damper += static_cast<size_t>(p.patches);
+    }
   };
 
-  [[nodiscard]] const PairHistory* find_before(RigidIndex a, RigidIndex b);
-  void step_pair(const PairIntegrals& pairs, size_t pair, const TangentialForce* last,
-                 const Kinematics& now, double dt, FrictionMemory& memory);
-  static void book_damping(const TangentialForce* last, const TangentialForce& now,
-                           const PairRate& rate, double dt, FrictionMemory& memory);
-  void release(const TangentialForce& last, const Kinematics& now, double dt,
-               FrictionMemory& memory) const;
-  void find_shares(const PairHistory* before);
-  [[nodiscard]] bool inherit_whole() const;
-  template <class T, class Add>
-  void inherit(std::span<const T> before, std::vector<T>& now, Add&& add) const;
-  [[nodiscard]] double lost_by_balance(std::span<const Spring> before, const TangentialForce* last,
-                                       const TangentialForce& now, const PairRate& rate,
-                                       double dt) const;
-  void resultant(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
-                 const PairIntegral& patch, double force_error, Spring& spring, PatchDamper* damper,
-                 TangentialForce& total, FrictionMemory& memory) const;
-  void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
-                std::span<const Spring> before, TangentialForce& total, FrictionMemory& memory);
+  // The pairs that one thread takes a step further.
+  class Range {
+   public:
+    explicit Range(const PatchTangential& all) : all_(all) {}
+
+    // Begins a step behind a pair of the last step, or with the first one.
+    void begin(const Place& place, size_t force);
+    void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt);
+    // Pairs that touch no more and come before this one.
+    void release_until(RigidIndex a, RigidIndex b, const Kinematics& now, double dt);
+
+    SpringRange springs;
+    History now;
+    std::vector<TangentialForce> forces;
+
+   private:
+    const PairHistory* find_before(RigidIndex a, RigidIndex b);
+    void book_damping(const TangentialForce* last, const TangentialForce& force,
+                      const PairRate& rate, double dt);
+    void release(const TangentialForce& last, const Kinematics& now, double dt);
+    void find_shares(const PairHistory* before);
+    [[nodiscard]] bool inherit_whole() const;
+    template <class T, class Add>
+    void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
+    [[nodiscard]] double lost_by_balance(std::span<const Spring> before,
+                                         const TangentialForce* last, const TangentialForce& force,
+                                         const PairRate& rate, double dt) const;
+    void resultant(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
+                   const PairIntegral& patch, double force_error, Spring& spring,
+                   PatchDamper* damper, TangentialForce& total);
+    void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
+                  std::span<const Spring> before, TangentialForce& total);
+
+    const PatchTangential& all_;
+    Place place_;      // of the next pair of the step before
+    size_t last_ = 0;  // of its forces
+    // Of the pair at hand.
+    std::span<const BoundaryRun> runs_;
+    std::span<const PairIntegral> patches_;
+    size_t ancestors_ = 0;
+    std::vector<double> shares_;  // of each ancestor that goes to each patch of now
+    std::vector<Spring> patch_springs_;
+    std::vector<PatchDamper> dampers_;
+  };
+
+  // In the step before, behind a pair.
+  [[nodiscard]] Place place_behind(const BoxPair& pair) const;
+  [[nodiscard]] size_t forces_behind(const BoxPair& pair) const;
 
   const Surfaces& surfaces_;
   bool per_edge_;
   const PairTable& table_;
   double thickness_;
+  Threads threads_;
+  std::vector<Range> ranges_;  // one for each thread
   History now_, before_;
-  Place place_;  // of the next pair of the step before
   std::vector<TangentialForce> forces_, forces_before_;
-  // Of the pair at hand.
-  std::span<const BoundaryRun> runs_;
-  std::span<const PairIntegral> patches_;
-  size_t ancestors_ = 0;
-  std::vector<double> shares_;  // of each ancestor that goes to each patch of now
-  std::vector<Spring> springs_;
-  std::vector<PatchDamper> dampers_;
 };
 
 }  // namespace apothem

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apothem/contact/stiffness.hpp"
 
 namespace apothem {
 
 namespace {
+
+// Of a touching pair, ns.
+constexpr double kLoadTime = 60, kGatherTime = 20;
 
 // What friction and damping need.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
@@ -25,26 +29,38 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       thickness_(thickness),
       pairs_(surfaces, threads, split(law, table)),
       onset_(surfaces, table, thickness),
-      body_stiffness_(static_cast<size_t>(surfaces.rigid_count())) {
+      threads_(threads),
+      found_(static_cast<size_t>(threads_.count())),
+      body_stiffness_(static_cast<size_t>(surfaces.rigid_count())),
+      rate_bounds_(body_stiffness_.size()) {
   if (table.rough() || table.damped()) {
-    tangential_.emplace(surfaces, law, table, thickness);
+    tangential_.emplace(surfaces, law, table, thickness, threads);
   }
 }
 
 void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
-  pairs_.evaluate();
+  for (Found& found : found_) {
+    found.touching.clear();
+    found.stiffness.clear();
+    found.contacts.clear();
+  }
+  pairs_.evaluate([&](size_t p, int worker) {
+    if (!pairs_[p].touching()) return;
+    Found& found = found_[static_cast<size_t>(worker)];
+    const auto [a, b] = pairs_.pairs()[p];
+    found.touching.push_back(static_cast<int>(p));
+    found.stiffness.push_back(stiffness(a, b));
+    found.contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, found.stiffness.back()));
+    if (pairs_.too_deep(p)) found.contacts.back().share = 1;
+  });
   touching_.clear();
   contact_stiffness_.clear();
   stiffness_.clear();
-  for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
-    const PairIntegral& pair = pairs_[p];
-    if (!pair.touching()) continue;
-    const auto [a, b] = pairs_.pairs()[p];
-    stiffness_.push_back(stiffness(a, b));
-    contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, stiffness_.back()));
-    touching_.push_back(static_cast<int>(p));
-    contact_stiffness_.push_back(contacts.back().stiffness);
-    if (pairs_.too_deep(p)) contacts.back().share = 1;
+  for (const Found& found : found_) {
+    touching_.insert(touching_.end(), found.touching.begin(), found.touching.end());
+    stiffness_.insert(stiffness_.end(), found.stiffness.begin(), found.stiffness.end());
+    contacts.insert(contacts.end(), found.contacts.begin(), found.contacts.end());
+    for (const Contact& contact : found.contacts) contact_stiffness_.push_back(contact.stiffness);
   }
 }
 
@@ -73,44 +89,54 @@ double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
   return 0;  // its springs are accounted
 }
 
+// Each thread adds what acts on a range of bodies, for every body in the order of its pairs.
 void PolygonKernel::add_forces(const ForceViews& forces) {
-  add_normal(forces);
-  if (tangential_) add_tangential(forces);
+  find_loads();
+  const int pairs = static_cast<int>(touching_.size());
+  const int bodies = surfaces_.rigid_count();
+  threads_.chunks(bodies, kGatherTime * pairs / std::max(bodies, 1),
+                  [&](int first, int end, int) { add_loads(forces, first, end); });
+  add_rates(forces.lambda, forces.lambda_limit);
 }
 
-void PolygonKernel::add_normal(const ForceViews& forces) {
+void PolygonKernel::find_loads() {
+  loads_.resize(touching_.size());
+  for (Found& found : found_) found.largest_force = {};
+  const auto pair_of = [&](int i) { return pairs_.pairs()[static_cast<size_t>(touching_[i])]; };
+  threads_.chunks(
+      static_cast<int>(touching_.size()), kLoadTime, [&](int first, int end, int worker) {
+        if (first == end) return;
+        PairPeak& largest = found_[static_cast<size_t>(worker)].largest_force;
+        std::span<const TangentialForce> springs;
+        if (tangential_) springs = tangential_->from(pair_of(first));
+        for (int i = first; i < end; ++i) {
+          const auto [a, b] = pair_of(i);
+          const TangentialForce* own = nullptr;
+          if (!springs.empty() && springs.front().a == a && springs.front().b == b) {
+            own = springs.data();
+            springs = springs.subspan(1);
+          }
+          const Load& load = loads_[static_cast<size_t>(i)] = load_of(static_cast<size_t>(i), own);
+          const double fx = load.force.x(), fy = load.force.y();
+          const double force = std::sqrt(fx * fx + fy * fy);
+          if (force > largest.value) largest = {force, a, b};
+        }
+      });
   largest_force_ = {};
-  auto spring =
-      tangential_ ? tangential_->forces().begin() : std::vector<TangentialForce>::const_iterator{};
-  for (size_t i = 0; i < touching_.size(); ++i) {
-    const auto p = static_cast<size_t>(touching_[i]);
-    const PairIntegral& pair = pairs_[p];
-    const auto [a, b] = pairs_.pairs()[p];
-    double* fa = &forces.rigid[3 * static_cast<size_t>(a)];
-    double* fb = &forces.rigid[3 * static_cast<size_t>(b)];
-    const double k = stiffness_[i];
-    const double fx = k * pair.force.x();
-    const double fy = k * pair.force.y();
-    fa[0] += fx;
-    fa[1] += fy;
-    fa[2] += k * pair.moment_a;
-    fb[0] -= fx;
-    fb[1] -= fy;
-    fb[2] += k * pair.moment_b;
-    const double force = std::sqrt(fx * fx + fy * fy);
-    const TangentialForce* springs = nullptr;
-    if (tangential_ && spring != tangential_->forces().end() && spring->a == a && spring->b == b) {
-      springs = &*spring++;
-    }
-    if (force > largest_force_.value) largest_force_ = {force, a, b};
-    add_stiffness(pair, a, b, contact_stiffness_[i], springs);
+  for (const Found& found : found_) {
+    if (found.largest_force.value > largest_force_.value) largest_force_ = found.largest_force;
   }
-  find_rates(forces.lambda, forces.lambda_limit);
 }
 
 // The displacements of both bodies add: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
-void PolygonKernel::add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b,
-                                  double stiffness, const TangentialForce* springs) {
+PolygonKernel::Load PolygonKernel::load_of(size_t i, const TangentialForce* springs) const {
+  const auto p = static_cast<size_t>(touching_[i]);
+  const PairIntegral& pair = pairs_[p];
+  const auto [a, b] = pairs_.pairs()[p];
+  const double k = stiffness_[i];
+  Load load{a, b, k * pair.force, k * pair.moment_a, k * pair.moment_b, {}, {}};
+
+  const double stiffness = contact_stiffness_[i];
   const double size = pair.force.norm();
   // Of the pushes of the edges: 1 if all have one direction.
   const double aligned = std::min(size / pair.weight, 1.);
@@ -120,42 +146,68 @@ void PolygonKernel::add_stiffness(const PairIntegral& pair, RigidIndex a, RigidI
   const double times = surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
   // Where the resultant acts says little: boundary that is hardly inside is as stiff as any other.
   const Vec2 middle = pair.middle * tangent;
-  const auto add = [&](RigidIndex body, const Vec2& point, const Vec2& centre,
+  const auto add = [&](BodyStiffness& all, const Vec2& point, const Vec2& centre,
                        const BodyStiffness* tangential) {
     BodyStiffness sum;
     sum.add(stiffness, normal, cross(point, normal));
     sum.add(across, tangent, cross(centre, tangent));
     sum.add_rotation(stiffness * pair.breadth * pair.breadth / 12);
     if (tangential) sum.add(*tangential, 1);
-    body_stiffness_[static_cast<size_t>(body)].add(sum, times);
+    all.add(sum, times);
   };
   const Vec2 between = surfaces_.between(a, b);
-  add(a, middle, pair.centre, springs ? &springs->stiffness_a : nullptr);
-  add(b, middle + between, pair.centre + between, springs ? &springs->stiffness_b : nullptr);
+  add(load.stiffness_a, middle, pair.centre, springs ? &springs->stiffness_a : nullptr);
+  add(load.stiffness_b, middle + between, pair.centre + between,
+      springs ? &springs->stiffness_b : nullptr);
+  return load;
 }
 
-// The largest one is exact above the limit, so that it does not shorten the step in vain. Takes the
-// stiffness of the bodies that touch, and leaves none for the next step.
-void PolygonKernel::find_rates(std::span<double> rates, double limit) {
-  double largest = 0;
-  for (const int p : touching_) {
-    const BoxPair pair = pairs_.pairs()[static_cast<size_t>(p)];
-    for (const RigidIndex body : {pair.first, pair.second}) {
-      const std::array<double, 3>& w = surfaces_.rigid(body).inverse_mass;
-      BodyStiffness& stiffness = body_stiffness_[static_cast<size_t>(body)];
-      double rate = stiffness.rate_bound(w);
-      if (rate > limit && rate > largest) {
-        rate = stiffness.rate(w);
-        largest = std::max(largest, rate);
-      }
-      rates[static_cast<size_t>(body)] += rate;
-      stiffness = {};
+void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end) {
+  const auto here = [&](RigidIndex body) { return body >= first && body < end; };
+  const auto add = [&](RigidIndex body, double fx, double fy, double moment) {
+    double* const f = &forces.rigid[3 * static_cast<size_t>(body)];
+    f[0] += fx;
+    f[1] += fy;
+    f[2] += moment;
+  };
+  for (RigidIndex i = first; i < end; ++i) body_stiffness_[static_cast<size_t>(i)] = {};
+  for (const Load& load : loads_) {
+    if (here(load.a)) {
+      add(load.a, load.force.x(), load.force.y(), load.moment_a);
+      body_stiffness_[static_cast<size_t>(load.a)].add(load.stiffness_a, 1);
     }
+    if (here(load.b)) {
+      add(load.b, -load.force.x(), -load.force.y(), load.moment_b);
+      body_stiffness_[static_cast<size_t>(load.b)].add(load.stiffness_b, 1);
+    }
+  }
+  if (tangential_) {
+    for (const TangentialForce& t : tangential_->forces()) {
+      const PairForce& f = t.all;
+      if (here(t.a)) add(t.a, f.force.x(), f.force.y(), f.moment_a);
+      if (here(t.b)) add(t.b, -f.force.x(), -f.force.y(), f.moment_b);
+    }
+  }
+  for (RigidIndex i = first; i < end; ++i) {
+    rate_bounds_[static_cast<size_t>(i)] =
+        body_stiffness_[static_cast<size_t>(i)].rate_bound(surfaces_.rigid(i).inverse_mass);
   }
 }
 
-void PolygonKernel::add_tangential(const ForceViews& forces) const {
-  for (const TangentialForce& t : tangential_->forces()) t.all.add_to(t.a, t.b, forces.rigid);
+// The largest one is exact above the limit, so that it does not shorten the step in vain.
+void PolygonKernel::add_rates(std::span<double> rates, double limit) {
+  double largest = 0;
+  for (const Load& load : loads_) {
+    for (const RigidIndex body : {load.a, load.b}) {
+      const auto i = static_cast<size_t>(body);
+      double rate = std::exchange(rate_bounds_[i], 0);
+      if (rate > limit && rate > largest) {
+        rate = body_stiffness_[i].rate(surfaces_.rigid(body).inverse_mass);
+        largest = std::max(largest, rate);
+      }
+      rates[i] += rate;
+    }
+  }
 }
 
 void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {

@@ -9,6 +9,7 @@
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/patch_tangential.hpp"
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
@@ -56,11 +57,24 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
     return table_.between(a, b).normal_stiffness * thickness_;
   }
-  void add_normal(const ForceViews& forces);
-  void add_tangential(const ForceViews& forces) const;
-  void add_stiffness(const PairIntegral& pair, RigidIndex a, RigidIndex b, double stiffness,
-                     const TangentialForce* springs);
-  void find_rates(std::span<double> rates, double limit);
+  // What a touching pair does to its bodies.
+  struct Load {
+    RigidIndex a, b;
+    Vec2 force;                 // on a, N
+    double moment_a, moment_b;  // N m
+    BodyStiffness stiffness_a, stiffness_b;
+  };
+  // The touching pairs that one thread has found.
+  struct Found {
+    std::vector<int> touching;
+    std::vector<double> stiffness;
+    std::vector<Contact> contacts;
+    PairPeak largest_force;
+  };
+  void find_loads();
+  [[nodiscard]] Load load_of(size_t touching, const TangentialForce* springs) const;
+  void add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end);
+  void add_rates(std::span<double> rates, double limit);
 
   const Surfaces& surfaces_;
   const PairTable& table_;
@@ -68,10 +82,14 @@ class PolygonKernel final : public Kernel {
   PairIntegrals pairs_;
   Onset onset_;
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
+  Threads threads_;
+  std::vector<Found> found_;                   // by each thread
   std::vector<int> touching_;                  // pairs
   std::vector<double> stiffness_;              // k_n times the thickness of these, N/m
   std::vector<double> contact_stiffness_;      // of their contacts, N/m
+  std::vector<Load> loads_;                    // of these
   std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
+  std::vector<double> rate_bounds_;            // of each rigid body, 1/s^2
   PairPeak largest_force_;
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;
