@@ -1,6 +1,7 @@
 // What one core of the machine can do.
 
 #include <memory>
+#include <utility>
 
 #include "apothem/execution/pack.hpp"
 #include "benchmark/bench.hpp"
@@ -27,26 +28,33 @@ Work memory(int) {
   }};
 }
 
-// Arithmetic: independent multiplications and additions in registers. Returns their number.
-template <size_t count>
-APOTHEM_INLINE double chains() {
+// Arithmetic: as many independent chains of multiplications and additions as registers hold, so
+// that none waits for its own last result. Returns the number of operations.
+template <class Wide, size_t... chain>
+APOTHEM_INLINE double chains(std::index_sequence<chain...>) {
   constexpr int kTurns = 1000;
-  std::array<Pack, count> start{};
+  Wide start[sizeof...(chain)]{};
   keep(start);  // the compiler must not know that all chains are the same
-  std::array<Pack, count> p = start;
-  const Pack factor(1.0000001), term(1e-9);
+  Wide p[]{start[chain]...};
   for (int i = 0; i < kTurns; ++i) {
-    for (Pack& x : p) x = x * factor + term;
+    ((p[chain] = p[chain] * 1.0000001 + 1e-9), ...);
   }
-  start = p;
+  ((start[chain] = p[chain]), ...);
   keep(start);
-  return 2. * kTurns * kLanes * static_cast<double>(count);
+  return 2. * kTurns * sizeof...(chain) * (sizeof(Wide) / sizeof(double));
 }
 #if defined(__x86_64__)
-[[gnu::target("avx512f")]] double chains_avx512() { return chains<12>(); }
-[[gnu::target("avx2")]] double chains_avx2() { return chains<6>(); }
+using Eight = double __attribute__((vector_size(64)));
+using Four = double __attribute__((vector_size(32)));
+[[gnu::target("avx512f")]] double chains_avx512() {
+  return chains<Eight>(std::make_index_sequence<24>());
+}
+[[gnu::target("avx2")]] double chains_avx2() {
+  return chains<Four>(std::make_index_sequence<12>());
+}
 #endif
-double chains_plain() { return chains<3>(); }
+using Two = double __attribute__((vector_size(16)));
+double chains_plain() { return chains<Two>(std::make_index_sequence<12>()); }
 
 Work arithmetic(int) {
 #if defined(__x86_64__)

@@ -39,7 +39,7 @@ TEST_CASE("help and usage", "[program]") {
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
   for (const char* sub :
-       {"run", "sweep", "check", "contact", "polygon", "mesh", "accuracy", "reproduce"})
+       {"run", "sweep", "check", "contact", "polygon", "mesh", "accuracy", "benchmark", "reproduce"})
     CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{},
