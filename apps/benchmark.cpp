@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "apothem/output/files.hpp"
@@ -128,7 +129,7 @@ int measure(const std::vector<BenchmarkCase>& cases, const BenchmarkOptions& opt
     }
   }
   if (options.json) {
-    fmt::print("{}\n", benchmark_json(results).dump(2));
+    fmt::print("{}\n", benchmark_json(results));
   } else {
     const std::vector<Growth> all = growths(results.cases);
     if (!all.empty()) fmt::print("\n");

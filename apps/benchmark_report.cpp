@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "apothem/sweep/csv.hpp"
 #include "version.hpp"
@@ -110,6 +111,12 @@ CurvePanel roofline_panel(const std::vector<CaseResult>& cases, const MachineLim
   for (const CaseResult& r : cases) {
     const double operations = r.timed.operations;
     if (!(r.timed.bytes > 0) || !(operations > 0)) continue;
+    // The largest of a family: the smaller ones lie beside it, and may fit into the caches.
+    const bool larger_follows = std::any_of(cases.begin(), cases.end(), [&](const CaseResult& o) {
+      return family_of(o.benchmark) == family_of(r.benchmark) &&
+             o.benchmark.size > r.benchmark.size;
+    });
+    if (larger_follows) continue;
     Curve curve = with_bars(r.benchmark.name, panel.curves.size() + 1);
     add_point(curve, operations / r.timed.bytes, kGiga * operations / r.timed.median(),
               kGiga * operations / r.timed.largest(), kGiga * operations / r.timed.least());
@@ -215,7 +222,7 @@ std::string benchmark_csv(const BenchmarkResults& results) {
   return text;
 }
 
-nlohmann::ordered_json benchmark_json(const BenchmarkResults& results) {
+std::string benchmark_json(const BenchmarkResults& results) {
   nlohmann::ordered_json json{{"version", kVersion}, {"threads", results.threads}};
   if (results.limits) {
     json["limits"] = {{"bandwidth", results.limits->bandwidth},
@@ -243,7 +250,7 @@ nlohmann::ordered_json benchmark_json(const BenchmarkResults& results) {
     json["growth"].push_back(
         {{"family", g.family}, {"from", g.from}, {"to", g.to}, {"exponent", g.exponent}});
   }
-  return json;
+  return json.dump(2);
 }
 
 CurveFigure benchmark_figure(const BenchmarkResults& results) {

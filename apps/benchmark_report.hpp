@@ -1,7 +1,6 @@
 // Private header: what `apothem benchmark` has measured, as lines, JSON, CSV and picture.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,7 +37,7 @@ struct Growth {
 std::vector<Growth> growths(const std::vector<CaseResult>& cases);
 
 std::string benchmark_csv(const BenchmarkResults& results);
-nlohmann::ordered_json benchmark_json(const BenchmarkResults& results);
+std::string benchmark_json(const BenchmarkResults& results);
 /// Times over sizes, and the ratios to the machine's limits; without panels if there is nothing to
 /// draw.
 CurveFigure benchmark_figure(const BenchmarkResults& results);
