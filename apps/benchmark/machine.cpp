@@ -41,7 +41,8 @@ APOTHEM_INLINE double chains(std::index_sequence<chain...>) {
   }
   ((start[chain] = p[chain]), ...);
   keep(start);
-  return 2. * kTurns * sizeof...(chain) * (sizeof(Wide) / sizeof(double));
+  constexpr size_t kWidth = sizeof(Wide) / sizeof(double);
+  return 2. * kTurns * static_cast<double>(sizeof...(chain) * kWidth);
 }
 #if defined(__x86_64__)
 using Eight = double __attribute__((vector_size(64)));
