@@ -191,7 +191,7 @@ class EigenElements {
         const Eigen::Vector3d stress =
             elasticity_ * Eigen::Vector3d(strain(0, 0), strain(1, 1), 2 * strain(0, 1));
         Eigen::Matrix<double, 3, 8> b;
-        for (int i = 0; i < 4; ++i) {
+        for (Eigen::Index i = 0; i < 4; ++i) {
           const double gx = g.gradients(0, i), gy = g.gradients(1, i);
           b.block<1, 2>(0, 2 * i) = gx * deformation.col(0).transpose();
           b.block<1, 2>(1, 2 * i) = gy * deformation.col(1).transpose();
@@ -200,7 +200,9 @@ class EigenElements {
         }
         forces += g.weight * (b.transpose() * stress);
       }
-      for (int i = 0; i < 4; ++i) f_.col(nodes[i]) -= forces.segment<2>(2 * i);
+      for (Eigen::Index i = 0; i < 4; ++i) {
+        f_.col(nodes[static_cast<size_t>(i)]) -= forces.segment<2>(2 * i);
+      }
     }
     keep(*f_.data());
     return mesh_.element_count();

@@ -68,6 +68,7 @@ Model dense(int count, double width, double solid_fraction, const Shape& shape) 
                      std::sqrt(kBlockArea));
   RandomNumbers random(1);
   std::vector<Block> blocks;
+  blocks.reserve(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) {
     blocks.push_back({shape(random), std::sqrt(kBlockArea), random.uniform(0, 2 * M_PI)});
   }
@@ -128,7 +129,8 @@ const Pile& pile_of_meshes() {
     Model model = empty_model();
     samples::Random random(1);
     for (int i = 0; i < kColumns * kRows; ++i) {
-      const Vec2 centre(pitch * (i % kColumns + .5), pitch * (i / kColumns + .5));
+      const int column = i % kColumns, row = i / kColumns;
+      const Vec2 centre(pitch * (column + .5), pitch * (row + .5));
       DeformableBody body;
       body.name = "block";
       body.mesh = rectangle_mesh({side, side}, {kCells, kCells}, {-side / 2, -side / 2},
