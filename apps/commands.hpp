@@ -135,6 +135,20 @@ struct AccuracyOptions {
 /// Compares speed and error of all methods for the contact force.
 int accuracy_command(const AccuracyOptions& options);
 
+/// Options of `apothem benchmark`.
+struct BenchmarkOptions {
+  bool list = false;    ///< list the cases, and end
+  std::string filter;   ///< regular expression that names of cases contain; empty: all short ones
+  int repetitions = 5;  ///< how often each case is timed
+  int threads = 1;
+  bool quick = false;   ///< shorter times
+  std::string compare;  ///< another program to run alternately with this one; empty: none
+  std::string folder;   ///< folder of results; empty: none are written
+  bool json = false;    ///< print JSON instead of a table
+};
+/// Times kernels and scenes.
+int benchmark_command(const BenchmarkOptions& options);
+
 /// Options of `apothem reproduce`.
 struct ReproduceOptions {
   std::vector<std::string> figures;      ///< names, or "all"; empty: print the list of figures

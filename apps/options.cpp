@@ -235,6 +235,32 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
       ->excludes(cases);
 }
 
+void add_benchmark(CLI::App& app, BenchmarkOptions& o) {
+  CLI::App* sub = app.add_subcommand("benchmark", "Times of kernels and scenes on this machine");
+  CLI::Option* list = sub->add_flag("--list", o.list, "List the cases and time none");
+  sub->add_option("--filter", o.filter,
+                  "Only cases whose names this regular expression finds, long ones too")
+      ->type_name("REGEX");
+  sub->add_option("--repeat", o.repetitions, "Time each case so often; the median counts")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--threads", o.threads, "Threads of scenes and elements")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  sub->add_flag("--quick", o.quick, "Take a tenth of the time for each repetition");
+  sub->add_option("--compare", o.compare,
+                  "Run this build of the program alternately, and print ratios of times")
+      ->type_name("FILE")
+      ->excludes(list);
+  sub->add_option("-o,--output", o.folder, "Folder for CSV and picture (default: none)")
+      ->type_name("DIR")
+      ->excludes(list);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
 void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
   sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
@@ -272,6 +298,7 @@ void add_commands(CLI::App& app, Options& options) {
   add_polygon(app, options.polygon);
   add_mesh(app, options.mesh);
   add_accuracy(app, options.accuracy);
+  add_benchmark(app, options.benchmark);
   add_reproduce(app, options.reproduce);
   add_completion(app, options.completion);
   app.add_subcommand("manual", "Print the manual page, for man -l -");

@@ -19,6 +19,7 @@ struct Options {
   PolygonOptions polygon;
   MeshOptions mesh;
   AccuracyOptions accuracy;
+  BenchmarkOptions benchmark;
   ReproduceOptions reproduce;
   CompletionOptions completion;
 };

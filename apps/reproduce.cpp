@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -13,24 +12,12 @@
 #include "apothem/output/files.hpp"
 #include "apothem/output/report.hpp"
 #include "commands.hpp"
+#include "data_folder.hpp"
 #include "figure.hpp"
 #include "version.hpp"
 
 namespace apothem {
 namespace {
-
-namespace fs = std::filesystem;
-
-// The data folder that --data names, that is installed with the program, or, if there is none, the
-// one in the source folder from which the program was built.
-std::string data_folder(const ReproduceOptions& options) {
-  if (!options.data.empty()) return options.data;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  const fs::path installed = (program / kDataFromProgram).lexically_normal();
-  if (fs::exists(installed / "figures", error)) return installed.string();
-  return kSourceData;
-}
 
 std::vector<std::string> chosen(const ReproduceOptions& options,
                                 const std::vector<std::string>& known) {
@@ -198,7 +185,7 @@ class Reproduction {
 }  // namespace
 
 int reproduce_command(const ReproduceOptions& options) {
-  const std::string data = data_folder(options);
+  const std::string data = options.data.empty() ? data_folder() : options.data;
   const std::vector<std::string> known = figure_names(data);
   if (!options.figures.empty()) {
     return Reproduction(options, data).execute(chosen(options, known));

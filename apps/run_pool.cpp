@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,12 +15,11 @@
 #include <string_view>
 
 #include "apothem/output/files.hpp"
+#include "child_program.hpp"
 #include "commands.hpp"
 
 namespace apothem {
 namespace {
-
-constexpr const char* kProgramItself = "/proc/self/exe";
 
 std::string messages_of(const std::string& folder) { return folder + "/messages.txt"; }
 
@@ -51,30 +49,6 @@ std::vector<std::string> command_of(const Study& study, const PlannedRun& run, b
     words.insert(words.end(), {"--from", study.from_of(run)});
   }
   return words;
-}
-
-// Starts a program whose output goes to a descriptor. Returns 0 or the number of the error.
-int spawn(std::vector<std::string>& words, int output, pid_t& process) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  const int error =
-      posix_spawn(&process, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  return error;
 }
 
 }  // namespace
@@ -146,8 +120,8 @@ void RunPool::launch(Child child) {
     throw SystemFailure(messages_of(study_.folder_of(*child.run)), errno);
   }
   study_.begin(*child.run, child.resumed);
-  std::vector<std::string> words = command_of(study_, *child.run, child.resumed);
-  const int error = spawn(words, child.messages, child.process);
+  const int error = start_program(command_of(study_, *child.run, child.resumed), child.messages,
+                                  child.messages, child.process);
   if (error != 0) {
     throw std::runtime_error(fmt::format("a run cannot be started: {}", std::strerror(error)));
   }

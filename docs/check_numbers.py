@@ -187,18 +187,19 @@ class Fresh:
         return sum(row[2] == method and row[3].startswith("crashed") for row in rows)
 
     def bench(self, name, of="time", command="benchmark"):
-        """Time in ns of a benchmark, or one of its counters: least and largest of the repetitions."""
+        """Of a case of the benchmark: least and largest time of an item in ns or rate in 1/s, or an extra number."""
         text = self.run(command)[1]
         start = text.index("{\n")
-        rows = [r for r in json.loads(text[start:text.rindex("}") + 1])["benchmarks"]
-                if r["run_name"] == name and r["run_type"] == "iteration"]
-        if not rows:
-            raise Problem(f"the benchmark {name} does not exist")
+        cases = [c for c in json.loads(text[start:text.rindex("}") + 1])["cases"] if c["name"] == name]
+        if not cases:
+            raise Problem(f"the benchmark has no case {name}")
+        times = cases[0]["times"]
         if of == "time":
-            unit = {"ns": 1, "us": 1e3, "ms": 1e6}[rows[0]["time_unit"]]
-            values = [r["cpu_time"] * unit for r in rows]
+            values = times
+        elif of == "rate":
+            values = [1e9 / time for time in times]
         else:
-            values = [r[of] for r in rows]
+            values = [cases[0]["extras"][of]]
         return min(values), max(values)
 
     def expect(self, scene, quantity, take="last", field="value", nth=0):
@@ -462,7 +463,7 @@ class Checker:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--root", default=pathlib.Path(__file__).resolve().parent.parent, type=pathlib.Path)
-    parser.add_argument("--build", default="build/release", help="folder of apothem and apothem_benchmark")
+    parser.add_argument("--build", default="build/release", help="folder of apothem")
     parser.add_argument("--tests", default="build/release", help="folder of apothem_tests")
     parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
     parser.add_argument("--texts", action="store_true", help="run nothing: do passages and tests exist?")

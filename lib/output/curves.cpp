@@ -83,13 +83,24 @@ bool has_bars(const CurvePanel& panel) {
                      [](const Curve& curve) { return curve.style == CurveStyle::error_bars; });
 }
 
-// Names at the places 1, 2, ... of the x axis, or its numbers.
+// Names at the places 1, 2, ... of the x axis, or its numbers. Names that do not fit beside each
+// other are turned.
 std::string x_tics(const CurvePanel& panel) {
+  constexpr size_t kFit = 110;  // characters
   std::string names;
+  size_t characters = 0;
   for (size_t i = 0; i < panel.x_names.size(); ++i) {
     names += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(panel.x_names[i]), i + 1);
+    characters += panel.x_names[i].size() + 2;
   }
-  return names.empty() ? "set xtics autofreq\n" : fmt::format("set xtics ({})\n", names);
+  if (names.empty()) return "set xtics autofreq\n";
+  return fmt::format("set xtics {}({})\n", characters > kFit ? "rotate by 50 right " : "", names);
+}
+
+std::string log_scales(const CurvePanel& panel) {
+  if (!panel.x_logarithmic && !panel.y_logarithmic) return "";
+  return fmt::format("set logscale {}{}\n", panel.x_logarithmic ? "x" : "",
+                     panel.y_logarithmic ? "y" : "");
 }
 
 std::string plot_script(const CurveFigure& figure,
@@ -120,7 +131,7 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
     script += repeats ? "unset key\n" : kKey;
     script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
                           quoted(panel.x_label), quoted(panel.y_label));
-    script += x_tics(panel);
+    script += x_tics(panel) + log_scales(panel);
     // Bars at the ends of the axes need room, and small values all their digits.
     script += has_bars(panel) ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
                                 "set format y '%g'\n"
@@ -133,7 +144,7 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
                             curve.style == CurveStyle::error_bars ? "1:2:3:4" : "1:2", style(curve),
                             curve.label.empty() ? "notitle" : "title " + quoted(curve.label));
     }
-    script += '\n';
+    script += log_scales(panel).empty() ? "\n" : "\nunset logscale\n";
   }
   return script + "unset multiplot\n";
 }

@@ -29,6 +29,7 @@ struct CurvePanel {
   /// Lowest and highest value of the axis; empty: chosen by gnuplot.
   std::optional<Vec2> x_range, y_range;
   std::vector<std::string> x_names = {};  ///< in place of the numbers 1, 2, ... on the x axis
+  bool x_logarithmic = false, y_logarithmic = false;
   std::vector<Curve> curves;
 };
 

@@ -38,8 +38,8 @@ TEST_CASE("help and usage", "[program]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
-  for (const char* sub :
-       {"run", "sweep", "check", "contact", "polygon", "mesh", "accuracy", "reproduce"})
+  for (const char* sub : {"run", "sweep", "check", "contact", "polygon", "mesh", "accuracy",
+                          "benchmark", "reproduce"})
     CHECK(run({sub, "--help"}, folder).code == 0);
   for (const std::vector<std::string>& wrong :
        {std::vector<std::string>{},

@@ -2,24 +2,20 @@
 // stability limit, as velocity Verlet takes the steps ("plain") and with contacts that begin or end
 // within a step corrected. The number in a name is the part of the limit in thousandths.
 //
-//   apothem_benchmark --benchmark_filter=work/ --benchmark_out_format=csv
-//                     --benchmark_out=out/work.csv
+//   apothem benchmark --filter ^work/ --repeat 1 -o out/work
 //   gnuplot docs/images/work-precision.gnuplot
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
-#include <functional>
-#include <string>
+#include <memory>
 
 #include "apothem/dynamics/simulation.hpp"
-#include "apothem/scene/scene.hpp"
+#include "benchmark/bench.hpp"
+#include "benchmark/data_scene.hpp"
 #include "cases/impacts.hpp"
 #include "cases/samples.hpp"
 
+namespace apothem {
 namespace {
-
-using namespace apothem;
 
 TimeSettings time_of(double end, double safety, bool corrected) {
   return {.end = end, .safety = safety, .element_safety = safety, .onsets = corrected};
@@ -120,7 +116,7 @@ double pack(double safety, bool corrected) {
 // A scene of the data folder: the largest error over the kinetic energy at the start.
 std::function<double(double, bool)> shipped(const std::string& name) {
   return [name](double safety, bool corrected) {
-    const Scene scene = read_scene(APOTHEM_SOURCE "/data/scenes/" + name + ".json");
+    const Scene scene = data_scene(name);
     Simulation simulation(scene.model, time_of(scene.time.end, safety, corrected), 1, 1);
     const double kinetic = simulation.energies().kinetic;
     double worst = 0;
@@ -133,26 +129,46 @@ std::function<double(double, bool)> shipped(const std::string& name) {
   };
 }
 
-const bool kRegistered = [] {
-  const auto enter = [](const std::string& name, const std::function<double(double, bool)>& run,
-                        std::initializer_list<int> thousandths) {
+}  // namespace
+
+std::vector<BenchmarkCase> work_cases() {
+  std::vector<BenchmarkCase> cases;
+  const auto enter = [&](const std::string& name, const std::string& about,
+                         const std::function<double(double, bool)>& run,
+                         std::initializer_list<int> thousandths) {
     for (const bool corrected : {false, true}) {
-      const std::string title = "work/" + name + (corrected ? "/corrected" : "/plain");
-      auto* b = benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) {
-        double error = 0;
-        for (auto _ : state) error = run(static_cast<double>(state.range(0)) / 1000, corrected);
-        state.counters["error"] = error;
-      });
-      for (const int part : thousandths) b->Arg(part);
-      b->Iterations(1)->Unit(benchmark::kMillisecond);
+      for (const int part : thousandths) {
+        const auto prepare = [=](int) {
+          const auto error = std::make_shared<double>(0);
+          return Work{.once =
+                          [=] {
+                            *error = run(static_cast<double>(part) / 1000, corrected);
+                            return 1.;
+                          },
+                      .extras =
+                          [error] {
+                            return std::vector<Extra>{{"error", *error}};
+                          }};
+        };
+        cases.push_back({.name = "work/" + name + (corrected ? "/corrected/" : "/plain/") +
+                                 std::to_string(part),
+                         .item = "run",
+                         .about = about,
+                         .prepare = prepare,
+                         .on_request = true});
+      }
     }
   };
-  enter("impact", impact, {50, 80, 120, 160, 250, 400});
-  enter("gas", gas, {50, 80, 120, 160, 250, 400});
-  enter("pack", pack, {50, 80, 120, 160, 250, 400, 600});
-  enter("beam", shipped("impacted-beam-coarse"), {50, 100, 200, 400});
-  enter("discs", shipped("oblique-discs"), {50, 100, 200, 400});
-  return true;
-}();
+  enter("impact", "64 landings of a square, and the worst error", impact,
+        {50, 80, 120, 160, 250, 400});
+  enter("gas", "300 impacts of 16 polygons, and their error", gas, {50, 80, 120, 160, 250, 400});
+  enter("pack", "100 quadrilaterals come to rest, and the error", pack,
+        {50, 80, 120, 160, 250, 400, 600});
+  enter("beam", "impacted beam, and the largest error", shipped("impacted-beam-coarse"),
+        {50, 100, 200, 400});
+  enter("discs", "oblique discs, and the largest error", shipped("oblique-discs"),
+        {50, 100, 200, 400});
+  return cases;
+}
 
-}  // namespace
+}  // namespace apothem

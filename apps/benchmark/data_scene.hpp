@@ -1,0 +1,16 @@
+// Private header: scenes that come with the program.
+#pragma once
+
+#include <string>
+
+#include "apothem/scene/scene.hpp"
+#include "data_folder.hpp"
+
+namespace apothem {
+
+/// The scene of that name, without ".json".
+inline Scene data_scene(const std::string& name) {
+  return read_scene(data_folder() + "/scenes/" + name + ".json");
+}
+
+}  // namespace apothem
