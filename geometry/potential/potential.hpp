@@ -12,12 +12,12 @@
 
 #include <array>
 #include <functional>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
+#include "apothem/geometry/potential/rare.hpp"
 #include "apothem/geometry/skeleton/roof.hpp"
 
 namespace apothem {
@@ -30,8 +30,8 @@ struct Potential {
   double top = 0;                         ///< maximum of phi if it is not limited to 1
   std::vector<Vec2> top_points;           ///< where phi is highest: points and ends of ridges, m
   double steepest = 0;                    ///< largest |g_i|, 1/m
-  std::optional<Roof> roof;               ///< roof over the straight skeleton
-  std::optional<DistanceField> distance;  ///< distance field
+  Rare<Roof> roof;               ///< roof over the straight skeleton
+  Rare<DistanceField> distance;  ///< distance field
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }

@@ -34,6 +34,7 @@ bool Schedule::due(double time, double step) {
 Run::Run(Scene scene, const RunSettings& settings)
     : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
   for (std::string& unlikely : unlikely_values(scene_)) warn(std::move(unlikely));
+  scene_.drop_rings();
   start();
   const std::string& folder = settings_.folder;
   rows_ =
