@@ -39,10 +39,13 @@ void add_time(vtkUnstructuredGrid* grid, double time) {
   grid->GetFieldData()->AddArray(value);
 }
 
-void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<std::string>& names) {
+// `name_of`: gives the name of each of so many things.
+template <class NameOf>
+void add_names(vtkUnstructuredGrid* grid, const char* name, size_t count, const NameOf& name_of) {
   vtkNew<vtkStringArray> array;
   array->SetName(name);
-  for (const std::string& n : names) array->InsertNextValue(n);
+  array->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), name_of(i));
   grid->GetFieldData()->AddArray(array);
 }
 
@@ -134,13 +137,10 @@ class BodyGrid {
     grid->GetPointData()->AddArray(velocity_);
     for (vtkDataArray* array : of_cells()) grid->GetCellData()->AddArray(array);
     add_time(grid, frame_.state.time);
-    std::vector<std::string> names;
-    const auto bodies = static_cast<BodyIndex>(model_.bodies.size() + model_.deformables.size());
-    for (BodyIndex b = 0; b < bodies; ++b) names.push_back(model_.name_of(b));
-    add_names(grid, "body_names", names);
-    names.clear();
-    for (const Material& m : model_.materials) names.push_back(m.name);
-    add_names(grid, "material_names", names);
+    add_names(grid, "body_names", model_.bodies.size() + model_.deformables.size(),
+              [&](size_t i) { return model_.name_of(static_cast<BodyIndex>(i)); });
+    add_names(grid, "material_names", model_.materials.size(),
+              [&](size_t i) { return model_.materials[i].name; });
     return grid;
   }
 
@@ -162,8 +162,8 @@ class BodyGrid {
 
   // The arrays that have a value for each cell, but those of stresses in deformable bodies.
   std::vector<vtkDataArray*> of_cells() {
-    std::vector<vtkDataArray*> arrays{body_,  part_,         material_,   rotation_, spin_,
-                                      force_, coordination_, mean_stress_};
+    std::vector<vtkDataArray*> arrays{body_, part_,  material_,     rotation_,
+                                      spin_, force_, coordination_, mean_stress_};
     for (const auto& [quantity, array] : quantities_) arrays.push_back(array);
     return arrays;
   }

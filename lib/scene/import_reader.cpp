@@ -117,10 +117,10 @@ class Import {
     for (size_t i = 0; i < layers_->keys().size(); ++i) {
       const std::string& layer = layers_->keys()[i];
       if (std::find(known.begin(), known.end(), layer) != known.end()) continue;
-      in_.fail(layers_->items()[i], known.empty()
-                                      ? "the drawing has no layers; leave \"layers\" out"
-                                      : fmt::format("the drawing has no layer {} (it has: {})",
-                                                    suggest(layer, known), fmt::join(known, ", ")));
+      in_.fail(layers_->items()[i],
+               known.empty() ? "the drawing has no layers; leave \"layers\" out"
+                             : fmt::format("the drawing has no layer {} (it has: {})",
+                                           suggest(layer, known), fmt::join(known, ", ")));
     }
   }
 

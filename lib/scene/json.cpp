@@ -349,7 +349,7 @@ void JsonObject::finish() const {
     const std::string& key = value_.keys()[i];
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     reader_.fail(value_.items()[i], fmt::format("unknown key {} (known here: {})",
-                                              suggest(key, known_), fmt::join(known_, ", ")));
+                                                suggest(key, known_), fmt::join(known_, ", ")));
   }
 }
 

@@ -131,9 +131,7 @@ std::string JsonValue::pointer() const {
 
 void JsonValue::set(bool value) { data_ = value; }
 void JsonValue::set(double value) { data_ = value; }
-void JsonValue::set(std::string value) {
-  data_ = std::make_unique<std::string>(std::move(value));
-}
+void JsonValue::set(std::string value) { data_ = std::make_unique<std::string>(std::move(value)); }
 
 JsonValue& JsonValue::item(size_t i) { return container()->items[i]; }
 

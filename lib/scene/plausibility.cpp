@@ -103,9 +103,10 @@ class Inspection {
     for (const JsonValue& body : bodies.items()) {
       const JsonValue* angle = body.find("angle");
       if (angle && std::abs(angle->number()) > kFullTurn) {
-        say(*angle, fmt::format("{:g} rad is more than a full turn: angles are in radians; {:g} "
-                                "degrees are {:.6g} rad",
-                                angle->number(), angle->number(), angle->number() * kFullTurn / 360));
+        say(*angle,
+            fmt::format("{:g} rad is more than a full turn: angles are in radians; {:g} "
+                        "degrees are {:.6g} rad",
+                        angle->number(), angle->number(), angle->number() * kFullTurn / 360));
       }
       const JsonValue* velocity = body.find("velocity");
       if (velocity == nullptr || velocity->items().size() != 2) continue;

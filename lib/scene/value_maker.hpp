@@ -42,9 +42,7 @@ class ValueMaker {
     return value;
   }
   [[nodiscard]] JsonValue object() const { return make(JsonValue::Type::object); }
-  static void add(JsonValue& array, JsonValue value) {
-    array.add_from_elsewhere(std::move(value));
-  }
+  static void add(JsonValue& array, JsonValue value) { array.add_from_elsewhere(std::move(value)); }
   static void add(JsonValue& object, const char* key, JsonValue value) {
     object.add_from_elsewhere(std::move(value), key);
   }

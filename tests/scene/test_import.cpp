@@ -467,8 +467,8 @@ TEST_CASE("what cannot be imported is refused with its place and a remedy", "[im
   for (const Case& c : cases) {
     if (c.text) folder.write(c.file, c.text);
     const std::string error = error_of(
-        folder, fmt::format(R"({{ "file": "{}", "material": "rock"{} }})", c.file, c.keys()));
-    INFO(c.file << ": " << (c.text ? c.text : c.keys()) << "\n" << error);
+        folder, fmt::format(R"({{ "file": "{}", "material": "rock"{} }})", c.file, c.keys));
+    INFO(c.file << ": " << (c.text ? c.text : c.keys) << "\n" << error);
     CHECK(error.find("scene.json:4: /import/0") != std::string::npos);
     for (const char* message : c.messages) CHECK(error.find(message) != std::string::npos);
     CHECK(error.find('\n') == std::string::npos);

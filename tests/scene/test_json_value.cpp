@@ -1,9 +1,11 @@
-#include <catch2/catch_test_macros.hpp>
+// JSON values: where they stand, and what objects share.
+#include <catch2/catch.hpp>
 
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/value_maker.hpp"
 
-namespace apothem {
+using namespace apothem;
+
 namespace {
 
 // The pointers of a value and of all that it holds, in their order.
@@ -20,8 +22,8 @@ std::vector<std::string> pointers_in(const JsonValue& value) {
 TEST_CASE("a JSON value knows its pointer, also when it is moved or copied", "[json]") {
   const std::string text = R"({"a": [1, {"b/c": [[2], "three"]}], "~": {"d": null, "e": true}})";
   const std::vector<std::string> expected{
-      "",        "/a",         "/a/0", "/a/1",    "/a/1/b~1c", "/a/1/b~1c/0", "/a/1/b~1c/0/0",
-      "/a/1/b~1c/1", "/~0", "/~0/d",  "/~0/e"};
+      "",    "/a",    "/a/0", "/a/1", "/a/1/b~1c", "/a/1/b~1c/0", "/a/1/b~1c/0/0", "/a/1/b~1c/1",
+      "/~0", "/~0/d", "/~0/e"};
   JsonValue first = parse_json(text, "f");
   CHECK(pointers_in(first) == expected);
   const JsonValue copy = first;
@@ -81,4 +83,3 @@ TEST_CASE("values that are made for another value stand in its place", "[json]")
 }
 
 }  // namespace
-}  // namespace apothem
