@@ -22,7 +22,7 @@ struct Scene {
   std::vector<StopRule> stops;
   std::vector<Measure> measures;
   std::vector<std::string> rigid_pointers;  ///< of each rigid body, its JSON pointer
-  JsonValue document;  ///< what the file says; a run frees it
+  JsonValue document;                       ///< what the file says; a run frees it
 
   /// An error at a JSON pointer of this scene, or at the innermost enclosing value that exists.
   [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;
