@@ -144,14 +144,14 @@ class FigureReader {
     const std::vector<std::vector<std::string>> tables =
         is_scene ? recorded_columns(scene_of(name)) : columns_of_table(name);
     const std::vector<std::string>& columns = holding(tables, y);
-    source.y.column = y.string;
-    if (x) source.x.column = holding({columns}, *x).at(index_of(columns, x->string));
+    source.y.column = y.string();
+    if (x) source.x.column = holding({columns}, *x).at(index_of(columns, x->string()));
     if (index_of(columns, source.x.column) == columns.size()) {
       in_.fail(name, "has no column \"" + source.x.column + "\": give \"x\"");
     }
     if (!is_scene) return;
     std::vector<std::string>& stated = figure_.numbers[source.scene];
-    if (index_of(stated, y.string) == stated.size()) stated.push_back(y.string);
+    if (index_of(stated, y.string()) == stated.size()) stated.push_back(y.string());
   }
 
   void surface(JsonObject& object, CurveSource& source, const JsonValue& name,
@@ -180,7 +180,7 @@ class FigureReader {
       if (index_of(columns, in_.string(column)) < columns.size()) return columns;
       all.insert(all.end(), columns.begin(), columns.end());
     }
-    in_.fail(column, "there is no column " + suggest(column.string, all));
+    in_.fail(column, "there is no column " + suggest(column.string(), all));
   }
 
   void field_panel(const JsonValue& value) {
@@ -211,7 +211,7 @@ class FigureReader {
     const std::vector<FieldSource>& sources = figure_.field_sources.back();
     for (size_t i = 0; i < sources.size(); ++i) {
       if (sources[i].compared && !first_reference(sources)) {
-        in_.fail(fields.items[i], "is compared with a \"reference\" of the same panel; add one");
+        in_.fail(fields.items()[i], "is compared with a \"reference\" of the same panel; add one");
       }
     }
   }
@@ -264,7 +264,7 @@ class FigureReader {
       compare.finish();
     }
     const Scene scene = scene_of(name);
-    source.scene = name.string;
+    source.scene = name.string();
     if (scene.model.deformables.empty() && (!quantity.nodal || source.compared)) {
       in_.fail(name, source.compared ? "has no body with a mesh to compare"
                                      : "has no body with a mesh, and rigid bodies have no stress");
@@ -297,8 +297,8 @@ class FigureReader {
       }
     }
     holding(tables, column);
-    source.reference = reference.string;
-    source.column = column.string;
+    source.reference = reference.string();
+    source.column = column.string();
     source.cell = cell;
     bool none = false;
     try {

@@ -41,6 +41,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/potential/inscribed_circle.hpp
   geometry/potential/piecewise_minimum.hpp
   geometry/potential/potential.hpp
+  geometry/potential/rare.hpp
   geometry/skeleton/roof.hpp
   geometry/skeleton/singular_area.hpp
   geometry/skeleton/skeleton.hpp
@@ -75,5 +76,6 @@ set(APOTHEM_PUBLIC_HEADERS
   run/stop_watch.hpp
   scene/error.hpp
   scene/json.hpp
+  scene/json_value.hpp
   scene/scene.hpp
   scene/setting.hpp)

@@ -12,12 +12,12 @@
 
 #include <array>
 #include <functional>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
+#include "apothem/geometry/potential/rare.hpp"
 #include "apothem/geometry/skeleton/roof.hpp"
 
 namespace apothem {
@@ -25,13 +25,13 @@ namespace apothem {
 /// The contact potential of a polygon. A polygon that is not convex has either a roof or a distance
 /// field, and phi is then not the minimum of the linear functions of its edges.
 struct Potential {
-  std::vector<Vec2> vertices;             ///< p_i relative to an origin that the owner chooses, m
-  std::vector<Vec2> gradients;            ///< g_i, 1/m
-  double top = 0;                         ///< maximum of phi if it is not limited to 1
-  std::vector<Vec2> top_points;           ///< where phi is highest: points and ends of ridges, m
-  double steepest = 0;                    ///< largest |g_i|, 1/m
-  std::optional<Roof> roof;               ///< roof over the straight skeleton
-  std::optional<DistanceField> distance;  ///< distance field
+  std::vector<Vec2> vertices;    ///< p_i relative to an origin that the owner chooses, m
+  std::vector<Vec2> gradients;   ///< g_i, 1/m
+  double top = 0;                ///< maximum of phi if it is not limited to 1
+  std::vector<Vec2> top_points;  ///< where phi is highest: points and ends of ridges, m
+  double steepest = 0;           ///< largest |g_i|, 1/m
+  Rare<Roof> roof;               ///< roof over the straight skeleton
+  Rare<DistanceField> distance;  ///< distance field
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }

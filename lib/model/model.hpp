@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +35,7 @@ struct RigidBody {
   Motion motion = Motion::free;
   std::array<bool, 3> held{};    ///< x, y, angle that a free body may not change
   MotionHistory history;         ///< if prescribed
-  std::optional<Servo> servo;    ///< if prescribed: instead of the history
+  Rare<Servo> servo;             ///< if prescribed: instead of the history
   Vec2 pivot = Vec2::Zero();     ///< body frame: the point that `history` moves, and turns about
   Vec2 position = Vec2::Zero();  ///< of the mass centre at time 0
   double angle = 0;

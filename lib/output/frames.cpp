@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <ranges>
 #include <stdexcept>
 
 #include "apothem/mesh/boundary.hpp"
@@ -38,10 +39,13 @@ void add_time(vtkUnstructuredGrid* grid, double time) {
   grid->GetFieldData()->AddArray(value);
 }
 
-void add_names(vtkUnstructuredGrid* grid, const char* name, const std::vector<std::string>& names) {
+// `name_of`: gives the name of each of so many things.
+template <class NameOf>
+void add_names(vtkUnstructuredGrid* grid, const char* name, size_t count, const NameOf& name_of) {
   vtkNew<vtkStringArray> array;
   array->SetName(name);
-  for (const std::string& n : names) array->InsertNextValue(n);
+  array->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), name_of(i));
   grid->GetFieldData()->AddArray(array);
 }
 
@@ -95,15 +99,17 @@ std::vector<CauchyStress> nodal_means(const DeformableBody& body, const CauchySt
 using Cells = std::vector<std::vector<int>>;
 
 // The bodies of a frame: a rigid one is a cell, and so is an element, or several if it is not
-// convex. `rigid_cells` are those of the rigid bodies.
+// convex. `rigid_cells` are those of the rigid bodies that are not convex.
 class BodyGrid {
  public:
-  BodyGrid(const Model& model, const FrameContents& frame, const std::vector<Cells>& rigid_cells)
+  BodyGrid(const Model& model, const FrameContents& frame,
+           const std::map<RigidIndex, Cells>& rigid_cells)
       : model_(model), frame_(frame), rigid_cells_(rigid_cells) {
     points_->SetDataTypeToDouble();
     for (const BodyQuantity& quantity : kBodyQuantities) {
       if (quantity.in_frames) quantities_.push_back({&quantity, doubles(quantity.name, 1)});
     }
+    reserve();
     for (RigidIndex i = 0; i < static_cast<RigidIndex>(model.bodies.size()); ++i) {
       if (!frame.state.is_absent(i)) add_rigid(i);
     }
@@ -129,23 +135,39 @@ class BodyGrid {
     mean_stress_->SetComponentName(2, "xy");
     grid->GetPointData()->AddArray(displacement_);
     grid->GetPointData()->AddArray(velocity_);
-    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{
-             body_, part_, material_, rotation_, spin_, force_, coordination_, mean_stress_}) {
-      grid->GetCellData()->AddArray(array);
-    }
-    for (const auto& [quantity, array] : quantities_) grid->GetCellData()->AddArray(array);
+    for (vtkDataArray* array : of_cells()) grid->GetCellData()->AddArray(array);
     add_time(grid, frame_.state.time);
-    std::vector<std::string> names;
-    const auto bodies = static_cast<BodyIndex>(model_.bodies.size() + model_.deformables.size());
-    for (BodyIndex b = 0; b < bodies; ++b) names.push_back(model_.name_of(b));
-    add_names(grid, "body_names", names);
-    names.clear();
-    for (const Material& m : model_.materials) names.push_back(m.name);
-    add_names(grid, "material_names", names);
+    add_names(grid, "body_names", model_.bodies.size() + model_.deformables.size(),
+              [&](size_t i) { return model_.name_of(static_cast<BodyIndex>(i)); });
+    add_names(grid, "material_names", model_.materials.size(),
+              [&](size_t i) { return model_.materials[i].name; });
     return grid;
   }
 
  private:
+  // Arrays that grow would take twice the memory.
+  void reserve() {
+    vtkIdType points = 0;
+    auto cells = static_cast<vtkIdType>(model_.bodies.size());
+    for (const RigidBody& body : model_.bodies) points += body.potential.size();
+    for (const DeformableBody& body : model_.deformables) {
+      points += static_cast<vtkIdType>(body.mesh.nodes.size());
+      cells += body.mesh.element_count();
+    }
+    points_->Allocate(points);
+    cells_->AllocateEstimate(cells, 4);
+    for (vtkDataArray* array : {displacement_.Get(), velocity_.Get()}) array->Allocate(3 * points);
+    for (vtkDataArray* array : of_cells()) array->Allocate(array->GetNumberOfComponents() * cells);
+  }
+
+  // The arrays that have a value for each cell, but those of stresses in deformable bodies.
+  std::vector<vtkDataArray*> of_cells() {
+    std::vector<vtkDataArray*> arrays{body_, part_,  material_,     rotation_,
+                                      spin_, force_, coordination_, mean_stress_};
+    for (const auto& [quantity, array] : quantities_) arrays.push_back(array);
+    return arrays;
+  }
+
   void add_rigid(RigidIndex i) {
     const RigidBody& body = model_.bodies[i];
     const auto x = frame_.state.pose(i), v = frame_.state.pose_rate(i);
@@ -155,14 +177,20 @@ class BodyGrid {
       const Vec2 arm = turned(vertex, x[2]);
       const Vec2 u = (centre - body.position) + (arm - turned(vertex, body.angle));
       add_point(centre + arm, u, v.head<2>() + cross(v[2], arm));
-      of_points_.add({});
+      if (!model_.deformables.empty()) of_points_.add({});
     }
     const auto f = frame_.state.force(i);
     const BodyMotion of_body = motion(i);
-    for (size_t part = 0; part < rigid_cells_[i].size(); ++part) {
-      add_corners(rigid_cells_[i][part], [&](int corner) { return first + corner; });
+    const auto add = [&](size_t part, const auto& corners) {
+      add_corners(corners, [&](int corner) { return first + corner; });
       add_cell(i, part, body.material, x[2] - body.angle, v[2], f.head<2>(), {}, of_body);
+    };
+    const auto several = rigid_cells_.find(i);
+    if (several == rigid_cells_.end()) {
+      add(0, std::views::iota(0, body.potential.size()));
+      return;
     }
+    for (size_t part = 0; part < several->second.size(); ++part) add(part, several->second[part]);
   }
 
   void add_deformable(DeformableIndex i, const CauchyStress* stress) {
@@ -190,8 +218,8 @@ class BodyGrid {
     }
   }
 
-  template <class PointOf>
-  void add_corners(const std::vector<int>& corners, const PointOf& point_of) {
+  template <class Corners, class PointOf>
+  void add_corners(const Corners& corners, const PointOf& point_of) {
     cells_->InsertNextCell(static_cast<int>(corners.size()));
     for (const int corner : corners) cells_->InsertCellPoint(point_of(corner));
   }
@@ -215,7 +243,7 @@ class BodyGrid {
     rotation_->InsertNextValue(rotation);
     spin_->InsertNextValue(spin);
     force_->InsertNextTuple3(force.x(), force.y(), 0);
-    of_cells_.add(stress);
+    if (!model_.deformables.empty()) of_cells_.add(stress);
     const BodyStatistics own =
         frame_.bodies.empty() ? BodyStatistics() : frame_.bodies[static_cast<size_t>(body)];
     coordination_->InsertNextValue(own.coordination);
@@ -227,7 +255,7 @@ class BodyGrid {
 
   const Model& model_;
   const FrameContents& frame_;
-  const std::vector<Cells>& rigid_cells_;
+  const std::map<RigidIndex, Cells>& rigid_cells_;
   vtkNew<vtkPoints> points_;
   vtkNew<vtkCellArray> cells_;
   vtkNew<vtkIntArray> body_ = integers("body");
@@ -376,8 +404,11 @@ std::string collection(const char* series, const std::vector<double>& times) {
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
     : folder_(std::move(folder)), model_(model), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
-  for (const RigidBody& body : model_.bodies) {
-    cells_.push_back(convex_cells(body.potential.vertices));
+  for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
+    Cells cells = convex_cells(model_.bodies[i].potential.vertices);
+    if (cells.size() > 1 || cells[0].size() < model_.bodies[i].potential.vertices.size()) {
+      cells_[i] = std::move(cells);
+    }
   }
   for (const DeformableBody& body : model_.deformables) {
     Cells& loops = loops_.emplace_back();

@@ -8,6 +8,7 @@
 // not convex is several cells with the same values, numbered by the cell data `part`.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,8 @@ class FrameWriter {
  private:
   std::string folder_;
   const Model& model_;
-  std::vector<std::vector<std::vector<int>>> cells_;  // of each rigid body, as lists of its corners
+  // Of each rigid body that is several cells, as lists of its corners.
+  std::map<RigidIndex, std::vector<std::vector<int>>> cells_;
   std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes
   std::vector<double> times_;
 };

@@ -33,6 +33,7 @@ inline std::string xml(vtkUnstructuredGrid* grid) {
   writer->SetInputData(grid);
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);  // higher ones take up to twice as long for 2 %
   writer->WriteToOutputStringOn();
   writer->Write();
   return writer->GetOutputString();

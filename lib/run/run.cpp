@@ -34,7 +34,9 @@ bool Schedule::due(double time, double step) {
 Run::Run(Scene scene, const RunSettings& settings)
     : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
   for (std::string& unlikely : unlikely_values(scene_)) warn(std::move(unlikely));
+  scene_.drop_rings();
   start();
+  scene_.document = JsonValue();  // only errors at the start need their places
   const std::string& folder = settings_.folder;
   rows_ =
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);

@@ -52,8 +52,7 @@ void BodyReader::read() {
   const auto name_of_series = [&](size_t i) {
     while (series != series_.end() && i >= series->end) ++series;
     if (series == series_.end() || i < series->first) return;
-    const auto at = std::ranges::find(series->value.keys, "name") - series->value.keys.begin();
-    series->value.items[at].string = numbered(series->name, static_cast<int>(i - series->first));
+    series->value.find("name")->set(numbered(series->name, static_cast<int>(i - series->first)));
   };
   for (size_t i = 0; i < shapes_.size(); ++i) {
     name_of_series(i);
@@ -145,7 +144,7 @@ void BodyReader::rigid_body(const JsonValue& value, const Polygon& polygon,
   JsonObject object(in_, value);
   RigidBody body;
   name_and_material(object, body.name, body.material);
-  rigid_pointers_.push_back(value.pointer);
+  rigid_pointers_.push_back(value.pointer());
   numbers_.push_back(static_cast<int>(model_.bodies.size()));
   features_.add(Feature::rigid_body, &value, place());
   object.required("polygon", "");
@@ -174,8 +173,8 @@ void BodyReader::give_shape(const JsonValue& value, const Polygon& polygon,
                             const PotentialSource& potential, RigidBody& body) {
   const JsonValue& outline = *value.find("polygon");
   if (polygon.size() > 3) {
-    const bool ring = outline.type == JsonValue::Type::array && outline.items.size() > 3;
-    features_.add(Feature::polygon_beyond_triangle, ring ? &outline.items[3] : &outline, place());
+    const bool ring = outline.type() == JsonValue::Type::array && outline.items().size() > 3;
+    features_.add(Feature::polygon_beyond_triangle, ring ? &outline.items()[3] : &outline, place());
     if (features_.uses(Feature::area_potential)) return;
   }
   try {
@@ -241,19 +240,19 @@ void BodyReader::name_and_material(JsonObject& object, std::string& name, Materi
 
 MaterialIndex BodyReader::material(const JsonValue& name) const {
   const std::string& wanted = in_.string(name);
-  std::vector<std::string> known;
-  for (const Material& m : model_.materials) known.push_back(m.name);
-  const auto found = std::find(known.begin(), known.end(), wanted);
-  if (found == known.end()) {
+  const auto found = std::ranges::find(model_.materials, wanted, &Material::name);
+  if (found == model_.materials.end()) {
+    std::vector<std::string> known;
+    for (const Material& m : model_.materials) known.push_back(m.name);
     in_.fail(name, fmt::format("unknown material {}", suggest(wanted, known)));
   }
-  return static_cast<MaterialIndex>(found - known.begin());
+  return static_cast<MaterialIndex>(found - model_.materials.begin());
 }
 
 // `name` is the value in the scene that gives elements this material.
 void BodyReader::require_elastic(const JsonValue& name, MaterialIndex material) const {
   const Material& m = model_.materials[material];
-  if (m.elastic.young > 0 && materials_.items[material].find("poisson")) return;
+  if (m.elastic.young > 0 && materials_.items()[material].find("poisson")) return;
   in_.fail(name, fmt::format("a body with a mesh needs \"young\" (Pa) and \"poisson\" of material "
                              "\"{}\"",
                              m.name));
@@ -261,18 +260,18 @@ void BodyReader::require_elastic(const JsonValue& name, MaterialIndex material) 
 
 // Materials of the groups of elements that have another one than their body.
 void BodyReader::element_materials(const JsonValue& value, DeformableBody& body) const {
-  if (value.type != JsonValue::Type::object || value.items.empty()) {
+  if (value.type() != JsonValue::Type::object || value.items().empty()) {
     in_.fail(value, "must be {\"GROUP\": \"MATERIAL\", ...} with groups of the mesh");
   }
   std::vector<std::string> known;
   for (const MeshGroup& group : body.mesh.groups) {
     if (!group.elements.empty()) known.push_back(group.name);
   }
-  const std::vector<std::string>& groups = value.keys;
+  const std::vector<std::string>& groups = value.keys();
   body.element_material.assign(static_cast<size_t>(body.mesh.element_count()), body.material);
   std::vector<int> taken(body.element_material.size(), -1);  // by which of the groups
   for (size_t i = 0; i < groups.size(); ++i) {
-    const JsonValue& name = value.items[i];
+    const JsonValue& name = value.items()[i];
     if (std::find(known.begin(), known.end(), groups[i]) == known.end()) {
       in_.fail(name, known.empty()
                          ? "the mesh has no groups of elements: those are the physical "
@@ -298,12 +297,12 @@ void BodyReader::element_materials(const JsonValue& value, DeformableBody& body)
 }
 
 Motion BodyReader::motion(const JsonValue& value) {
-  if (value.type == JsonValue::Type::string) {
+  if (value.type() == JsonValue::Type::string) {
     if (in_.choice(value, {"free", "fixed"}) == 0) return Motion::free;
     features_.add(Feature::fixed_motion, &value, place());
     return Motion::fixed;
   }
-  if (value.type != JsonValue::Type::object) {
+  if (value.type() != JsonValue::Type::object) {
     in_.fail(value,
              "must be \"free\", \"fixed\", {\"velocity\": [[t,vx,vy],...], \"spin\": "
              "[[t,w],...], \"pivot\": [x,y]} or {\"servo\": {...}}");
@@ -384,7 +383,7 @@ void BodyReader::refuse_held_velocity(const JsonValue& value, const RigidBody& b
       "\"fix\"";
   for (int k = 0; k < 2; ++k) {
     if (body.held[k] && body.velocity[k] != 0) {
-      in_.fail(value.find("velocity")->items[k], kHeldVelocity);
+      in_.fail(value.find("velocity")->items()[k], kHeldVelocity);
     }
   }
   if (body.held[2] && body.spin != 0) in_.fail(*value.find("spin"), kHeldVelocity);

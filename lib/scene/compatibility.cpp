@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace apothem {
 namespace {
 
@@ -22,6 +24,13 @@ constexpr bool texts_are_complete() {
 }
 static_assert(texts_are_complete(), "a feature in kIncompatible lacks a text");
 
+// Where a body stands among values, or where it would. Bodies mostly come in their order.
+template <class Values>
+auto place_of(Values& values, int body) {
+  if (values.empty() || values.back().first < body) return values.end();
+  return std::ranges::lower_bound(values, body, {}, &std::pair<int, const JsonValue*>::first);
+}
+
 }  // namespace
 
 std::string message_of(const Incompatibility& pair) {
@@ -30,17 +39,23 @@ std::string message_of(const Incompatibility& pair) {
 }
 
 void UsedFeatures::add(Feature feature, const JsonValue* at, int body) {
-  values_[static_cast<size_t>(feature)].emplace(body, at);
+  Values& values = values_[static_cast<size_t>(feature)];
+  const auto place = place_of(values, body);
+  if (place == values.end() || place->first != body) values.insert(place, {body, at});
 }
 
-const std::map<int, const JsonValue*>& UsedFeatures::values(Feature feature) const {
+const UsedFeatures::Values& UsedFeatures::values(Feature feature) const {
   return values_[static_cast<size_t>(feature)];
 }
 
 bool UsedFeatures::uses(Feature feature, int body) const {
-  const std::map<int, const JsonValue*>& bodies = values(feature);
+  const Values& bodies = values(feature);
   if (body == kWholeScene) return !bodies.empty();
-  return bodies.contains(body) || bodies.contains(kWholeScene);
+  const auto contains = [&](int wanted) {
+    const auto place = place_of(bodies, wanted);
+    return place != bodies.end() && place->first == wanted;
+  };
+  return contains(body) || contains(kWholeScene);
 }
 
 void refuse_incompatible(const JsonReader& in, const UsedFeatures& features) {

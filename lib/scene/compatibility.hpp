@@ -5,9 +5,10 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "apothem/scene/json.hpp"
 
@@ -289,15 +290,16 @@ class UsedFeatures {
   /// the same body, the first one is kept.
   void add(Feature feature, const JsonValue* at = nullptr, int body = kWholeScene);
 
-  /// The values that ask for a feature, by body.
-  [[nodiscard]] const std::map<int, const JsonValue*>& values(Feature feature) const;
+  /// The values that ask for a feature, in the order of the bodies.
+  using Values = std::vector<std::pair<int, const JsonValue*>>;
+  [[nodiscard]] const Values& values(Feature feature) const;
 
   /// Whether the feature is used by a body, or by the whole scene. For kWholeScene: whether it is
   /// used at all.
   [[nodiscard]] bool uses(Feature feature, int body = kWholeScene) const;
 
  private:
-  std::array<std::map<int, const JsonValue*>, kFeatureTexts.size()> values_;
+  std::array<Values, kFeatureTexts.size()> values_;
 };
 
 /// Throws SceneError for the first row of kIncompatible of which the scene uses both features. A

@@ -77,7 +77,7 @@ void ContactReader::field(const JsonValue& value) {
 void ContactReader::reference(const JsonValue& value) {
   features_.add(Feature::reference, &value);
   PotentialChoice& choice = model_.contact.potential;
-  if (value.type == JsonValue::Type::number) {
+  if (value.type() == JsonValue::Type::number) {
     choice.reference = PotentialChoice::Reference::length;
     choice.length = in_.positive(value, "m");
     if (!std::isfinite(1 / choice.length)) in_.fail(value, "is too small for double precision");
@@ -114,7 +114,7 @@ void ContactReader::friction_law(const JsonValue& value) {
 // One model, or a list of them.
 void ContactReader::damping(const JsonValue& value) {
   features_.add(Feature::contact_damping, &value);
-  if (value.type != JsonValue::Type::array) return damping_model(value);
+  if (value.type() != JsonValue::Type::array) return damping_model(value);
   for (const JsonValue& model : in_.array(value)) damping_model(model);
 }
 
@@ -152,7 +152,7 @@ ContactDamping ContactReader::dashpots(JsonObject& object, bool tangential, bool
   };
   if (!tangential) return {ratio(value), 0, 0};
   features_.add(Feature::viscous_damping, &value);
-  if (value.type != JsonValue::Type::array) return {ratio(value), ratio(value), 0};
+  if (value.type() != JsonValue::Type::array) return {ratio(value), ratio(value), 0};
   const std::vector<JsonValue>& both = in_.array(value);
   if (both.size() != 2) in_.fail(value, "must be a number or [normal, tangential]");
   return {ratio(both[0]), ratio(both[1]), 0};

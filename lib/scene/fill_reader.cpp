@@ -99,8 +99,8 @@ class Fill {
   [[nodiscard]] std::array<double, 2> range(const JsonValue& value, double least, double most,
                                             const std::string& unit) const {
     std::array<double, 2> bounds{};
-    if (value.type == JsonValue::Type::number) {
-      bounds = {value.number, value.number};
+    if (value.type() == JsonValue::Type::number) {
+      bounds = {value.number(), value.number()};
     } else {
       const std::vector<double> given = in_.numbers(value, 2, "[from, to] in " + unit);
       bounds = {given[0], given[1]};
@@ -161,7 +161,7 @@ class Fill {
   void shapes(JsonObject& object) {
     const JsonValue& list = object.required("shapes", "[{\"quadrilateral\": {}}, ...]");
     if (in_.array(list).empty()) in_.fail(list, "must hold at least one shape");
-    for (const JsonValue& item : list.items) shapes_.push_back(shape(item));
+    for (const JsonValue& item : list.items()) shapes_.push_back(shape(item));
     const JsonValue* size = object.optional("diameter");
     if (size) {
       diameter_ = diameter(*size);
@@ -172,7 +172,7 @@ class Fill {
                       "size of their own");
     }
     if (const JsonValue* v = object.optional("angle")) {
-      if (v->type == JsonValue::Type::string) {
+      if (v->type() == JsonValue::Type::string) {
         in_.choice(*v, {"random"});
       } else {
         angles_ = range(*v, -HUGE_VAL, HUGE_VAL, "rad");
@@ -265,7 +265,7 @@ class Fill {
   }
 
   Draw diameter(const JsonValue& value) const {
-    if (value.type == JsonValue::Type::number) {
+    if (value.type() == JsonValue::Type::number) {
       return [d = in_.positive(value, "m")](RandomNumbers&) { return d; };
     }
     JsonObject object(in_, value);

@@ -31,12 +31,12 @@ RingText outer_ring(const JsonReader& in, const JsonValue& rings) {
 RingText ring_text(const JsonReader& in, const JsonValue& ring) {
   RingText text;
   text.ring = in.ring(ring);
-  for (size_t i = 0; i < text.ring.size(); ++i) text.lines.push_back(ring.items[i].line);
+  for (size_t i = 0; i < text.ring.size(); ++i) text.lines.push_back(ring.items()[i].line());
   return text;
 }
 
 RingText ring_of_geojson(const JsonReader& in, const JsonValue& object) {
-  if (object.type != JsonValue::Type::object) in.fail(object, "must be an object of GeoJSON");
+  if (object.type() != JsonValue::Type::object) in.fail(object, "must be an object of GeoJSON");
   const std::vector<std::string> types{
       "Polygon", "MultiPolygon", "Feature",    "FeatureCollection", "GeometryCollection",
       "Point",   "MultiPoint",   "LineString", "MultiLineString"};

@@ -49,19 +49,19 @@ class Import {
     layers_ = object.optional("layers");
     read_body_keys(object);
     if (layers_ == nullptr) return;
-    if (layers_->type != JsonValue::Type::object) {
+    if (layers_->type() != JsonValue::Type::object) {
       in_.fail(*layers_, "must be {\"LAYER\": { keys of a body } or false, ...}");
     }
-    for (size_t i = 0; i < layers_->items.size(); ++i) read_layer(i);
+    for (size_t i = 0; i < layers_->items().size(); ++i) read_layer(i);
   }
 
   void read_layer(size_t i) {
-    const JsonValue& layer = layers_->items[i];
-    if (layer.type == JsonValue::Type::boolean && !layer.boolean) {
-      rules_.ignored.insert(layers_->keys[i]);
+    const JsonValue& layer = layers_->items()[i];
+    if (layer.type() == JsonValue::Type::boolean && !layer.boolean()) {
+      rules_.ignored.insert(layers_->keys()[i]);
       return;
     }
-    if (layer.type != JsonValue::Type::object) {
+    if (layer.type() != JsonValue::Type::object) {
       in_.fail(layer, "must be an object with keys of a body, or false to leave the layer out");
     }
     JsonObject object(in_, layer);
@@ -72,8 +72,8 @@ class Import {
   void read_body_keys(JsonObject& object) {
     for (const char* key : kOfBody) object.optional(key);
     const JsonValue* mesh = object.optional("mesh");
-    if (mesh == nullptr || (mesh->type == JsonValue::Type::boolean && !mesh->boolean)) return;
-    if (mesh->type != JsonValue::Type::object) {
+    if (mesh == nullptr || (mesh->type() == JsonValue::Type::boolean && !mesh->boolean())) return;
+    if (mesh->type() != JsonValue::Type::object) {
       in_.fail(*mesh, "must be {\"size\": in m, \"element\": ...}, or false for rigid bodies");
     }
     JsonObject keys(in_, *mesh);
@@ -90,17 +90,17 @@ class Import {
   }
   const JsonValue* mesh_of(const std::string& layer) const {
     const JsonValue* mesh = find(layer, "mesh");
-    return mesh != nullptr && mesh->type == JsonValue::Type::object ? mesh : nullptr;
+    return mesh != nullptr && mesh->type() == JsonValue::Type::object ? mesh : nullptr;
   }
 
   std::vector<Outline> read_outlines_of_file() {
     rules_.may_have_holes = [this](const std::string& layer) { return mesh_of(layer) != nullptr; };
     try {
-      const std::vector<DrawnShape> shapes = read_drawing(file_beside(in_, file_->string));
+      const std::vector<DrawnShape> shapes = read_drawing(file_beside(in_, file_->string()));
       check_layers(shapes);
       return outlines_of(shapes, rules_);
     } catch (const BadOutline& error) {
-      in_.fail(*file_, fmt::format("{}: {}", file_->string, error.what()));
+      in_.fail(*file_, fmt::format("{}: {}", file_->string(), error.what()));
     } catch (const SceneError& error) {
       if (error.file() == in_.file()) throw;
       in_.fail(*file_, error.what());
@@ -114,13 +114,13 @@ class Import {
       const bool is_new = std::find(known.begin(), known.end(), shape.layer) == known.end();
       if (!shape.layer.empty() && is_new) known.push_back(shape.layer);
     }
-    for (size_t i = 0; i < layers_->keys.size(); ++i) {
-      const std::string& layer = layers_->keys[i];
+    for (size_t i = 0; i < layers_->keys().size(); ++i) {
+      const std::string& layer = layers_->keys()[i];
       if (std::find(known.begin(), known.end(), layer) != known.end()) continue;
-      in_.fail(layers_->items[i], known.empty()
-                                      ? "the drawing has no layers; leave \"layers\" out"
-                                      : fmt::format("the drawing has no layer {} (it has: {})",
-                                                    suggest(layer, known), fmt::join(known, ", ")));
+      in_.fail(layers_->items()[i],
+               known.empty() ? "the drawing has no layers; leave \"layers\" out"
+                             : fmt::format("the drawing has no layer {} (it has: {})",
+                                           suggest(layer, known), fmt::join(known, ", ")));
     }
   }
 
@@ -157,7 +157,7 @@ class Import {
     ValueMaker::add(fill, "polygon", make.ring(outline.rings[0]));
     JsonValue holes = make.make(JsonValue::Type::array);
     for (size_t i = 1; i < outline.rings.size(); ++i) {
-      holes.items.push_back(make.ring(outline.rings[i]));
+      ValueMaker::add(holes, make.ring(outline.rings[i]));
     }
     ValueMaker::add(fill, "holes", std::move(holes));
     ValueMaker::add(fill, "size", *mesh.find("size"));

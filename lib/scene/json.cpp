@@ -50,23 +50,27 @@ class Builder {
   JsonValue root;
 
   bool null() { return add(JsonValue::Type::null, 2), true; }
-  bool boolean(bool b) { return add(JsonValue::Type::boolean, 2).boolean = b, true; }
+  bool boolean(bool b) { return add(JsonValue::Type::boolean, 2).set(b), true; }
   bool number_integer(std::int64_t n) { return number(static_cast<double>(n)); }
   bool number_unsigned(std::uint64_t n) { return number(static_cast<double>(n)); }
   bool number_float(double d, const std::string&) { return number(d); }
-  bool string(std::string& s) { return add(JsonValue::Type::string, 1).string = s, true; }
+  bool string(std::string& s) { return add(JsonValue::Type::string, 1).set(s), true; }
   bool binary(std::vector<std::uint8_t>&) { return true; }
   bool start_object(size_t) { return open(JsonValue::Type::object); }
-  bool end_object() { return stack_.pop_back(), true; }
+  bool end_object() {
+    stack_.back()->share_keys(last_keys_);
+    return stack_.pop_back(), true;
+  }
   bool start_array(size_t) { return open(JsonValue::Type::array); }
   bool end_array() { return stack_.pop_back(), true; }
   bool key(std::string& name) {
     const JsonValue& object = *stack_.back();
     if (const JsonValue* first = object.find(name)) {
-      throw SceneError(file_, line(1), object.pointer + "/" + escaped_key(name),
-                       fmt::format("duplicate key, first given in line {}; keep one", first->line));
+      throw SceneError(
+          file_, line(1), object.pointer() + "/" + escaped_key(name),
+          fmt::format("duplicate key, first given in line {}; keep one", first->line()));
     }
-    stack_.back()->keys.push_back(name);
+    key_ = name;
     return true;
   }
   bool parse_error(size_t position, const std::string&, const nlohmann::json::exception& error) {
@@ -91,10 +95,7 @@ class Builder {
     return lines_;
   }
 
-  bool number(double d) {
-    add(JsonValue::Type::number, 2).number = d;
-    return true;
-  }
+  bool number(double d) { return add(JsonValue::Type::number, 2).set(d), true; }
   bool open(JsonValue::Type type) {
     stack_.push_back(&add(type, 1));
     if (stack_.size() > kDeepest) {
@@ -103,15 +104,9 @@ class Builder {
     return true;
   }
   JsonValue& add(JsonValue::Type type, size_t back) {
-    JsonValue value;
-    value.type = type;
-    value.line = line(back);
+    JsonValue value(type, line(back));
     if (stack_.empty()) return root = std::move(value);
-    JsonValue& parent = *stack_.back();
-    value.pointer = parent.pointer + "/" +
-                    (parent.type == JsonValue::Type::array ? std::to_string(parent.items.size())
-                                                           : escaped_key(parent.keys.back()));
-    return parent.items.emplace_back(std::move(value));
+    return stack_.back()->add(std::move(value), std::move(key_));
   }
 
   const std::string& text_;
@@ -122,6 +117,8 @@ class Builder {
   // The open arrays and objects. Each is the last item of the one before, and only last items grow,
   // so the pointers stay valid.
   std::vector<JsonValue*> stack_;
+  std::string key_;            // of the value that comes next
+  JsonValue::Keys last_keys_;  // of the object that has been closed last
 };
 
 // The Levenshtein distance.
@@ -172,28 +169,6 @@ const char* type_name(JsonValue::Type type) {
 }
 
 }  // namespace
-
-std::string escaped_key(const std::string& key) {
-  std::string result;
-  for (const char c : key) {
-    if (c == '~') {
-      result += "~0";
-    } else if (c == '/') {
-      result += "~1";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
-const JsonValue* JsonValue::find(std::string_view key) const {
-  // While the document is being parsed, the last key may not have its value yet.
-  for (size_t i = 0; i < items.size() && type == Type::object; ++i) {
-    if (keys[i] == key) return &items[i];
-  }
-  return nullptr;
-}
 
 JsonValue parse_json(const std::string& text, const std::string& file) {
   // The parser would stop at a NUL character.
@@ -265,11 +240,11 @@ std::string suggest(std::string_view word, const std::vector<std::string>& candi
 }
 
 double JsonReader::number(const JsonValue& value, const std::string& unit) const {
-  if (value.type != JsonValue::Type::number) {
+  if (value.type() != JsonValue::Type::number) {
     fail(value, fmt::format("must be a number{}, not {}", unit.empty() ? "" : " in " + unit,
-                            type_name(value.type)));
+                            type_name(value.type())));
   }
-  return value.number;
+  return value.number();
 }
 
 double JsonReader::positive(const JsonValue& value, const std::string& unit) const {
@@ -288,42 +263,46 @@ int JsonReader::count(const JsonValue& value) const {
 }
 
 const std::string& JsonReader::string(const JsonValue& value) const {
-  if (value.type != JsonValue::Type::string) {
-    fail(value, fmt::format("must be a string, not {}", type_name(value.type)));
+  if (value.type() != JsonValue::Type::string) {
+    fail(value, fmt::format("must be a string, not {}", type_name(value.type())));
   }
-  return value.string;
+  return value.string();
 }
 
 const std::vector<JsonValue>& JsonReader::array(const JsonValue& value) const {
-  if (value.type != JsonValue::Type::array) {
-    fail(value, fmt::format("must be an array, not {}", type_name(value.type)));
+  if (value.type() != JsonValue::Type::array) {
+    fail(value, fmt::format("must be an array, not {}", type_name(value.type())));
   }
-  return value.items;
+  return value.items();
 }
 
 std::vector<double> JsonReader::numbers(const JsonValue& value, size_t size,
                                         const std::string& meaning) const {
-  if (value.type != JsonValue::Type::array || value.items.size() != size) {
+  if (value.type() != JsonValue::Type::array || value.items().size() != size) {
     fail(value, "must be " + meaning);
   }
   std::vector<double> result;
-  for (const JsonValue& item : value.items) result.push_back(number(item, ""));
+  for (const JsonValue& item : value.items()) result.push_back(number(item, ""));
   return result;
 }
 
 Vec2 JsonReader::vec2(const JsonValue& value, const std::string& unit) const {
-  const std::vector<double> xy = numbers(value, 2, "[x, y] in " + unit);
-  return {xy[0], xy[1]};
+  const std::vector<JsonValue>& xy = value.items();
+  if (value.type() != JsonValue::Type::array || xy.size() != 2) {
+    fail(value, "must be [x, y] in " + unit);
+  }
+  const double x = number(xy[0], "");
+  return {x, number(xy[1], "")};
 }
 
 std::vector<Vec2> JsonReader::ring(const JsonValue& value) const {
   std::vector<Vec2> ring;
   for (const JsonValue& point : array(value)) {
-    if (point.type == JsonValue::Type::array && point.items.size() > 2 &&
-        point.items[0].type == JsonValue::Type::number) {
+    if (point.type() == JsonValue::Type::array && point.items().size() > 2 &&
+        point.items()[0].type() == JsonValue::Type::number) {
       fail(point,
            fmt::format("has {} coordinates, and bodies are two-dimensional: give [x, y] in m",
-                       point.items.size()));
+                       point.items().size()));
     }
     ring.push_back(vec2(point, "m"));
   }
@@ -343,20 +322,22 @@ int JsonReader::choice(const JsonValue& value, const std::vector<std::string>& n
 
 JsonObject::JsonObject(const JsonReader& reader, const JsonValue& value)
     : reader_(reader), value_(value) {
-  if (value.type != JsonValue::Type::object) {
-    reader.fail(value, fmt::format("must be an object {{...}}, not {}", type_name(value.type)));
+  if (value.type() != JsonValue::Type::object) {
+    reader.fail(value, fmt::format("must be an object {{...}}, not {}", type_name(value.type())));
   }
+  known_.reserve(value.keys().size() + 8);  // of an object that may have some keys more
 }
 
-const JsonValue* JsonObject::optional(const std::string& key) {
-  known_.push_back(key);
-  return value_.find(key);
+const JsonValue* JsonObject::optional(std::string key) {
+  const JsonValue* found = value_.find(key);
+  known_.push_back(std::move(key));
+  return found;
 }
 
 const JsonValue& JsonObject::required(const std::string& key, const std::string& meaning) {
   if (const JsonValue* found = optional(key)) return *found;
   // The likeliest reason is that the key is misspelt.
-  if (const std::string* close = nearest(key, value_.keys);
+  if (const std::string* close = nearest(key, value_.keys());
       close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
     reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));
   }
@@ -364,11 +345,11 @@ const JsonValue& JsonObject::required(const std::string& key, const std::string&
 }
 
 void JsonObject::finish() const {
-  for (size_t i = 0; i < value_.keys.size(); ++i) {
-    const std::string& key = value_.keys[i];
+  for (size_t i = 0; i < value_.keys().size(); ++i) {
+    const std::string& key = value_.keys()[i];
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    reader_.fail(value_.items[i], fmt::format("unknown key {} (known here: {})",
-                                              suggest(key, known_), fmt::join(known_, ", ")));
+    reader_.fail(value_.items()[i], fmt::format("unknown key {} (known here: {})",
+                                                suggest(key, known_), fmt::join(known_, ", ")));
   }
 }
 

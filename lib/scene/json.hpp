@@ -1,39 +1,24 @@
-// JSON values that know their place in the file, and typed access to them that turns every mistake
-// into a SceneError at that place. nlohmann-json parses the text; it keeps no places and accepts
-// duplicate keys, so both are added here.
+// Reads JSON into values that know their place in the file, and gives typed access to them that
+// turns every mistake into a SceneError at that place. nlohmann-json parses the text; it keeps no
+// places and accepts duplicate keys, so both are added here.
 #pragma once
 
 #include <cstddef>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "apothem/geometry/polygon/point.hpp"
 #include "apothem/scene/error.hpp"
+#include "apothem/scene/json_value.hpp"
 
 namespace apothem {
-
-struct JsonValue {
-  enum class Type { null, boolean, number, string, array, object };
-  Type type = Type::null;
-  bool boolean = false;
-  double number = 0;
-  std::string string;
-  std::vector<JsonValue> items;   ///< elements of an array, or values of an object
-  std::vector<std::string> keys;  ///< keys of an object, unique, in the order of the file
-  int line = 0;                   ///< line in the file, counted from 1
-  std::string pointer;            ///< JSON pointer (RFC 6901), empty for the document
-
-  /// The value of a key, or nullptr if there is none or this is no object.
-  [[nodiscard]] const JsonValue* find(std::string_view key) const;
-};
 
 /// Parses JSON in which // and /* */ comments are allowed. Throws SceneError.
 JsonValue parse_json(const std::string& text, const std::string& file);
 
-/// Bytes of the largest files that are read: as text, and as JSON, whose values take about fifty
+/// Bytes of the largest files that are read: as text, and as JSON, whose values take up to forty
 /// times as much memory.
 inline constexpr size_t kLargestText = size_t{1} << 30, kLargestJson = size_t{1} << 27;
 
@@ -48,9 +33,6 @@ std::ifstream open_text(const std::string& file);
 /// UTF-16.
 void strip_byte_order_mark(std::string& text, const std::string& file);
 
-/// A key as it stands in a JSON pointer (RFC 6901).
-std::string escaped_key(const std::string& key);
-
 /// `word` in quotes, followed by "did you mean ...?" if a candidate looks like it.
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
 
@@ -62,7 +44,7 @@ class JsonReader {
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[noreturn]] void fail(const JsonValue& at, const std::string& what) const {
-    throw SceneError(file_, at.line, at.pointer, what);
+    throw SceneError(file_, at.line(), at.pointer(), what);
   }
 
   double number(const JsonValue& value, const std::string& unit) const;
@@ -90,7 +72,7 @@ class JsonObject {
  public:
   JsonObject(const JsonReader& reader, const JsonValue& value);
   /// The value of a key, or nullptr if it is missing.
-  const JsonValue* optional(const std::string& key);
+  const JsonValue* optional(std::string key);
   /// The value of a key. Throws SceneError with its `meaning` if it is missing.
   const JsonValue& required(const std::string& key, const std::string& meaning);
   /// Throws SceneError at the first key that nobody asked for. Called after the last key was read.

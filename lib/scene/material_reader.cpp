@@ -63,8 +63,8 @@ std::vector<Material> read_materials(const JsonReader& in, const JsonValue& valu
                                      UsedFeatures& features) {
   JsonObject object(in, value);
   std::vector<Material> materials;
-  for (size_t i = 0; i < value.keys.size(); ++i) {
-    materials.push_back(MaterialReader(in, features).read(value.keys[i], value.items[i]));
+  for (size_t i = 0; i < value.keys().size(); ++i) {
+    materials.push_back(MaterialReader(in, features).read(value.keys()[i], value.items()[i]));
   }
   if (materials.empty()) in.fail(value, "must hold at least one material");
   return materials;

@@ -113,7 +113,7 @@ class MeshReader {
     if (in_.array(cells).size() != 2) in_.fail(cells, "must be [along x, along y]");
     const Vec2 origin = vec2_or_zero(object, "origin");
     object.finish();
-    return rectangle_mesh(size, {in_.count(cells.items[0]), in_.count(cells.items[1])}, origin,
+    return rectangle_mesh(size, {in_.count(cells.items()[0]), in_.count(cells.items()[1])}, origin,
                           shape());
   }
 

@@ -47,10 +47,10 @@ void OutputReader::tracked(const JsonValue& item) {
   const JsonValue* label = object.optional("name");
   object.finish();
   const auto found = std::find(bodies_.begin(), bodies_.end(), in_.string(name));
-  if (found == bodies_.end()) in_.fail(name, "unknown body " + suggest(name.string, bodies_));
+  if (found == bodies_.end()) in_.fail(name, "unknown body " + suggest(name.string(), bodies_));
   const int place = static_cast<int>(found - bodies_.begin());
-  const int rigid = index_in(model_.bodies, name.string);
-  const int deformable = index_in(model_.deformables, name.string);
+  const int rigid = index_in(model_.bodies, name.string());
+  const int deformable = index_in(model_.deformables, name.string());
   if (label && !point) in_.fail(*label, "goes with a \"point\"; leave it out");
   if (surface) {
     in_.choice(*surface, {"contact"});
@@ -113,8 +113,8 @@ void OutputReader::read(const JsonValue& value) {
 }
 
 void OutputReader::checkpoint(const JsonValue& value) {
-  if (value.type == JsonValue::Type::boolean) {
-    if (value.boolean) in_.fail(value, "must be {\"wall_clock\": ...} or false; leave it out");
+  if (value.type() == JsonValue::Type::boolean) {
+    if (value.boolean()) in_.fail(value, "must be {\"wall_clock\": ...} or false; leave it out");
     output_.checkpoint_interval.reset();
     return;
   }
@@ -167,7 +167,7 @@ std::vector<Measure> OutputReader::measures(const JsonValue& value, double end,
     Measure measure;
     const JsonValue& name = object.required("name", "what it is called in tables");
     refuse_as_column(in_, name);
-    measure.name = name.string;
+    measure.name = name.string();
     for (const Measure& other : measures) {
       if (other.name == measure.name) in_.fail(name, "is the name of another measure");
     }

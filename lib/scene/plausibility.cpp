@@ -43,13 +43,13 @@ class Inspection {
 
  private:
   void say(const JsonValue& at, const std::string& what) {
-    found_.emplace_back(SceneError(scene_.file, at.line, at.pointer, what).what());
+    found_.emplace_back(SceneError(scene_.file, at.line(), at.pointer(), what).what());
   }
 
   void judge(const JsonValue& object, const Range& range) {
     const JsonValue* value = object.find(range.key);
     if (value == nullptr) return;
-    const double x = value->number;
+    const double x = value->number();
     if (x >= range.least && x <= range.most) return;
     say(*value, fmt::format("{:g}{}{} is unusually {}: {}", x, *range.unit ? " " : "", range.unit,
                             x < range.least ? "small" : "large", range.hint));
@@ -57,7 +57,7 @@ class Inspection {
 
   void materials() {
     const JsonValue* materials = scene_.document.find("materials");
-    for (const JsonValue& material : materials->items) {
+    for (const JsonValue& material : materials->items()) {
       for (const Range& range : kOfMaterial) judge(material, range);
     }
   }
@@ -67,20 +67,20 @@ class Inspection {
     if (law == nullptr) return;
     if (const JsonValue* friction = law->find("friction")) judge(*friction, kCoefficient);
     if (const JsonValue* pairs = law->find("pairs")) {
-      for (const JsonValue& pair : pairs->items) {
+      for (const JsonValue& pair : pairs->items()) {
         if (const JsonValue* friction = pair.find("friction")) judge(*friction, kCoefficient);
       }
     }
     const double stiffness = scene_.model.contact.normal_stiffness;
-    for (const JsonValue& material : scene_.document.find("materials")->items) {
+    for (const JsonValue& material : scene_.document.find("materials")->items()) {
       const JsonValue* young = material.find("young");
       if (young == nullptr) continue;
-      const double ratio = stiffness / young->number;
+      const double ratio = stiffness / young->number();
       if (ratio >= kSoftest && ratio <= kStiffest) continue;
       say(*law->find("normal_stiffness"),
           fmt::format("{:g} Pa is {:.2g} times Young's modulus of {:g} Pa at {}: contacts that are "
                       "{}; between 0.1 and 10 times is usual",
-                      stiffness, ratio, young->number, young->pointer,
+                      stiffness, ratio, young->number(), young->pointer(),
                       ratio < 1 ? "so soft let bodies sink into each other"
                                 : "so stiff shorten the time step and make nothing more exact"));
     }
@@ -100,16 +100,17 @@ class Inspection {
   }
 
   void velocities(const JsonValue& bodies) {
-    for (const JsonValue& body : bodies.items) {
+    for (const JsonValue& body : bodies.items()) {
       const JsonValue* angle = body.find("angle");
-      if (angle && std::abs(angle->number) > kFullTurn) {
-        say(*angle, fmt::format("{:g} rad is more than a full turn: angles are in radians; {:g} "
-                                "degrees are {:.6g} rad",
-                                angle->number, angle->number, angle->number * kFullTurn / 360));
+      if (angle && std::abs(angle->number()) > kFullTurn) {
+        say(*angle,
+            fmt::format("{:g} rad is more than a full turn: angles are in radians; {:g} "
+                        "degrees are {:.6g} rad",
+                        angle->number(), angle->number(), angle->number() * kFullTurn / 360));
       }
       const JsonValue* velocity = body.find("velocity");
-      if (velocity == nullptr || velocity->items.size() != 2) continue;
-      const double speed = std::hypot(velocity->items[0].number, velocity->items[1].number);
+      if (velocity == nullptr || velocity->items().size() != 2) continue;
+      const double speed = std::hypot(velocity->items()[0].number(), velocity->items()[1].number());
       if (speed > kFastest) {
         say(*velocity, fmt::format("{:g} m/s is unusually fast: velocities are in m/s", speed));
       }

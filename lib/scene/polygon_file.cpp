@@ -16,7 +16,7 @@ RingText parse_polygon(const std::string& text, const std::string& file) {
   if (std::string("[{/").find(text[start]) == std::string::npos) return parse_wkt(text, file);
   const JsonReader reader(file);
   const JsonValue document = parse_json(text, file);
-  if (document.type == JsonValue::Type::array) return ring_text(reader, document);
+  if (document.type() == JsonValue::Type::array) return ring_text(reader, document);
   if (document.find("type")) return ring_of_geojson(reader, document);
   JsonObject object(reader, document);
   const JsonValue& ring = object.required("polygon", "[[x,y],...] in m");

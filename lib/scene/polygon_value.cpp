@@ -11,9 +11,9 @@ std::string file_beside(const JsonReader& scene, const std::string& name) {
 }
 
 Polygon read_polygon(const JsonReader& in, const JsonValue& outline) {
-  if (outline.type == JsonValue::Type::string) {
+  if (outline.type() == JsonValue::Type::string) {
     try {
-      return polygon_of_file(file_beside(in, outline.string));
+      return polygon_of_file(file_beside(in, outline.string()));
     } catch (const SceneError& error) {
       in.fail(outline, error.what());
     }
@@ -26,9 +26,9 @@ Polygon read_polygon(const JsonReader& in, const JsonValue& outline) {
 }
 
 void refuse_polygon(const JsonReader& in, const JsonValue& outline, const InvalidPolygon& error) {
-  const bool inside = outline.type == JsonValue::Type::array && error.vertex() >= 0 &&
-                      error.vertex() < static_cast<int>(outline.items.size());
-  in.fail(inside ? outline.items[error.vertex()] : outline,
+  const bool inside = outline.type() == JsonValue::Type::array && error.vertex() >= 0 &&
+                      error.vertex() < static_cast<int>(outline.items().size());
+  in.fail(inside ? outline.items()[error.vertex()] : outline,
           std::string("not a usable polygon: ") + error.what());
 }
 

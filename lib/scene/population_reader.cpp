@@ -15,8 +15,8 @@ void PopulationReader::world(const JsonValue& value) {
   }
   const JsonValue& box = object.required("box", "[[x0, y0], [x1, y1]] in m");
   if (in_.array(box).size() != 2) in_.fail(box, "must be [[x0, y0], [x1, y1]] in m");
-  const Vec2 low = in_.vec2(box.items[0], "m") - model_.origin;
-  const Vec2 high = in_.vec2(box.items[1], "m") - model_.origin;
+  const Vec2 low = in_.vec2(box.items()[0], "m") - model_.origin;
+  const Vec2 high = in_.vec2(box.items()[1], "m") - model_.origin;
   if (!(low.x() < high.x() && low.y() < high.y())) {
     in_.fail(box, "must be two corners, the lower left one first");
   }
@@ -32,12 +32,12 @@ void PopulationReader::world(const JsonValue& value) {
 }
 
 void PopulationReader::regions(const JsonValue& value) {
-  if (value.type != JsonValue::Type::object) {
+  if (value.type() != JsonValue::Type::object) {
     in_.fail(value, "must be {\"NAME\": {\"polygon\": [[x,y],...]}, ...}");
   }
-  for (size_t i = 0; i < value.items.size(); ++i) {
-    const JsonValue& item = value.items[i];
-    const std::string& name = value.keys[i];
+  for (size_t i = 0; i < value.items().size(); ++i) {
+    const JsonValue& item = value.items()[i];
+    const std::string& name = value.keys()[i];
     if (name.empty() || has_control_character(name) ||
         name.find_first_of(",\"[]") != std::string::npos) {
       in_.fail(item,
@@ -84,7 +84,7 @@ StopRule PopulationReader::stop(const JsonValue& value) const {
     std::vector<std::string> names;
     for (const Region& region : model_.regions) names.push_back(region.name);
     const auto found = std::find(names.begin(), names.end(), in_.string(*v));
-    if (found == names.end()) in_.fail(*v, "unknown region " + suggest(v->string, names));
+    if (found == names.end()) in_.fail(*v, "unknown region " + suggest(v->string(), names));
     rule.region = static_cast<int>(found - names.begin());
   }
   int conditions = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/compatibility.hpp"
@@ -14,6 +13,7 @@
 #include "apothem/scene/output_reader.hpp"
 #include "apothem/scene/population_reader.hpp"
 #include "apothem/scene/time_reader.hpp"
+#include "apothem/scene/value_maker.hpp"
 
 namespace apothem {
 namespace {
@@ -39,11 +39,11 @@ class SceneReader {
     ContactReader contact(in_, model_, features_);
     if (const JsonValue* v = top.optional("contact")) {
       contact.read(*v);
-    } else if (fills || list->items.size() > 1) {
+    } else if (fills || list->items().size() > 1) {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
-    if (list) bodies.add(list->items);
+    if (list) bodies.add(list->items());
     std::vector<Filled> filled;
     if (fills) filled = FillReader(in_, bodies.outlines()).read(*fills);
     for (Filled& fill : filled) {
@@ -52,7 +52,7 @@ class SceneReader {
     }
     bodies.read();
     scene_.rigid_pointers = bodies.rigid_pointers();
-    add_inflows(bodies, list ? list->items.size() : 0, filled);
+    add_inflows(bodies, list ? list->items().size() : 0, filled);
     contact.read_pairs();
     population(top);
     scene_.time = read_time(in_, top.required("time", "{\"end\": ...} in s"), features_);
@@ -72,17 +72,11 @@ class SceneReader {
     std::vector<JsonValue> bodies;
     append_imports(in_, *imports, bodies);
     if (top.find("bodies") == nullptr) {
-      JsonValue list;
-      list.type = JsonValue::Type::array;
-      list.line = imports->line;
-      list.pointer = imports->pointer;
-      top.keys.emplace_back("bodies");
-      top.items.push_back(std::move(list));
+      ValueMaker::add(top, "bodies", ValueMaker(*imports).make(JsonValue::Type::array));
     }
-    const auto at = std::find(top.keys.begin(), top.keys.end(), "bodies") - top.keys.begin();
-    JsonValue& list = top.items[at];
+    JsonValue& list = *top.find("bodies");
     in_.array(list);
-    std::move(bodies.begin(), bodies.end(), std::back_inserter(list.items));
+    for (JsonValue& body : bodies) list.add_from_elsewhere(std::move(body));
   }
 
   void settings(JsonObject& top) {
@@ -95,7 +89,7 @@ class SceneReader {
   }
 
   void gravity(const JsonValue& value) {
-    if (value.type != JsonValue::Type::object) {
+    if (value.type() != JsonValue::Type::object) {
       model_.gravity = in_.vec2(value, "m/s^2");
       return;
     }
@@ -195,18 +189,27 @@ SceneError Scene::error_at(const std::string& pointer, const std::string& what) 
     const size_t slash = std::min(pointer.find('/', start), pointer.size());
     const std::string part = pointer.substr(start, slash - start);
     const JsonValue* next = at->find(part);
-    if (at->type == JsonValue::Type::array) next = &at->items.at(std::stoul(part));
+    if (at->type() == JsonValue::Type::array) next = &at->items().at(std::stoul(part));
     if (!next) break;
     at = next;
     start = slash + 1;
   }
-  return {file, at->line, at->pointer, what};
+  return {file, at->line(), at->pointer(), what};
+}
+
+void Scene::drop_rings() {
+  JsonValue* bodies = document.find("bodies");
+  for (size_t i = 0; bodies != nullptr && i < bodies->items().size(); ++i) {
+    JsonValue* polygon = bodies->item(i).find("polygon");
+    if (polygon != nullptr && polygon->type() == JsonValue::Type::array) polygon->drop_items();
+  }
 }
 
 Scene read_scene(const std::string& file, const std::vector<Setting>& settings) {
   Scene scene;
   scene.file = file;
   scene.text = read_text(file, kLargestJson);
+  scene.text.shrink_to_fit();
   scene.settings = settings;
   scene.document = parse_json(scene.text, file);
   std::vector<std::string> places;

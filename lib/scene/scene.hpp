@@ -22,10 +22,13 @@ struct Scene {
   std::vector<StopRule> stops;
   std::vector<Measure> measures;
   std::vector<std::string> rigid_pointers;  ///< of each rigid body, its JSON pointer
-  JsonValue document;
+  JsonValue document;                       ///< what the file says; a run frees it
 
   /// An error at a JSON pointer of this scene, or at the innermost enclosing value that exists.
   [[nodiscard]] SceneError error_at(const std::string& pointer, const std::string& what) const;
+  /// Frees the coordinates of the bodies' polygons in the document, most of its memory. The model
+  /// has them.
+  void drop_rings();
 };
 
 /// Reads a scene, with settings in place of values of the file. Throws SceneError if it cannot be

@@ -22,22 +22,11 @@ std::string next_part(const std::string& rest, const std::vector<std::string>& n
 
 std::vector<std::string> names_of_items(const JsonValue& array) {
   std::vector<std::string> names;
-  for (const JsonValue& item : array.items) {
+  for (const JsonValue& item : array.items()) {
     const JsonValue* name = item.find("name");
-    if (name && name->type == JsonValue::Type::string) names.push_back(name->string);
+    if (name && name->type() == JsonValue::Type::string) names.push_back(name->string());
   }
   return names;
-}
-
-// Gives a value, and all that it holds, the place of what it replaces. It stands in no line.
-void put_at(JsonValue& value, const std::string& pointer) {
-  value.line = 0;
-  value.pointer = pointer;
-  for (size_t i = 0; i < value.items.size(); ++i) {
-    const std::string key =
-        value.type == JsonValue::Type::object ? escaped_key(value.keys[i]) : std::to_string(i);
-    put_at(value.items[i], pointer + "/" + key);
-  }
 }
 
 // Follows a path through a scene.
@@ -47,19 +36,14 @@ class Path {
 
   /// One part further: `from` becomes the value there, `rest` what is left of the path.
   JsonValue& step(JsonValue& from, std::string& rest) {
-    if (from.type == JsonValue::Type::array) return item(from, rest);
-    if (from.type != JsonValue::Type::object) fail(from, "has no keys and no items");
-    const std::string key = next_part(rest, from.keys);
+    if (from.type() == JsonValue::Type::array) return item(from, rest);
+    if (from.type() != JsonValue::Type::object) fail(from, "has no keys and no items");
+    const std::string key = next_part(rest, from.keys());
     cut(rest, key);
-    for (size_t i = 0; i < from.keys.size(); ++i) {
-      if (from.keys[i] == key) return from.items[i];
-    }
-    JsonValue added;
-    added.type = JsonValue::Type::object;
-    put_at(added, from.pointer + "/" + escaped_key(key));
-    if (first_added_.empty()) first_added_ = added.pointer;
-    from.keys.push_back(key);
-    return from.items.emplace_back(std::move(added));
+    if (JsonValue* found = from.find(key)) return *found;
+    JsonValue& added = from.add(JsonValue(JsonValue::Type::object), key);
+    if (first_added_.empty()) first_added_ = added.pointer();
+    return added;
   }
   [[nodiscard]] const std::string& first_added() const { return first_added_; }
 
@@ -68,19 +52,22 @@ class Path {
     const std::vector<std::string> names = names_of_items(array);
     const std::string part = next_part(rest, names);
     cut(rest, part);
-    for (JsonValue& value : array.items) {
-      const JsonValue* name = value.find("name");
-      if (name && name->type == JsonValue::Type::string && name->string == part) return value;
+    const size_t size = array.items().size();
+    for (size_t i = 0; i < size; ++i) {
+      const JsonValue* name = array.items()[i].find("name");
+      if (name && name->type() == JsonValue::Type::string && name->string() == part) {
+        return array.item(i);
+      }
     }
-    size_t index = array.items.size();
+    size_t index = size;
     try {
       index = static_cast<size_t>(parse_count(part));
     } catch (const BadNumber&) {
       fail(array,
            (names.empty() ? "has no item " : "has no item of the name ") + suggest(part, names));
     }
-    if (index < array.items.size()) return array.items[index];
-    fail(array, fmt::format("has no item {}: it has {}, counted from 0", part, array.items.size()));
+    if (index < size) return array.item(index);
+    fail(array, fmt::format("has no item {}: it has {}, counted from 0", part, size));
   }
 
   void cut(std::string& rest, const std::string& part) const {
@@ -92,7 +79,7 @@ class Path {
   }
 
   [[noreturn]] void fail(const JsonValue& at, const std::string& what) const {
-    throw SceneError(file_, at.line, at.pointer,
+    throw SceneError(file_, at.line(), at.pointer(),
                      fmt::format("{}, as \"{}\" asks for", what, setting_.text()));
   }
 
@@ -129,11 +116,11 @@ std::string apply_setting(JsonValue& document, const Setting& setting, const std
   std::string rest = setting.path;
   JsonValue* at = &document;
   while (!rest.empty()) at = &path.step(*at, rest);
-  const std::string pointer = at->pointer;
   JsonValue value = parse_json(setting.value, file);
-  put_at(value, pointer);
+  value.stand_at(*at);
+  value.leave_line();
   *at = std::move(value);
-  return path.first_added().empty() ? pointer : path.first_added();
+  return path.first_added().empty() ? at->pointer() : path.first_added();
 }
 
 }  // namespace apothem

@@ -43,7 +43,7 @@ class TimeReader {
 
   void step(const JsonValue& value) {
     features_.add(Feature::time_step, &value);
-    if (value.type == JsonValue::Type::string) {
+    if (value.type() == JsonValue::Type::string) {
       in_.choice(value, {"auto"});
       return;
     }

@@ -40,8 +40,8 @@ Json json_of(const std::string& file) {
 
 // All strings in a JSON value.
 void add_strings(const JsonValue& value, std::vector<std::string>& strings) {
-  if (value.type == JsonValue::Type::string) strings.push_back(value.string);
-  for (const JsonValue& item : value.items) add_strings(item, strings);
+  if (value.type() == JsonValue::Type::string) strings.push_back(value.string());
+  for (const JsonValue& item : value.items()) add_strings(item, strings);
 }
 
 // Hashes the files that strings name, relative to the scene. Which strings name files is a matter

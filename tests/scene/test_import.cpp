@@ -215,7 +215,7 @@ TEST_CASE("stones that are drawn edge to edge share their vertices to the bit", 
           R"({ "file": "wall.dxf", "scale": 0.0254, "offset": [0.3, 12.1], "material": "rock" })")));
   const JsonValue& bodies = *scene.document.find("bodies");
   const auto vertex = [&](int body, int i, int k) {
-    return bodies.items[body].find("polygon")->items[i].items[k].number;
+    return bodies.items()[body].find("polygon")->items()[i].items()[k].number();
   };
   for (int k = 0; k < 2; ++k) {
     CHECK(vertex(1, 1, k) == vertex(2, 0, k));
@@ -320,9 +320,9 @@ TEST_CASE("lines that cross divide the plane into bodies", "[import]") {
 
   // Four blocks meet at the crossing, with the same bits.
   std::map<std::pair<double, double>, int> uses;
-  for (const JsonValue& body : scene.document.find("bodies")->items) {
-    for (const JsonValue& v : body.find("polygon")->items) {
-      ++uses[{v.items[0].number, v.items[1].number}];
+  for (const JsonValue& body : scene.document.find("bodies")->items()) {
+    for (const JsonValue& v : body.find("polygon")->items()) {
+      ++uses[{v.items()[0].number(), v.items()[1].number()}];
     }
   }
   int four = 0, two = 0;
