@@ -178,16 +178,22 @@ std::string Study::identity_of(const PlannedRun& run) const {
 std::string Study::from_of(const PlannedRun& run) const {
   if (beginnings_.empty()) return settings_.from;
   const std::vector<Setting> own = settings_of(run);
-  const auto has = [&](const std::string& path, const std::string& value) {
-    return std::ranges::any_of(own, [&](const Setting& s) {
-      return s.path == path && Json::parse(s.value) == Json::parse(value);
+  // What all runs of that study have in common and this one leaves to the scene does not matter.
+  const auto common = [&](const Setting& s) {
+    return std::ranges::all_of(beginnings_, [&](const auto& beginning) {
+      return std::ranges::any_of(beginning.second, [&](const Setting& t) {
+        return t.path == s.path && t.value == s.value;
+      });
     });
+  };
+  const auto fits = [&](const Setting& s) {
+    // The last setting of a path holds.
+    const auto same = std::ranges::find(own.rbegin(), own.rend(), s.path, &Setting::path);
+    return same == own.rend() ? common(s) : Json::parse(same->value) == Json::parse(s.value);
   };
   std::vector<std::string> found;
   for (const auto& [folder, settings] : beginnings_) {
-    if (std::ranges::all_of(settings, [&](const Setting& s) { return has(s.path, s.value); })) {
-      found.push_back(folder);
-    }
+    if (std::ranges::all_of(settings, fits)) found.push_back(folder);
   }
   if (found.size() == 1) return found.front();
   throw SceneError(

@@ -409,6 +409,16 @@ TEST_CASE("each run may begin with the fitting run of another study", "[sweep]")
   REQUIRE(speeds.size() == 4);
   const double expected[]{-1.5, -2, -3, -4};
   for (size_t i = 0; i < 4; ++i) CHECK(std::stod(speeds[i]) == Approx(expected[i]));
+  // What all runs of the first study have in common need not be said again.
+  const Words heavy{"--set", "materials.rock.density=3000"};
+  REQUIRE(
+      run(joined({"sweep", scene}, {gravities, heavy, {"-o", folder / "heavy"}}), folder).code ==
+      0);
+  CHECK(run(joined({"sweep", scene}, {gravities,
+                                      {"--vary", "time.end=0.5", "--from", folder / "heavy", "-o",
+                                       folder / "light"}}),
+            folder)
+            .code == 0);
   const Result none = run({"sweep", scene, "--vary", "gravity=[0,-3]", "--from", folder / "first",
                            "-o", folder / "third"},
                           folder);
