@@ -36,7 +36,7 @@ PairIntegral quad_integral(const PlacedPotential& a, const PlacedPotential& b, c
   const double dx = offset.x();
   const double dy = offset.y();
   QuadEdges found;
-  with_widest([&]() __attribute__((always_inline)) {
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     trace_quads(a, b, dx, dy, found);
     return 0.;
   });

@@ -6,9 +6,14 @@
 // among them Arm, run the version that the compiler makes of the packs by itself.
 #pragma once
 
+#include <type_traits>
+
 #include "apothem/execution/pack.hpp"
 
 namespace apothem {
+
+template <int lanes>
+using Lanes = std::integral_constant<int, lanes>;
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 
@@ -23,27 +28,28 @@ inline Machine machine() {
 
 template <class Kernel>
 [[gnu::target("avx512f")]] double with_avx512(const Kernel& kernel) {
-  return kernel();
+  return kernel(Lanes<8>());
 }
 template <class Kernel>
 [[gnu::target("avx2")]] double with_avx2(const Kernel& kernel) {
-  return kernel();
+  return kernel(Lanes<4>());
 }
 
-/// Calls the kernel, which takes no argument, and returns what it returns.
+/// Calls the kernel and returns what it returns. Its argument says how wide packs should be: wider
+/// ones than the registers would travel through memory.
 template <class Kernel>
 double with_widest(const Kernel& kernel) {
   static const Machine here = machine();
   if (here == Machine::avx512) return with_avx512(kernel);
   if (here == Machine::avx2) return with_avx2(kernel);
-  return kernel();
+  return kernel(Lanes<4>());
 }
 
 #else
 
 template <class Kernel>
 double with_widest(const Kernel& kernel) {
-  return kernel();
+  return kernel(Lanes<4>());
 }
 
 #endif

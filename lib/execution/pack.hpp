@@ -74,9 +74,8 @@ struct PackOf {
   friend APOTHEM_INLINE Mask operator==(const PackOf& a, const PackOf& b) { return {a.v == b.v}; }
 };
 
-/// Number of doubles in the pack of the finite elements.
+/// Number of doubles in the widest pack.
 inline constexpr int kLanes = 8;
-using Pack = PackOf<kLanes>;
 
 /// What a comparison of numbers of this type gives.
 template <class Real>
@@ -125,19 +124,18 @@ APOTHEM_INLINE long double square_root(long double a) { return std::sqrt(a); }
 inline std::complex<double> square_root(const std::complex<double>& a) { return std::sqrt(a); }
 
 /// Read access to the numbers that kLanes finite elements keep. Number k of these elements is
-/// stored in the kLanes consecutive doubles from base + k * kLanes. A pack reads all of them. Any
-/// other number type reads the first of them; to read another element, `base` is shifted to its
-/// lane.
+/// stored in the kLanes consecutive doubles from base + k * kLanes. A pack reads as many of them as
+/// it has lanes, any other number type the first one; to read others, `base` is shifted.
 template <class Number>
 struct Stored {
   const double* base;
   APOTHEM_INLINE Number operator[](int k) const { return Number(base[k * kLanes]); }
 };
-template <>
-struct Stored<Pack> {
+template <int lanes>
+struct Stored<PackOf<lanes>> {
   const double* base;
-  APOTHEM_INLINE Pack operator[](int k) const {
-    return Pack(*reinterpret_cast<const Pack::Vector*>(base + k * kLanes));
+  APOTHEM_INLINE PackOf<lanes> operator[](int k) const {
+    return PackOf<lanes>::load(base + k * kLanes);
   }
 };
 

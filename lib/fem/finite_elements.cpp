@@ -29,29 +29,40 @@ struct Blocks {
   double* f;
 };
 
-// The vectors (x, y) of eight nodes: eight loads of 16 bytes and a transposition, which is faster
-// than a gather instruction.
+// The vectors (x, y) of nodes: loads of 16 bytes and a transposition, which is faster than a gather
+// instruction.
 APOTHEM_INLINE Pair load(const double* from, std::uint16_t node) {
   return *reinterpret_cast<const Pair*>(from + 2 * node);
 }
-APOTHEM_INLINE Point<Pack> gather(const double* from, const std::uint16_t* n) {
+APOTHEM_INLINE void gather(const double* from, const std::uint16_t* n, Point<PackOf<4>>& to) {
   const FourWide a = __builtin_shufflevector(load(from, n[0]), load(from, n[1]), 0, 1, 2, 3);
   const FourWide b = __builtin_shufflevector(load(from, n[2]), load(from, n[3]), 0, 1, 2, 3);
-  const FourWide c = __builtin_shufflevector(load(from, n[4]), load(from, n[5]), 0, 1, 2, 3);
-  const FourWide d = __builtin_shufflevector(load(from, n[6]), load(from, n[7]), 0, 1, 2, 3);
-  const Pack::Vector low = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Pack::Vector high = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7);
-  return {Pack(__builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14)),
-          Pack(__builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15))};
+  to.x = PackOf<4>(__builtin_shufflevector(a, b, 0, 2, 4, 6));
+  to.y = PackOf<4>(__builtin_shufflevector(a, b, 1, 3, 5, 7));
+}
+APOTHEM_INLINE void gather(const double* from, const std::uint16_t* n, Point<PackOf<8>>& to) {
+  Point<PackOf<4>> low, high;
+  gather(from, n, low);
+  gather(from, n + 4, high);
+  to.x = PackOf<8>(__builtin_shufflevector(low.x.v, high.x.v, 0, 1, 2, 3, 4, 5, 6, 7));
+  to.y = PackOf<8>(__builtin_shufflevector(low.y.v, high.y.v, 0, 1, 2, 3, 4, 5, 6, 7));
 }
 
 APOTHEM_INLINE void add_pair(double* to, std::uint16_t node, Pair value) {
   *reinterpret_cast<Pair*>(to + 2 * node) += value;
 }
 // Adds the forces of one lane after the other, because two lanes may share a node.
-APOTHEM_INLINE void add(const Point<Pack>& f, double* to, const std::uint16_t* node) {
-  const Pack::Vector low = __builtin_shufflevector(f.x.v, f.y.v, 0, 8, 1, 9, 2, 10, 3, 11);
-  const Pack::Vector high = __builtin_shufflevector(f.x.v, f.y.v, 4, 12, 5, 13, 6, 14, 7, 15);
+APOTHEM_INLINE void add(const Point<PackOf<4>>& f, double* to, const std::uint16_t* node) {
+  const FourWide low = __builtin_shufflevector(f.x.v, f.y.v, 0, 4, 1, 5);
+  const FourWide high = __builtin_shufflevector(f.x.v, f.y.v, 2, 6, 3, 7);
+  add_pair(to, node[0], __builtin_shufflevector(low, low, 0, 1));
+  add_pair(to, node[1], __builtin_shufflevector(low, low, 2, 3));
+  add_pair(to, node[2], __builtin_shufflevector(high, high, 0, 1));
+  add_pair(to, node[3], __builtin_shufflevector(high, high, 2, 3));
+}
+APOTHEM_INLINE void add(const Point<PackOf<8>>& f, double* to, const std::uint16_t* node) {
+  const PackOf<8>::Vector low = __builtin_shufflevector(f.x.v, f.y.v, 0, 8, 1, 9, 2, 10, 3, 11);
+  const PackOf<8>::Vector high = __builtin_shufflevector(f.x.v, f.y.v, 4, 12, 5, 13, 6, 14, 7, 15);
   add_pair(to, node[0], __builtin_shufflevector(low, low, 0, 1));
   add_pair(to, node[1], __builtin_shufflevector(low, low, 2, 3));
   add_pair(to, node[2], __builtin_shufflevector(low, low, 4, 5));
@@ -62,16 +73,13 @@ APOTHEM_INLINE void add(const Point<Pack>& f, double* to, const std::uint16_t* n
   add_pair(to, node[7], __builtin_shufflevector(high, high, 6, 7));
 }
 
-APOTHEM_INLINE double sum_of_lanes(const Pack& p, int lanes) {
-  double sum = 0;
-  for (int i = 0; i < lanes; ++i) sum += p.v[i];
-  return sum;
-}
-
 // Adds the forces into blocks.f and returns the power of damping or, if not `forces`, returns the
-// strain energy alone.
-template <class Element, class Law, bool damped, bool forces>
+// strain energy alone. Blocks of kLanes elements are worked on in parts of `lanes`; their forces
+// are added in the same order whatever the parts are.
+template <int lanes, class Element, class Law, bool damped, bool forces>
 APOTHEM_INLINE double work_through(const Blocks& blocks) {
+  using Number = PackOf<lanes>;
+  constexpr int kParts = kLanes / lanes;
   const ElementMaterial& material = blocks.material;
   const Response<Law, damped> response(Law(material.elastic), material.elastic,
                                        material.stiffness_damping, blocks.set.thickness);
@@ -80,22 +88,34 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
   const ptrdiff_t stored = static_cast<ptrdiff_t>(Element::stored(corners)) * kLanes;
   double sum = 0;
   for (int first = 0, block = 0; first < blocks.elements; first += kLanes, ++block) {
-    const Stored<Pack> data{blocks.data + block * stored};
     const std::uint16_t* local = blocks.local + static_cast<ptrdiff_t>(block) * corners * kLanes;
-    Point<Pack> u[kMost], v[damped ? kMost : 1], f[forces ? kMost : 1];
-    for (int i = 0; i < corners; ++i) u[i] = gather(blocks.u, local + i * kLanes);
-    if constexpr (damped && forces) {
-      for (int i = 0; i < corners; ++i) v[i] = gather(blocks.v, local + i * kLanes);
+    Point<Number> f[kParts][forces ? kMost : 1];
+    for (int part = 0; part < kParts; ++part) {
+      const int lane = part * lanes;
+      const Stored<Number> data{blocks.data + block * stored + lane};
+      Point<Number> u[kMost], v[damped ? kMost : 1];
+      for (int i = 0; i < corners; ++i) gather(blocks.u, local + i * kLanes + lane, u[i]);
+      if constexpr (damped && forces) {
+        for (int i = 0; i < corners; ++i) gather(blocks.v, local + i * kLanes + lane, v[i]);
+      }
+      Number value(0.);
+      if constexpr (forces) {
+        Element::force(data, response, corners, u, v, f[part], value);
+      } else {
+        value = Element::energy(data, response, corners, u);
+      }
+      if constexpr (damped || !forces) {
+        for (int i = 0; i < std::min(lanes, blocks.elements - first - lane); ++i) {
+          sum += value.v[i];
+        }
+      }
     }
-    Pack value(0.);
     if constexpr (forces) {
-      Element::force(data, response, corners, u, v, f, value);
-      for (int i = 0; i < corners; ++i) add(f[i], blocks.f, local + i * kLanes);
-    } else {
-      value = Element::energy(data, response, corners, u);
-    }
-    if constexpr (damped || !forces) {
-      sum += sum_of_lanes(value, std::min(kLanes, blocks.elements - first));
+      for (int i = 0; i < corners; ++i) {
+        for (int part = 0; part < kParts; ++part) {
+          add(f[part][i], blocks.f, local + i * kLanes + part * lanes);
+        }
+      }
     }
   }
   return sum;
@@ -105,8 +125,8 @@ template <bool damped, bool forces>
 double dispatch(const Blocks& blocks) {
   return with_element(blocks.set.kind, [&]<class Element>(Element) {
     return with_law(blocks.material.elastic, [&]<class Law>(const Law&) {
-      return with_widest([&]() __attribute__((always_inline)) {
-        return work_through<Element, Law, damped, forces>(blocks);
+      return with_widest([&](auto lanes) __attribute__((always_inline)) {
+        return work_through<decltype(lanes)::value, Element, Law, damped, forces>(blocks);
       });
     });
   });

@@ -129,16 +129,16 @@ struct NeoHookean {
   }
 };
 
-/// Natural logarithm of a scalar; the specialisation takes that of each lane of a pack.
+/// Natural logarithm of a scalar, or of each lane of a pack.
 template <class N>
 inline N logarithm(const N& x) {
   using std::log;
   return log(x);
 }
-template <>
-APOTHEM_INLINE Pack logarithm(const Pack& x) {
-  Pack r;
-  for (int i = 0; i < kLanes; ++i) r.v[i] = std::log(x.v[i]);
+template <int lanes>
+APOTHEM_INLINE PackOf<lanes> logarithm(const PackOf<lanes>& x) {
+  PackOf<lanes> r;
+  for (int i = 0; i < lanes; ++i) r.v[i] = std::log(x.v[i]);
   return r;
 }
 
