@@ -11,7 +11,8 @@ namespace apothem {
 
 Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, PairTable table,
                    int threads)
-    : surfaces_(std::move(surfaces)),
+    : threads_(threads),
+      surfaces_(std::move(surfaces)),
       table_(std::move(table)),
       friction_law_(law.friction_law),
       tangential_(table_.rough() || table_.damped()) {

@@ -39,7 +39,7 @@ class Contacts {
 
   /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
   void place_all(const Kinematics& now) { surfaces_.place_all(now); }
-  void place(const Kinematics& now) { surfaces_.place(now); }
+  void place(const Kinematics& now) { surfaces_.place(now, threads_); }
   /// See Surfaces. Has the next step search anew.
   void set_absent(const std::vector<std::uint8_t>& absent) {
     surfaces_.set_absent(absent);
@@ -132,6 +132,7 @@ class Contacts {
     return all;
   }
 
+  Threads threads_;
   Surfaces surfaces_;
   PairTable table_;
   FrictionLaw friction_law_;

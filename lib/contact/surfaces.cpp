@@ -1,8 +1,13 @@
 #include "apothem/contact/surfaces.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace apothem {
+
+namespace {
+constexpr double kPlaceTime = 50;  // of a polygon, ns
+}
 
 void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   const SurfaceIndex i = shapes_.add(potential);
@@ -51,11 +56,12 @@ double Surfaces::inradius(SurfaceIndex i) const {
   return is_rigid(i) ? rigid_[i].inradius : 1 / shapes_.slope(i);
 }
 
-void Surfaces::place_polygon(RigidIndex i, const Kinematics& now) {
+bool Surfaces::place_polygon(RigidIndex i, const Kinematics& now) {
   const double* x = &now.pose[3 * static_cast<size_t>(i)];
-  if (0 * x[0] + 0 * x[1] + 0 * x[2] != 0) throw NotFinite(i);
+  if (0 * x[0] + 0 * x[1] + 0 * x[2] != 0) return false;
   pose_[i] = {x[0], x[1], x[2]};
   shapes_.place(i, x[0], x[1], x[2]);
+  return true;
 }
 
 void Surfaces::place_meshes(const Kinematics& now) {
@@ -67,12 +73,20 @@ void Surfaces::place_meshes(const Kinematics& now) {
 }
 
 void Surfaces::place_all(const Kinematics& now) {
-  for (RigidIndex i = 0; i < rigid_count(); ++i) place_polygon(i, now);
+  for (RigidIndex i = 0; i < rigid_count(); ++i) {
+    if (!place_polygon(i, now)) throw NotFinite(i);
+  }
   place_meshes(now);
 }
 
-void Surfaces::place(const Kinematics& now) {
-  for (const RigidIndex i : moving_) place_polygon(i, now);
+void Surfaces::place(const Kinematics& now, const Threads& threads) {
+  std::atomic<bool> finite = true;
+  threads.chunks(static_cast<int>(moving_.size()), kPlaceTime, [&](int first, int end, int) {
+    for (int i = first; i < end; ++i) {
+      if (!place_polygon(moving_[static_cast<size_t>(i)], now)) finite = false;
+    }
+  });
+  if (!finite) place_all(now);  // says which one it is
   place_meshes(now);
 }
 

@@ -15,6 +15,7 @@
 
 #include "apothem/contact/element_surfaces.hpp"
 #include "apothem/contact/outlines.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
 
 namespace apothem {
@@ -49,7 +50,7 @@ class Surfaces {
 
   /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
   void place_all(const Kinematics& now);
-  void place(const Kinematics& now);
+  void place(const Kinematics& now, const Threads& threads = Threads());
 
   /// The surfaces of bodies with an entry other than 0 stay where they are and touch nothing.
   void set_absent(const std::vector<std::uint8_t>& absent);
@@ -91,7 +92,8 @@ class Surfaces {
   [[nodiscard]] Outlines& outlines() { return outlines_; }
 
  private:
-  void place_polygon(RigidIndex i, const Kinematics& now);
+  /// False, and it stays where it is, if it would not be at a finite place.
+  bool place_polygon(RigidIndex i, const Kinematics& now);
   void place_meshes(const Kinematics& now);
 
   double polygon_skin_, mesh_skin_;
