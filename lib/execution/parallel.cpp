@@ -14,7 +14,7 @@ using Work = void (*)(void* task, int worker, int workers);
 
 // Loops of a step follow each other closely: a thread that is done looks for the next one for this
 // long before it sleeps. It lets others have its core meanwhile.
-constexpr int kLooks = 1000, kYields = 100;
+constexpr int kLooks = 1000, kYields = 1000;
 
 template <class Ready>
 bool look_for(const Ready& ready) {
