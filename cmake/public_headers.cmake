@@ -17,6 +17,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/term.hpp
   dynamics/time_step.hpp
   dynamics/unstable.hpp
+  execution/pack.hpp
   execution/stopwatch.hpp
   fem/kinds.hpp
   fem/stress.hpp

@@ -39,11 +39,11 @@ std::span<const Spring> find(const std::vector<Spring>& springs, size_t& next,
 
 }  // namespace
 
-void SpringRange::begin(const std::vector<Spring>& before, size_t next) {
+void SpringRange::begin(const std::vector<Spring>& before, size_t next, std::span<Spring> now) {
   before_ = &before;
   next_ = next;
+  now_ = now;
   lost_ = 0;
-  now_.clear();
   energies_.clear();
   losses_.clear();
   damping_losses_.clear();
@@ -55,17 +55,17 @@ std::span<const Spring> SpringRange::before(int law, int a, int b) {
   });
 }
 
-void FrictionMemory::begin(SpringRange& range, int law, int a, int b) const {
-  const std::tuple pair(law, a, b);
+void FrictionMemory::begin(SpringRange& range, const std::pair<int, int>& behind, size_t first) {
+  const std::tuple pair(0, behind.first, behind.second);
   const auto place = std::partition_point(before_.begin(), before_.end(),
                                           [&](const Spring& s) { return pair_of(s) <= pair; });
-  range.begin(before_, static_cast<size_t>(place - before_.begin()));
+  range.begin(before_, static_cast<size_t>(place - before_.begin()),
+              std::span(now_).subspan(first));
 }
 
 void FrictionMemory::add(const SpringRange& range) {
   next_ = std::max(next_, range.next_);
-  now_.insert(now_.end(), range.now_.begin(), range.now_.end());
-  for (size_t i = 0; i < range.now_.size(); ++i) {
+  for (size_t i = 0; i < range.energies_.size(); ++i) {
     energy_ += range.energies_[i];
     if (!range.now_[i].accounted) balanced_ += range.energies_[i];
   }

@@ -16,6 +16,7 @@
 #include <compare>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
@@ -56,12 +57,12 @@ inline double slide(double force, double slip, double stiffness, double limit) {
 /// do not depend on how pairs are divided.
 class SpringRange {
  public:
-  /// Begins a step with the springs `before`, from `next` on.
-  void begin(const std::vector<Spring>& before, size_t next);
+  /// Begins a step with the springs `before`, from `next` on, and keeps springs in `now`.
+  void begin(const std::vector<Spring>& before, size_t next, std::span<Spring> now);
   /// As the members of FrictionMemory.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
   void keep(const Spring& spring) {
-    now_.push_back(spring);
+    now_[energies_.size()] = spring;
     energies_.push_back(spring.energy());
   }
   void lose(double energy) {
@@ -78,7 +79,7 @@ class SpringRange {
   const std::vector<Spring>* before_ = nullptr;
   size_t next_ = 0;
   double lost_ = 0;
-  std::vector<Spring> now_;
+  std::span<Spring> now_;
   std::vector<double> energies_, losses_, damping_losses_;
 };
 
@@ -91,10 +92,12 @@ class FrictionMemory {
   /// The springs that a pair had in the step before, in the order of their parts; empty if it is
   /// new. Pairs must be asked for in ascending order.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
-  /// Has a range begin behind all springs of a pair in the step before; of the law of the range
-  /// that is added first.
-  void begin(SpringRange& range, int law, int a, int b) const;
-  /// Takes what a range has kept and booked. Ranges are added in ascending order.
+  /// Makes room for the springs that ranges keep, those of the first law.
+  void make_room(size_t springs) { now_.resize(springs); }
+  /// Has a range begin behind all springs of a pair in the step before, and keep springs from
+  /// number `first` on.
+  void begin(SpringRange& range, const std::pair<int, int>& behind, size_t first);
+  /// Takes what a range has booked. Ranges are added in ascending order.
   void add(const SpringRange& range);
   /// Keeps a spring for the next step; in ascending order of the keys.
   void keep(const Spring& spring) {

@@ -49,38 +49,53 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
       threads_(threads),
       ranges_(static_cast<size_t>(threads_.count()), Range(*this)) {}
 
-// What a range has done stands behind what those before it have.
 void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
                             const Kinematics& now, double dt, FrictionMemory& memory) {
   std::swap(now_, before_);
-  now_.clear();
   std::swap(forces_, forces_before_);
-  forces_.clear();
-  for (Range& range : ranges_) memory.begin(range.springs, -1, 0, 0), range.begin({}, 0);
+  make_room(pairs, touching);
+  memory.make_room(places_.back().spring);
+  for (Range& range : ranges_) memory.begin(range.springs, {-1, 0}, 0);
   const int count = static_cast<int>(touching.size());
   threads_.chunks(count, kSlideTime, [&](int first, int end, int worker) {
+    if (first == end && count > 0) return;
     Range& range = ranges_[static_cast<size_t>(worker)];
-    if (first > 0 && first < end) {
-      const BoxPair last = pairs.pairs()[static_cast<size_t>(touching[first - 1])];
-      memory.begin(range.springs, polygon_kernel, last.first, last.second);
-      range.begin(place_behind(last), forces_behind(last));
+    range.begin({}, 0);
+    if (first > 0) {
+      const auto [a, b] = pairs.pairs()[static_cast<size_t>(touching[first - 1])];
+      memory.begin(range.springs, {a, b}, places_[static_cast<size_t>(first)].spring);
+      range.begin(place_behind({a, b}), forces_behind({a, b}));
     }
     for (int i = first; i < end; ++i) {
-      range.step_pair(pairs, static_cast<size_t>(touching[i]), now, dt);
+      range.step_pair(pairs, static_cast<size_t>(touching[i]), places_[static_cast<size_t>(i)], now,
+                      dt);
     }
     if (end == count) range.release_until(std::numeric_limits<RigidIndex>::max(), 0, now, dt);
   });
-  for (const Range& range : ranges_) {
-    memory.add(range.springs);
-    now_.add(range.now);
-    forces_.insert(forces_.end(), range.forces.begin(), range.forces.end());
-  }
+  for (const Range& range : ranges_) memory.add(range.springs);
 }
 
-void PatchTangential::History::add(const History& other) {
-  pairs.insert(pairs.end(), other.pairs.begin(), other.pairs.end());
-  runs.insert(runs.end(), other.runs.begin(), other.runs.end());
-  dampers.insert(dampers.end(), other.dampers.begin(), other.dampers.end());
+// Every pair has its place in the lists, so that threads do not wait for each other.
+void PatchTangential::make_room(const PairIntegrals& pairs, std::span<const int> touching) {
+  places_.resize(touching.size() + 1);
+  Place place;
+  for (size_t i = 0; i < touching.size(); ++i) {
+    places_[i] = place;
+    const auto pair = static_cast<size_t>(touching[i]);
+    const auto [a, b] = pairs.pairs()[pair];
+    const PairLaw& law = table_.between(a, b);
+    ++place.pair;
+    if (!is_rough(law) && !is_damped(law)) continue;
+    const size_t patches = pairs.patches(pair).size(), runs = pairs.runs(pair).size();
+    place.run += runs;
+    if (table_.damped()) place.damper += patches;
+    if (is_rough(law)) place.spring += edgewise() ? runs : patches;
+  }
+  places_.back() = place;
+  forces_.resize(place.pair);
+  now_.pairs.resize(place.pair);
+  now_.runs.resize(place.run);
+  now_.dampers.resize(place.damper);
 }
 
 PatchTangential::Place PatchTangential::place_behind(const BoxPair& pair) const {
@@ -100,19 +115,9 @@ size_t PatchTangential::forces_behind(const BoxPair& pair) const {
   return static_cast<size_t>(behind - forces_before_.begin());
 }
 
-std::span<const TangentialForce> PatchTangential::from(const BoxPair& pair) const {
-  const auto place =
-      std::partition_point(forces_.begin(), forces_.end(), [&](const TangentialForce& f) {
-        return BoxPair{f.a, f.b} < pair;
-      });
-  return std::span(forces_).subspan(static_cast<size_t>(place - forces_.begin()));
-}
-
 void PatchTangential::Range::begin(const Place& place, size_t force) {
   place_ = place;
   last_ = force;
-  now.clear();
-  forces.clear();
 }
 
 void PatchTangential::Range::release_until(RigidIndex a, RigidIndex b, const Kinematics& kinematics,
@@ -166,7 +171,7 @@ const PatchTangential::PairHistory* PatchTangential::Range::find_before(RigidInd
   return nullptr;
 }
 
-void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair,
+void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair, const Place& to,
                                        const Kinematics& kinematics, double dt) {
   const auto [a, b] = pairs.pairs()[pair];
   const Surfaces& surfaces = all_.surfaces_;
@@ -177,9 +182,11 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair,
     const TangentialForce& next = all_.forces_before_[last_];
     if (next.a == a && next.b == b) last = &next, ++last_;
   }
+  TangentialForce& total = all_.forces_[to.pair] = TangentialForce{a, b};
+  PairHistory& history = all_.now_.pairs[to.pair] = {a, b, 0, 0};
   const PairLaw& law = all_.table_.between(a, b);
-  const bool rough = law.friction.coefficient > 0;
-  const bool damped = law.damping.normal > 0 || law.damping.tangential > 0;
+  const bool rough = all_.is_rough(law);
+  const bool damped = all_.is_damped(law);
   if (!rough && !damped) return;
   const PlacedShapes& shapes = surfaces.shapes();
   const PairMotion motion(surfaces, kinematics, a, b);
@@ -204,7 +211,6 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair,
             });
   }
   springs.begin_pair();
-  TangentialForce total{a, b};
   for (size_t j = 0; j < patches_.size(); ++j) {
     const PairIntegral& patch = patches_[j];
     if (damped) {
@@ -236,12 +242,13 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair,
   } else {
     dampers_.assign(patches_.size(), {});
   }
-  if (all_.table_.damped()) {
-    now.dampers.insert(now.dampers.end(), dampers_.begin(), dampers_.end());
-  }
-  now.runs.insert(now.runs.end(), runs_.begin(), runs_.end());
-  now.pairs.push_back({a, b, static_cast<int>(patches_.size()), static_cast<int>(runs_.size())});
-  forces.push_back(total);
+  const auto put = [](const auto& list, auto& all, size_t first) {
+    std::copy(list.begin(), list.end(), all.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  if (all_.table_.damped()) put(dampers_, all_.now_.dampers, to.damper);
+  put(runs_, all_.now_.runs, to.run);
+  history.patches = static_cast<int>(patches_.size());
+  history.runs = static_cast<int>(runs_.size());
 }
 
 // What the patches before hand down to those of now: everything to the only heir, otherwise in
@@ -385,6 +392,7 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
     cursor.damper += static_cast<size_t>(now_.pairs[cursor.pair++].patches);
   }
   if (cursor.pair == now_.pairs.size() || order() != pair) return;
+  if (now_.pairs[cursor.pair].patches == 0) return;
   for (size_t j = 0; table_.damped() && j < patches.size(); ++j) {
     const PatchDamper& damper = now_.dampers[cursor.damper + j];
     patches[j].damping += damper.damping.force;

@@ -73,11 +73,8 @@ class PatchTangential {
     std::swap(forces_, forces_before_);
   }
 
-  /// Of the touching pairs with friction or damping, ascending.
+  /// Of the touching pairs; zero where they have neither friction nor damping.
   [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
-
-  /// The same from a pair on.
-  [[nodiscard]] std::span<const TangentialForce> from(const BoxPair& pair) const;
 
   /// Where the next pair is looked for first: pairs must be asked for in ascending order.
   struct Cursor {
@@ -100,7 +97,6 @@ class PatchTangential {
     std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
     std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
     void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
-    void add(const History& other);
     void fields(Archive& archive);
   };
   /// Takes over what the patches of another simulation remember.
@@ -113,6 +109,7 @@ class PatchTangential {
  private:
   struct Place {  // in a History
     size_t pair = 0, run = 0, damper = 0;
+    size_t spring = 0;  // in the memory of friction
     void pass(const PairHistory& p) {
       ++pair;
       run += static_cast<size_t>(p.runs);
@@ -123,17 +120,16 @@ class PatchTangential {
   // The pairs that one thread takes a step further.
   class Range {
    public:
-    explicit Range(const PatchTangential& all) : all_(all) {}
+    explicit Range(PatchTangential& all) : all_(all) {}
 
     // Begins a step behind a pair of the last step, or with the first one.
     void begin(const Place& place, size_t force);
-    void step_pair(const PairIntegrals& pairs, size_t pair, const Kinematics& now, double dt);
+    void step_pair(const PairIntegrals& pairs, size_t pair, const Place& to, const Kinematics& now,
+                   double dt);
     // Pairs that touch no more and come before this one.
     void release_until(RigidIndex a, RigidIndex b, const Kinematics& now, double dt);
 
     SpringRange springs;
-    History now;
-    std::vector<TangentialForce> forces;
 
    private:
     const PairHistory* find_before(RigidIndex a, RigidIndex b);
@@ -153,7 +149,7 @@ class PatchTangential {
     void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
                   std::span<const Spring> before, TangentialForce& total);
 
-    const PatchTangential& all_;
+    PatchTangential& all_;
     Place place_;      // of the next pair of the step before
     size_t last_ = 0;  // of its forces
     // Of the pair at hand.
@@ -165,6 +161,11 @@ class PatchTangential {
     std::vector<PatchDamper> dampers_;
   };
 
+  [[nodiscard]] bool is_rough(const PairLaw& law) const { return law.friction.coefficient > 0; }
+  [[nodiscard]] bool is_damped(const PairLaw& law) const {
+    return law.damping.normal > 0 || law.damping.tangential > 0;
+  }
+  void make_room(const PairIntegrals& pairs, std::span<const int> touching);
   // In the step before, behind a pair.
   [[nodiscard]] Place place_behind(const BoxPair& pair) const;
   [[nodiscard]] size_t forces_behind(const BoxPair& pair) const;
@@ -175,6 +176,7 @@ class PatchTangential {
   double thickness_;
   Threads threads_;
   std::vector<Range> ranges_;  // one for each thread
+  std::vector<Place> places_;  // of each touching pair, and behind the last one
   History now_, before_;
   std::vector<TangentialForce> forces_, forces_before_;
 };

@@ -105,17 +105,11 @@ void PolygonKernel::find_loads() {
   const auto pair_of = [&](int i) { return pairs_.pairs()[static_cast<size_t>(touching_[i])]; };
   threads_.chunks(
       static_cast<int>(touching_.size()), kLoadTime, [&](int first, int end, int worker) {
-        if (first == end) return;
         PairPeak& largest = found_[static_cast<size_t>(worker)].largest_force;
-        std::span<const TangentialForce> springs;
-        if (tangential_) springs = tangential_->from(pair_of(first));
         for (int i = first; i < end; ++i) {
           const auto [a, b] = pair_of(i);
-          const TangentialForce* own = nullptr;
-          if (!springs.empty() && springs.front().a == a && springs.front().b == b) {
-            own = springs.data();
-            springs = springs.subspan(1);
-          }
+          const TangentialForce* own =
+              tangential_ ? &tangential_->forces()[static_cast<size_t>(i)] : nullptr;
           const Load& load = loads_[static_cast<size_t>(i)] = load_of(static_cast<size_t>(i), own);
           const double fx = load.force.x(), fy = load.force.y();
           const double force = std::sqrt(fx * fx + fy * fy);

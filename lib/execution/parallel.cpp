@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -15,6 +16,7 @@ using Work = void (*)(void* task, int worker, int workers);
 // Loops of a step follow each other closely: a thread that is done looks for the next one for this
 // long before it sleeps. It lets others have its core meanwhile.
 constexpr int kLooks = 1000, kYields = 1000;
+constexpr int kMostThreads = 4096;
 
 template <class Ready>
 bool look_for(const Ready& ready) {
@@ -31,7 +33,8 @@ bool look_for(const Ready& ready) {
   return false;
 }
 
-// Threads that wait for work, for all loops of the program.
+// Threads that wait for work, for all loops of the program. The parts of a loop are taken by
+// whoever is free, so that nobody waits for a thread that the system has not woken yet.
 class Pool {
  public:
   void run(Work work, void* task, int workers) {
@@ -40,28 +43,33 @@ class Pool {
       for (int worker = 0; worker < workers; ++worker) work(task, worker, workers);
       return;
     }
+    const Ticket next{ticket_.load().round + 1, static_cast<std::uint16_t>(workers), 0};
+    work_ = work;
+    task_ = task;
+    left_ = workers;
     {
       const std::scoped_lock lock(mutex_);
-      work_ = work;
-      task_ = task;
-      workers_ = workers;
-      left_.store(static_cast<int>(threads_.size()));
-      round_.fetch_add(1);
+      ticket_ = next;
     }
     wake_.notify_all();
-    work(task, 0, workers);
-    const auto done = [&] { return left_.load() == 0; };
+    work_on(next.round);
+    const auto done = [&] { return left_ == 0; };
     if (look_for(done)) return;
     std::unique_lock lock(mutex_);
     done_.wait(lock, done);
   }
 
  private:
+  struct alignas(8) Ticket {
+    std::uint32_t round = 0;                // loops so far
+    std::uint16_t workers = 0, worker = 0;  // parts of the loop, and the next one to be taken
+  };
+
   bool start(int workers) {
+    if (workers > kMostThreads) return false;
     try {
       while (static_cast<int>(threads_.size()) + 1 < workers) {
-        const int worker = static_cast<int>(threads_.size()) + 1;
-        threads_.emplace_back([this, worker, round = round_.load()] { serve(worker, round); });
+        threads_.emplace_back([this] { serve(); });
       }
     } catch (const std::system_error&) {
       return false;
@@ -69,19 +77,30 @@ class Pool {
     return true;
   }
 
-  void serve(int worker, unsigned round) {
-    for (;;) {
-      const auto called = [&] { return round_.load() != round; };
+  void serve() {
+    for (std::uint32_t round = 0;;) {
+      const auto called = [&] { return ticket_.load().round != round; };
       if (!look_for(called)) {
         std::unique_lock lock(mutex_);
         wake_.wait(lock, called);
       }
-      ++round;
-      if (worker < workers_) work_(task_, worker, workers_);
+      round = ticket_.load().round;
+      work_on(round);
+    }
+  }
+
+  // Takes parts of a loop as long as there are any.
+  void work_on(std::uint32_t round) {
+    for (Ticket ticket = ticket_.load(); ticket.round == round && ticket.worker < ticket.workers;) {
+      Ticket next = ticket;
+      ++next.worker;
+      if (!ticket_.compare_exchange_weak(ticket, next)) continue;
+      work_(task_, ticket.worker, ticket.workers);
       if (left_.fetch_sub(1) == 1) {
         const std::scoped_lock lock(mutex_);
         done_.notify_one();
       }
+      ticket = ticket_.load();
     }
   }
 
@@ -89,11 +108,10 @@ class Pool {
   std::mutex busy_;   // held while a loop runs
   std::mutex mutex_;  // guards sleeping
   std::condition_variable wake_, done_;
-  std::atomic<unsigned> round_{0};
-  std::atomic<int> left_{0};
+  std::atomic<Ticket> ticket_;
+  std::atomic<int> left_{0};  // parts of the loop that are not done
   Work work_ = nullptr;
   void* task_ = nullptr;
-  int workers_ = 0;
 };
 
 }  // namespace
