@@ -37,7 +37,7 @@ Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks
 /// Inserts the blocks at random while they are small, and lets them grow while they move at random
 /// and never overlap (Monte Carlo form of B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60
 /// (1990) 561-583; here each block grows as it finds room). `turns`: blocks may turn as well. Ends
-/// at full size, or when 500 sweeps and 300 000 moves have gained less than a thousandth of the
+/// at full size, or when 500 sweeps and 60 000 moves have gained less than a thousandth of the
 /// missing area.
 Arrangement grow(PackingSpace& space, RandomNumbers& random, const std::vector<Block>& blocks,
                  bool turns);

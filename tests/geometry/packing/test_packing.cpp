@@ -160,7 +160,7 @@ TEST_CASE("blocks of all arrangements keep apart exactly", "[packing]") {
       double solid = 0;
       for (const Block& b : dense) solid += b.scale * b.scale;
       // Few large blocks waste more room at the walls.
-      const double goal = std::sqrt((number < 60 ? .5 : .62) * space.area() / solid);
+      const double goal = std::sqrt((number < 60 ? .42 : .62) * space.area() / solid);
       for (Block& b : dense) b.scale *= goal;
       const Arrangement a = grow(space, random, dense, true);
       REQUIRE(a.placed == number);
