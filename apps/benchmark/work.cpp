@@ -2,7 +2,7 @@
 // stability limit, as velocity Verlet takes the steps ("plain") and with contacts that begin or end
 // within a step corrected. The number in a name is the part of the limit in thousandths.
 //
-//   apothem benchmark --filter ^work/ --repeat 1 -o out/work
+//   apothem benchmark --filter ^work/ --repeat 1 -o out/precision
 //   gnuplot docs/images/work-precision.gnuplot
 
 #include <cmath>

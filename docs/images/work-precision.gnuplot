@@ -1,5 +1,5 @@
 # The picture in docs/verification.md, from
-#   apothem benchmark --filter ^work/ --repeat 1 -o out/work
+#   apothem benchmark --filter ^work/ --repeat 1 -o out/precision
 #   gnuplot docs/images/work-precision.gnuplot
 set terminal pngcairo size 1200,700 font 'DejaVu Sans,10' background 'white'
 set output 'docs/images/work-precision.png'
@@ -11,7 +11,7 @@ set logscale xy
 set format y '10^{%L}'
 set key bottom left
 # The number at the end of a name, time in ms, error.
-rows(case, kind) = sprintf("< awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == \"median [ns]\") t = i; if ($i == \"error\") e = i } } sub(\"^work/%s/%s/\", \"\", $1) { print $1 \",\" 1e-6 * $t \",\" $e }' out/work/benchmark.csv", case, kind)
+rows(case, kind) = sprintf("< awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == \"median [ns]\") t = i; if ($i == \"error\") e = i } } sub(\"^work/%s/%s/\", \"\", $1) { print $1 \",\" 1e-6 * $t \",\" $e }' out/precision/benchmark.csv", case, kind)
 set multiplot layout 2,3 title 'Energy error against computing time; the numbers are the step in thousandths of the stability limit'
 titles = 'impact gas pack beam discs'
 do for [case in titles] {
