@@ -182,6 +182,8 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair, 
     const TangentialForce& next = all_.forces_before_[last_];
     if (next.a == a && next.b == b) last = &next, ++last_;
   }
+  // Also of pairs without friction: what has ended before them is booked by this range.
+  const std::span<const Spring> springs_before = springs.before(polygon_kernel, a, b);
   TangentialForce& total = all_.forces_[to.pair] = TangentialForce{a, b};
   PairHistory& history = all_.now_.pairs[to.pair] = {a, b, 0, 0};
   const PairLaw& law = all_.table_.between(a, b);
@@ -193,7 +195,6 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair, 
   runs_ = pairs.runs(pair);
   patches_ = pairs.patches(pair);
   const PairHistory* const before = find_before(a, b);
-  const std::span<const Spring> springs_before = springs.before(polygon_kernel, a, b);
   find_shares(before);
   if (damped) {
     const std::span<const PatchDamper> dampers(all_.before_.dampers);

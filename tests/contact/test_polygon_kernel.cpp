@@ -1,5 +1,6 @@
 // Contact of rigid bodies by the potentials of their polygons: momenta, symmetry, bits, patches.
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
@@ -19,7 +20,8 @@ ContactLaw rough_law(FrictionLaw friction_law, double damping) {
 }
 
 // Polygons of all sorts on a grid, so close that neighbours overlap, in motion.
-Bodies random_heap(samples::Random& random, const ContactLaw& law, int across, int threads = 1) {
+Bodies random_heap(samples::Random& random, const ContactLaw& law, int across, int threads = 1,
+                   int materials = 1) {
   Bodies bodies(law, .1, .5, threads);
   for (int i = 0; i < across * across; ++i) {
     const Polygon shape = random.integer(0, 1)
@@ -27,7 +29,7 @@ Bodies random_heap(samples::Random& random, const ContactLaw& law, int across, i
                               : samples::random_star_shaped(random, random.integer(4, 9), .5);
     const double x = 1. * (i % across) + random.uniform(-.2, .2);
     const double y = 1. * (i / across) + random.uniform(-.2, .2);
-    bodies.add_rigid(about_centre(shape), {x, y, random.uniform(-3, 3)}, {1, 1, 2});
+    bodies.add_rigid(about_centre(shape), {x, y, random.uniform(-3, 3)}, {1, 1, 2}, i % materials);
   }
   bodies.join();
   for (double& v : bodies.pose_rate) v = random.uniform(-1, 1);
@@ -179,17 +181,44 @@ TEST_CASE("swapping two rigid bodies swaps their forces to the last bit",
 
 TEST_CASE("contact of rigid bodies has the same bits for any number of threads",
           "[polygon_kernel][contact]") {
+  const FrictionLaw friction_law = GENERATE(FrictionLaw::resultant, FrictionLaw::per_edge);
+  ContactLaw law = rough_law(friction_law, .2);
+  // Some pairs have neither friction nor damping.
+  ContactRule smooth{{ContactRule::Party{false, 0}, ContactRule::Party{false, 1}}};
+  smooth.friction = Friction{};
+  smooth.damping = ContactDamping{};
+  law.rules = {smooth};
   std::vector<double> forces, lambda, springs;
   double energy = 0, loss = 0, damping_loss = 0;
-  for (const int threads : {1, 2, 3}) {
+  PairPeak largest;
+  for (const int threads : {1, 2, 3, 7}) {
     samples::Random random(74);
-    Bodies bodies = random_heap(random, rough_law(FrictionLaw::resultant, .2), 26, threads);
-    for (int n = 0; n < 3; ++n) step(bodies, .01);
+    Bodies bodies = random_heap(random, law, 26, threads, 3);
     const Contacts& contacts = *bodies.contacts;
-    REQUIRE(Threads(2).worth(static_cast<int>(contacts.candidates()), 200));
+    std::set<std::pair<int, int>> before;
+    int begun = 0, ended = 0;
+    for (int n = 0; n < 5; ++n) {
+      step(bodies, .05);
+      std::set<std::pair<int, int>> touching;
+      for (const Contact& c : contacts.contacts()) touching.emplace(c.a, c.b);
+      for (const auto& pair : touching) begun += n > 0 && !before.contains(pair);
+      for (const auto& pair : before) ended += !touching.contains(pair);
+      before = std::move(touching);
+    }
+    REQUIRE(begun > 50);
+    REQUIRE(ended > 50);
+    REQUIRE(Threads(2).worth(static_cast<int>(before.size()), 200));
     std::vector<double> now;
     for (const Spring& s : contacts.friction().springs()) now.push_back(s.force);
     REQUIRE(now.size() > 500);
+    Vec2 sum = Vec2::Zero();
+    double sizes = 0;
+    for (size_t i = 0; i < bodies.pose.size(); i += 3) {
+      const Vec2 force(bodies.rigid_force[i], bodies.rigid_force[i + 1]);
+      sum += force;
+      sizes += force.norm();
+    }
+    CHECK(sum.norm() < 1e-13 * sizes);
     if (threads > 1) {
       CHECK((bodies.rigid_force == forces));
       CHECK((bodies.lambda == lambda));
@@ -197,10 +226,13 @@ TEST_CASE("contact of rigid bodies has the same bits for any number of threads",
       CHECK(contacts.energy() == energy);
       CHECK(contacts.friction_loss() == loss);
       CHECK(contacts.damping_loss() == damping_loss);
+      CHECK(contacts.largest_force().value == largest.value);
+      CHECK(contacts.largest_force().a == largest.a);
     }
     forces = bodies.rigid_force, lambda = bodies.lambda, springs = now;
     energy = contacts.energy(), loss = contacts.friction_loss();
     damping_loss = contacts.damping_loss();
+    largest = contacts.largest_force();
   }
   CHECK(damping_loss > 0);
 }
