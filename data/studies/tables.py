@@ -7,9 +7,10 @@
     tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
     tables.py repose HEAPS                       angle of repose
     tables.py cost PACKS                         time per body and step, and what takes it
+    tables.py outlines FILLS FOLDER              resting blocks of hopper-fill.json as drawings for soft-fill.json
     tables.py picture FILE.png LABEL=FLOWS ...   jam probability over the width, and discharge (with gnuplot)
 
-FLOWS are made from hopper-flow.json, HEAPS from repose.json, PACKS from pack.json. Intervals are for 95 %.
+FLOWS are made from hopper-flow.json or soft-flow.json, HEAPS from repose.json, PACKS from pack.json. Intervals are for 95 %.
 """
 
 import argparse
@@ -53,11 +54,11 @@ def columns(path):
 
 
 class Flow:
-    """A run of hopper-flow.json."""
+    """A run of hopper-flow.json or soft-flow.json."""
 
     def __init__(self, folder, row):
         self.width = float(row["D/d"])
-        self.seed = int(row["fill.0.seed"])
+        self.seed = int(row.get("fill.0.seed") or row["seed"])
         self.jammed = row["jammed"] == "true"
         self.emptied = row["emptied"] == "true"
         self.discharged = int(float(row["discharged"]))
@@ -227,6 +228,32 @@ def cost(args):
               f" {pairs['candidates'] / n:.2f}, {pairs['touching'] / n:.2f}")
 
 
+def outlines(args):
+    folder = pathlib.Path(args.to)
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(pathlib.Path(args.folder) / "runs.csv", newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+    with open(folder / "seeds.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["import.0.file", "#seed"])
+        for row in rows:
+            with open(pathlib.Path(args.folder) / "runs" / row["run"] / "final.json", encoding="utf-8") as final:
+                run = json.load(final)
+            places = run["simulation"]["state"]["x"]
+            drawing = folder / f"{row['fill.0.seed']}.wkt"
+            with open(drawing, "w", encoding="utf-8") as out:
+                for i, body in enumerate(run["model"]["bodies"]):
+                    if not body["name"].startswith("block"):
+                        continue
+                    x, y, angle = places[3 * i:3 * i + 3]
+                    c, s = math.cos(angle), math.sin(angle)
+                    ring = [f"{x + c * u - s * v:.9g} {y + s * u + c * v:.9g}"
+                            for u, v in zip(body["shape"][::2], body["shape"][1::2])]
+                    out.write(f"POLYGON (({', '.join(ring + ring[:1])}))\n")
+            table.writerow([drawing.resolve(), row["fill.0.seed"]])
+    print(f"{len(rows)} drawings and seeds.csv in {folder}")
+
+
 def picture(args):
     studies = [study.split("=", 1) for study in args.studies]
     groups = [(label, by_width(flows(folder))) for label, folder in studies]
@@ -282,7 +309,7 @@ plot {", ".join(curves) if curves else "NaN notitle"}
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for command in (jam, hazard, pairs, beverloo, repose, cost, picture):
+    for command in (jam, hazard, pairs, beverloo, repose, cost, outlines, picture):
         sub = commands.add_parser(command.__name__)
         if command is picture:
             sub.add_argument("file", metavar="FILE.png")
@@ -294,6 +321,8 @@ def main():
         sub.set_defaults(command=command)
         if command is pairs:
             sub.add_argument("other")
+        if command is outlines:
+            sub.add_argument("to", metavar="FOLDER")
         if command is jam:
             sub.add_argument("--reference", metavar="SHAPE,MU", help="quad,0.5 or cross,0.0: rows of jam_box2d.csv beside ours")
         if command is beverloo:

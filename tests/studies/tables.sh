@@ -35,6 +35,12 @@ found=$(grep -o '([0-9]*)' hazard.txt | tr -d '()' | awk '{ n += $1 } END { prin
 tables beverloo flow | tee beverloo.txt
 grep -q '^C = ' beverloo.txt || fail "no fit"
 
+# The resting blocks of a run, as a drawing that can be meshed.
+tables outlines fill drawings
+[ "$(grep -c POLYGON drawings/2.wkt)" = 80 ] || fail "not every block is in the drawing"
+"$program" check "$studies/soft-fill.json" --set import.0.file="$PWD/drawings/2.wkt" | tee soft.txt
+grep -q '80 deformable' soft.txt || fail "the drawing was not meshed"
+
 if command -v gnuplot >/dev/null; then
   tables picture jam.png "some blocks"=flow --reference quad,0.5 --width 9
   head -c 8 jam.png | grep -q PNG || fail "no picture"
