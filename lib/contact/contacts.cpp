@@ -46,6 +46,7 @@ bool Contacts::search_if_stale() {
     if (surfaces_.kind(i) == SurfaceKind::outline && surfaces_.is_present(i))
       pairs_[outline_kernel].push_back({i, i});
   }
+  if (surfaces_.has_outlines()) surfaces_.outlines().activate(pairs_[outline_kernel]);
   for (size_t k = 0; k < kernels_.size(); ++k) {
     if (kernels_[k]) kernels_[k]->take(pairs_[k]);
   }

@@ -41,11 +41,14 @@ class DampingTimes {
     const auto twice = std::ranges::unique(pairs_, {}, key);
     pairs_.erase(twice.begin(), twice.end());
   }
-  [[nodiscard]] Pair& of(BodyIndex a, BodyIndex b) {
+  [[nodiscard]] int index(BodyIndex a, BodyIndex b) const {
     const std::pair<BodyIndex, BodyIndex> key = std::minmax(a, b);
-    return *std::ranges::lower_bound(pairs_, key, {},
-                                     [](const Pair& p) { return std::pair(p.a, p.b); });
+    const auto found = std::ranges::lower_bound(pairs_, key, {},
+                                                [](const Pair& p) { return std::pair(p.a, p.b); });
+    return static_cast<int>(found - pairs_.begin());
   }
+  [[nodiscard]] Pair& operator[](int index) { return pairs_[static_cast<size_t>(index)]; }
+  [[nodiscard]] Pair& of(BodyIndex a, BodyIndex b) { return (*this)[index(a, b)]; }
 
   /// Before the stiffnesses of a step are summed up, and after.
   void begin_step() {

@@ -11,13 +11,23 @@ namespace apothem {
 /// An edge of one outline that may meet a face of another.
 struct EdgeFace {
   std::int32_t edge, face;
+  std::int32_t pair = 0;  ///< index of the EdgeFaceLaw
   auto operator<=>(const EdgeFace&) const = default;
+};
+
+/// Between the edges of one body and the faces of another.
+struct EdgeFaceLaw {
+  double slope;         ///< k_n thickness / r of the faces, N/m^2
+  double spring;        ///< k_s thickness / r, likewise; 0 where there is no friction
+  double friction;      ///< mu
+  std::int32_t bodies;  ///< index of the two bodies in DampingTimes
 };
 
 /// One that does.
 struct EdgeFaceContact {
-  int edge, face;
-  double slope;  ///< k_n thickness / r of the face, N/m^2
+  std::int32_t edge, face;
+  std::int32_t pair;  ///< as above
+  double slope;       ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
 };
 

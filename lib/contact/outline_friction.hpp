@@ -24,26 +24,34 @@ namespace apothem {
 
 class OutlineFriction {
  public:
-  /// `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive this object.
-  OutlineFriction(const Outlines& outlines, const PairTable& table, double thickness,
+  /// `inverse_mass` of each body, 1/kg. All must outlive this object.
+  OutlineFriction(const Outlines& outlines, const PairTable& table,
                   const std::vector<double>& inverse_mass)
-      : outlines_(outlines), table_(table), thickness_(thickness), times_(table, inverse_mass) {}
+      : outlines_(outlines), damped_(table.damped()), times_(table, inverse_mass) {}
 
   /// See Kernel.
   void limit_damping(double rate) { times_.limit(rate); }
   /// After a search: the pairs of bodies that may touch.
-  void take(std::span<const BoxPair> pairs) { times_.take(pairs); }
+  void take(std::span<const BoxPair> pairs) {
+    times_.take(pairs);
+    everywhere_ = true;
+  }
+  /// Index of two of them: see EdgeFaceLaw.
+  [[nodiscard]] int bodies(BodyIndex a, BodyIndex b) const { return times_.index(a, b); }
 
   /// One step further: see Kernel::slide. Slip that is spread over more contact keeps its force,
   /// and springs of contact that has ended are lost: friction never adds energy.
-  double slide(const std::vector<EdgeFaceContact>& contacts, const Kinematics& now, double dt,
-               FrictionMemory& memory);
+  double slide(std::span<const EdgeFaceContact> contacts, std::span<const EdgeFaceLaw> laws,
+               const Kinematics& now, double dt, FrictionMemory& memory);
 
   void fields(Archive& archive) {
-    if (table_.damped()) archive("damping_x", damping_.x)("damping_y", damping_.y);
+    if (damped_) archive("damping_x", damping_.x)("damping_y", damping_.y);
   }
   /// Takes back the last slide of a scene without damping.
-  void undo_slide() { std::swap(friction_, friction_before_); }
+  void undo_slide() {
+    std::swap(friction_, friction_before_);
+    everywhere_ = true;
+  }
 
   /// Forces on the vertices of the outlines, N.
   struct VertexForces {
@@ -58,23 +66,35 @@ class OutlineFriction {
   [[nodiscard]] const std::vector<double>& pushes() const { return pushes_; }
 
  private:
-  /// Pressure-weighted coefficients of a slip rate: see the implementation.
-  struct SlipRate;
+  /// An edge against a face, and pressure-weighted coefficients of its slip rate.
+  struct Slip;
 
   void find_velocities(const Kinematics& now, double dt);
   [[nodiscard]] double power(const VertexForces& forces) const;
-  void find_times(const std::vector<EdgeFaceContact>& contacts, double dt);
-  void damp_normal(const EdgeFaceContact& contact, double time, double& push);
-  [[nodiscard]] SlipRate slip_rate(const EdgeFaceContact& contact, double weight) const;
-  void apply(const EdgeFaceContact& contact, double weight, VertexForces& forces) const;
+  void find_times(std::span<const EdgeFaceContact> contacts, std::span<const EdgeFaceLaw> laws,
+                  double dt);
+  [[nodiscard]] Slip slip_of(const EdgeFaceContact& contact) const;
+  [[nodiscard]] double damp_normal(const EdgeFaceContact& contact, const Slip& slip, double time);
+  static void apply(const Slip& slip, double force, VertexForces& forces);
 
   const Outlines& outlines_;
-  const PairTable& table_;
-  double thickness_;
+  bool damped_;
   DampingTimes times_;
+  bool everywhere_ = true;       // bodies that have become inactive may still have forces
   std::vector<double> vx_, vy_;  // of the vertices
+  std::vector<Slip> slips_;      // of the contacts of a spring
   VertexForces friction_, friction_before_, damping_;
   std::vector<double> shares_, pushes_;
+};
+
+/// With t, the unit tangent of the face from a to b, and n its inward normal: t counts at both ends
+/// of the edge from p to q and of the face, n at the ends of the face.
+struct OutlineFriction::Slip {
+  int p, q, a, b;
+  double tx, ty;
+  double at_p, at_q, at_a, at_b, couple;
+  double start,
+      rise;  ///< the foot of the edge's point u on the face is at the share start + u rise
 };
 
 }  // namespace apothem

@@ -34,19 +34,31 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
   const auto n = static_cast<size_t>(outlines.size());
   fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
   if (table.rough() || table.damped()) {
-    friction_.emplace(outlines, table, thickness, inverse_mass);
+    friction_.emplace(outlines, table, inverse_mass);
   }
 }
 
 void OutlineKernel::take(std::span<const BoxPair> pairs) {
   if (friction_) friction_->take(pairs);
   candidates_.clear();
+  laws_.clear();
+  for (std::vector<double>* of_all : {&ends_, &fx_, &fy_}) {
+    std::fill(of_all->begin(), of_all->end(), 0.);
+  }
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
     if (a != b) find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
   plateaus_.take(pairs);
+}
+
+EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
+  const Friction& friction = table_.between(edges, faces).friction;
+  const double spring =
+      friction.tangential_stiffness * thickness_ / outlines_.bodies[faces].reference;
+  return {slopes_(faces, edges), spring, friction.coefficient,
+          friction_ ? friction_->bodies(edges, faces) : 0};
 }
 
 // An edge of a body lies on its own face, without a depth, and in those of the edges next to it
@@ -74,6 +86,9 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
   for (int i = o.bodies[b].first; i < o.bodies[b].end; ++i) {
     if (!apart(o.face_boxes[i], o.body_boxes[a])) near_faces_.push_back(i);
   }
+  if (near_edges_.empty() || near_faces_.empty()) return;
+  const auto pair = static_cast<std::int32_t>(laws_.size());
+  laws_.push_back(law_of(a, b));
   const bool across = common.x1 - common.x0 >= common.y1 - common.y0;
   const auto low = [&](const Box& box) { return across ? box.x0 : box.y0; };
   const auto high = [&](const Box& box) { return across ? box.x1 : box.y1; };
@@ -91,7 +106,7 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
     for (; it != near_faces_.end() && low(o.face_boxes[*it]) <= high(box); ++it) {
       if (apart(box, o.face_boxes[*it])) continue;
       if (a == b && are_neighbours(e, *it)) continue;
-      candidates_.push_back({e, *it});
+      candidates_.push_back({e, *it, pair});
     }
   }
 }
@@ -100,11 +115,11 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   contacts_.clear();
   depths_.forget();
-  std::fill(ends_.begin(), ends_.end(), 0.);
+  o.each_active_vertex([&](int i) { ends_[2 * i] = ends_[2 * i + 1] = 0; });
   plateaus_.begin();
   const int count = static_cast<int>(candidates_.size());
   const auto find = [&](int c, Met& found) {
-    const auto [e, f] = candidates_[c];
+    const auto [e, f, pair] = candidates_[c];
     const int q = o.next[e];
     found.top.count = 0;
     found.met = collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], found.piece, found.top);
@@ -125,19 +140,19 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
     for (int c = 0; c < count; ++c) use(c, met_[c]);
   }
   add_plateaus(contacts);
-  for (int i = 0; i < o.size(); ++i) {
+  o.each_active_vertex([&](int i) {
     const int p = o.previous[i];
     const double own = ends_[2 * i], before = ends_[2 * p + 1];
     fx_[i] = -before * o.ty[p] - own * o.ty[i];
     fy_[i] = before * o.tx[p] + own * o.tx[i];
-  }
+  });
 }
 
 void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>& p,
                                 std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
-  const auto [e, f] = pair;
-  const double slope = slopes_.of(pair);
+  const auto [e, f, law] = pair;
+  const double slope = laws_[static_cast<size_t>(law)].slope;
   const EdgeFaceForces force = edge_face_forces(p, slope, o.length[e], o.length[f]);
   ends_[2 * e] += force.edge_start;
   ends_[2 * e + 1] += force.edge_end;
@@ -148,7 +163,7 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
     const double surely = depths_.is_depth(f, p) ? p.deepest : 0;
     const bool known = self && surely > 0;
-    contacts_.emplace_back(e, f, slope, p);
+    contacts_.emplace_back(e, f, law, slope, p);
     contacts.push_back(
         {outline_kernel, e, f, surely, known ? surely : p.deepest * depth_ratio(o.face(f)),
          std::min(1., p.deepest / o.depth[f]), slope * o.length[e] * (p.to - p.from)});
@@ -190,17 +205,17 @@ double OutlineKernel::penetration(const Contact& c, double floor) {
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  return friction_ ? friction_->slide(contacts_, now, dt, memory) : 0;
+  return friction_ ? friction_->slide(contacts_, laws_, now, dt, memory) : 0;
 }
 
 void OutlineKernel::add_forces(const ForceViews& forces) {
   const Outlines& o = outlines_;
   const auto add_to_nodes = [&](std::span<const double> fx, std::span<const double> fy) {
-    for (int i = 0; i < o.size(); ++i) {
-      if (o.node[i] < 0) continue;
+    o.each_active_vertex([&](int i) {
+      if (o.node[i] < 0) return;
       forces.nodes[2 * static_cast<size_t>(o.node[i])] += fx[i];
       forces.nodes[2 * static_cast<size_t>(o.node[i]) + 1] += fy[i];
-    }
+    });
   };
   add_to_nodes(fx_, fy_);
   if (friction_) {
@@ -208,7 +223,7 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
       if (!part->x.empty()) add_to_nodes(part->x, part->y);
     }
   }
-  for (BodyIndex b = 0; b < static_cast<BodyIndex>(o.bodies.size()); ++b) {
+  for (const BodyIndex b : o.active()) {
     if (!o.bodies[b].is_rigid()) continue;
     const Resultant on = resultant(b);
     double* f = &forces.rigid[3 * static_cast<size_t>(b)];

@@ -71,6 +71,7 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
+  [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
   void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
                    std::vector<Contact>& contacts);
@@ -88,6 +89,7 @@ class OutlineKernel final : public Kernel {
   Threads threads_;
   std::optional<OutlineFriction> friction_;  // only where there is friction
   std::vector<EdgeFace> candidates_;
+  std::vector<EdgeFaceLaw> laws_;  // of these
   std::vector<int> near_edges_, near_faces_;
   struct Met {
     CollarPiece<double> piece;

@@ -125,7 +125,7 @@ void OutlineOnset::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace>
   };
   take(a, b);
   if (a != b) take(b, a);
-  for (const auto& [e, f] : near_) {
+  for (const auto& [e, f, pair] : near_) {
     for (const int i : {e, o.next[e], f, o.next[f]}) ends_.push_back(i);
     for (const int i : {o.previous[f], o.next[o.next[f]]}) corners_.push_back(i);
   }
@@ -199,7 +199,7 @@ void OutlineOnset::find_events(const Step& step) {
   for (const int i : ends_) start_[i] = point(i);
   place_all(1);
   events_.clear();
-  for (const auto& [e, f] : near_) {
+  for (const auto& [e, f, pair] : near_) {
     const int g = o.next[f];
     const double h0 = cross(start_[g] - start_[f], start_[e] - start_[f]);
     const double h1 = cross(point(g) - point(f), point(e) - point(f));
@@ -235,7 +235,7 @@ void OutlineOnset::find_forces() {
     fy_[i] += force * inward.y();
   };
   CollarPiece<double> piece;
-  for (const auto& [e, f] : near_) {
+  for (const auto& [e, f, pair] : near_) {
     CollarCrossings<double> top;
     const int q = o.next[e];
     const Vec2 base = point(o.next[f]) - point(f);

@@ -122,7 +122,7 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<PatchSum> found(static_cast<size_t>(count));
   for (size_t i = 0; i < contacts.size(); ++i) {
-    const auto& [edge, face, slope, p] = contacts[i];
+    const auto& [edge, face, pair, slope, p] = contacts[i];
     PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
@@ -187,7 +187,7 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
   SurfaceRecord* const record = records.data() + first;
   for (size_t i = 0; i < state.contacts.size(); ++i) {
-    const auto& [edge, face, slope, piece] = state.contacts[i];
+    const auto& [edge, face, pair, slope, piece] = state.contacts[i];
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
     if (!state.friction) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "apothem/geometry/spatial/loops.hpp"
 
@@ -98,7 +99,7 @@ void Outlines::close_body(const Body& added) {
 
 void Outlines::place(const Kinematics& now, const PlacedShapes& polygons) {
   move(now, polygons);
-  find_edges();
+  for (const BodyIndex b : active_) find_edges(bodies[b]);
 }
 
 void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
@@ -124,21 +125,20 @@ void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
   }
 }
 
-void Outlines::find_edges() {
-  const int n = size();
-  for (int i = 0; i < n; ++i) {
+void Outlines::find_edges(const Body& of) {
+  for (int i = of.first; i < of.end; ++i) {
     const double dx = x[next[i]] - x[i], dy = y[next[i]] - y[i];
     length[i] = std::sqrt(dx * dx + dy * dy);
     const double scale = 1 / length[i];
     tx[i] = dx * scale;
     ty[i] = dy * scale;
   }
-  for (int i = 0; i < n; ++i) {
+  for (int i = of.first; i < of.end; ++i) {
     const int p = previous[i];
     const Mitre<double> m(tx[p], ty[p], tx[i], ty[i]);
     mx[i] = m.x, my[i] = m.y;
   }
-  for (int i = 0; i < n; ++i) {
+  for (int i = of.first; i < of.end; ++i) {
     const int j = next[i];
     const double alpha = mx[i] * tx[i] + my[i] * ty[i];
     const double beta = mx[j] * tx[i] + my[j] * ty[i];
@@ -168,20 +168,53 @@ void Outlines::find_boxes(double growth) {
   }
 }
 
+// Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
+// bodies that are not active without a look at their faces.
 bool Outlines::stale() const {
-  const int n = size();
-  if (static_cast<int>(kept_.size()) != n) return true;
-  for (int i = 0; i < n; ++i) {
-    const Corners now = corners(i);
-    double moved = 0;
-    for (size_t k = 0; k < now.size(); ++k) moved = std::max(moved, std::abs(now[k] - kept_[i][k]));
-    if (!(moved <= skin_ / 2)) return true;
+  if (static_cast<int>(kept_.size()) != size()) return true;
+  double farthest = 0;
+  const auto note = [&](double now, double before) {
+    const double moved = std::abs(now - before);
+    farthest = moved > farthest ? moved : farthest;
+  };
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    if (is_active_[b]) {
+      for (int i = bodies[b].first; i < bodies[b].end; ++i) {
+        const Corners now = corners(i);
+        for (size_t k = 0; k < now.size(); ++k) note(now[k], kept_[i][k]);
+      }
+    } else {
+      for (int i = bodies[b].first; i < bodies[b].end; ++i) {
+        note(x[i], kept_[i][0]);
+        note(y[i], kept_[i][1]);
+      }
+    }
+    if (!(farthest <= skin_ / 2)) return true;
   }
   return false;
 }
 
+void Outlines::forget() {
+  kept_.clear();
+  is_active_.assign(bodies.size(), 1);
+  active_.resize(bodies.size());
+  std::iota(active_.begin(), active_.end(), 0);
+}
+
+void Outlines::activate(std::span<const BoxPair> pairs) {
+  is_active_.assign(bodies.size(), 0);
+  for (const auto& [a, b] : pairs) is_active_[a] = is_active_[b] = 1;
+  active_.clear();
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(bodies.size()); ++b) {
+    if (is_active_[b]) active_.push_back(b);
+  }
+}
+
 void Outlines::prepare_search() {
   const int count = static_cast<int>(bodies.size());
+  for (int b = 0; b < count; ++b) {
+    if (!is_active_[b]) find_edges(bodies[b]);
+  }
   find_boxes(skin_ / 2);
   kept_.clear();
   body_boxes.assign(count, {});

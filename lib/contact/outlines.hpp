@@ -67,16 +67,29 @@ class Outlines {
   /// in m. The collar has the depth r, or half the smallest thickness.
   void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
 
-  /// Moves the outlines to where the bodies are, with their tangents, bisectors and depths; those
-  /// of rigid bodies follow their polygons. Throws NotFinite if a vertex is not at a finite place.
+  /// Moves the outlines to where the bodies are; those of rigid bodies follow their polygons. Those
+  /// of active bodies get their tangents, bisectors and depths. Throws NotFinite if a vertex is not
+  /// at a finite place.
   void place(const Kinematics& now, const PlacedShapes& polygons);
 
-  /// True if an edge or a face has moved through half the skin since the last search.
+  /// True if a vertex, or a face of an active body, has moved through half the skin since the last
+  /// search.
   [[nodiscard]] bool stale() const;
-  /// Has the next look find the outlines stale.
-  void forget() { kept_.clear(); }
+  /// Has the next look find the outlines stale, and all bodies active until then.
+  void forget();
   /// Renews the boxes for the search.
   void prepare_search();
+  /// After a search: only bodies of these pairs are active, as others are near nothing.
+  void activate(std::span<const BoxPair> pairs);
+  /// The active bodies, ascending.
+  [[nodiscard]] std::span<const BodyIndex> active() const { return active_; }
+  /// Calls f(vertex) for every vertex of the active bodies.
+  template <class F>
+  void each_active_vertex(const F& f) const {
+    for (const BodyIndex b : active_) {
+      for (int i = bodies[b].first; i < bodies[b].end; ++i) f(i);
+    }
+  }
 
   /// How often the outline of a body, or the top of its collar, goes round a point. `clear`, if
   /// given, becomes false where round-off might decide.
@@ -86,7 +99,9 @@ class Outlines {
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
   /// Half the length of the two edges at a vertex, m.
   [[nodiscard]] double share(int vertex) const {
-    return (length[vertex] + length[previous[vertex]]) / 2;
+    return ((point(next[vertex]) - point(vertex)).norm() +
+            (point(vertex) - point(previous[vertex])).norm()) /
+           2;
   }
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {
@@ -103,7 +118,7 @@ class Outlines {
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
   void move(const Kinematics& now, const PlacedShapes& polygons);
-  void find_edges();
+  void find_edges(const Body& body);
   void find_boxes(double growth);
   /// x, y of the start of an edge and of both upper ends of its face.
   using Corners = std::array<double, 6>;
@@ -112,6 +127,8 @@ class Outlines {
   double skin_;
   std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
   std::vector<Corners> kept_;    // of the last search
+  std::vector<BodyIndex> active_;
+  std::vector<char> is_active_;  // of each body
 };
 
 }  // namespace apothem
