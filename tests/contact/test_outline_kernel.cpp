@@ -377,3 +377,63 @@ TEST_CASE("energy of a bounce of two soft bodies converges with the step squared
   CHECK(coarse / fine == Approx(4).epsilon(.1));
   CHECK(fine / finest == Approx(4).epsilon(.1));
 }
+
+// Meshes and rigid bodies that fly about: some are near another one, others are near nothing.
+TEST_CASE("what bodies that are near nothing leave out changes no bit",
+          "[outline_kernel][contact]") {
+  ContactLaw law = law_of(1, {.4, .8});
+  law.damping = {.3, .3, 0};
+  const auto swarm = [&] {
+    samples::Random random(19);
+    auto bodies = std::make_unique<Bodies>(law, .02);
+    for (int i = 0; i < 8; ++i) {
+      const Polygon shape = samples::random_convex(random, 5);
+      bodies->add_rigid(about_centre(shape), {2.8 * (i % 4), 5.6 * (i / 4), 0}, {1, 1, 2});
+    }
+    for (int i = 0; i < 8; ++i) {
+      std::vector<Vec2> ring = split(samples::random_star_shaped(random, 6, .7).vertices(), 2);
+      for (Vec2& v : ring) v += Vec2(2.8 * (i % 4), 2.8 + 5.6 * (i / 4));
+      bodies->add_ring(ring, .3);
+    }
+    bodies->join();
+    return bodies;
+  };
+  const auto bodies = swarm(), searched = swarm();
+  samples::Random random(20);
+  const double dt = .02;
+  size_t least = 16, most = 0;
+  int touching = 0;
+  for (int step = 0; step < 400; ++step) {
+    if (step % 50 == 0) {  // all fly another way; meshes keep their shapes
+      for (double& v : bodies->pose_rate) v = random.uniform(-1, 1);
+      for (size_t n = 0; n < bodies->node_velocity.size(); n += 24) {
+        const double vx = random.uniform(-1, 1), vy = random.uniform(-1, 1);
+        for (size_t k = n; k < n + 24; k += 2) {
+          bodies->node_velocity[k] = vx, bodies->node_velocity[k + 1] = vy;
+        }
+      }
+    }
+    for (size_t i = 0; i < bodies->pose.size(); ++i) bodies->pose[i] += dt * bodies->pose_rate[i];
+    for (size_t i = 0; i < bodies->displacement.size(); ++i) {
+      bodies->displacement[i] += dt * bodies->node_velocity[i];
+    }
+    searched->pose = bodies->pose, searched->pose_rate = bodies->pose_rate;
+    searched->displacement = bodies->displacement;
+    searched->node_velocity = bodies->node_velocity;
+    searched->contacts->forget_search();
+    for (Bodies* b : {bodies.get(), searched.get()}) b->evaluate(), b->slide(dt);
+
+    const size_t active = bodies->contacts->surfaces().outlines().active().size();
+    least = std::min(least, active), most = std::max(most, active);
+    touching += bodies->contacts->contacts().size() > 0;
+    REQUIRE((bodies->node_force == searched->node_force));
+    REQUIRE((bodies->rigid_force == searched->rigid_force));
+    REQUIRE(bodies->contacts->friction_loss() == searched->contacts->friction_loss());
+    REQUIRE(bodies->contacts->damping_loss() == searched->contacts->damping_loss());
+  }
+  CHECK(least < 12);
+  CHECK(most > least);
+  CHECK(touching > 100);
+  CHECK(bodies->contacts->friction_loss() > 0);
+  CHECK(bodies->contacts->damping_loss() > 0);
+}
