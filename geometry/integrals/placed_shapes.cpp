@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
@@ -37,8 +38,7 @@ int PlacedShapes::add(const Potential& potential) {
 }
 
 Box PlacedShapes::rotate(const Shape& shape, double angle, const Coordinates& to) const {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
+  const auto [s, c] = sine_cosine(angle);
   const Vec2* const v = body_vertices_.data() + shape.edges;
   const Vec2* const g = body_gradients_.data() + shape.edges;
   Box box;
@@ -128,8 +128,7 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
 }
 
 bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
+  const auto [s, c] = sine_cosine(angle);
   const Vec2& body = shapes_[i].top;
   const Vec2 top = offset + Vec2(c * body.x() - s * body.y(), s * body.x() + c * body.y());
   // Even-odd rule, for convex and other shapes.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/polygon.hpp"
 
 namespace apothem {
@@ -18,7 +19,7 @@ bool angles_between(const std::vector<Vec2>& ring, double smallest, double large
   const size_t n = ring.size();
   for (size_t i = 0; i < n; ++i) {
     const Vec2 to_next = ring[(i + 1) % n] - ring[i], to_last = ring[(i + n - 1) % n] - ring[i];
-    const double angle = std::atan2(cross(to_next, to_last), to_next.dot(to_last));
+    const double angle = arc_tangent(cross(to_next, to_last), to_next.dot(to_last));
     if (!(angle >= smallest && angle <= largest)) return false;
   }
   return true;
@@ -32,7 +33,8 @@ std::vector<Vec2> random_quadrilateral(RandomNumbers& random, double smallest, d
     for (int k = 0; k < 4; ++k) {
       const double angle = k * M_PI / 2 + random.uniform(-kTurn, kTurn);
       const double radius = random.uniform(kNearest, kFarthest);
-      ring.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+      const auto [s, c] = sine_cosine(angle);
+      ring.emplace_back(radius * c, radius * s);
     }
     if (angles_between(ring, smallest, largest)) return normalised(std::move(ring));
   }
@@ -45,7 +47,8 @@ std::vector<Vec2> random_polygon(RandomNumbers& random, int corners, double aspe
   std::vector<Vec2> ring;
   for (int k = 0; k < corners; ++k) {
     const double angle = 2 * M_PI * (k + random.uniform(-off, off)) / corners;
-    ring.emplace_back(aspect * std::cos(angle), std::sin(angle));
+    const auto [s, c] = sine_cosine(angle);
+    ring.emplace_back(aspect * c, s);
   }
   return normalised(std::move(ring));
 }
@@ -77,7 +80,8 @@ std::vector<Vec2> normalised(std::vector<Vec2> ring) {
 
 void place_into(const std::vector<Vec2>& ring, const Vec2& place, double angle, double scale,
                 std::vector<Vec2>& result) {
-  const double c = scale * std::cos(angle), s = scale * std::sin(angle);
+  const auto [sine, cosine] = sine_cosine(angle);
+  const double c = scale * cosine, s = scale * sine;
   result.clear();
   for (const Vec2& v : ring) {
     result.emplace_back(place.x() + c * v.x() - s * v.y(), place.y() + s * v.x() + c * v.y());

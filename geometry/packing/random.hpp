@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <random>
 
+#include "apothem/execution/elementary.hpp"
+
 namespace apothem {
 
 class RandomNumbers {
@@ -25,7 +27,7 @@ class RandomNumbers {
   double normal() {
     while (true) {
       const double x = uniform(-1, 1), y = uniform(-1, 1), s = x * x + y * y;
-      if (s > 0 && s < 1) return x * std::sqrt(-2 * std::log(s) / s);
+      if (s > 0 && s < 1) return x * std::sqrt(-2 * natural_logarithm(s) / s);
     }
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
+
 namespace apothem {
 namespace {
 
@@ -98,7 +100,7 @@ std::optional<Similarity> SimilarShapes::similarity(const Shape& from, const Sha
 std::optional<SimilarShapes::Original> SimilarShapes::add(const Polygon& polygon) {
   Shape shape = shape_of(polygon);
   shape.index = count_++;
-  const double kind = std::log(shape.perimeter / shape.size) / kInterval;
+  const double kind = natural_logarithm(shape.perimeter / shape.size) / kInterval;
   const double error = kError / kInterval;
   const auto key = [&](double x) {
     return std::pair(polygon.size(), static_cast<std::int64_t>(std::floor(x)));

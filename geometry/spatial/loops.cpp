@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 
@@ -49,7 +50,7 @@ struct RingEdge {
 // round end. `between`: its length; `turning`: the angle by which it turns.
 bool tapers(double t, double between, double turning) {
   const double angle = M_PI - turning;
-  return t >= between * (angle > kParallel ? kWedge * std::tan(angle / 2) : kRound);
+  return t >= between * (angle > kParallel ? kWedge * tangent(angle / 2) : kRound);
 }
 
 }  // namespace
@@ -64,13 +65,13 @@ double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double mo
       const Vec2 edge = ring[(i + 1) % ring.size()] - ring[i];
       if (i > 0) {
         const Vec2& last = edges.back().edge;
-        turned += std::atan2(cross(last, edge), last.dot(edge));
+        turned += arc_tangent(cross(last, edge), last.dot(edge));
       }
       edges.push_back({ring[i], edge, r, length[r], turned});
       length[r] += edge.norm();
     }
     const Vec2 &last = edges.back().edge, &first = edges[edges.size() - ring.size()].edge;
-    turning_round[r] = turned + std::atan2(cross(last, first), last.dot(first));
+    turning_round[r] = turned + arc_tangent(cross(last, first), last.dot(first));
   }
   std::vector<Box> boxes;
   for (const RingEdge& e : edges) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apothem/contact/kernel.hpp"
+#include "apothem/execution/elementary.hpp"
 
 namespace apothem {
 namespace {
@@ -46,8 +47,8 @@ void OutlineFriction::find_velocities(const Kinematics& now, double dt) {
         vy_[i] = v[1] + v[2] * (o.x[i] - body.cx);
         if (!now.finite) continue;
         // From where the vertex was, along the chord of its arc.
-        const double angle = v[2] * dt, half = std::sin(angle / 2);
-        const double turned = std::sin(angle) / dt - v[2], drawn = 2 * half * half / dt;
+        const double angle = v[2] * dt, half = sine_cosine(angle / 2).sine;
+        const double turned = sine_cosine(angle).sine / dt - v[2], drawn = 2 * half * half / dt;
         vx_[i] += drawn * (o.x[i] - body.cx) - turned * (o.y[i] - body.cy);
         vy_[i] += drawn * (o.y[i] - body.cy) + turned * (o.x[i] - body.cx);
       } else {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "apothem/execution/elementary.hpp"
+
 namespace apothem {
 namespace {
 
@@ -180,7 +182,7 @@ void OutlineOnset::place(BodyIndex b, const Step& step, double theta) {
     return;
   }
   const double* v = &step.now.pose_rate[3 * static_cast<size_t>(body.rigid)];
-  const double c = std::cos(back * v[2]), s = std::sin(back * v[2]);
+  const auto [s, c] = sine_cosine(back * v[2]);
   each([&](int i) {
     const double rx = o.x[i] - body.cx, ry = o.y[i] - body.cy;
     x_[i] = body.cx - back * v[0] + (c * rx + s * ry);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/mesh/measure.hpp"
 #include "apothem/model/inradius.hpp"
 #include "apothem/model/pairs.hpp"
@@ -69,7 +70,7 @@ class Blocks {
       const double v = std::hypot(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
       const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
       note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
-           std::cbrt(3 * energy / (b.tangent * at_corner)), i, result.by_speed);
+           cube_root(3 * energy / (b.tangent * at_corner)), i, result.by_speed);
     }
     return result;
   }
@@ -83,7 +84,7 @@ class Blocks {
             .free = body.motion == Motion::free};
     double radius = 0;
     const std::vector<Vec2>& v = body.potential.vertices;
-    const double c = std::cos(body.angle), s = std::sin(body.angle);
+    const auto [s, c] = sine_cosine(body.angle);
     std::vector<Vec2> points;
     for (size_t i = 0; i < v.size(); ++i) {
       radius = std::max(radius, v[i].norm());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/fem/mass.hpp"
 
 namespace apothem {
@@ -77,7 +78,7 @@ std::string MassDamping::describe() const {
 
 void MassDamping::damp(State& state, double h, Ledger& ledger) {
   for (const Group& group : groups_) {
-    const double rest = std::exp(-group.rate * h);
+    const double rest = exponential(-group.rate * h);
     for (size_t c = group.first; c < group.end; ++c) {
       if (!dofs_.can_move(c)) continue;
       double& v = state.v[c];

@@ -10,6 +10,7 @@
 
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/execution/elementary.hpp"
 #include "apothem/model/pairs.hpp"
 
 namespace apothem {
@@ -193,11 +194,11 @@ void require_progress(const StepChoice& choice, double end) {
 }  // namespace
 
 double contact_safety(double accuracy) {
-  return std::min(.16 * std::pow(accuracy / 1e-4, 1. / 5), kCoarsest);
+  return std::min(.16 * power(accuracy / 1e-4, 1. / 5), kCoarsest);
 }
 
 double element_safety(double accuracy) {
-  return std::min(.2 * std::pow(accuracy / 1e-4, 1. / 4), kSmooth);
+  return std::min(.2 * power(accuracy / 1e-4, 1. / 4), kSmooth);
 }
 
 StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,

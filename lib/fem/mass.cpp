@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/fem/quad4.hpp"
 
 namespace apothem {
@@ -57,7 +58,7 @@ std::vector<double> corner_areas(std::span<const Vec2> x) {
   const auto weigh = [&](const Vec2& t) {
     double sum = 0;
     for (int i = 0; i < n; ++i) {
-      sum += weight[i] = share[i] * std::exp(t.dot(x[i] - mean - centroid) / size);
+      sum += weight[i] = share[i] * exponential(t.dot(x[i] - mean - centroid) / size);
     }
     return sum;
   };

@@ -10,6 +10,7 @@
 #include <array>
 #include <utility>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/fem/kinds.hpp"
 #include "apothem/fem/tensor.hpp"
 
@@ -135,10 +136,11 @@ inline N logarithm(const N& x) {
   using std::log;
   return log(x);
 }
+inline double logarithm(double x) { return natural_logarithm(x); }
 template <int lanes>
 APOTHEM_INLINE PackOf<lanes> logarithm(const PackOf<lanes>& x) {
   PackOf<lanes> r;
-  for (int i = 0; i < lanes; ++i) r.v[i] = std::log(x.v[i]);
+  for (int i = 0; i < lanes; ++i) r.v[i] = natural_logarithm(x.v[i]);
   return r;
 }
 

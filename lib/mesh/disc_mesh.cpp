@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/mesh/groups.hpp"
 #include "apothem/mesh/split.hpp"
 
@@ -17,6 +18,12 @@ constexpr double kBlock = .65;
 constexpr double kBulge = .38;
 constexpr double kLayers = .45;
 
+// The point of the unit circle at an angle in rad.
+Vec2 on_circle(double angle) {
+  const auto [sine, cosine] = sine_cosine(angle);
+  return {cosine, sine};
+}
+
 // Maps the square [-1, 1]^2 to the block in the unit disc: a blend of a straight square and,
 // towards the sides, an arc.
 Vec2 block_point(double u, double v) {
@@ -24,11 +31,10 @@ Vec2 block_point(double u, double v) {
   if (m == 0) return Vec2::Zero();
   Vec2 arc = Vec2(u, v) / std::numbers::sqrt2;
   if (std::abs(v) < std::abs(u)) {
-    const double angle = std::numbers::pi / 4 * (v / u);
-    arc = u * Vec2(std::cos(angle), std::sin(angle));
+    arc = u * on_circle(std::numbers::pi / 4 * (v / u));
   } else if (std::abs(u) < std::abs(v)) {
-    const double angle = std::numbers::pi / 4 * (u / v);
-    arc = v * Vec2(std::sin(angle), std::cos(angle));
+    const Vec2 turned = on_circle(std::numbers::pi / 4 * (u / v));
+    arc = v * Vec2(turned.y(), turned.x());
   }
   const double bulge = kBulge * m * m;
   return kBlock * ((1 - bulge) / std::numbers::sqrt2 * Vec2(u, v) + bulge * arc);
@@ -85,8 +91,7 @@ Mesh disc_mesh(const Vec2& centre, double radius, const DiscCells& cells, Elemen
   for (int l = 1; l <= layers; ++l) {
     for (int s = 0; s < 4; ++s) {
       for (int i = 0; i < n; ++i) {
-        const double angle = std::numbers::pi / 4 * share(i);
-        const Vec2 circle(std::cos(angle), std::sin(angle));
+        const Vec2 circle = on_circle(std::numbers::pi / 4 * share(i));
         const Vec2 p = block_point(1, share(i));
         mesh.nodes.push_back(quarter_turn(l == layers ? circle : p + end[l] * (circle - p), s));
       }

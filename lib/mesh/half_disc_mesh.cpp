@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/mesh/groups.hpp"
 #include "apothem/mesh/split.hpp"
 
@@ -11,7 +12,10 @@ namespace apothem {
 namespace {
 
 // The point of the unit circle about (0, 1) at `angle` from the pole (0, 0), in rad.
-Vec2 on_arc(double angle) { return {std::sin(angle), 2 * std::pow(std::sin(angle / 2), 2)}; }
+Vec2 on_arc(double angle) {
+  const double half = sine_cosine(angle / 2).sine;
+  return {sine_cosine(angle).sine, 2 * half * half};
+}
 
 // 2 i/n - 1, from -1 to 1: the same on both sides of 0 to the last bit.
 double share(int i, int n) { return static_cast<double>(2 * i - n) / n; }
@@ -62,7 +66,7 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   const double length = std::numbers::pi / 2 - side;
   const double first = fine / n / length;
   const int layers =
-      static_cast<int>(std::ceil(std::log(1 + (growth - 1) / first) / std::log(growth)));
+      static_cast<int>(std::ceil(natural_logarithm(1 + (growth - 1) / first) / natural_logarithm(growth)));
   const double whole = std::pow(growth, layers) - 1;
   std::vector<std::array<int, 2>> arc, straight;
   std::vector<int> left{last.front()}, right{last.back()};

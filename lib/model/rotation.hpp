@@ -3,14 +3,14 @@
 
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
 
 /// `p` turned counter-clockwise by `angle` (rad).
 inline Vec2 turned(const Vec2& p, double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
+  const auto [s, c] = sine_cosine(angle);
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
 }
 

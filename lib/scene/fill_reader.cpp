@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/fem/kinds.hpp"
 #include "apothem/geometry/packing/block_shapes.hpp"
 #include "apothem/geometry/packing/voronoi_blocks.hpp"
@@ -313,7 +314,7 @@ class Fill {
     }
     return [=](RandomNumbers& random) {
       double d = 0;
-      do d = median * std::exp(sigma * random.normal());
+      do d = median * exponential(sigma * random.normal());
       while (!(d >= between[0] && d <= between[1]));
       return d;
     };

@@ -1,0 +1,19 @@
+#include "apothem/execution/elementary.hpp"
+
+#include <sleef.h>
+
+namespace apothem {
+
+SineCosine sine_cosine(double angle) {
+  const Sleef_double_2 both = Sleef_cinz_sincosd1_u10purec(angle);
+  return {both.x, both.y};
+}
+
+double tangent(double angle) { return Sleef_cinz_tand1_u10purec(angle); }
+double arc_tangent(double y, double x) { return Sleef_cinz_atan2d1_u10purec(y, x); }
+double exponential(double x) { return Sleef_cinz_expd1_u10purec(x); }
+double natural_logarithm(double x) { return Sleef_cinz_logd1_u10purec(x); }
+double power(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
+double cube_root(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
+
+}  // namespace apothem

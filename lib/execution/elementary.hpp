@@ -1,0 +1,23 @@
+// Elementary functions with the same bits on every processor. Those of the C library differ in the
+// last digit between processors with and without fused multiplication and addition. Errors are at
+// most one unit in the last place.
+#pragma once
+
+namespace apothem {
+
+struct SineCosine {
+  double sine, cosine;
+};
+/// Of an angle in rad.
+[[nodiscard]] SineCosine sine_cosine(double angle);
+[[nodiscard]] double tangent(double angle);
+/// Angle of the direction (x, y), from -pi to pi.
+[[nodiscard]] double arc_tangent(double y, double x);
+[[nodiscard]] double exponential(double x);
+/// Natural logarithm.
+[[nodiscard]] double natural_logarithm(double x);
+/// x to the power y.
+[[nodiscard]] double power(double x, double y);
+[[nodiscard]] double cube_root(double x);
+
+}  // namespace apothem

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The same bits on processors with and without wide registers and fused multiplication and addition,
+# which QEMU emulates. Usage: processors.sh PROGRAM. Exit code 77: there is no QEMU (package qemu-user).
+set -euo pipefail
+command -v qemu-x86_64 >/dev/null && [ "$(uname -m)" = x86_64 ] || exit 77
+program=$(realpath "$1")
+data=$(cd "$(dirname "$0")/../../data" && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+# Rigid bodies: quadrilaterals and crosses of a random fill fall onto each other, with friction and damping.
+hopper=(--set fill.0.count=24 --set 'fill.0.shapes=[{"quadrilateral":{}},{"cross":{}}]' --set 'fill.0.velocity=[0,-4]'
+        --set 'fill.0.region=[[-0.7,0.82],[0.7,0.82],[0.7,1.8],[-0.7,1.8]]'
+        --set contact.normal_stiffness=1e8)
+# Meshes: the same as finite elements that stiffen as a logarithm.
+soft=("${hopper[@]}" --set 'materials.rock={"density":2000,"young":1e8,"poisson":0.2,"law":"neo_hookean"}'
+      --set 'fill.0.mesh={"size":0.1,"element":"T3"}')
+declare -A until=([hopper]=0.4 [soft]=0.16)
+
+hash_of() { # NAME ARGUMENTS: with the processor in $on
+  local name=$1
+  shift
+  $on "$program" run "$data/studies/hopper-fill.json" "$@" -o "$name" --quiet --overwrite
+  grep -o '"final_state_hash": *"[^"]*"' "$name/run.json"
+}
+for scene in hopper soft; do
+  declare -n arguments=$scene
+  on=
+  arguments+=(--until "${until[$scene]}")
+  here=$(hash_of $scene "${arguments[@]}")
+  python3 -c 'import json, sys; assert json.load(open(sys.argv[1]))["pairs_per_step"]["touching"] > .1' $scene/run.json
+  for processor in Nehalem max; do
+    on="qemu-x86_64 -cpu $processor"
+    there=$(hash_of $scene "${arguments[@]}")
+    echo "$scene, $processor: $there"
+    [ "$here" = "$there" ] || { echo "this processor: $here"; exit 1; }
+  done
+done
