@@ -57,7 +57,7 @@ class Flow:
     """A run of hopper-flow.json or soft-flow.json."""
 
     def __init__(self, folder, row):
-        self.width = float(row["D/d"])
+        self.width = float(row["D/d"]) if row.get("D/d") else math.nan  # not said
         self.seed = int(row.get("fill.0.seed") or row["seed"])
         self.jammed = row["jammed"] == "true"
         self.emptied = row["emptied"] == "true"

@@ -65,8 +65,8 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   // The first layer is at most as thick as a cell of the block; the number of layers is rounded up.
   const double length = std::numbers::pi / 2 - side;
   const double first = fine / n / length;
-  const int layers =
-      static_cast<int>(std::ceil(natural_logarithm(1 + (growth - 1) / first) / natural_logarithm(growth)));
+  const int layers = static_cast<int>(
+      std::ceil(natural_logarithm(1 + (growth - 1) / first) / natural_logarithm(growth)));
   const double whole = std::pow(growth, layers) - 1;
   std::vector<std::array<int, 2>> arc, straight;
   std::vector<int> left{last.front()}, right{last.back()};
