@@ -18,21 +18,22 @@ struct EdgeFace {
 /// Between the edges of one body and the faces of another.
 struct EdgeFaceLaw {
   double slope;         ///< k_n thickness / r of the faces, N/m^2
-  double spring;        ///< k_s thickness / r, likewise; 0 where there is no friction
+  double spring;        ///< k_s thickness / r of the faces, N/m^2
   double friction;      ///< mu
   std::int32_t bodies;  ///< index of the two bodies in DampingTimes
 };
 
-/// One that does.
+/// An edge that meets a face.
 struct EdgeFaceContact {
   std::int32_t edge, face;
-  std::int32_t pair;  ///< as above
+  std::int32_t pair;  ///< index of the EdgeFaceLaw
   double slope;       ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
 };
 
-/// The normal forces of one, N, each along the inward normal of its edge or face, on its start and
-/// on its end. The edge gets the pressure against its outward normal, and the face gives way.
+/// The normal forces of a contact, N, each along the inward normal of its edge or face, on its
+/// start and on its end. The edge gets the pressure against its outward normal, and the face gives
+/// way.
 struct EdgeFaceForces {
   double edge_start, edge_end, face_start, face_end;
 };

@@ -19,6 +19,7 @@
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/outlines.hpp"
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/execution/parallel.hpp"
 
 namespace apothem {
 
@@ -26,8 +27,11 @@ class OutlineFriction {
  public:
   /// `inverse_mass` of each body, 1/kg. All must outlive this object.
   OutlineFriction(const Outlines& outlines, const PairTable& table,
-                  const std::vector<double>& inverse_mass)
-      : outlines_(outlines), damped_(table.damped()), times_(table, inverse_mass) {}
+                  const std::vector<double>& inverse_mass, int threads)
+      : outlines_(outlines),
+        damped_(table.damped()),
+        threads_(threads),
+        times_(table, inverse_mass) {}
 
   /// See Kernel.
   void limit_damping(double rate) { times_.limit(rate); }
@@ -66,35 +70,53 @@ class OutlineFriction {
   [[nodiscard]] const std::vector<double>& pushes() const { return pushes_; }
 
  private:
-  /// An edge against a face, and pressure-weighted coefficients of its slip rate.
-  struct Slip;
+  /// An edge against a face: pressure-weighted coefficients of the slip rate, and the dashpots
+  /// along the normal. With t, the unit tangent of the face from a to b, and n its inward normal: t
+  /// counts at both ends of the edge from p to q and of the face, n at the ends of the face.
+  struct Slip {
+    int p, q, a, b;
+    double tx, ty;
+    double at_p, at_q, at_a, at_b, couple;
+    /// The foot of the edge's point u, from 0 at p to 1 at q, is at the share start + u rise of the
+    /// face.
+    double start, rise;
+    double push, push_at_q;  ///< of the dashpots, against the face, and what q has of it, N
+  };
+  /// The contacts from `first` to `end` - 1, which have one spring.
+  struct Group {
+    size_t first, end;
+    const Spring* before;  ///< of the step before, or null
+    Spring spring;
+    bool slides;               ///< whether it has friction
+    double friction, dashpot;  ///< forces along the tangent over the normal force
+  };
+  struct Step {
+    std::span<const EdgeFaceContact> contacts;
+    std::span<const EdgeFaceLaw> laws;
+    double dt;
+    bool finite;    ///< see Kinematics
+    bool dashpots;  ///< whether there are any
+  };
 
   void find_velocities(const Kinematics& now, double dt);
   [[nodiscard]] double power(const VertexForces& forces) const;
-  void find_times(std::span<const EdgeFaceContact> contacts, std::span<const EdgeFaceLaw> laws,
-                  double dt);
+  void find_times(const Step& step);
+  void find_groups(const Step& step, FrictionMemory& memory);
+  void follow(const Step& step, Group& group);
   [[nodiscard]] Slip slip_of(const EdgeFaceContact& contact) const;
-  [[nodiscard]] double damp_normal(const EdgeFaceContact& contact, const Slip& slip, double time);
-  static void apply(const Slip& slip, double force, VertexForces& forces);
+  void damp_normal(const EdgeFaceContact& contact, double time, Slip& slip) const;
+  void add_forces(int first, int end);
 
   const Outlines& outlines_;
   bool damped_;
+  Threads threads_;
   DampingTimes times_;
   bool everywhere_ = true;       // bodies that have become inactive may still have forces
   std::vector<double> vx_, vy_;  // of the vertices
-  std::vector<Slip> slips_;      // of the contacts of a spring
+  std::vector<Slip> slips_;      // of the contacts
+  std::vector<Group> groups_;
   VertexForces friction_, friction_before_, damping_;
   std::vector<double> shares_, pushes_;
-};
-
-/// With t, the unit tangent of the face from a to b, and n its inward normal: t counts at both ends
-/// of the edge from p to q and of the face, n at the ends of the face.
-struct OutlineFriction::Slip {
-  int p, q, a, b;
-  double tx, ty;
-  double at_p, at_q, at_a, at_b, couple;
-  double start,
-      rise;  ///< the foot of the edge's point u on the face is at the share start + u rise
 };
 
 }  // namespace apothem

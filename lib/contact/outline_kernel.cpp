@@ -34,7 +34,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
   const auto n = static_cast<size_t>(outlines.size());
   fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
   if (table.rough() || table.damped()) {
-    friction_.emplace(outlines, table, inverse_mass);
+    friction_.emplace(outlines, table, inverse_mass, threads);
   }
 }
 
