@@ -291,8 +291,10 @@ class Document:
 
 def tests_of(root):
     """Names of the test cases and of the scripts that are tests, by file."""
-    lists = root / "tests/CMakeLists.txt"
-    names = {name: lists.relative_to(root) for name in re.findall(r"add_test\(NAME ([\w.]+)", lists.read_text())}
+    names = {}
+    for path in (root / "tests").rglob("CMakeLists.txt"):
+        for name in re.findall(r"add_test\(NAME ([\w.]+)", path.read_text()):
+            names[name] = path.relative_to(root)
     for path in (root / "tests").rglob("*.cpp"):
         for match in re.finditer(r'TEST_CASE\(\s*((?:"[^"]*"\s*)+)', path.read_text()):
             names["".join(re.findall(r'"([^"]*)"', match.group(1)))] = path.relative_to(root)
