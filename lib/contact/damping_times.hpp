@@ -38,8 +38,8 @@ class DampingTimes {
     for (const auto& [a, b] : bodies) pairs_.push_back({std::min(a, b), std::max(a, b)});
     const auto key = [](const Pair& p) { return std::pair(p.a, p.b); };
     std::ranges::sort(pairs_, {}, key);
-    const auto twice = std::ranges::unique(pairs_, {}, key);
-    pairs_.erase(twice.begin(), twice.end());
+    const auto same = [&](const Pair& p, const Pair& q) { return key(p) == key(q); };
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end(), same), pairs_.end());
   }
   [[nodiscard]] int index(BodyIndex a, BodyIndex b) const {
     const std::pair<BodyIndex, BodyIndex> key = std::minmax(a, b);

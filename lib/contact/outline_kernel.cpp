@@ -32,7 +32,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       depths_(outlines),
       onset_(outlines, slopes_) {
   const auto n = static_cast<size_t>(outlines.size());
-  fx_.resize(n), fy_.resize(n), ends_.resize(2 * n);
+  fx_.resize(n), fy_.resize(n), ends_.resize(n);
   if (table.rough() || table.damped()) {
     friction_.emplace(outlines, table, inverse_mass, threads);
   }
@@ -42,9 +42,8 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
   if (friction_) friction_->take(pairs);
   candidates_.clear();
   laws_.clear();
-  for (std::vector<double>* of_all : {&ends_, &fx_, &fy_}) {
-    std::fill(of_all->begin(), of_all->end(), 0.);
-  }
+  std::fill(ends_.begin(), ends_.end(), Ends{0, 0});
+  for (std::vector<double>* of_all : {&fx_, &fy_}) std::fill(of_all->begin(), of_all->end(), 0.);
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
     if (a != b) find_candidates(b, a);
@@ -115,7 +114,7 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   const Outlines& o = outlines_;
   contacts_.clear();
   depths_.forget();
-  o.each_active_vertex([&](int i) { ends_[2 * i] = ends_[2 * i + 1] = 0; });
+  o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
   plateaus_.begin();
   const int count = static_cast<int>(candidates_.size());
   const auto find = [&](int c, Met& found) {
@@ -142,7 +141,7 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   add_plateaus(contacts);
   o.each_active_vertex([&](int i) {
     const int p = o.previous[i];
-    const double own = ends_[2 * i], before = ends_[2 * p + 1];
+    const double own = ends_[i][0], before = ends_[p][1];
     fx_[i] = -before * o.ty[p] - own * o.ty[i];
     fy_[i] = before * o.tx[p] + own * o.tx[i];
   });
@@ -154,16 +153,16 @@ void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>&
   const auto [e, f, law] = pair;
   const double slope = laws_[static_cast<size_t>(law)].slope;
   const EdgeFaceForces force = edge_face_forces(p, slope, o.length[e], o.length[f]);
-  ends_[2 * e] += force.edge_start;
-  ends_[2 * e + 1] += force.edge_end;
-  ends_[2 * f] += force.face_start;
-  ends_[2 * f + 1] += force.face_end;
+  ends_[e][0] += force.edge_start;
+  ends_[e][1] += force.edge_end;
+  ends_[f][0] += force.face_start;
+  ends_[f][1] += force.face_end;
 
   const bool self = o.body[e] == o.body[f];
   if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
     const double surely = depths_.is_depth(f, p) ? p.deepest : 0;
     const bool known = self && surely > 0;
-    contacts_.emplace_back(e, f, law, slope, p);
+    contacts_.push_back({e, f, law, slope, p});
     contacts.push_back(
         {outline_kernel, e, f, surely, known ? surely : p.deepest * depth_ratio(o.face(f)),
          std::min(1., p.deepest / o.depth[f]), slope * o.length[e] * (p.to - p.from)});
@@ -179,15 +178,15 @@ void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
     const Outlines::Body& in = o.bodies[on.in];
     const BodyIndex own = o.body[on.edge];
     const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
-    ends_[2 * on.edge] += force * (on.sum - on.first);
-    ends_[2 * on.edge + 1] += force * on.first;
+    ends_[on.edge][0] += force * (on.sum - on.first);
+    ends_[on.edge][1] += force * on.first;
     contacts.push_back({outline_kernel, on.edge, in.first, 0, HUGE_VAL, kInsideTop, 0});
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
     const double slope = slopes_(o.body[on.face], on.in);
     const double end = slope * on.moment.along / o.length[on.face];
-    ends_[2 * on.face] += slope * on.moment.area - end;
-    ends_[2 * on.face + 1] += end;
+    ends_[on.face][0] += slope * on.moment.area - end;
+    ends_[on.face][1] += end;
     contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }

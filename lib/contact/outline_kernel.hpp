@@ -9,6 +9,7 @@
 // tops of collars; only the vertices of the outlines get forces.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -98,7 +99,8 @@ class OutlineKernel final : public Kernel {
   };
   std::vector<Met> met_;  // of the candidates, with several threads
   std::vector<EdgeFaceContact> contacts_;
-  std::vector<double> ends_;     // force of each edge on its two ends, along its inward normal, N
+  using Ends = std::array<double, 2>;
+  std::vector<Ends> ends_;       // force of each edge on its two ends, along its inward normal, N
   std::vector<double> fx_, fy_;  // normal forces on the vertices, N
   OutlinePlateaus plateaus_;
   OutlineDepths depths_;
