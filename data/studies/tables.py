@@ -281,10 +281,10 @@ def picture(args):
                 data = block(f"{t:g} {r.counts[0] - c:g}" for t, c in zip(r.times, r.counts))
                 title = f"title '{label}'" if i == 0 else "notitle"
                 curves.append(f"{data} using 1:2 with lines lc {colour} lw 0.7 {title}")
-    for text in args.reference:
+    for text, colour in zip(args.reference, ("black", "gray50", "brown", "dark-green")):
         rows = [(width, int(r["jammed"]) / int(r["n"]), float(r["lo"]), float(r["hi"]))
                 for width, r in sorted(reference(text).items())]
-        points(rows, f"Box2D, {text.replace(',', ', mu ')}", "rgb 'black'", "dt 2")
+        points(rows, f"Box2D, {text.replace(',', ', mu ')}", f"rgb '{colour}'", "dt 2")
     script = "".join(blocks) + f"""
 set terminal pngcairo noenhanced size 1500,700 font ',13'
 set output '{args.file}'
@@ -315,7 +315,7 @@ def main():
             sub.add_argument("file", metavar="FILE.png")
             sub.add_argument("studies", metavar="LABEL=FLOWS", nargs="+")
             sub.add_argument("--width", type=float, default=7, help="D/d of the discharge curves (7)")
-            sub.add_argument("--reference", metavar="SHAPE,MU", action="append", default=[], help="as for jam")
+            sub.add_argument("--reference", metavar="SHAPE,MU", action="append", default=[], help="as for jam; up to four")
         else:
             sub.add_argument("folder")
         sub.set_defaults(command=command)
