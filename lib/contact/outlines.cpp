@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "apothem/geometry/spatial/loops.hpp"
 
@@ -94,6 +93,8 @@ void Outlines::close_body(const Body& added) {
   const size_t n = x.size();
   for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
   depth.resize(n, added.depth);
+  active_.push_back(static_cast<BodyIndex>(bodies.size()) - 1);
+  is_active_.push_back(1);
   forget();
 }
 
@@ -192,13 +193,6 @@ bool Outlines::stale() const {
     if (!(farthest <= skin_ / 2)) return true;
   }
   return false;
-}
-
-void Outlines::forget() {
-  kept_.clear();
-  is_active_.assign(bodies.size(), 1);
-  active_.resize(bodies.size());
-  std::iota(active_.begin(), active_.end(), 0);
 }
 
 void Outlines::activate(std::span<const BoxPair> pairs) {

@@ -75,11 +75,12 @@ class Outlines {
   /// True if a vertex, or a face of an active body, has moved through half the skin since the last
   /// search.
   [[nodiscard]] bool stale() const;
-  /// Has the next look find the outlines stale, and all bodies active until then.
-  void forget();
+  /// Has the next look find the outlines stale.
+  void forget() { kept_.clear(); }
   /// Renews the boxes for the search.
   void prepare_search();
-  /// After a search: only bodies of these pairs are active, as others are near nothing.
+  /// After a search: only bodies of these pairs are active, as others are near nothing. Until the
+  /// first call all are.
   void activate(std::span<const BoxPair> pairs);
   /// The active bodies, ascending.
   [[nodiscard]] std::span<const BodyIndex> active() const { return active_; }
