@@ -11,7 +11,7 @@
 #include "apothem/geometry/exact/exact_integral.hpp"
 #include "apothem/geometry/exact/overlap.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "apothem/geometry/skeleton/child_process.hpp"
+#include "forked_work.hpp"
 #include "peers/peers.hpp"
 
 namespace apothem {
@@ -143,14 +143,12 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
 // How long a child process may be silent, s.
 double patience_with(std::string_view method) { return method == "exact" ? 600 : 20; }
 
-std::string describe(const ChildAnswer& answer, double patience) {
+std::string describe(const HelperAnswer& answer, double patience) {
   switch (answer.end) {
-    case ChildAnswer::End::crashed:
+    case HelperAnswer::End::crashed:
       return fmt::format("crashed with signal {}", answer.signal);
-    case ChildAnswer::End::silent:
+    case HelperAnswer::End::silent:
       return fmt::format("did not return within {:.0f} s", patience);
-    case ChildAnswer::End::not_started:
-      return "no child process";
     default:
       return "ended without an answer";
   }
@@ -171,7 +169,7 @@ AccuracyRun run_method(std::string_view method, const std::vector<PreparedPair>&
   const double patience = patience_with(method);
   AccuracyRun run;
   while (run.outcomes.size() < pairs.size()) {
-    const ChildAnswer answer = run_in_child(
+    const HelperAnswer answer = run_forked(
         [&](const SendNumbers& send) { evaluate_from(run.outcomes.size(), method, pairs, send); },
         patience);
     for (size_t at = 0; at + kRecord <= answer.numbers.size(); at += kRecord) {
@@ -215,7 +213,7 @@ double time_method(std::string_view method, const std::vector<PreparedPair>& pai
   if (good.empty()) return std::nan("");
   const double seconds_per_pair = run.seconds / static_cast<double>(good.size());
   if (run.seconds <= .3) {
-    const ChildAnswer timing = run_in_child(
+    const HelperAnswer timing = run_forked(
         [&](const SendNumbers& send) { time_rounds(method, pairs, good, seconds_per_pair, send); },
         patience_with(method));
     if (!timing.numbers.empty()) return timing.numbers[0];

@@ -10,7 +10,9 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/output/files.hpp"
+#include "apothem/output/run_folder.hpp"
 #include "apothem/scene/error.hpp"
 #include "completion.hpp"
 #include "manual.hpp"
@@ -56,12 +58,14 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("run")) return run_command(options.run);
   if (app.got_subcommand("sweep")) return sweep_command(options.sweep);
+  if (app.got_subcommand("picture")) return picture_command(options.picture);
   if (app.got_subcommand("check")) return check_command(options.check);
   if (app.got_subcommand("mesh")) return mesh_command(options.mesh);
   if (app.got_subcommand("polygon")) return polygon_command(options.polygon);
   if (app.got_subcommand("accuracy")) return accuracy_command(options.accuracy);
   if (app.got_subcommand("benchmark")) return benchmark_command(options.benchmark);
   if (app.got_subcommand("reproduce")) return reproduce_command(options.reproduce);
+  if (app.got_subcommand("view")) return view_command(options.view);
   return contact_command(options.contact);
 }
 
@@ -110,6 +114,10 @@ int main(int argc, char** argv) {
     return fail(error);
   } catch (const UsageError& error) {
     return fail(exit_code::bad_input, error.what());
+  } catch (const ResultsError& error) {
+    return fail(exit_code::bad_input, error.what());
+  } catch (const Stopped& stopped) {
+    return fail(exit_code::interrupted, stopped.what());
   } catch (const Interrupted& interrupt) {
     return fail(exit_code::interrupted, interrupt.what());
   } catch (const SystemFailure& error) {

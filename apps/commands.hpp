@@ -46,6 +46,7 @@ struct RunOptions {
   bool quiet = false;
   bool verify = false;
   bool json = false;             ///< print JSON instead of a summary
+  bool picture = false;          ///< draw the last frame
   std::vector<std::string> set;  ///< PATH=VALUE, in place of values of the scene
   std::string from;              ///< DIR or DIR@TIME of another run to begin with
 };
@@ -75,6 +76,23 @@ struct SweepOptions {
 };
 /// Does many runs of a scene with varied values and writes their tables.
 int sweep_command(const SweepOptions& options);
+
+/// Options of `apothem picture`.
+struct PictureOptions {
+  std::string folder;          ///< results of a run
+  std::string output;          ///< file; empty: picture.png, or PLOT.png, in the folder
+  std::optional<double> time;  ///< of the frame, s; empty: the last one
+  int strip = 1;               ///< number of frames
+  std::string colour;          ///< name of a quantity; empty: chosen by what the run holds
+  bool chains = false, roses = false;
+  double deformation = 1;            ///< factor of displacements
+  std::vector<double> window;        ///< X0, Y0, X1, Y1 in m; empty: all bodies
+  std::vector<double> range;         ///< ends of the colour scale; empty: all values
+  std::string plot;                  ///< one of kRunPlots instead of frames; empty: none
+  std::vector<std::string> columns;  ///< of the plot; empty: all that change
+};
+/// Draws results of a run.
+int picture_command(const PictureOptions& options);
 
 /// Options of `apothem check`.
 struct CheckOptions {
@@ -159,6 +177,18 @@ struct ReproduceOptions {
 };
 /// Runs the scenes of figures and writes their curves, pictures and a report.
 int reproduce_command(const ReproduceOptions& options);
+
+/// Options of `apothem view`.
+struct ViewOptions {
+  std::string folder;   ///< results of a run
+  std::string output;   ///< HTML file; empty: view.html in the folder
+  std::string movie;    ///< file of a movie, in place of the page; empty: none
+  std::string colour;   ///< of the movie; empty: chosen by what the run holds
+  bool chains = false;  ///< in the movie
+  int rate = 20;        ///< of the movie, frames per second
+};
+/// Writes a run as a page that plays it, or as a movie.
+int view_command(const ViewOptions& options);
 
 /// Options of `apothem completion`.
 struct CompletionOptions {

@@ -4,8 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apothem/contact/law.hpp"
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/exact/pair_methods.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/pair_file.hpp"
@@ -37,29 +36,20 @@ PotentialChoice potential_choice(const ContactOptions& options) {
   return choice;
 }
 
-PairResult evaluate(const std::string& method, const Polygon& a, const Polygon& b,
-                    const PotentialChoice& choice) {
-  if (method == "exact") return exact_method(a, b, choice);
-  const Potential potential_a = make_potential(a, choice);
-  const Potential potential_b = make_potential(b, choice);
-  if (method == "overlap") return overlap_method(a, potential_a, b, potential_b);
-  return edge_method(a, potential_a, b, potential_b);
-}
-
 Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) {
   const PotentialChoice choice = potential_choice(options);
   const double k = options.stiffness;
   const std::vector<std::string> methods =
-      options.method == "all" ? std::vector<std::string>{"edge", "overlap", "exact"}
-                              : std::vector<std::string>{options.method};
+      options.method == "all" ? std::vector<std::string>(kPairMethods.begin(), kPairMethods.end())
+                              : std::vector{options.method};
   const double deepest = penetration(a, b);
   Json list = Json::array();
   for (const std::string& method : methods) {
     const auto start = std::chrono::steady_clock::now();
-    const PairResult result = evaluate(method, a, b, choice);
+    const PairResult result = evaluate_pair(method, a, b, choice);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     const PairIntegral& pair = result.integral;
-    const Vec2 point = a.origin() + (area_moments(a).centroid + loading_point(pair));
+    const Vec2 point = world_loading_point(pair, a);
     list.push_back({{"method", method},
                     {"force", {k * pair.force.x(), k * pair.force.y()}},
                     {"moment_a", k * pair.moment_a},

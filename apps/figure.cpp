@@ -4,16 +4,12 @@
 
 #include <algorithm>
 
+#include "apothem/output/axes.hpp"
 #include "apothem/output/history.hpp"
 #include "figure_sources.hpp"
 
 namespace apothem {
 namespace {
-
-std::string time_in_words(double time) {
-  return time == 0 || time >= .1 ? fmt::format("{:.4g} s", time)
-                                 : fmt::format("{:.4g} ms", 1e3 * time);
-}
 
 // The contact on a body's pressed edges, from left to right: midpoint of each edge, and the
 // pressure or traction on it. An edge beside the contact that only dips in with one end is left
@@ -87,21 +83,21 @@ DrawnFields Figure::drawn_fields(const std::string& data, const std::string& run
       }
       const Frame frame =
           read_frame(runs + "/" + source.scene, source.frame.from, source.frame.latest);
-      one.field = field_of(frame, *panel.quantity, source.rigid);
+      one.field = field_of(frame, *panel.quantity);
       if (!source.statics) {
         if (!one.label.empty()) one.label += ", ";
         one.label += "t = " + time_in_words(frame.time);
       }
       if (!source.compared) continue;
-      const FieldError error =
-          field_error(frame, *panel.quantity, source.rigid, cells_of(data, *reference));
+      const FieldError error = field_error(frame, *panel.quantity, cells_of(data, *reference));
       const auto state = [&](const char* kind, double value, double tolerance) {
         result.numbers.push_back(
             {source.scene,
              fmt::format("{} at {}: {} error in cells, of the reference's "
                          "largest value",
                          panel.quantity->meaning, time_in_words(frame.time), kind),
-             0, value, tolerance, value <= tolerance});
+             "1", 0, value, tolerance, value <= tolerance, Basis::code,
+             "data/reference/" + reference->reference});
       };
       state("rms", error.rms, source.compared->rms);
       state("largest", error.largest, source.compared->largest);

@@ -39,7 +39,6 @@ struct CurveSource {
 struct FieldSource {
   std::string scene;  ///< name of a scene, if the field comes from one
   FrameTime frame;
-  int rigid = 0;             ///< number of rigid bodies in the scene
   bool statics = false;      ///< whether the scene is static
   std::string reference;     ///< file of a table, if the field comes from one
   std::string column;        ///< column of the table

@@ -265,11 +265,12 @@ class FigureReader {
     }
     const Scene scene = scene_of(name);
     source.scene = name.string();
-    if (scene.model.deformables.empty() && (!quantity.nodal || source.compared)) {
+    const bool of_stress =
+        quantity.kind == FieldKind::stress || quantity.kind == FieldKind::stress_of_elements;
+    if (scene.model.deformables.empty() && (of_stress || source.compared)) {
       in_.fail(name, source.compared ? "has no body with a mesh to compare"
                                      : "has no body with a mesh, and rigid bodies have no stress");
     }
-    source.rigid = static_cast<int>(scene.model.bodies.size());
     source.statics = scene.time.statics;
     source.frame = frame_time(time, scene);
     figure_.numbers[source.scene];  // no quantities: the report states all of them

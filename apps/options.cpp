@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apothem/output/field.hpp"
+#include "apothem/output/run_plot.hpp"
 #include "apothem/scene/decimal.hpp"
 #include "version.hpp"
 
@@ -77,10 +79,77 @@ void add_run(CLI::App& app, RunOptions& o) {
   add_settings(sub, o.set);
   sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
       ->excludes(resume);
+  sub->add_flag("--picture", o.picture,
+                "Draw the end of the run: picture.png in the output folder");
   sub->add_flag("--quiet", o.quiet, "No progress and no summary");
   sub->add_flag("--json", o.json,
                 "Print what run.json holds, and the folder, instead of a summary");
   sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
+}
+
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names;
+  for (const FieldQuantity& quantity : kFieldQuantities) names.emplace_back(quantity.name);
+  return names;
+}
+
+void add_picture(CLI::App& app, PictureOptions& o) {
+  CLI::App* sub = app.add_subcommand("picture", "Draw the results of a run");
+  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
+  sub->add_option("-o,--output", o.output,
+                  "Picture, .png or .svg (default: picture.png, or PLOT.png, in DIR)")
+      ->type_name("FILE");
+  CLI::Option* time =
+      sub->add_option("--time", o.time, "Frame nearest to this time in s (default: the last one)")
+          ->check(kDecimal);
+  CLI::Option* frames =
+      sub->add_option("--strip", o.strip, "So many frames, from the first to the last one")
+          ->type_name("N")
+          ->transform(kWhole)
+          ->check(CLI::Range(1, 100))
+          ->excludes(time);
+  CLI::Option* colour =
+      sub->add_option("--colour", o.colour,
+                      "Quantity that colours the bodies (default: von_mises if there are bodies of "
+                      "finite elements, otherwise speed, or material with --chains)")
+          ->check(CLI::IsMember(quantity_names()));
+  CLI::Option* chains =
+      sub->add_flag("--chains", o.chains, "Contact forces as lines, as wide as the force");
+  CLI::Option* roses =
+      sub->add_flag("--roses", o.roses, "Directions of contacts in each region of the scene");
+  CLI::Option* deformation =
+      sub->add_option("--deformation", o.deformation,
+                      "Factor of all displacements and rotations since the start")
+          ->type_name("FACTOR")
+          ->check(kDecimal)
+          ->excludes(chains)
+          ->excludes(roses);
+  CLI::Option* window = sub->add_option("--window", o.window,
+                                        "Corners of the visible region, m (default: all bodies)")
+                            ->type_name("X0,Y0,X1,Y1")
+                            ->delimiter(',')
+                            ->check(kDecimal)
+                            ->expected(4);
+  CLI::Option* range = sub->add_option("--range", o.range,
+                                       "Ends of the colour scale, SI units (default: all values)")
+                           ->type_name("LOW,HIGH")
+                           ->delimiter(',')
+                           ->check(kDecimal)
+                           ->expected(2);
+  CLI::Option* plot =
+      sub->add_option("--plot", o.plot,
+                      "A plot over time instead: energy or momentum, history of bodies and points, "
+                      "or regions")
+          ->check(CLI::IsMember(std::vector<std::string>(kRunPlots.begin(), kRunPlots.end())));
+  for (CLI::Option* of_frames : {time, frames, colour, chains, roses, deformation, window, range}) {
+    plot->excludes(of_frames);
+  }
+  sub->add_option("--columns", o.columns,
+                  "Columns to plot: NAME.quantity, or quantity for all names (default: all that "
+                  "change)")
+      ->type_name("A,B,C")
+      ->delimiter(',')
+      ->needs(plot);
 }
 
 void add_sweep(CLI::App& app, SweepOptions& o) {
@@ -159,7 +228,7 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   sub->add_option("--method", o.method, "Way to the numbers")
       ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
       ->capture_default_str();
-  sub->add_option("--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
+  sub->add_option("--normal-stiffness,--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
       ->check(kPositive)
       ->capture_default_str();
   sub->add_flag("--json", o.json, "Print JSON");
@@ -274,6 +343,29 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
 }
 
+void add_view(CLI::App& app, ViewOptions& o) {
+  CLI::App* sub =
+      app.add_subcommand("view", "Play a run in a browser, from one HTML file; or as a movie");
+  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
+  CLI::Option* page =
+      sub->add_option("-o,--output", o.output, "HTML file (default: view.html in DIR)")
+          ->type_name("FILE");
+  CLI::Option* movie =
+      sub->add_option("--movie", o.movie, "Write a movie instead, .mp4 or .gif; needs ffmpeg")
+          ->type_name("FILE")
+          ->excludes(page);
+  sub->add_option("--colour", o.colour, "Quantity that colours the movie, as in picture")
+      ->check(CLI::IsMember(quantity_names()))
+      ->needs(movie);
+  sub->add_flag("--chains", o.chains, "Contact forces as lines in the movie")->needs(movie);
+  sub->add_option("--rate", o.rate, "Frames of the run per second of the movie")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 60))
+      ->capture_default_str()
+      ->needs(movie);
+}
+
 void add_completion(CLI::App& app, CompletionOptions& o) {
   app.add_subcommand("completion", "Print a script that completes the command line in a shell")
       ->add_option("SHELL", o.shell, "The shell")
@@ -293,6 +385,7 @@ void add_commands(CLI::App& app, Options& options) {
   app.require_subcommand(1);
   add_run(app, options.run);
   add_sweep(app, options.sweep);
+  add_picture(app, options.picture);
   add_check(app, options.check);
   add_contact(app, options.contact);
   add_polygon(app, options.polygon);
@@ -300,6 +393,7 @@ void add_commands(CLI::App& app, Options& options) {
   add_accuracy(app, options.accuracy);
   add_benchmark(app, options.benchmark);
   add_reproduce(app, options.reproduce);
+  add_view(app, options.view);
   add_completion(app, options.completion);
   app.add_subcommand("manual", "Print the manual page, for man -l -");
 }

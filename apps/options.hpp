@@ -14,6 +14,7 @@ namespace apothem {
 struct Options {
   RunOptions run;
   SweepOptions sweep;
+  PictureOptions picture;
   CheckOptions check;
   ContactOptions contact;
   PolygonOptions polygon;
@@ -21,6 +22,7 @@ struct Options {
   AccuracyOptions accuracy;
   BenchmarkOptions benchmark;
   ReproduceOptions reproduce;
+  ViewOptions view;
   CompletionOptions completion;
 };
 

@@ -33,6 +33,32 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
   return names;
 }
 
+constexpr const char* kAboutReport =
+    "<p>The paper: X. Liu, J. Mao, L. Zhao, L. Shao, T. Li, <i>The distance potential "
+    "function-based finite-discrete element method</i>, Computational Mechanics (2020), "
+    "<a href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. "
+    "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
+    "them. The paper shows its results as curves and fields. No number here is read off its "
+    "pictures: each has another reference, which is named beside it. Forces are per thickness of "
+    "1 m.</p>";
+
+constexpr const char* kFiguresLeftOut =
+    "<h2>Figures of the paper that are not here</h2>\n"
+    "<p>Figs. 1 to 5 define potentials; <code>apothem polygon FILE --picture FILE.png</code> draws "
+    "such pictures for any polygon. Figs. 6 to 12, 16, 18, 22, 23, 25, 29 and 33 are sketches of "
+    "the algorithm, of models and of a load, and show no results. Figs. 34 and 35 show single "
+    "moments of a hopper that empties. The paper does not give the random arrangement of the "
+    "blocks, on which such a moment depends, so the hopper is studied by many runs instead: "
+    "<code>data/studies</code>, with the results in docs/verification.md.</p>\n";
+
+std::optional<Basis> basis_of(const nlohmann::json& expectation) {
+  const nlohmann::json& name = expectation.at("basis");
+  for (size_t i = 0; i < kBases.size(); ++i) {
+    if (name == kBases[i]) return static_cast<Basis>(i);
+  }
+  return std::nullopt;
+}
+
 std::string in_words(const nlohmann::json& expectation) {
   const std::string label = expectation.at("label");
   const std::string column = fmt::format("{} of {}", expectation.at("take").get<std::string>(),
@@ -59,8 +85,10 @@ class Reproduction {
       draw(figure);
     }
     const std::string report = options_.folder + "/report.html";
-    write_report(report, "Figures of the distance-potential FEM-DEM paper",
-                 fmt::format("apothem {} reproduce", kVersion), reports_);
+    write_report(report,
+                 {"Figures of the distance-potential FEM-DEM paper", kAboutReport,
+                  fmt::format("apothem {} reproduce", kVersion), kFiguresLeftOut},
+                 reports_);
     fmt::print("{} of {} numbers within their tolerance; {}\n", numbers_ - missed_, numbers_,
                report);
     if (no_gnuplot_) {
@@ -167,8 +195,9 @@ class Reproduction {
         continue;
       }
       const nlohmann::json& value = e.at("value");  // null if the run has no row in its time window
-      state({scene, in_words(e), e.at("expected"),
-             value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met")},
+      state({scene, in_words(e), e.at("unit"), e.at("expected"),
+             value.is_null() ? std::nan("") : value.get<double>(), e.at("tolerance"), e.at("met"),
+             basis_of(e), e.at("source")},
             report);
     }
   }

@@ -6,11 +6,14 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apothem/output/files.hpp"
+#include "apothem/output/run_picture.hpp"
 #include "apothem/run/other_run.hpp"
 #include "apothem/run/summary.hpp"
 #include "apothem/scene/decimal.hpp"
@@ -19,14 +22,12 @@
 namespace apothem {
 namespace {
 
-std::atomic<Run*> running = nullptr;
+std::atomic<bool> stop_asked = false;
 
 // Ctrl-C asks the run to finish its step.
 void install_signal_handlers() {
   struct sigaction action = {};
-  action.sa_handler = [](int) {
-    if (Run* run = running) run->request_stop();
-  };
+  action.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
@@ -87,16 +88,17 @@ void print_summary(const Run& run) {
   const State& state = run.state();
   const Scene& scene = run.scene();
   const Extremes extremes = run.simulation().extremes();
-  fmt::print("{}: {} {} of {:.6g} s, t = {:.6g} s, results in {}\n", scene.model.name, state.step,
-             scene.time.statics ? "load steps" : "steps", run.simulation().step_size(), state.time,
-             run.settings().folder);
+  const StepChanges& changes = run.simulation().step_changes();
+  const bool changed = changes.shortened + changes.lengthened > 0;
+  fmt::print("{}: {} {}{} of {:.6g} s, t = {:.6g} s, results in {}\n", scene.model.name, state.step,
+             scene.time.statics ? "load steps" : "steps", changed ? ", the last one" : "",
+             run.simulation().step_size(), state.time, run.settings().folder);
   if (!run.beginning().folder.empty()) {
     const std::vector<std::string> others = not_moved(scene.model, run.beginning());
     fmt::print("began with {} bodies of {} at t = {:.6g} s{}\n", run.beginning().bodies.size(),
                run.beginning().folder, run.beginning().time,
                others.empty() ? "" : fmt::format("; as in the scene: {}", fmt::join(others, ", ")));
   }
-  const StepChanges& changes = run.simulation().step_changes();
   if (changes.shortened > 0) {
     const StepChange& first = changes.first.front();
     fmt::print(
@@ -159,6 +161,22 @@ void print_json(const Run& run) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+// The results stand without a picture, too. False if the system has failed.
+bool draw_end(const Run& run, bool quiet) {
+  const std::string file = run.settings().folder + "/picture.png";
+  try {
+    const RunFolder results(run.settings().folder);
+    write_file(file, draw_fields(picture_of(results, {strip(results, 1)}), PictureFormat::png));
+    if (!quiet) fmt::print("picture of the end: {}\n", file);
+  } catch (const ResultsError& error) {
+    fmt::print(stderr, "apothem: no picture: {}\n", error.what());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "apothem: no picture: {}\n", error.what());
+    return false;
+  }
+  return true;
+}
+
 std::string folder_of(const RunOptions& options, const Scene& scene) {
   return options.folder.empty() ? "out/" + scene.model.name : options.folder;
 }
@@ -200,6 +218,7 @@ int run_command(const RunOptions& options) {
   RunSettings settings{folder_of(options, scene), options.threads, options.resume,
                        options.overwrite};
   if (!options.from.empty()) read_from(options.from, settings);
+  settings.stop_if = [] { return stop_asked.load(); };
   Run run(std::move(scene), settings);
   ProgressLine line(std::min(options.until.value_or(run.scene().time.end), run.scene().time.end));
   if (!options.quiet) {
@@ -216,9 +235,7 @@ int run_command(const RunOptions& options) {
     if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
   }
   const size_t known = options.json ? 0 : print_warnings(run, 0);
-  running = &run;
   run.run(options.until);
-  running = nullptr;
   line.clear();
   if (!run.message().empty()) {
     fmt::print(stderr, "apothem: {}: {}\n", run.scene().file, run.message());
@@ -230,7 +247,9 @@ int run_command(const RunOptions& options) {
   }
   std::fflush(stdout);
   if (!options.json) print_warnings(run, known);
-  return exit_code_of(run, options.verify);
+  const int code = exit_code_of(run, options.verify);
+  if (!options.picture || draw_end(run, options.quiet || options.json)) return code;
+  return code == exit_code::done ? exit_code::system_failed : code;
 }
 
 }  // namespace apothem

@@ -33,4 +33,5 @@ if(IS_SYMLINK ${GDAL_LIBRARY})
   file(READ_SYMLINK ${GDAL_LIBRARY} GDAL_SONAME)
 endif()
 cmake_path(GET GDAL_SONAME FILENAME GDAL_SONAME)
+string(REPLACE ".so." "" GDAL_PACKAGE ${GDAL_SONAME})  # Debian's name of it
 configure_file(${PROJECT_SOURCE_DIR}/cmake/gdal_library.hpp.in ${APOTHEM_GENERATED}/gdal_library.hpp @ONLY)

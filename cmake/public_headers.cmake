@@ -23,6 +23,7 @@ set(APOTHEM_PUBLIC_HEADERS
   fem/stress.hpp
   geometry/exact/exact_integral.hpp
   geometry/exact/overlap.hpp
+  geometry/exact/pair_methods.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp
@@ -70,6 +71,7 @@ set(APOTHEM_PUBLIC_HEADERS
   output/files.hpp
   output/frames.hpp
   output/history.hpp
+  output/run_folder.hpp
   run/applied_force.hpp
   run/checkpoint.hpp
   run/run.hpp

@@ -6,6 +6,7 @@
 #include "apothem/dynamics/simulation.hpp"
 #include "apothem/geometry/packing/arrange.hpp"
 #include "apothem/geometry/packing/block_shapes.hpp"
+#include "apothem/geometry/spatial/hilbert.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "apothem/mesh/reorder.hpp"
 #include "cases/samples.hpp"
@@ -161,13 +162,15 @@ Model troughs(const Pile& pile, int copies, double wall) {
   }
   const double right = copies * (pile.width + kThickness) - kThickness;
   add_wall(model, right, -kThickness, right + kThickness, wall);
-  samples::Random random(1);
-  const auto shuffle = [&](auto& bodies) {
-    for (int i = static_cast<int>(bodies.size()) - 1; i > 0; --i) {
-      std::swap(bodies[static_cast<size_t>(i)], bodies[static_cast<size_t>(random.integer(0, i))]);
-    }
+  const auto number = [](auto& bodies, const auto& place) {
+    std::vector<Vec2> places;
+    for (const auto& body : bodies) places.push_back(place(body));
+    auto before = std::move(bodies);
+    bodies.clear();
+    for (const int i : hilbert_order(places)) bodies.push_back(std::move(before[i]));
   };
-  shuffle(model.bodies), shuffle(model.deformables);
+  number(model.bodies, [](const RigidBody& body) { return body.position; });
+  number(model.deformables, [](const DeformableBody& body) { return body.mesh.nodes.front(); });
   int first = 0;
   for (DeformableBody& body : model.deformables) {
     body.first_node = first;

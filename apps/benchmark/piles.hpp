@@ -27,8 +27,8 @@ const Pile& pile_of_quadrilaterals();
 const Pile& pile_of_crosses();
 const Pile& pile_of_meshes();
 
-/// So many copies of a pile in troughs side by side, under gravity. The bodies are in random order,
-/// as those of a fill are, so that neighbours in space are none in memory. Walls are `wall` m high.
+/// So many copies of a pile in troughs side by side, under gravity. The bodies are numbered along a
+/// curve, as those of a fill are. Walls are `wall` m high.
 Model troughs(const Pile& pile, int copies, double wall);
 
 /// A model with our material, contact law and gravity, and nothing in it.

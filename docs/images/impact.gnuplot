@@ -1,4 +1,4 @@
-# The picture in the README, from two real runs:
+# The picture of the rigid impact in docs/verification.md, from two real runs:
 #   apothem run data/scenes/impact-asymmetric.json
 #   apothem run data/scenes/impact-asymmetric-area.json
 #   gnuplot docs/images/impact.gnuplot

@@ -28,7 +28,6 @@ int PlacedShapes::add(const Potential& potential) {
   body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
   body_gradients_.insert(body_gradients_.end(), potential.gradients.begin(),
                          potential.gradients.end());
-  for (const Vec2& g : potential.gradients) inverse_length_.push_back(g.norm());
   x_.resize(x_.size() + shape.size + 1);
   y_.resize(x_.size());
   gx_.resize(gx_.size() + shape.size);
@@ -93,6 +92,8 @@ int PlacedShapes::add_deforming(const Potential& potential) {
   // Its inradius may grow beyond the length that it had at first, and its size is not known.
   shapes_[i].capped = true;
   shapes_[i].radius = 0;
+  inverse_length_.resize(shapes_[i].edges);  // without those of shapes that do not deform
+  for (const Vec2& g : potential.gradients) inverse_length_.push_back(g.norm());
   return i;
 }
 

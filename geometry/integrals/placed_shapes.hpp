@@ -83,7 +83,7 @@ class PlacedShapes {
 
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
-  std::vector<double> inverse_length_;                // 1/m, indexed by `edges`
+  std::vector<double> inverse_length_;                // 1/m, of deforming shapes, the same
   std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
   std::vector<double> node_x_, node_y_;               // of roofs, the same
   std::vector<Box> boxes_;                            // in the coordinates of the model

@@ -14,7 +14,7 @@ struct Stage {
 };
 
 /// Called several times a second, or every hundredth of a stage. It may throw, which ends the
-/// computation and its child processes.
+/// computation and its helper processes.
 using Progress = std::function<void(const Stage&)>;
 
 }  // namespace apothem

@@ -15,7 +15,7 @@ namespace apothem {
 /// polygons by round-off only: the first one of several copies is the original.
 class Potentials {
  public:
-  /// Finds what the potentials have in common, with up to `processes` child processes at the same
+  /// Finds what the potentials have in common, with up to `processes` helper processes at the same
   /// time. The polygons must outlive this object. Polygons for which there is no potential are no
   /// error yet.
   Potentials(std::vector<const Polygon*> polygons, const PotentialChoice& choice, int processes,

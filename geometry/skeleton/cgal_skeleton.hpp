@@ -1,5 +1,5 @@
-// CGAL's straight skeletons, made in child processes. This header is private to the construction of
-// the straight skeleton.
+// CGAL's straight skeletons, made by the helper program. This header is private to the construction
+// of the straight skeleton.
 #pragma once
 
 #include <optional>
@@ -22,9 +22,9 @@ struct CgalAnswer {
 CgalAnswer ask_cgal(const std::vector<Vec2>& ring, bool exact, double seconds,
                     const Progress& progress);
 
-/// Asks CGAL for the skeletons of many rings, with up to `processes` children at the same time. The
-/// time limit holds for each ring, and a ring on which a child fails takes no other ring with it.
-std::vector<CgalAnswer> ask_cgal(const std::vector<std::vector<Vec2>>& rings, double seconds,
-                                 int processes, const Progress& progress);
+/// Asks CGAL for the skeletons of many rings, with up to `processes` helpers at the same time. The
+/// time limit holds for each ring, and a ring on which a helper fails takes no other ring with it.
+std::vector<CgalAnswer> ask_cgal(const std::vector<std::vector<Vec2>>& rings, bool exact,
+                                 double seconds, int processes, const Progress& progress);
 
 }  // namespace apothem

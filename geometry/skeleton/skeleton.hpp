@@ -4,7 +4,7 @@
 // to the line of that edge.
 //
 // Every construction may fail: CGAL's sometimes returns nothing, never returns, crashes or returns
-// a wrong skeleton. Therefore CGAL runs in a child process with a time limit, every result is
+// a wrong skeleton. Therefore CGAL runs in a helper program with a time limit, every result is
 // corrected with the lines of the polygon's edges, and it has to pass the laws that broken_law
 // lists. Otherwise the construction is repeated with the vertices moved by 1e-13 to 1e-9 of the
 // polygon's size. Polygons with more than 64 vertices are given to the trace of a wavefront

@@ -9,7 +9,7 @@
 namespace apothem {
 namespace {
 
-// Polygons per child process below which another child costs more than it gives.
+// Polygons per helper process below which another helper costs more than it gives.
 constexpr size_t kWorthProcess = 8;
 
 // The face of the copy's edge. It begins with the ends of that edge.
@@ -40,7 +40,7 @@ std::vector<SkeletonOrFailure> straight_skeletons(const std::vector<const Polygo
   }
   const int most = static_cast<int>((rings.size() + kWorthProcess - 1) / kWorthProcess);
   std::vector<CgalAnswer> answers =
-      ask_cgal(rings, seconds, std::clamp(processes, 1, std::max(most, 1)), progress);
+      ask_cgal(rings, false, seconds, std::clamp(processes, 1, std::max(most, 1)), progress);
   std::vector<std::optional<CgalAnswer>> first(polygons.size());
   for (size_t k = 0; k < asked.size(); ++k) first[asked[k]] = std::move(answers[k]);
 

@@ -1,8 +1,8 @@
 // The straight skeletons of many polygons.
 //
-// CGAL constructs them in a few child processes that run at the same time. The time limit is that
-// of a single polygon; if a child fails on one polygon, another child goes on with the next one.
-// The result is the same for any number of child processes.
+// CGAL constructs them in a few helper processes that run at the same time. The time limit is that
+// of a single polygon; if a helper fails on one polygon, another one goes on with the next one. The
+// result is the same for any number of processes.
 //
 // The skeleton of a copy of a polygon is the image of the skeleton of the original: its faces are
 // the same, and its inner nodes are mapped by the similarity and then corrected with the lines of
@@ -23,7 +23,7 @@ namespace apothem {
 using SkeletonOrFailure = std::variant<Skeleton, std::exception_ptr>;
 
 /// Constructs the straight skeleton of each polygon as straight_skeleton does, with up to
-/// `processes` child processes at the same time.
+/// `processes` helper processes at the same time.
 std::vector<SkeletonOrFailure> straight_skeletons(const std::vector<const Polygon*>& polygons,
                                                   int processes, const Progress& progress = {});
 

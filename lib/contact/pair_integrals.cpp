@@ -16,24 +16,26 @@ constexpr int kLate = 256;
 
 }  // namespace
 
-// Pairs that were there before keep what is known of their edges.
+// Pairs that were there before keep what is known of their edges. The lists of before are not kept:
+// searches are rare, and large scenes need the memory.
 void PairIntegrals::take(std::span<const BoxPair> pairs) {
-  std::swap(pairs_, pairs_before_);
-  std::swap(near_, near_before_);
+  const std::vector<BoxPair> pairs_before = std::move(pairs_);
+  const std::vector<Near> near_before = std::move(near_);
   pairs_.assign(pairs.begin(), pairs.end());
   near_.assign(pairs_.size(), {});
   size_t old = 0;
   for (size_t p = 0; p < pairs_.size(); ++p) {
-    while (old < pairs_before_.size() && pairs_before_[old] < pairs_[p]) ++old;
-    if (old == pairs_before_.size()) break;
-    if (pairs_before_[old] == pairs_[p]) near_[p] = near_before_[old];
+    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) ++old;
+    if (old == pairs_before.size()) break;
+    if (pairs_before[old] == pairs_[p]) near_[p] = near_before[old];
   }
 }
 
 void PairIntegrals::begin() {
-  integrals_.resize(pairs_.size());
-  if (split_ != Split::none) parts_.resize(pairs_.size());
+  slots_.resize(pairs_.size());
   for (Worker& worker : workers_) {
+    worker.integrals.clear();
+    worker.parts.clear();
     worker.runs.clear();
     worker.patches.clear();
   }
@@ -69,58 +71,73 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
 }
 
 void PairIntegrals::evaluate_pair(size_t p, int index) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  Parts parts;
+  const PairIntegral integral = integrate(p, worker, parts);
+  if (!integral.touching()) {
+    slots_[p].worker = -1;
+    return;
+  }
+  slots_[p] = {index, static_cast<int>(worker.integrals.size())};
+  if (worker.integrals.size() == worker.integrals.capacity()) {
+    worker.integrals.reserve(worker.integrals.size() * 9 / 8 + 16);  // large scenes need the memory
+  }
+  worker.integrals.push_back(integral);
+  if (split_ != Split::none) worker.parts.push_back(parts);
+}
+
+PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, Parts& parts) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   if (apart(shapes.boxes()[static_cast<size_t>(a)], shapes.boxes()[static_cast<size_t>(b)])) {
-    integrals_[p] = {};
-    return;
+    return {};
   }
   const Vec2 between = surfaces_.between(a, b);
-  Worker& worker = workers_[static_cast<size_t>(index)];
   find_near(p, between, worker.near_edges);
   NearEdges& near = near_[p].edges;
-  if (near.none()) {
-    integrals_[p] = {};
-    return;
-  }
+  if (near.none()) return {};
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
   const bool split = split_ == Split::all ||
                      (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
-  if (!split) {
-    integrals_[p] = pair_integral(view_a, view_b, between, worker.workspace.edge, near);
-    if (split_ != Split::none) parts_[p] = {};
-    return;
-  }
-  integrals_[p] = contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
-                                  worker.pair_patches, near);
-  parts_[p] = {index, static_cast<int>(worker.patches.size()),
-               static_cast<int>(worker.pair_patches.size()), static_cast<int>(worker.runs.size()),
-               static_cast<int>(worker.pair_runs.size())};
+  if (!split) return pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+  const PairIntegral integral = contact_patches(view_a, view_b, between, worker.workspace,
+                                                worker.pair_runs, worker.pair_patches, near);
+  parts = {static_cast<int>(worker.patches.size()), static_cast<int>(worker.pair_patches.size()),
+           static_cast<int>(worker.runs.size()), static_cast<int>(worker.pair_runs.size())};
   worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
                         worker.pair_patches.end());
   worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+  return integral;
+}
+
+const PairIntegrals::Parts* PairIntegrals::parts_of(const Slot& slot) const {
+  if (split_ == Split::none || slot.worker < 0) return nullptr;
+  const Parts& parts = worker_of(slot).parts[static_cast<size_t>(slot.index)];
+  return parts.first_patch < 0 ? nullptr : &parts;
 }
 
 std::span<const PairIntegral> PairIntegrals::patches(size_t pair) const {
-  if (parts_.empty() || parts_[pair].worker < 0) return {&integrals_[pair], 1};
-  const Parts& parts = parts_[pair];
-  return std::span(workers_[static_cast<size_t>(parts.worker)].patches)
-      .subspan(static_cast<size_t>(parts.first_patch), static_cast<size_t>(parts.patches));
+  const Slot& slot = slots_[pair];
+  const Parts* const parts = parts_of(slot);
+  if (!parts) return {&(*this)[pair], 1};
+  return std::span(worker_of(slot).patches)
+      .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
 }
 
 std::span<const BoundaryRun> PairIntegrals::runs(size_t pair) const {
-  if (parts_.empty() || parts_[pair].worker < 0) return {};
-  const Parts& parts = parts_[pair];
-  return std::span(workers_[static_cast<size_t>(parts.worker)].runs)
-      .subspan(static_cast<size_t>(parts.first_run), static_cast<size_t>(parts.runs));
+  const Slot& slot = slots_[pair];
+  const Parts* const parts = parts_of(slot);
+  if (!parts) return {};
+  return std::span(worker_of(slot).runs)
+      .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
 }
 
 double PairIntegrals::energy(const PairTable& table) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   double energy = 0;
   for (size_t p = 0; p < pairs_.size(); ++p) {
-    if (!integrals_[p].touching()) continue;
+    if (slots_[p].worker < 0) continue;
     const auto [a, b] = pairs_[p];
     const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
     energy += k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
@@ -130,7 +147,7 @@ double PairIntegrals::energy(const PairTable& table) const {
 
 Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
   const auto [a, b] = pairs_[p];
-  const PairIntegral& pair = integrals_[p];
+  const PairIntegral& pair = (*this)[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
   return {kernel,
@@ -144,7 +161,7 @@ Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
 
 bool PairIntegrals::too_deep(size_t p) const {
   const auto [a, b] = pairs_[p];
-  const PairIntegral& pair = integrals_[p];
+  const PairIntegral& pair = (*this)[p];
   if (!(pair.largest_phi <= kDeepestPhi)) return true;
   if (pair.own_length_a + pair.own_length_b <
       std::min(surfaces_.inradius(a), surfaces_.inradius(b))) {

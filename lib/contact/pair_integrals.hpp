@@ -44,8 +44,12 @@ class PairIntegrals {
 
   [[nodiscard]] const std::vector<BoxPair>& pairs() const { return pairs_; }
   /// One for each pair, for unit stiffness; force on the first one, moments about the reference
-  /// points.
-  [[nodiscard]] const PairIntegral& operator[](size_t pair) const { return integrals_[pair]; }
+  /// points. Zero for a pair that does not touch.
+  [[nodiscard]] const PairIntegral& operator[](size_t pair) const {
+    static const PairIntegral kApart;
+    const Slot& slot = slots_[pair];
+    return slot.worker < 0 ? kApart : worker_of(slot).integrals[static_cast<size_t>(slot.index)];
+  }
   /// The patches of a touching pair: the whole pair if it is not split.
   [[nodiscard]] std::span<const PairIntegral> patches(size_t pair) const;
   /// The runs of a touching pair; none if it is not split.
@@ -70,33 +74,44 @@ class PairIntegrals {
     double share = kFirstMargin;  // the margin asked for, of the smaller inradius
     int age = 0;                  // evaluations since then
   };
+  // The patches and runs of a touching pair, of those that its worker has found.
+  struct Parts {
+    int first_patch = -1;  // -1: not split
+    int patches = 0, first_run = 0, runs = 0;
+  };
+  // Where the integral of a pair is. Worker -1: it does not touch. Most pairs do not, and large
+  // scenes need the memory.
+  struct Slot {
+    int worker = -1, index = 0;
+  };
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
-    // Of the pairs that it has split.
+    std::vector<PairIntegral> integrals;  // of the touching pairs that it has found
+    // Of those that it has split; `parts` has an entry for each touching pair if any may be split.
+    std::vector<Parts> parts;
     std::vector<BoundaryRun> runs;
     std::vector<PairIntegral> patches;
     // Of the pair at hand.
     std::vector<BoundaryRun> pair_runs;
     std::vector<PairIntegral> pair_patches;
   };
-  // The patches and runs of a pair, of those that a worker has found. Worker -1: not split.
-  struct Parts {
-    int worker = -1;
-    int first_patch = 0, patches = 0, first_run = 0, runs = 0;
-  };
   void begin();
   void evaluate_pair(size_t pair, int worker);
+  [[nodiscard]] PairIntegral integrate(size_t pair, Worker& worker, Parts& parts);
+  [[nodiscard]] const Worker& worker_of(const Slot& slot) const {
+    return workers_[static_cast<size_t>(slot.worker)];
+  }
+  [[nodiscard]] const Parts* parts_of(const Slot& slot) const;
   void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
   const Surfaces& surfaces_;
   Threads threads_;
   Split split_;
-  std::vector<BoxPair> pairs_, pairs_before_;
-  std::vector<Near> near_, near_before_;  // of each pair
+  std::vector<BoxPair> pairs_;
+  std::vector<Near> near_;   // of each pair
+  std::vector<Slot> slots_;  // of each pair
   std::vector<Worker> workers_;
-  std::vector<PairIntegral> integrals_;
-  std::vector<Parts> parts_;  // of each pair, if pairs are split
 };
 
 }  // namespace apothem

@@ -50,7 +50,9 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
       ranges_(static_cast<size_t>(threads_.count()), Range(*this)) {}
 
 void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
-                            const Kinematics& now, double dt, FrictionMemory& memory) {
+                            const Kinematics& now, double dt, FrictionMemory& memory,
+                            std::span<PairStiffness> stiffness) {
+  stiffness_ = stiffness;
   std::swap(now_, before_);
   std::swap(forces_, forces_before_);
   make_room(pairs, touching);
@@ -139,7 +141,7 @@ void PatchTangential::Range::book_damping(const TangentialForce* last, const Tan
   double work = dt / 2 * force.damping.power(rate);
   if (last) {
     work += dt / 2 * last->damping.power(rate);
-    work += dt / 12 * last->change_of_damping.power(rate - last->rate_before);
+    work += dt / 12 * (last->change_of_damping.power(rate) - last->power_before);
   }
   springs.damp(-work);
 }
@@ -185,6 +187,8 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair, 
   // Also of pairs without friction: what has ended before them is booked by this range.
   const std::span<const Spring> springs_before = springs.before(polygon_kernel, a, b);
   TangentialForce& total = all_.forces_[to.pair] = TangentialForce{a, b};
+  total_ = &total;
+  *(stiffness_ = &all_.stiffness_[to.pair]) = {};
   PairHistory& history = all_.now_.pairs[to.pair] = {a, b, 0, 0};
   const PairLaw& law = all_.table_.between(a, b);
   const bool rough = all_.is_rough(law);
@@ -228,14 +232,14 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t pair, 
     const double closed =
         kinematics.finite && ancestors_ == 0 ? closed_share(motion, patch, slopes, dt) : 1;
     resultant(motion, closed * dt, law, {polygon_kernel, a, b, static_cast<int>(j)}, patch, error,
-              patch_springs_[j], damped ? &dampers_[j] : nullptr, total);
+              patch_springs_[j], damped ? &dampers_[j] : nullptr);
   }
   if (rough && !all_.edgewise() && !inherit_whole()) {
     const double known = springs.lost();
     springs.lose(lost_by_balance(springs_before, last, total, motion.rate, dt) - known);
   }
   if (rough && all_.edgewise()) {
-    per_edge(motion, dt, law, {polygon_kernel, a, b, 0}, springs_before, total);
+    per_edge(motion, dt, law, {polygon_kernel, a, b, 0}, springs_before);
   }
   if (damped) {
     total.compare_with(last, motion.rate, dt);
@@ -314,13 +318,22 @@ double PatchTangential::Range::lost_by_balance(std::span<const Spring> before,
   return lost;
 }
 
+// Adds the force of a spring at a point relative to the mass centre of a. `between`: mass centre of
+// a minus that of b, m.
+void PatchTangential::Range::add_spring(double size, double stiffness, const Vec2& tangent,
+                                        const Vec2& point, const Vec2& between) {
+  const double arm_a = cross(point, tangent), arm_b = -cross(point + between, tangent);
+  total_->all += {size * tangent, size * arm_a, size * arm_b};
+  stiffness_->a.add(stiffness, tangent, arm_a);
+  stiffness_->b.add(stiffness, tangent, -arm_b);
+}
+
 // The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
 // number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 // slip against b: the sign of Eq. 12 is a misprint.
 void PatchTangential::Range::resultant(const PairMotion& motion, double dt, const PairLaw& law,
                                        SpringKey key, const PairIntegral& patch, double force_error,
-                                       Spring& spring, PatchDamper* damper,
-                                       TangentialForce& total) {
+                                       Spring& spring, PatchDamper* damper) {
   spring.key = key;
   spring.stiffness = law.friction.tangential_stiffness * all_.thickness_;
   spring.accounted = true;
@@ -344,7 +357,7 @@ void PatchTangential::Range::resultant(const PairMotion& motion, double dt, cons
   spring.force = follow(spring.force, slip * dt, spring.stiffness, limit, springs);
   spring.tangent = tangent;
   springs.keep(spring);
-  total.add_spring(spring.force, spring.stiffness, tangent, point, motion.between);
+  add_spring(spring.force, spring.stiffness, tangent, point, motion.between);
   if (damper == nullptr || !(law.damping.tangential > 0)) return;
   // A first look, perhaps with the memory of another run, keeps the force.
   if (dt > 0) {
@@ -353,15 +366,14 @@ void PatchTangential::Range::resultant(const PairMotion& motion, double dt, cons
     const double both = spring.force - time * spring.stiffness * slip;
     damper->tangential = std::clamp(both, -limit, limit) - spring.force;
   }
-  total.add_damping({damper->tangential * tangent, damper->tangential * cross(point, tangent),
-                     -damper->tangential * cross(point + motion.between, tangent)});
+  total_->add_damping({damper->tangential * tangent, damper->tangential * cross(point, tangent),
+                       -damper->tangential * cross(point + motion.between, tangent)});
 }
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
 void PatchTangential::Range::per_edge(const PairMotion& motion, double dt, const PairLaw& law,
-                                      SpringKey key, std::span<const Spring> before,
-                                      TangentialForce& total) {
+                                      SpringKey key, std::span<const Spring> before) {
   const double stiffness = law.friction.tangential_stiffness * all_.thickness_;
   const int edges_of_a = all_.surfaces_.shapes().view(key.a).size;
   auto old = before.begin();
@@ -377,7 +389,7 @@ void PatchTangential::Range::per_edge(const PairMotion& motion, double dt, const
                law.friction.coefficient * law.normal_stiffness * all_.thickness_ * run.force.norm(),
                springs);
     springs.keep({key, spring, stiffness, tangent, true});
-    total.add_spring(spring, stiffness, tangent, run.centre, motion.between);
+    add_spring(spring, stiffness, tangent, run.centre, motion.between);
   }
   while (old != before.end()) lost();
 }

@@ -22,29 +22,19 @@ namespace apothem {
 struct TangentialForce {
   RigidIndex a = -1, b = -1;
   PairForce all = {};
-  PairForce damping = {};                            ///< of this
-  PairForce change_of_damping = {};                  ///< in the last step
-  PairRate rate = {}, rate_before = {};              ///< in the last half step, and before it
-  BodyStiffness stiffness_a = {}, stiffness_b = {};  ///< of the springs
+  PairForce damping = {};            ///< of this
+  PairForce change_of_damping = {};  ///< in the last step
+  PairRate rate = {};                ///< in the last half step
+  double power_before = 0;           ///< of the change at the rate before that one, W
 
-  /// Adds the force of a spring at a point relative to the mass centre of a. `between`: mass centre
-  /// of a minus that of b, m.
-  void add_spring(double size, double stiffness, const Vec2& tangent, const Vec2& point,
-                  const Vec2& between) {
-    const double arm_a = cross(point, tangent), arm_b = -cross(point + between, tangent);
-    all += {size * tangent, size * arm_a, size * arm_b};
-    stiffness_a.add(stiffness, tangent, arm_a);
-    stiffness_b.add(stiffness, tangent, -arm_b);
-  }
   /// Finds what has changed since the step before, in which the pair may have touched. With dt = 0
   /// nothing has.
   void compare_with(const TangentialForce* last, const PairRate& now, double dt) {
-    rate = rate_before = now;
+    rate = now;
     if (!(dt > 0)) return;
     change_of_damping = damping;
-    if (!last) return;
-    rate_before = last->rate;
-    change_of_damping += -1 * last->damping;
+    if (last) change_of_damping += -1 * last->damping;
+    power_before = change_of_damping.power(last ? last->rate : now);
   }
   void add_damping(const PairForce& f) {
     all += f;
@@ -52,7 +42,7 @@ struct TangentialForce {
   }
   void fields(Archive& archive) {
     archive("a", a)("b", b)("all", all)("damping", damping)("change_of_damping", change_of_damping)(
-        "rate", rate)("rate_before", rate_before);
+        "rate", rate)("power_before", power_before);
   }
 };
 
@@ -63,9 +53,9 @@ class PatchTangential {
                   double thickness, int threads);
 
   /// One step further: see Kernel::slide. `touching`: the pairs in contact. Books what friction
-  /// loses.
+  /// loses, and finds how stiff the friction springs of each of these pairs hold its bodies.
   void slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
-             double dt, FrictionMemory& memory);
+             double dt, FrictionMemory& memory, std::span<PairStiffness> stiffness);
 
   /// Takes back the last slide.
   void undo_slide() {
@@ -145,14 +135,18 @@ class PatchTangential {
                                          const PairRate& rate, double dt) const;
     void resultant(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
                    const PairIntegral& patch, double force_error, Spring& spring,
-                   PatchDamper* damper, TangentialForce& total);
+                   PatchDamper* damper);
     void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
-                  std::span<const Spring> before, TangentialForce& total);
+                  std::span<const Spring> before);
+    void add_spring(double size, double stiffness, const Vec2& tangent, const Vec2& point,
+                    const Vec2& between);
 
     PatchTangential& all_;
     Place place_;      // of the next pair of the step before
     size_t last_ = 0;  // of its forces
     // Of the pair at hand.
+    TangentialForce* total_ = nullptr;
+    PairStiffness* stiffness_ = nullptr;
     std::span<const BoundaryRun> runs_;
     std::span<const PairIntegral> patches_;
     size_t ancestors_ = 0;
@@ -179,6 +173,7 @@ class PatchTangential {
   std::vector<Place> places_;  // of each touching pair, and behind the last one
   History now_, before_;
   std::vector<TangentialForce> forces_, forces_before_;
+  std::span<PairStiffness> stiffness_;  // of each touching pair, while it slides
 };
 
 }  // namespace apothem

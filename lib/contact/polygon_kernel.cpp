@@ -11,7 +11,7 @@ namespace apothem {
 namespace {
 
 // Of a touching pair, ns.
-constexpr double kLoadTime = 60, kGatherTime = 20;
+constexpr double kContactTime = 20, kLoadTime = 60, kGatherTime = 20;
 
 // What friction and damping need.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
@@ -39,29 +39,36 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
 }
 
 void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
-  for (Found& found : found_) {
-    found.touching.clear();
-    found.stiffness.clear();
-    found.contacts.clear();
-  }
+  for (Found& found : found_) found.touching.clear();
   pairs_.evaluate([&](size_t p, int worker) {
-    if (!pairs_[p].touching()) return;
-    Found& found = found_[static_cast<size_t>(worker)];
-    const auto [a, b] = pairs_.pairs()[p];
-    found.touching.push_back(static_cast<int>(p));
-    found.stiffness.push_back(stiffness(a, b));
-    found.contacts.push_back(pairs_.contact(KernelKind::polygon_kernel, p, found.stiffness.back()));
-    if (pairs_.too_deep(p)) found.contacts.back().share = 1;
+    if (pairs_[p].touching()) {
+      found_[static_cast<size_t>(worker)].touching.push_back(static_cast<int>(p));
+    }
   });
   touching_.clear();
-  contact_stiffness_.clear();
-  stiffness_.clear();
   for (const Found& found : found_) {
     touching_.insert(touching_.end(), found.touching.begin(), found.touching.end());
-    stiffness_.insert(stiffness_.end(), found.stiffness.begin(), found.stiffness.end());
-    contacts.insert(contacts.end(), found.contacts.begin(), found.contacts.end());
-    for (const Contact& contact : found.contacts) contact_stiffness_.push_back(contact.stiffness);
   }
+  find_contacts(contacts);
+}
+
+void PolygonKernel::find_contacts(std::vector<Contact>& contacts) {
+  stiffness_.resize(touching_.size());
+  contact_stiffness_.resize(touching_.size());
+  const size_t before = contacts.size();
+  contacts.resize(before + touching_.size());
+  threads_.chunks(static_cast<int>(touching_.size()), kContactTime, [&](int first, int end, int) {
+    for (int touching = first; touching < end; ++touching) {
+      const auto i = static_cast<size_t>(touching);
+      const auto p = static_cast<size_t>(touching_[i]);
+      const auto [a, b] = pairs_.pairs()[p];
+      stiffness_[i] = stiffness(a, b);
+      Contact& contact = contacts[before + i];
+      contact = pairs_.contact(KernelKind::polygon_kernel, p, stiffness_[i]);
+      if (pairs_.too_deep(p)) contact.share = 1;
+      contact_stiffness_[i] = contact.stiffness;
+    }
+  });
 }
 
 double PolygonKernel::penetration(const Contact& c, double floor) {
@@ -85,7 +92,9 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
 }
 
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  if (tangential_) tangential_->slide(pairs_, touching_, now, dt, memory);
+  if (!tangential_) return 0;
+  pair_stiffness_.resize(touching_.size());
+  tangential_->slide(pairs_, touching_, now, dt, memory, pair_stiffness_);
   return 0;  // its springs are accounted
 }
 
@@ -101,6 +110,7 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 
 void PolygonKernel::find_loads() {
   loads_.resize(touching_.size());
+  if (!tangential_) pair_stiffness_.resize(touching_.size());
   for (Found& found : found_) found.largest_force = {};
   const auto pair_of = [&](int i) { return pairs_.pairs()[static_cast<size_t>(touching_[i])]; };
   threads_.chunks(
@@ -108,9 +118,7 @@ void PolygonKernel::find_loads() {
         PairPeak& largest = found_[static_cast<size_t>(worker)].largest_force;
         for (int i = first; i < end; ++i) {
           const auto [a, b] = pair_of(i);
-          const TangentialForce* own =
-              tangential_ ? &tangential_->forces()[static_cast<size_t>(i)] : nullptr;
-          const Load& load = loads_[static_cast<size_t>(i)] = load_of(static_cast<size_t>(i), own);
+          const Load& load = loads_[static_cast<size_t>(i)] = load_of(static_cast<size_t>(i));
           const double fx = load.force.x(), fy = load.force.y();
           const double force = std::sqrt(fx * fx + fy * fy);
           if (force > largest.value) largest = {force, a, b};
@@ -123,13 +131,11 @@ void PolygonKernel::find_loads() {
 }
 
 // The displacements of both bodies add: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
-PolygonKernel::Load PolygonKernel::load_of(size_t i, const TangentialForce* springs) const {
+PolygonKernel::Load PolygonKernel::load_of(size_t i) {
   const auto p = static_cast<size_t>(touching_[i]);
   const PairIntegral& pair = pairs_[p];
   const auto [a, b] = pairs_.pairs()[p];
   const double k = stiffness_[i];
-  Load load{a, b, k * pair.force, k * pair.moment_a, k * pair.moment_b, {}, {}};
-
   const double stiffness = contact_stiffness_[i];
   const double size = pair.force.norm();
   // Of the pushes of the edges: 1 if all have one direction.
@@ -140,20 +146,19 @@ PolygonKernel::Load PolygonKernel::load_of(size_t i, const TangentialForce* spri
   const double times = surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
   // Where the resultant acts says little: boundary that is hardly inside is as stiff as any other.
   const Vec2 middle = pair.middle * tangent;
-  const auto add = [&](BodyStiffness& all, const Vec2& point, const Vec2& centre,
-                       const BodyStiffness* tangential) {
+  const auto add = [&](BodyStiffness& held, const Vec2& point, const Vec2& centre) {
     BodyStiffness sum;
     sum.add(stiffness, normal, cross(point, normal));
     sum.add(across, tangent, cross(centre, tangent));
     sum.add_rotation(stiffness * pair.breadth * pair.breadth / 12);
-    if (tangential) sum.add(*tangential, 1);
-    all.add(sum, times);
+    if (tangential_) sum.add(held, 1);
+    held = {};
+    held.add(sum, times);
   };
   const Vec2 between = surfaces_.between(a, b);
-  add(load.stiffness_a, middle, pair.centre, springs ? &springs->stiffness_a : nullptr);
-  add(load.stiffness_b, middle + between, pair.centre + between,
-      springs ? &springs->stiffness_b : nullptr);
-  return load;
+  add(pair_stiffness_[i].a, middle, pair.centre);
+  add(pair_stiffness_[i].b, middle + between, pair.centre + between);
+  return {a, b, k * pair.force, k * pair.moment_a, k * pair.moment_b};
 }
 
 void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end) {
@@ -165,14 +170,15 @@ void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidI
     f[2] += moment;
   };
   for (RigidIndex i = first; i < end; ++i) body_stiffness_[static_cast<size_t>(i)] = {};
-  for (const Load& load : loads_) {
+  for (size_t i = 0; i < loads_.size(); ++i) {
+    const Load& load = loads_[i];
     if (here(load.a)) {
       add(load.a, load.force.x(), load.force.y(), load.moment_a);
-      body_stiffness_[static_cast<size_t>(load.a)].add(load.stiffness_a, 1);
+      body_stiffness_[static_cast<size_t>(load.a)].add(pair_stiffness_[i].a, 1);
     }
     if (here(load.b)) {
       add(load.b, -load.force.x(), -load.force.y(), load.moment_b);
-      body_stiffness_[static_cast<size_t>(load.b)].add(load.stiffness_b, 1);
+      body_stiffness_[static_cast<size_t>(load.b)].add(pair_stiffness_[i].b, 1);
     }
   }
   if (tangential_) {

@@ -62,17 +62,15 @@ class PolygonKernel final : public Kernel {
     RigidIndex a, b;
     Vec2 force;                 // on a, N
     double moment_a, moment_b;  // N m
-    BodyStiffness stiffness_a, stiffness_b;
   };
   // The touching pairs that one thread has found.
   struct Found {
     std::vector<int> touching;
-    std::vector<double> stiffness;
-    std::vector<Contact> contacts;
     PairPeak largest_force;
   };
+  void find_contacts(std::vector<Contact>& contacts);
   void find_loads();
-  [[nodiscard]] Load load_of(size_t touching, const TangentialForce* springs) const;
+  Load load_of(size_t touching);
   void add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end);
   void add_rates(std::span<double> rates, double limit);
 
@@ -88,6 +86,7 @@ class PolygonKernel final : public Kernel {
   std::vector<double> stiffness_;              // k_n times the thickness of these, N/m
   std::vector<double> contact_stiffness_;      // of their contacts, N/m
   std::vector<Load> loads_;                    // of these
+  std::vector<PairStiffness> pair_stiffness_;  // of these: of springs, then also of the contacts
   std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
   std::vector<double> rate_bounds_;            // of each rigid body, 1/s^2
   PairPeak largest_force_;

@@ -86,8 +86,7 @@ double Equilibrium::ramp(double from, double until) const {
     const std::array<double, 3> b = d.motion->displacement(until);
     longest = std::max(longest, std::abs(b[axis] - a[axis]) + d.arm.norm() * std::abs(b[2] - a[2]));
   }
-  for (size_t i = 0; i < model_.bodies.size(); ++i) {
-    const RigidBody& body = model_.bodies[i];
+  for (const RigidBody& body : model_.bodies) {
     if (body.motion != Motion::prescribed) continue;
     const std::array<double, 3> a = body.history.displacement(from);
     const std::array<double, 3> b = body.history.displacement(until);
@@ -374,7 +373,7 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   const State before = state;
   const double loads_before = loads_;
   const std::vector<double> body_loads_before = body_loads_;
-  const LoadStep result = relax(state, before, time, 0, stop);
+  LoadStep result = relax(state, before, time, 0, stop);
   if (!result.complete) {
     state = before;
     loads_ = loads_before;
@@ -393,10 +392,10 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   return result;
 }
 
-void Equilibrium::settle(State& state) {
+void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   const State before = state;
   settling_ = true;
-  relax(state, before, state.time, kSlide, {});
+  if (!relax(state, before, state.time, kSlide, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
 }

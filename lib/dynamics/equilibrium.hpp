@@ -28,7 +28,7 @@ class Equilibrium {
   LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
-  void settle(State& state);
+  void settle(State& state, const std::function<bool()>& stop);
   /// The loads of the last evaluation have been there before the first load step.
   void begin_loaded() { outside_ = loads(); }
 

@@ -41,11 +41,13 @@ class Relaxation {
     }
   }
 
-  void run(const std::function<void(std::span<const double>, double)>& find_forces) {
+  void run(const std::function<void(std::span<const double>, double)>& find_forces,
+           const std::function<bool()>& stop) {
     double last = 0;  // kinetic energy of the step before
     int calm = 0;
     for (std::int64_t step = 0; calm < kCalm; ++step) {
       if (step == kMostSteps) refuse();
+      if (stop && stop()) throw Stopped();
       const double stiffest =
           lambda_.empty() ? 0 : *std::max_element(lambda_.begin(), lambda_.end());
       const double dt = kStep * std::min(limit_, stiffest > 0 ? 2 / std::sqrt(stiffest) : HUGE_VAL);
@@ -137,12 +139,13 @@ class Relaxation {
 }  // namespace
 
 void settle(const SettledStart& start,
-            const std::function<void(std::span<const double>, double)>& find_forces) {
+            const std::function<void(std::span<const double>, double)>& find_forces,
+            const std::function<bool()>& stop) {
   if (!std::isfinite(start.stability_limit)) {
     throw Unrunnable("nothing can touch anything: no body comes to rest; leave out time.start",
                      "time/start", -1);
   }
-  Relaxation(start).run(find_forces);
+  Relaxation(start).run(find_forces, stop);
 }
 
 }  // namespace apothem

@@ -21,8 +21,10 @@ struct SettledStart {
 };
 
 /// `find_forces`: fills state.f and lambda; its arguments are the velocities that friction follows
-/// over a time in s. Throws Unrunnable if a body does not come to rest.
+/// over a time in s. Throws Unrunnable if a body does not come to rest, and Stopped if `stop`,
+/// asked at each step, says so.
 void settle(const SettledStart& start,
-            const std::function<void(std::span<const double>, double)>& find_forces);
+            const std::function<void(std::span<const double>, double)>& find_forces,
+            const std::function<bool()>& stop = {});
 
 }  // namespace apothem

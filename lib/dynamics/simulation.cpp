@@ -32,7 +32,8 @@ const std::vector<double>& mass_of(const Elements* elements) {
 
 }  // namespace
 
-Simulation::Simulation(const Model& model, const TimeSettings& time, int frames, int threads)
+Simulation::Simulation(const Model& model, const TimeSettings& time, int frames, int threads,
+                       const std::function<bool()>& stop)
     : model_(model),
       own_elements_(Elements::needed(model) ? std::make_unique<Elements>(model, threads) : nullptr),
       dofs_(model, mass_of(own_elements_.get())),
@@ -57,7 +58,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   }
   try {
     find_forces(state_.v, 0);
-    if (time.settled) settle();
+    if (time.settled) settle(stop);
     add_onsets(0);
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
@@ -126,13 +127,13 @@ void Simulation::take_step() {
   dofs_.drift(state_, dt);
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
-  state_.f.swap(forces_);
+  forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.kick(state_, dt / 2);
-  if (onsets) state_.f.swap(forces_);
+  if (onsets) state_.f = forces_;
   dofs_.follow(state_);
   damp(dt / 2);
   control_->follow(state_, lambda_);
@@ -167,6 +168,18 @@ void Simulation::change_population(std::span<const BodyIndex> leave,
   add_onsets(0);
   const Impulse after = dofs_.momentum(state_);
   ledger_.refresh(state_);
+  ledger_.add_work(energies().total_error - error);
+  ledger_.add_impulse(
+      {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
+}
+
+void Simulation::set_velocities(std::span<const double> velocities) {
+  const double error = energies().total_error;
+  const Impulse momentum = dofs_.momentum(state_);
+  for (size_t c = 0; c < velocities.size(); ++c) {
+    if (dofs_.can_move(c)) state_.v[c] = velocities[c];
+  }
+  const Impulse after = dofs_.momentum(state_);
   ledger_.add_work(energies().total_error - error);
   ledger_.add_impulse(
       {after.x - momentum.x, after.y - momentum.y, after.angular - momentum.angular});
@@ -226,14 +239,14 @@ void Simulation::inherit(const ContactMemory& memory) {
   ledger_.start(state_, energies_of_terms());
 }
 
-void Simulation::settle() {
+void Simulation::settle(const std::function<bool()>& stop) {
   if (model_.deformables.empty()) {
     apothem::settle(
         {model_, dofs_, state_, lambda_, step_choice().stability},
-        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); });
+        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); }, stop);
   } else {
     try {
-      Equilibrium(model_, dofs_, terms_, kSettled).settle(state_);
+      Equilibrium(model_, dofs_, terms_, kSettled).settle(state_, stop);
     } catch (const Unstable& error) {
       throw Unrunnable(error.what(), "time/start", -1);
     }

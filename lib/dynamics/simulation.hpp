@@ -38,8 +38,10 @@ class Simulation {
  public:
   /// Throws Unrunnable if a fixed step is above the stability limit or bodies overlap too deeply.
   /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
-  /// The model must outlive this object.
-  Simulation(const Model& model, const TimeSettings& time, int frames, int threads);
+  /// The model must outlive this object. `stop`: asked again and again while the bodies settle; if
+  /// it says so, throws Stopped.
+  Simulation(const Model& model, const TimeSettings& time, int frames, int threads,
+             const std::function<bool()>& stop = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -54,6 +56,9 @@ class Simulation {
   /// Lets bodies leave, and others come with the velocities of their model. What that does to
   /// energies and momenta is booked as work and impulses from outside.
   void change_population(std::span<const BodyIndex> leave, std::span<const BodyIndex> come);
+  /// Gives all coordinates that forces can move these velocities, laid out like State::v. What that
+  /// does to energies and momenta is booked as work and impulses from outside.
+  void set_velocities(std::span<const double> velocities);
   /// Of scenes where bodies come or go; null in others.
   [[nodiscard]] const Population* population() const { return population_.get(); }
 
@@ -74,6 +79,8 @@ class Simulation {
   /// After `fields` has been loaded.
   void refresh();
 
+  /// Its vectors stay where they are in memory while the simulation lives, so that others may look
+  /// at them.
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const DegreesOfFreedom& degrees_of_freedom() const { return dofs_; }
@@ -121,7 +128,7 @@ class Simulation {
   void damp(double h);
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0);
   bool add_onsets(double dt);
-  void settle();
+  void settle(const std::function<bool()>& stop);
   void watch();
   [[nodiscard]] Energies energies_of_terms() const;
 

@@ -1,6 +1,7 @@
 // Why a run cannot begin or go on.
 #pragma once
 
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -33,6 +34,14 @@ class Unstable : public std::runtime_error {
 
  private:
   RigidIndex body_;
+};
+
+/// The search for rest at the start was asked to stop.
+class Stopped : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override {
+    return "interrupted before the start: the bodies are not at rest yet";
+  }
 };
 
 /// As in `at t = 0.5 s (step 20)`.

@@ -64,6 +64,7 @@ struct Reduction {
   std::string quantity;  ///< column of history.csv, energy.csv or momentum.csv, no unit
   Take take = Take::last;
   std::optional<double> from, until;  ///< time window, s
+  std::string unit = {};              ///< of the number; "1" if it has none
 };
 
 /// A result of a run that studies compare: a number, or whether a rule has stopped the run.
@@ -73,11 +74,20 @@ struct Measure {
   std::string stopped_by;  ///< name of a rule
 };
 
+/// What the value of an expectation rests on, by the names in scenes; in the order of Basis.
+inline constexpr std::array kBases{"theory", "code", "law", "this_program"};
+
+/// A closed form; an independent code; a law that every run obeys (conservation, balance of forces,
+/// symmetry); or a run of this program, kept to notice changes.
+enum class Basis { theory, code, law, this_program };
+
 /// A result the scene promises.
 struct Expectation : Reduction {
   double value = 0;
   double tolerance = 0;    ///< absolute, in the quantity's unit
   std::string label = {};  ///< what it is in words; may be empty
+  std::optional<Basis> basis = {};
+  std::string source = {};  ///< where the value comes from, in words; may be empty
 };
 
 }  // namespace apothem

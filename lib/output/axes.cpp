@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace apothem {
@@ -51,12 +53,27 @@ Ticks make_ticks(const Axis& axis, double low, double high, int most) {
     ticks.name += fmt::format(" {} {:.15g}", base > 0 ? "−" : "+", std::abs(base));
     if (power != 0) ticks.name += " " + axis.unit;
   }
+  if (power == 0 && axis.unit.empty()) return ticks;
   ticks.name += power == 0 ? fmt::format(" ({})", axis.unit)
                            : fmt::format(" (10{} {})", superscript(power), axis.unit);
   return ticks;
 }
 
 }  // namespace
+
+std::string time_in_words(double time) {
+  return time == 0 || time >= .1 ? fmt::format("{:.4g} s", time)
+                                 : fmt::format("{:.4g} ms", 1e3 * time);
+}
+
+std::pair<std::string, double> prefixed(const std::string& unit, double largest) {
+  static constexpr std::array kPrefixes{"n", "µ", "m", "", "k", "M", "G"};
+  constexpr int kNone = 3;  // place of the empty prefix
+  if (!(largest > 0) || unit.empty()) return {unit, 1};
+  const int power = static_cast<int>(std::floor(std::log10(largest * (1 + 1e-9)) / 3));
+  const int at = std::clamp(power + kNone, 0, static_cast<int>(kPrefixes.size()) - 1);
+  return {kPrefixes[static_cast<size_t>(at)] + unit, std::pow(10, -3 * (at - kNone))};
+}
 
 double round_step(double range, int most) {
   const double least = range / most;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apothem/geometry/polygon/point.hpp"
@@ -12,6 +13,13 @@ namespace apothem {
 /// The smallest step of 1, 2 or 5 times a power of ten that divides `range` into at most `most`
 /// parts.
 double round_step(double range, int most);
+
+/// A time in s as it stands in pictures: in ms where it is short.
+std::string time_in_words(double time);
+
+/// A unit with the metric prefix that suits values of up to `largest`, and the factor from values
+/// in `unit` to it, as ("MPa", 1e-6).
+std::pair<std::string, double> prefixed(const std::string& unit, double largest);
 
 /// The name and unit of an axis.
 struct Axis {

@@ -61,6 +61,17 @@ Colour viridis(double share) {
   return {mix(16), mix(8), mix(0)};
 }
 
+Colour okabe_ito(size_t index) {
+  static constexpr std::array<std::uint32_t, 7> kTable{0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
+                                                       0x0072b2, 0xd55e00, 0xcc79a7};
+  const std::uint32_t code = kTable[index % kTable.size()];
+  const double white = index / kTable.size() % 2 == 1 ? .5 : 0;
+  const auto part = [&](int shift) {
+    return white + (1 - white) * static_cast<double>(code >> shift & 0xff) / 255;
+  };
+  return {part(16), part(8), part(0)};
+}
+
 struct Canvas::Surface {
   PictureFormat format;
   std::string bytes;

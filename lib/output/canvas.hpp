@@ -27,6 +27,11 @@ struct Colour {
 /// look equal, also in shades of grey and to colour-blind readers.
 Colour viridis(double share);
 
+/// Colours for names rather than sizes: number `index` of those of M. Okabe and K. Ito (Color
+/// Universal Design, 2008), which colour-blind readers can tell apart. From the eighth on they
+/// repeat, lighter.
+Colour okabe_ito(size_t index);
+
 /// How a line is drawn.
 struct Pen {
   Colour colour = {0, 0, 0};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "apothem/output/files.hpp"
@@ -16,7 +17,9 @@ namespace {
 constexpr std::array kColours{"#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377"};
 
 constexpr const char* kKey = "set key above left horizontal Left reverse samplen 2.5 width 2\n";
-constexpr int kWidth = 1000;        // pixels
+constexpr int kWidth = 1000;         // pixels
+constexpr size_t kMostInColumn = 6;  // panels; more stand in several columns
+constexpr int kColumns = 3, kColumnWidth = 560;
 constexpr int kPanelHeight = 330;   // of one of several panels, pixels
 constexpr int kSingleHeight = 560;  // of a single panel, pixels
 
@@ -97,6 +100,24 @@ std::string x_tics(const CurvePanel& panel) {
   return fmt::format("set xtics {}({})\n", characters > kFit ? "rotate by 50 right " : "", names);
 }
 
+// Numbers along y with as many digits as tell them apart.
+std::string y_format(const CurvePanel& panel) {
+  constexpr int kUsual = 6, kMost = 15;
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const Curve& curve : panel.curves) {
+    for (const double y : curve.y) {
+      if (std::isfinite(y)) least = std::min(least, y), most = std::max(most, y);
+    }
+  }
+  int digits = kUsual;
+  if (most > least) {
+    const double ratio = std::max(std::abs(least), std::abs(most)) / (most - least);
+    digits = std::clamp(static_cast<int>(std::ceil(std::log10(ratio))) + 3, kUsual, kMost);
+  }
+  if (digits > kUsual) return fmt::format("set format y '%.{}g'\n", digits);
+  return has_bars(panel) ? "set format y '%g'\n" : "set format y\n";
+}
+
 std::string log_scales(const CurvePanel& panel) {
   if (!panel.x_logarithmic && !panel.y_logarithmic) return "";
   return fmt::format("set logscale {}{}\n", panel.x_logarithmic ? "x" : "",
@@ -106,7 +127,10 @@ std::string log_scales(const CurvePanel& panel) {
 std::string plot_script(const CurveFigure& figure,
                         const std::vector<std::vector<std::string>>& files) {
   const size_t panels = figure.panels.size();
-  const int height = panels == 1 ? kSingleHeight : kPanelHeight * static_cast<int>(panels) + 60;
+  const int columns = panels > kMostInColumn ? kColumns : 1;
+  const int rows = (static_cast<int>(panels) + columns - 1) / columns;
+  const int width = columns > 1 ? columns * kColumnWidth : kWidth;
+  const int height = panels == 1 ? kSingleHeight : kPanelHeight * rows + 60;
   std::string script = fmt::format(R"gp(# gnuplot -e "output='picture.svg'" picture.gnuplot
 if (!exists("output")) output = 'picture.png'
 if (strstrt(output, '.svg') > 0) {{
@@ -121,9 +145,9 @@ set border 3
 set tics nomirror
 set lmargin 13
 set rmargin 4
-set multiplot layout {2},1 title {3}."\n " font ',14'
+set multiplot layout {2},{3} title {4}."\n " font ',14'
 )gp",
-                                   kWidth, height, panels, quoted(figure.title));
+                                   width, height, rows, columns, quoted(figure.title));
   for (size_t p = 0; p < panels; ++p) {
     const CurvePanel& panel = figure.panels[p];
     // The key of a panel is left out if it would repeat the one above.
@@ -134,8 +158,8 @@ set multiplot layout {2},1 title {3}."\n " font ',14'
     script += x_tics(panel) + log_scales(panel);
     // Bars at the ends of the axes need room, and small values all their digits.
     script += has_bars(panel) ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
-                                "set format y '%g'\n"
-                              : "unset offsets\nset format y\n";
+                              : "unset offsets\n";
+    script += y_format(panel);
     script += fmt::format("plot {} {}", range(panel.x_range), range(panel.y_range));
     for (size_t c = 0; c < panel.curves.size(); ++c) {
       const Curve& curve = panel.curves[c];

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -21,7 +22,19 @@ std::pair<long, long> lattice_cell(const Vec2& p, const Vec2& start, const Vec2&
 }
 
 FieldSample node_sample(const Frame& frame, int node) {
-  return {{}, frame.displacement[node], frame.velocity[node]};
+  FieldSample sample;
+  sample.displacement = frame.displacement[node];
+  sample.velocity = frame.velocity[node];
+  return sample;
+}
+
+// Of an element, or of the rigid body that it is.
+FieldSample element_sample(const Frame& frame, int element) {
+  FieldSample sample;
+  sample.body = &frame.body_of(element);
+  sample.stress = sample.body->meshed ? frame.stress[element] : sample.body->mean_stress;
+  sample.material = frame.material[element];
+  return sample;
 }
 
 // Adds `weight` times the stress and the mean displacement and velocity of an element.
@@ -38,19 +51,33 @@ void add(FieldSample& sum, const Frame& frame, int element, double weight) {
 
 }  // namespace
 
-Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid) {
+const FieldQuantity* field_quantity(const std::string& name) {
+  for (const FieldQuantity& quantity : kFieldQuantities) {
+    if (quantity.name == name) return &quantity;
+  }
+  return nullptr;
+}
+
+bool has_value(const FrameBody& body, FieldKind kind, bool rigid_only) {
+  if (kind == FieldKind::category) return true;
+  if (body.motion == Motion::fixed) return false;
+  if (kind == FieldKind::stress_of_elements) return body.meshed;
+  return kind != FieldKind::stress || body.meshed || rigid_only;
+}
+
+Field field_of(const Frame& frame, const FieldQuantity& quantity) {
   Field field;
   field.mesh = frame.mesh;
-  field.nodal = quantity.nodal;
-  for (size_t i = 0; i < field.mesh.nodes.size(); ++i) {
-    field.mesh.nodes[i] += frame.displacement[i];
-    if (quantity.nodal) {
-      field.values.push_back(quantity.value(node_sample(frame, static_cast<int>(i))));
-    }
+  field.mesh.nodes = frame.position;
+  field.nodal = quantity.kind == FieldKind::node;
+  if (quantity.kind == FieldKind::category) field.names = frame.material_names;
+  const bool rigid_only = all_rigid(frame);
+  for (int e = 0; e < frame.mesh.element_count(); ++e) {
+    field.blank.push_back(!has_value(frame.body_of(e), quantity.kind, rigid_only));
+    if (!field.nodal) field.values.push_back(quantity.value(element_sample(frame, e)));
   }
-  for (size_t e = 0; e < frame.body.size(); ++e) {
-    field.blank.push_back(!quantity.nodal && frame.body[e] < rigid);
-    if (!quantity.nodal) field.values.push_back(quantity.value({frame.stress[e]}));
+  for (size_t i = 0; field.nodal && i < frame.position.size(); ++i) {
+    field.values.push_back(quantity.value(node_sample(frame, static_cast<int>(i))));
   }
   return field;
 }
@@ -98,7 +125,7 @@ Field field_of(const CellTable& cells) {
   return field;
 }
 
-FieldError field_error(const Frame& frame, const FieldQuantity& quantity, int rigid,
+FieldError field_error(const Frame& frame, const FieldQuantity& quantity,
                        const CellTable& reference) {
   struct Sum {
     FieldSample sample;
@@ -109,7 +136,7 @@ FieldError field_error(const Frame& frame, const FieldQuantity& quantity, int ri
     return lattice_cell(p, reference.centres[0], reference.size);
   };
   for (int e = 0; e < frame.mesh.element_count(); ++e) {
-    if (frame.body[e] < rigid) continue;
+    if (!frame.body_of(e).meshed) continue;
     const std::span<const int> nodes = frame.mesh.element(e);
     Vec2 middle = Vec2::Zero();
     for (const int node : nodes) middle += frame.mesh.nodes[node];

@@ -5,54 +5,73 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
+#include "apothem/output/run_folder.hpp"
 
 namespace apothem {
 
-/// The values from which a quantity is computed: those of a cell or of a node.
+/// The values from which a quantity is computed: those of an element, a node or a body.
 struct FieldSample {
-  CauchyStress stress = {};                                   ///< of a cell, Pa
+  CauchyStress stress = {};  ///< of an element, or mean of a body, Pa
   Vec2 displacement = Vec2::Zero(), velocity = Vec2::Zero();  ///< of a node, m and m/s
+  const FrameBody* body = nullptr;                            ///< of an element
+  int material = 0;                                           ///< of an element
 };
+
+/// What has one value of a quantity each: nodes; elements and, where all bodies are rigid, bodies;
+/// elements only; bodies. A category is a number of an element that is a name, not a size.
+enum class FieldKind { node, stress, stress_of_elements, body, category };
 
 /// A quantity that can be shown as a field.
 struct FieldQuantity {
   const char* name;     ///< also the name of the column of tracked points in histories
   const char* meaning;  ///< description in words
   const char* symbol;   ///< symbol in pictures
-  const char* unit;
-  bool nodal;  ///< whether values belong to nodes, not to cells
+  const char* unit;     ///< empty for a plain number
+  FieldKind kind;
   double (*value)(const FieldSample&);
 };
 /// All quantities.
 inline constexpr std::array kFieldQuantities{
-    FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", false,
-                  [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
-    FieldQuantity{"s2", "minor principal stress", "σ₂", "Pa", false,
-                  [](const FieldSample& s) { return principal_stresses(s.stress)[1]; }},
-    FieldQuantity{"sxx", "stress xx", "σxx", "Pa", false,
-                  [](const FieldSample& s) { return s.stress.xx; }},
-    FieldQuantity{"syy", "stress yy", "σyy", "Pa", false,
-                  [](const FieldSample& s) { return s.stress.yy; }},
-    FieldQuantity{"sxy", "stress xy", "σxy", "Pa", false,
-                  [](const FieldSample& s) { return s.stress.xy; }},
-    FieldQuantity{"szz", "stress zz", "σzz", "Pa", false,
-                  [](const FieldSample& s) { return s.stress.zz; }},
-    FieldQuantity{"von_mises", "von Mises stress", "σᵥ", "Pa", false,
-                  [](const FieldSample& s) { return von_mises(s.stress); }},
-    FieldQuantity{"ux", "displacement along x", "ux", "m", true,
-                  [](const FieldSample& s) { return s.displacement.x(); }},
-    FieldQuantity{"uy", "displacement along y", "uy", "m", true,
-                  [](const FieldSample& s) { return s.displacement.y(); }},
-    FieldQuantity{"u", "displacement", "|u|", "m", true,
-                  [](const FieldSample& s) { return s.displacement.norm(); }},
-    FieldQuantity{"vx", "velocity along x", "vx", "m/s", true,
+    FieldQuantity{"speed", "speed", "|v|", "m/s", FieldKind::node,
+                  [](const FieldSample& s) { return s.velocity.norm(); }},
+    FieldQuantity{"vx", "velocity along x", "vx", "m/s", FieldKind::node,
                   [](const FieldSample& s) { return s.velocity.x(); }},
-    FieldQuantity{"vy", "velocity along y", "vy", "m/s", true,
+    FieldQuantity{"vy", "velocity along y", "vy", "m/s", FieldKind::node,
                   [](const FieldSample& s) { return s.velocity.y(); }},
-    FieldQuantity{"v", "speed", "|v|", "m/s", true,
-                  [](const FieldSample& s) { return s.velocity.norm(); }}};
+    FieldQuantity{"u", "displacement", "|u|", "m", FieldKind::node,
+                  [](const FieldSample& s) { return s.displacement.norm(); }},
+    FieldQuantity{"ux", "displacement along x", "ux", "m", FieldKind::node,
+                  [](const FieldSample& s) { return s.displacement.x(); }},
+    FieldQuantity{"uy", "displacement along y", "uy", "m", FieldKind::node,
+                  [](const FieldSample& s) { return s.displacement.y(); }},
+    FieldQuantity{"rotation", "rotation since the start", "θ", "rad", FieldKind::body,
+                  [](const FieldSample& s) { return s.body->rotation; }},
+    FieldQuantity{"spin", "angular velocity", "ω", "rad/s", FieldKind::body,
+                  [](const FieldSample& s) { return s.body->spin; }},
+    FieldQuantity{"coordination", "number of bodies in contact with a body", "Z", "",
+                  FieldKind::body, [](const FieldSample& s) { return 1. * s.body->coordination; }},
+    FieldQuantity{"material", "material", "", "", FieldKind::category,
+                  [](const FieldSample& s) { return 1. * s.material; }},
+    FieldQuantity{"pressure", "pressure, −(σ₁ + σ₂)/2", "p", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return -(s.stress.xx + s.stress.yy) / 2; }},
+    FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
+    FieldQuantity{"s2", "minor principal stress", "σ₂", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return principal_stresses(s.stress)[1]; }},
+    FieldQuantity{"sxx", "stress xx", "σxx", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return s.stress.xx; }},
+    FieldQuantity{"syy", "stress yy", "σyy", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return s.stress.yy; }},
+    FieldQuantity{"sxy", "stress xy", "σxy", "Pa", FieldKind::stress,
+                  [](const FieldSample& s) { return s.stress.xy; }},
+    FieldQuantity{"szz", "stress zz", "σzz", "Pa", FieldKind::stress_of_elements,
+                  [](const FieldSample& s) { return s.stress.zz; }},
+    FieldQuantity{"von_mises", "von Mises stress", "σᵥ", "Pa", FieldKind::stress_of_elements,
+                  [](const FieldSample& s) { return von_mises(s.stress); }}};
+
+/// The quantity of that name, or null.
+const FieldQuantity* field_quantity(const std::string& name);
 
 /// A field: a mesh with one value per node or per cell.
 struct Field {
@@ -60,11 +79,17 @@ struct Field {
   bool nodal = false;          ///< whether values belong to nodes, not to cells
   std::vector<double> values;  ///< one per node if `nodal`, otherwise one per cell
   std::vector<bool> blank;     ///< one per cell: no value, like the stress of a rigid body
+  /// Of the values 0, 1 and so on of a category; empty: the values are numbers.
+  std::vector<std::string> names = {};
 };
 
-/// The field of a quantity in a frame. The first `rigid` bodies of the frame are rigid and have no
-/// stress.
-Field field_of(const Frame& frame, const FieldQuantity& quantity, int rigid);
+/// Whether a body has values of that kind in a scene where, if `rigid_only`, no body is of finite
+/// elements. Bodies that are fixed have none, except of a category; and rigid bodies have no
+/// stress, unless all bodies are rigid: then each has its mean stress.
+bool has_value(const FrameBody& body, FieldKind kind, bool rigid_only);
+
+/// The field of a quantity in a frame. What has no value is blank.
+Field field_of(const Frame& frame, const FieldQuantity& quantity);
 
 /// A table of values in rectangular cells of the same size, one per row.
 struct CellTable {
@@ -88,9 +113,9 @@ struct FieldError {
 };
 /// Compares the quantity of each cell's mean stress, displacement and velocity with the table. The
 /// means are taken over the elements whose centroid lay in the cell before the run, weighted with
-/// their areas before the run. The first `rigid` bodies are left out. Throws std::runtime_error if
-/// a cell contains no element.
-FieldError field_error(const Frame& frame, const FieldQuantity& quantity, int rigid,
+/// their areas before the run. Rigid bodies are left out. Throws std::runtime_error if a cell
+/// contains no element.
+FieldError field_error(const Frame& frame, const FieldQuantity& quantity,
                        const CellTable& reference);
 
 }  // namespace apothem

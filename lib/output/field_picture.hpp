@@ -2,6 +2,7 @@
 // interpolated), with axes and one colour scale per panel.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +12,12 @@
 
 namespace apothem {
 
-/// A field with its caption.
+/// A field with its caption, and what is drawn over it.
 struct ShownField {
   std::string label;
   Field field;
+  std::vector<ForceChain> chains = {};
+  std::vector<Rose> roses = {};
 };
 
 /// Fields of one quantity, drawn with the same window and colour scale.
@@ -38,6 +41,11 @@ struct FieldFigure {
 /// The picture as the bytes of a file. Also in an SVG the colours are pixels, so that its size does
 /// not grow with the mesh; everything else in it is vectors. Throws as Canvas::finish does.
 std::string draw_fields(const FieldFigure& figure, PictureFormat format);
+
+/// The fields of the first panel as pictures of their own, PNG files of the same size, whose
+/// window, colour scale and widths of chains are those of all of them. Each is given to `take`.
+/// Throws as Canvas::finish does.
+void draw_each(const FieldFigure& figure, const std::function<void(std::string)>& take);
 
 /// Writes fields.png and fields.svg into the folder, which is created if necessary. Throws
 /// SystemFailure.

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -22,10 +23,39 @@ int write_all(int descriptor, std::string_view bytes) {
   return 0;
 }
 
+// What would help, as the end of a message.
+const char* remedy(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+      return "; make room, or choose another disk";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "; choose a folder that you may write to";
+    case ENOENT:
+    case ENOTDIR:
+      return "; choose a folder that can be made";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 SystemFailure::SystemFailure(const std::string& file, int error_number)
-    : std::runtime_error(file + ": cannot be written: " + std::strerror(error_number)) {}
+    : std::runtime_error(file + ": cannot be written: " + std::strerror(error_number) +
+                         remedy(error_number)) {}
+
+TemporaryFolder::TemporaryFolder()
+    : path_((std::filesystem::temp_directory_path() / "apothem-XXXXXX").string()) {
+  if (!::mkdtemp(path_.data())) throw SystemFailure(path_, errno);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
 
 void create_folder(const std::string& folder) {
   std::error_code error;

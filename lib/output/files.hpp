@@ -21,6 +21,20 @@ class SystemFailure : public std::runtime_error {
 /// Creates a folder and its parents, unless they exist. Throws SystemFailure.
 void create_folder(const std::string& folder);
 
+/// A new folder among the temporary files, for this user alone, which is gone at the end.
+class TemporaryFolder {
+ public:
+  /// Throws SystemFailure.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 /// Writes a temporary file beside `file` and then renames it, so that an older file is replaced at
 /// once. Throws SystemFailure; the older file is then intact.
 void write_file(const std::string& file, std::string_view content);

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kSectors = 36;
 
 // What a rose shows.
-struct Rose {
+struct RoseCounts {
   std::array<double, kSectors> count{}, force{};
   double contacts = 0, all_force = 0;
 
@@ -41,8 +41,8 @@ struct Rose {
   }
 };
 
-Rose rose_of(const Region& region, const std::vector<ContactRecord>& contacts) {
-  Rose rose;
+RoseCounts rose_of(const Region& region, const std::vector<ContactRecord>& contacts) {
+  RoseCounts rose;
   for (const ContactRecord& c : contacts) {
     if (region.contains(c.point) && c.normal.norm() > 0) rose.add(c.normal);
   }
@@ -103,7 +103,7 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
     }
     const Vec2 middle = Vec2((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2) + model.origin;
     const double unit = std::sqrt(region.area) / 4;
-    const Rose rose = rose_of(region, frame.contacts);
+    const RoseCounts rose = rose_of(region, frame.contacts);
     const vtkIdType first = points->GetNumberOfPoints();
     cells->InsertNextCell(2 * static_cast<int>(kSectors) + 1);
     for (size_t s = 0; s < kSectors; ++s) {

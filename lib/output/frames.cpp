@@ -4,16 +4,12 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
-#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLDataElement.h>
-#include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUtilities.h>
 
 #include <array>
 #include <cmath>
@@ -137,6 +133,9 @@ class BodyGrid {
     grid->GetPointData()->AddArray(velocity_);
     for (vtkDataArray* array : of_cells()) grid->GetCellData()->AddArray(array);
     add_time(grid, frame_.state.time);
+    vtkNew<vtkIntArray> rigid = integers("rigid_bodies");
+    rigid->InsertNextValue(static_cast<int>(model_.bodies.size()));
+    grid->GetFieldData()->AddArray(rigid);
     add_names(grid, "body_names", model_.bodies.size() + model_.deformables.size(),
               [&](size_t i) { return model_.name_of(static_cast<BodyIndex>(i)); });
     add_names(grid, "material_names", model_.materials.size(),
@@ -162,7 +161,7 @@ class BodyGrid {
 
   // The arrays that have a value for each cell, but those of stresses in deformable bodies.
   std::vector<vtkDataArray*> of_cells() {
-    std::vector<vtkDataArray*> arrays{body_, part_,  material_,     rotation_,
+    std::vector<vtkDataArray*> arrays{body_, part_,  material_,     motion_,     rotation_,
                                       spin_, force_, coordination_, mean_stress_};
     for (const auto& [quantity, array] : quantities_) arrays.push_back(array);
     return arrays;
@@ -179,11 +178,10 @@ class BodyGrid {
       add_point(centre + arm, u, v.head<2>() + cross(v[2], arm));
       if (!model_.deformables.empty()) of_points_.add({});
     }
-    const auto f = frame_.state.force(i);
     const BodyMotion of_body = motion(i);
     const auto add = [&](size_t part, const auto& corners) {
       add_corners(corners, [&](int corner) { return first + corner; });
-      add_cell(i, part, body.material, x[2] - body.angle, v[2], f.head<2>(), {}, of_body);
+      add_cell(i, part, body.material, body.motion, x[2] - body.angle, {}, of_body);
     };
     const auto several = rigid_cells_.find(i);
     if (several == rigid_cells_.end()) {
@@ -213,7 +211,7 @@ class BodyGrid {
       const Cells cells = convex_cells(ring);
       for (size_t part = 0; part < cells.size(); ++part) {
         add_corners(cells[part], [&](int corner) { return first + nodes[corner]; });
-        add_cell(b, part, body.material_of(e), 0, 0, Vec2::Zero(), stress[e], of_body);
+        add_cell(b, part, body.material_of(e), Motion::free, of_body.angle, stress[e], of_body);
       }
     }
   }
@@ -235,14 +233,15 @@ class BodyGrid {
     points_->InsertNextPoint(p.x(), p.y(), 0);
   }
 
-  void add_cell(BodyIndex body, size_t part, MaterialIndex material, double rotation, double spin,
-                const Vec2& force, const CauchyStress& stress, const BodyMotion& of_body) {
+  void add_cell(BodyIndex body, size_t part, MaterialIndex material, Motion motion, double rotation,
+                const CauchyStress& stress, const BodyMotion& of_body) {
     body_->InsertNextValue(body);
     part_->InsertNextValue(static_cast<int>(part));
     material_->InsertNextValue(material);
+    motion_->InsertNextValue(static_cast<int>(motion));
     rotation_->InsertNextValue(rotation);
-    spin_->InsertNextValue(spin);
-    force_->InsertNextTuple3(force.x(), force.y(), 0);
+    spin_->InsertNextValue(of_body.spin);
+    force_->InsertNextTuple3(of_body.contact.fx, of_body.contact.fy, 0);
     if (!model_.deformables.empty()) of_cells_.add(stress);
     const BodyStatistics own =
         frame_.bodies.empty() ? BodyStatistics() : frame_.bodies[static_cast<size_t>(body)];
@@ -261,6 +260,7 @@ class BodyGrid {
   vtkNew<vtkIntArray> body_ = integers("body");
   vtkNew<vtkIntArray> part_ = integers("part");
   vtkNew<vtkIntArray> material_ = integers("material");
+  vtkNew<vtkIntArray> motion_ = integers("motion");  // as the enumeration Motion counts
   vtkNew<vtkDoubleArray> displacement_ = doubles("displacement", 3);
   vtkNew<vtkDoubleArray> velocity_ = doubles("velocity", 3);
   vtkNew<vtkDoubleArray> rotation_ = doubles("rotation", 1);

@@ -1,4 +1,4 @@
-// Writes and reads the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
+// Writes the VTK time series of a run, for ParaView: frames.pvd with one .vtu file per
 // frame for the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact
 // patches, chains.pvd for the lines along which they carry force, roses.pvd for the directions of
 // contacts in regions, and surfaces.pvd for the boundaries of bodies that are in contact with
@@ -54,26 +54,6 @@ class FrameWriter {
   std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes
   std::vector<double> times_;
 };
-
-/// The bodies in one frame: a mesh in which each rigid body is one cell, and each finite element of
-/// a deformable body another one.
-struct Frame {
-  double time = 0;                 ///< s
-  Mesh mesh;                       ///< configuration before the run, m
-  std::vector<Vec2> displacement;  ///< of each node, m
-  std::vector<Vec2> velocity;      ///< of each node, m/s
-  /// Stress of each cell, without energy density; zero for rigid bodies.
-  std::vector<CauchyStress> stress;
-  std::vector<int> body;  ///< body of each cell; rigid bodies come first
-};
-
-/// The first frame not before `time` and not after `latest` (s) in a folder of results. Throws
-/// std::runtime_error if there is none or if it cannot be read.
-Frame read_frame(const std::string& folder, double time, double latest);
-
-/// The pressure and traction on the boundaries of bodies in contact with meshes, in the frame that
-/// read_frame would read. Throws as read_frame does.
-std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest);
 
 /// Writes a tiling as a .vtu file of convex polygons with shared points, with the cell data `cell`
 /// (index), `part` (of a cell that is not convex) and `area` (of the whole cell, m^2). Throws

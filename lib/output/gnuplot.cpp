@@ -7,8 +7,23 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
 
 namespace apothem {
+namespace {
+
+// Gnuplot does not tell that the disk was full.
+bool is_complete(const std::filesystem::path& picture, bool svg) {
+  std::ifstream stream(picture, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(stream), {}};
+  while (svg && !content.empty() && content.back() == '\n') content.pop_back();
+  constexpr std::string_view kEndOfPng("IEND\xae\x42\x60\x82", 8);
+  return content.ends_with(svg ? "</svg>" : kEndOfPng);
+}
+
+}  // namespace
 
 Plotted plot_with_gnuplot(const std::string& folder, const std::string& script,
                           const std::string& picture) {
@@ -31,7 +46,8 @@ Plotted plot_with_gnuplot(const std::string& folder, const std::string& script,
   }
   const std::filesystem::path where(folder);
   std::error_code failure;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 &&
+      is_complete(where / partial, picture.ends_with(".svg"))) {
     std::filesystem::rename(where / partial, where / picture, failure);
     if (!failure) return Plotted::yes;
   }

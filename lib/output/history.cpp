@@ -145,10 +145,14 @@ HistoryTable read_history(const std::string& file) {
   HistoryTable table;
   std::istringstream head(line);
   for (std::string cell; std::getline(head, cell, ',');) {
-    table.names.push_back(cell.substr(0, cell.find(" [")));
+    const size_t unit = cell.find(" [");
+    table.names.push_back(cell.substr(0, unit));
+    table.units.push_back(
+        unit == std::string::npos ? "" : cell.substr(unit + 2, cell.rfind(']') - unit - 2));
   }
   table.columns.resize(table.names.size());
-  for (int number = 2; std::getline(stream, line); ++number) {
+  if (table.names.empty()) throw std::runtime_error(file + ": has no names of columns");
+  for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
     const char* at = line.data();
     const char* const end = at + line.size();
     for (std::vector<double>& column : table.columns) {

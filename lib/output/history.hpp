@@ -62,12 +62,13 @@ class HistoryWriter {
 struct HistoryTable {
   std::vector<std::string> names;            ///< column names, without units
   std::vector<std::vector<double>> columns;  ///< one per name
+  std::vector<std::string> units = {};       ///< one per name; empty where the header has none
   /// The column with that name, or null if there is none.
   [[nodiscard]] const std::vector<double>* column(const std::string& name) const;
 };
 
-/// Reads a history file. Throws std::runtime_error, which names the file and line, if it is not
-/// such a table.
+/// Reads a history file. A last row that is still being written, and so has no line break, is left
+/// out. Throws std::runtime_error, which names the file and line, if it is not such a table.
 HistoryTable read_history(const std::string& file);
 
 /// The history files in a folder of results.

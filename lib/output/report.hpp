@@ -2,8 +2,11 @@
 // references. It can be read without a network.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "apothem/model/settings.hpp"
 
 namespace apothem {
 
@@ -11,9 +14,12 @@ namespace apothem {
 struct ReportNumber {
   std::string scene;  ///< name of the scene
   std::string what;   ///< description of the number
+  std::string unit;   ///< "1" if it has none
   double reference = 0, value = 0;
-  double tolerance = 0;  ///< allowed absolute difference
-  bool met = false;      ///< whether the value is within the tolerance
+  double tolerance = 0;             ///< allowed absolute difference
+  bool met = false;                 ///< whether the value is within the tolerance
+  std::optional<Basis> basis = {};  ///< what the reference rests on, if it is stated
+  std::string source = {};          ///< where the reference comes from; may be empty
 };
 
 /// A figure with its numbers.
@@ -27,8 +33,17 @@ struct ReportFigure {
   std::vector<ReportNumber> numbers;
 };
 
-/// Writes the report to `file`; `made_by` names the program. Throws SystemFailure.
-void write_report(const std::string& file, const std::string& title, const std::string& made_by,
+/// What stands above the figures of a report.
+struct ReportHead {
+  std::string title;
+  std::string about;     ///< HTML that stands below the title
+  std::string made_by;   ///< names the program
+  std::string left_out;  ///< HTML about figures that are not in the report; may be empty
+};
+
+/// Writes the report to `file`. The numbers of a figure stand in one table for each basis. Throws
+/// SystemFailure.
+void write_report(const std::string& file, const ReportHead& head,
                   const std::vector<ReportFigure>& figures);
 
 }  // namespace apothem

@@ -27,17 +27,25 @@ void require_fitting(const Simulation& simulation, const RunProgress& progress) 
   if (!(simulation.step_size() > 0)) throw ArchiveMismatch("step_size");
 }
 
-// Calls load(archive) for the checkpoint in a folder.
+// Where a scene comes from that a state was written with.
+struct SavedScene {
+  std::string file, text;
+  void fields(Archive& archive) { archive("file", file)("text", text); }
+};
+
+// Calls load(archive) for the file of a state.
 template <class Load>
-void with_checkpoint(const std::string& folder, const Load& load) {
-  const std::string name = state_file(folder, StateFile::checkpoint);
+void with_state(const std::string& name, const Load& load) {
   std::error_code error_code;
   if (!std::filesystem::exists(name, error_code)) {
-    const bool ended = std::filesystem::exists(state_file(folder, StateFile::final), error_code);
+    const std::string folder = std::filesystem::path(name).parent_path().string();
+    const bool ended = name == state_file(folder, StateFile::checkpoint) &&
+                       std::filesystem::exists(state_file(folder, StateFile::final), error_code);
     throw SceneError(name, 0, "",
                      ended ? "the run has ended, so there is no checkpoint to resume from; give "
                              "--overwrite in place of --resume to run it anew"
-                           : "there is no checkpoint to resume from; run without --resume");
+                           : "there is no checkpoint to resume from; run without --resume, and "
+                             "with --overwrite where there are results");
   }
   try {
     const nlohmann::json json = nlohmann::json::parse(read_text(name));
@@ -56,13 +64,17 @@ std::string state_file(const std::string& folder, StateFile kind) {
   return folder + (kind == StateFile::final ? "/final.json" : "/checkpoint.json");
 }
 
-void write_state(const std::string& folder, StateFile kind, const Scene& scene,
-                 const std::string& scene_hash, Simulation& simulation, RunProgress& progress) {
+void write_state(const std::string& file, const Scene& scene, const std::string& scene_hash,
+                 Simulation& simulation, RunProgress& progress, bool with_scene) {
   std::string hash = scene_hash;
   std::vector<Setting> settings = scene.settings;
   ModelRecord record = record_of(simulation);
-  write_file(state_file(folder, kind), [&](const auto& sink) {
+  write_file(file, [&](const auto& sink) {
     JsonWriter archive(sink);
+    if (with_scene) {
+      SavedScene saved{std::filesystem::absolute(scene.file).string(), scene.text};
+      archive("scene", saved);
+    }
     archive("scene_hash", hash)("settings", settings)("model", record)("progress", progress)(
         "simulation", simulation);
     archive.finish();
@@ -70,25 +82,33 @@ void write_state(const std::string& folder, StateFile kind, const Scene& scene,
   });
 }
 
-RunProgress read_progress(const std::string& folder) {
+RunProgress read_progress(const std::string& file) {
   RunProgress progress;
-  with_checkpoint(folder, [&](Archive& archive) { archive("progress", progress); });
+  with_state(file, [&](Archive& archive) { archive("progress", progress); });
   return progress;
 }
 
 std::vector<Setting> settings_of_checkpoint(const std::string& folder) {
   std::vector<Setting> settings;
-  with_checkpoint(folder, [&](Archive& archive) { archive("settings", settings); });
+  with_state(state_file(folder, StateFile::checkpoint),
+             [&](Archive& archive) { archive("settings", settings); });
   return settings;
 }
 
-void read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                     Simulation& simulation, RunProgress& progress) {
-  with_checkpoint(folder, [&](Archive& archive) {
+Scene read_saved_scene(const std::string& file) {
+  SavedScene saved;
+  std::vector<Setting> settings;
+  with_state(file, [&](Archive& archive) { archive("scene", saved)("settings", settings); });
+  return read_scene_text(std::move(saved.text), saved.file, settings);
+}
+
+void read_state(const std::string& file, const std::string& scene_hash, Simulation& simulation,
+                RunProgress& progress) {
+  with_state(file, [&](Archive& archive) {
     std::string hash;
     archive("scene_hash", hash);
     if (hash != scene_hash) {
-      throw SceneError(state_file(folder, StateFile::checkpoint), 0, "",
+      throw SceneError(file, 0, "",
                        "belongs to another scene, or the scene or its settings have been changed; "
                        "run it anew");
     }
@@ -96,6 +116,9 @@ void read_checkpoint(const std::string& folder, const std::string& scene_hash,
     require_fitting(simulation, progress);
   });
   simulation.refresh();
+}
+
+void require_histories(const std::string& folder, const RunProgress& progress) {
   for (size_t i = 0; i < kHistoryFiles.size(); ++i) {
     const std::string history = folder + "/" + kHistoryFiles[i];
     std::error_code error_code;

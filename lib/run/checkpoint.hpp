@@ -22,6 +22,13 @@ struct Beginning {
   void fields(Archive& archive) { archive("folder", folder)("time", time)("bodies", bodies); }
 };
 
+/// A force that a program has added to a run.
+struct AddedForce {
+  std::string name;
+  void fields(Archive& archive) { archive("name", name); }
+  bool operator==(const AddedForce&) const = default;
+};
+
 /// What a run keeps besides its simulation.
 struct RunProgress {
   std::vector<double> history_sizes = std::vector<double>(kHistoryFiles.size());  ///< bytes
@@ -29,12 +36,13 @@ struct RunProgress {
   std::int64_t next_row = 1, next_frame = 1;
   std::vector<LoadStep> load_steps;  ///< of static runs
   Beginning beginning;
+  std::vector<AddedForce> forces;
   StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
 
   void fields(Archive& archive) {
     archive.sized("history_sizes", history_sizes);
     archive("frame_times", frame_times)("next_row", next_row)("next_frame", next_frame)(
-        "load_steps", load_steps)("beginning", beginning);
+        "load_steps", load_steps)("beginning", beginning)("forces", forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };
@@ -42,20 +50,26 @@ struct RunProgress {
 enum class StateFile { checkpoint, final };
 std::string state_file(const std::string& folder, StateFile kind);
 
-/// Throws SystemFailure; an older file is then intact.
-void write_state(const std::string& folder, StateFile kind, const Scene& scene,
-                 const std::string& scene_hash, Simulation& simulation, RunProgress& progress);
+/// Writes a state to a file, and the text of the scene as well if asked to. Throws SystemFailure;
+/// an older file is then intact.
+void write_state(const std::string& file, const Scene& scene, const std::string& scene_hash,
+                 Simulation& simulation, RunProgress& progress, bool with_scene = false);
 
-/// What the checkpoint in a folder says about the run, before there is a simulation. Throws
-/// SceneError if there is no checkpoint, or if it is damaged.
-RunProgress read_progress(const std::string& folder);
-/// The settings of the run that has left the checkpoint. Throws as read_progress().
+/// What the file of a state says about the run, before there is a simulation. Throws SceneError if
+/// there is none, or if it is damaged.
+RunProgress read_progress(const std::string& file);
+/// The settings of the run that has left the checkpoint in a folder. Throws as read_progress().
 std::vector<Setting> settings_of_checkpoint(const std::string& folder);
+/// The scene of a state that was written with its scene. Throws as read_progress(), and as
+/// read_scene().
+Scene read_saved_scene(const std::string& file);
 
-/// Loads a simulation and what belongs to it. Throws SceneError if there is no checkpoint, if it is
-/// damaged or belongs to another scene, or if the histories it continues are not there any more.
-void read_checkpoint(const std::string& folder, const std::string& scene_hash,
-                     Simulation& simulation, RunProgress& progress);
+/// Loads a simulation and what belongs to it. Throws SceneError if there is no such file, or if it
+/// is damaged or belongs to another scene.
+void read_state(const std::string& file, const std::string& scene_hash, Simulation& simulation,
+                RunProgress& progress);
+/// Throws SceneError if the histories in a folder that a run goes on with are not there any more.
+void require_histories(const std::string& folder, const RunProgress& progress);
 
 void remove_checkpoint(const std::string& folder);
 

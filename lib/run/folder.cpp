@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <vector>
@@ -13,9 +14,12 @@ namespace apothem {
 
 void prepare_folder(const std::string& folder, bool overwrite) {
   namespace fs = std::filesystem;
-  constexpr std::array ours{"run.json",        "frames.pvd",  "outlines.pvd", "contacts.pvd",
-                            "surfaces.pvd",    "history.csv", "energy.csv",   "momentum.csv",
-                            "checkpoint.json", "final.json"};
+  constexpr std::array ours{"run.json",   "frames.pvd",   "outlines.pvd", "contacts.pvd",
+                            "chains.pvd", "roses.pvd",    "surfaces.pvd", "history.csv",
+                            "energy.csv", "momentum.csv", "final.json",   "checkpoint.json",
+                            "picture.png"};
+  constexpr std::array series{"bodies_", "outlines_", "contacts_",
+                              "chains_", "roses_",    "surfaces_"};
   std::vector<fs::path> old;
   std::error_code error;
   for (const char* name : ours) {
@@ -25,14 +29,14 @@ void prepare_folder(const std::string& folder, bool overwrite) {
     const bool resumable = fs::exists(fs::path(folder) / "checkpoint.json", error);
     throw SceneError(
         folder, 0, "",
-        fmt::format("already holds results ({}); give {}--overwrite, or another folder with -o",
-                    old.front().filename().string(), resumable ? "--resume to continue, " : ""));
+        fmt::format("already holds results ({}); {}give --overwrite to replace them (in Python: "
+                    "overwrite=True), or choose another folder",
+                    old.front().filename().string(), resumable ? "--resume continues them, " : ""));
   }
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "frames", error)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".vtu") &&
-        (name.starts_with("bodies_") || name.starts_with("outlines_") ||
-         name.starts_with("contacts_") || name.starts_with("surfaces_"))) {
+    const auto starts_with = [&](const char* prefix) { return name.starts_with(prefix); };
+    if (name.ends_with(".vtu") && std::any_of(series.begin(), series.end(), starts_with)) {
       old.push_back(entry.path());
     }
   }

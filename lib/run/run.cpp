@@ -54,9 +54,15 @@ void Run::start() {
   const std::string& folder = settings_.folder;
   progress_.stop_watch = &stop_watch_;
   if (settings_.resume) {
-    begin_at(scene_.model, read_progress(folder).beginning.bodies);
-    simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
-    read_checkpoint(folder, scene_hash_, *simulation_, progress_);
+    go_on(state_file(folder, StateFile::checkpoint));
+    require_histories(folder, progress_);
+    return;
+  }
+  if (!settings_.saved.empty()) {
+    go_on(settings_.saved);
+    progress_.history_sizes.assign(kHistoryFiles.size(), 0);
+    progress_.frame_times.clear();
+    if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
     return;
   }
   std::optional<OtherRun> other;
@@ -64,13 +70,21 @@ void Run::start() {
     other.emplace(settings_.from, settings_.from_time);
     progress_.beginning = other->move_into(scene_);
   }
-  simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene);
+  simulation_ = make_simulation(scene_, settings_.threads, other ? Start::other_run : Start::scene,
+                                settings_.stop_if);
   if (other) other->hand_contacts_to(*simulation_);
   const std::vector<PairDepth> overlaps = simulation_->overlaps();
   if (!other && !overlaps.empty() && overlaps.front().share > kSmallOverlap) {
     warn("bodies overlap at the start: " + describe_overlaps(*simulation_));
   }
   if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
+}
+
+void Run::go_on(const std::string& file) {
+  begin_at(scene_.model, read_progress(file).beginning.bodies);
+  simulation_ = make_simulation(scene_, settings_.threads, Start::checkpoint);
+  read_state(file, scene_hash_, *simulation_, progress_);
+  forces_before_ = progress_.forces;
 }
 
 double Run::seconds() const { return seconds_since(start_); }
@@ -81,21 +95,82 @@ bool Run::reached(double time) const {
 }
 
 void Run::add_force(const std::string& name, AppliedForce::Function function) {
+  if (simulation_->own_steps() > 0) {
+    throw std::logic_error("a force must be added before the first step");
+  }
+  forces_.push_back({name});
   simulation_->add(
       std::make_unique<AppliedForce>(name, simulation_->degrees_of_freedom(), std::move(function)));
 }
 
+// Remembers why the run cannot go on.
+template <class Work>
+void Run::note_failures(const Work& work) {
+  try {
+    try {
+      work();
+    } catch (const Unstable& error) {
+      status_ = Status::unstable;
+      message_ = error.what();
+      flush();
+      throw;
+    }
+  } catch (const SystemFailure& error) {
+    status_ = Status::failed;
+    message_ = error.what();
+    try {
+      if (!settings_.folder.empty()) write_summary(*this);
+    } catch (const SystemFailure&) {
+      // The one that is thrown below came first.
+    }
+    throw;
+  }
+}
+
 bool Run::step() {
-  if (reached(scene_.time.end)) return false;
+  bool taken = false;
+  note_failures([&] { taken = try_step(); });
+  return taken;
+}
+
+// A run that goes on without a force that it had would not be the same run.
+void Run::require_forces() const {
+  if (!forces_before_ || forces_ == *forces_before_) return;
+  std::string list;
+  for (const AddedForce& force : *forces_before_) {
+    list += (list.empty() ? "\"" : ", \"") + force.name + '"';
+  }
+  throw SceneError(
+      scene_.file, 0, "",
+      forces_before_->empty()
+          ? "the run that goes on here had no added forces; leave them out"
+          : fmt::format("the run that goes on here had the added forces {}; add them again, in "
+                        "this order",
+                        list));
+}
+
+bool Run::try_step() {
+  if (reached(scene_.time.end) || !stopped_by_.empty()) return false;
+  require_forces();
+  forces_before_.reset();
   if (last_row_ < 0 && !settings_.resume) record(true, true);
-  if (scene_.time.statics) return load_step();
+  if (scene_.time.statics) {
+    if (!load_step()) return false;
+  } else {
+    dynamic_step();
+  }
+  if (scene_.time.statics || state().step % kLookEvery == 0) look_for_stop();
+  if (on_step_) on_step_();
+  return true;
+}
+
+void Run::dynamic_step() {
   simulation_->step();
   const double step = simulation_->step_size();
   const bool last = reached(scene_.time.end);
   const bool row = rows_.due(state().time, step);
   const bool frame = pictures_.due(state().time, step) && scene_.output.frames > 0;
   record(row || last, frame || last);
-  return true;
 }
 
 bool Run::load_step() {
@@ -103,7 +178,7 @@ bool Run::load_step() {
   const double time = next < count
                           ? scene_.time.end * static_cast<double>(next) / static_cast<double>(count)
                           : scene_.time.end;
-  const LoadStep found = simulation_->balance(time, [&] { return stop_.load(); });
+  const LoadStep found = simulation_->balance(time, [&] { return asked_to_stop(); });
   if (!found.complete) return false;
   progress_.load_steps.push_back(found);
   record(true, true);
@@ -120,18 +195,16 @@ void Run::loop(double until) {
         scene_.time.end * static_cast<double>(state().step + 1) / static_cast<double>(count);
     return state().step < count && next <= until * (1 + 1e-12);
   };
-  while (!stop_ && stopped_by_.empty() && more() && step()) {
+  while (!asked_to_stop() && stopped_by_.empty() && more() && step()) {
     if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
-    look_for_stop();
     if (on_progress_) on_progress_(*this);
     const std::optional<double>& interval = scene_.output.checkpoint_interval;
     if (interval && seconds_since(last_checkpoint_) > *interval) {
-      save(StateFile::checkpoint);
+      write(StateFile::checkpoint);
       last_checkpoint_ = Clock::now();
     }
   }
   status_ = more() && !ended() ? Status::interrupted : Status::done;
-  if (ended() && !stopped_by_.empty()) record(true, true);
 }
 
 bool Run::ended() const {
@@ -147,30 +220,18 @@ void Run::look_for_stop() {
   stopped_by_ = stop_watch_.look(state(), simulation_->node_mass(), seconds());
 }
 
-Run::Status Run::run(std::optional<double> until) {
-  const double end = std::min(until.value_or(scene_.time.end), scene_.time.end);
-  try {
-    try {
-      loop(end);
-      if (ended()) simulation_->check_energy();
-      close();
-    } catch (const Unstable& error) {
-      flush();
-      status_ = Status::unstable;
-      message_ = error.what();
-    }
-  } catch (const SystemFailure& error) {
-    status_ = Status::failed;
-    message_ = error.what();
-    try {
-      if (!settings_.folder.empty()) write_summary(*this);
-    } catch (const SystemFailure&) {
-      // The one that is thrown below came first.
-    }
-    throw;
-  }
+void Run::advance(std::optional<double> until) {
+  note_failures([&] {
+    loop(std::min(until.value_or(scene_.time.end), scene_.time.end));
+    if (ended()) simulation_->check_energy();
+    flush();
+  });
+}
+
+Run::Status Run::finish() {
   // A run that has become unstable has said enough.
   if (status_ != Status::unstable) {
+    note_failures([&] { close(); });
     for (std::string& sentence : warnings_of(scene_.model, simulation_->extremes())) {
       warn(std::move(sentence));
     }
@@ -179,13 +240,32 @@ Run::Status Run::run(std::optional<double> until) {
   return status_;
 }
 
+void Run::fail(std::string message) {
+  status_ = Status::failed;
+  message_ = std::move(message);
+  flush();
+  if (!settings_.folder.empty()) write_summary(*this);
+}
+
+Run::Status Run::run(std::optional<double> until) {
+  try {
+    advance(until);
+  } catch (const Unstable&) {
+    // status() and message() say so.
+  }
+  return finish();
+}
+
 void Run::close() {
+  // A run that was stepped by hand.
+  if (status_ == Status::running) status_ = ended() ? Status::done : Status::interrupted;
+  if (ended()) record(true, true);
   flush();
   if (ended()) {
-    save(StateFile::final);
+    write(StateFile::final);
     if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
   } else {
-    save(StateFile::checkpoint);
+    write(StateFile::checkpoint);
     if (!scene_.time.statics) {
       record(true, true);  // shows where the run stopped; a resumed run takes it back
       flush();
@@ -241,15 +321,27 @@ void Run::flush() {
   if (history_) history_->flush();
 }
 
-void Run::save(StateFile kind) {
-  if (!history_) return;
-  history_->flush();
-  const HistoryWriter::Sizes sizes = history_->sizes();
-  progress_.history_sizes.assign(sizes.begin(), sizes.end());
-  progress_.frame_times = frames_->times();
+void Run::update_progress() {
+  if (history_) {
+    history_->flush();
+    const HistoryWriter::Sizes sizes = history_->sizes();
+    progress_.history_sizes.assign(sizes.begin(), sizes.end());
+    progress_.frame_times = frames_->times();
+  }
   progress_.next_row = rows_.next();
   progress_.next_frame = pictures_.next();
-  write_state(settings_.folder, kind, scene_, scene_hash_, *simulation_, progress_);
+  progress_.forces = forces_before_.value_or(forces_);
+}
+
+void Run::write(StateFile kind) {
+  if (!history_) return;
+  update_progress();
+  write_state(state_file(settings_.folder, kind), scene_, scene_hash_, *simulation_, progress_);
+}
+
+void Run::save(const std::string& file) {
+  update_progress();
+  write_state(file, scene_, scene_hash_, *simulation_, progress_, true);
 }
 
 void Run::judge() {

@@ -6,7 +6,6 @@
 // The program, the tests, `apothem reproduce` and programs of a user's own drive this object.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -26,7 +25,7 @@
 namespace apothem {
 
 struct RunSettings {
-  std::string folder;  ///< of the results; empty: no files are written
+  std::string folder = {};  ///< of the results; empty: no files are written
   int threads = 1;
   bool resume = false;     ///< continue from the checkpoint of the folder
   bool overwrite = false;  ///< results of an earlier run in the folder may be replaced
@@ -34,6 +33,12 @@ struct RunSettings {
   /// none. It goes without `resume`.
   std::string from = {};
   std::optional<double> from_time = {};  ///< s; the time that this state must have
+  /// File of Run::save() to go on from; empty: none. It goes without `resume` and `from`. Results
+  /// in the folder begin there.
+  std::string saved = {};
+  /// Asked after every step, within load steps, and while bodies settle at the start: true stops
+  /// the run, which can go on later.
+  std::function<bool()> stop_if = {};
 };
 
 /// Says when the next record is due; a record falls on the first step at or after its time.
@@ -56,27 +61,39 @@ class Run {
 
   /// Throws SceneError if the scene cannot be run, if the folder holds results or no checkpoint
   /// against the settings, or if there is no other run to begin with; SystemFailure if files cannot
-  /// be written.
+  /// be written; Stopped if stop_if says so while bodies settle.
   Run(Scene scene, const RunSettings& settings);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
   /// Adds a force of the user's own, before the first step: see AppliedForce. `name`: what it is in
-  /// words.
+  /// words. A run that goes on from a file needs the forces of the same names again before it
+  /// steps. Throws std::logic_error after the first step.
   void add_force(const std::string& name, AppliedForce::Function function);
 
   /// One step, or load step, with the records that are due after it. False, without a step, if the
-  /// run is at its end or was asked to stop during a load step. Throws Unstable and SystemFailure.
+  /// run is at its end, has been stopped by a rule of the scene, or was asked to stop during a load
+  /// step. Throws Unstable and SystemFailure.
   bool step();
-  /// Steps until a time in s, by default the end of the scene, until request_stop(), or until the
-  /// run becomes unstable; then closes the run: files are complete, a run that is not at its end
-  /// leaves a checkpoint, and at its end the expectations of the scene are judged. Throws
-  /// SystemFailure.
+  /// Steps until a time in s, by default the end of the scene, until it is asked to stop, or until
+  /// a rule of the scene stops the run. Files stay open. Throws Unstable and SystemFailure.
+  void advance(std::optional<double> until = {});
+  /// Closes a run as run() does.
+  Status finish();
+  /// Closes a run that cannot go on for a reason from outside, with that reason in run.json.
+  void fail(std::string message);
+  /// Advances, or until the run becomes unstable; then closes the run: files are complete, a run
+  /// that is not at its end leaves a checkpoint, and at its end the expectations of the scene are
+  /// judged. Throws SystemFailure.
   Status run(std::optional<double> until = {});
-  /// Asks run() to finish its step and stop. May be called from a signal handler.
-  void request_stop() { stop_ = true; }
+  /// Called after every step; its exceptions are passed on and do no harm.
+  void on_step(std::function<void()> call) { on_step_ = std::move(call); }
   /// Called every so many steps, and after every load step.
   void on_progress(std::function<void(const Run&)> call) { on_progress_ = std::move(call); }
+
+  /// Writes all that it takes to go on from here bit for bit, the scene included, to a file. Forces
+  /// of add_force() have to be added again. Throws SystemFailure; an older file is then intact.
+  void save(const std::string& file);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const RunSettings& settings() const { return settings_; }
@@ -89,6 +106,8 @@ class Run {
   [[nodiscard]] Status status() const { return status_; }
   /// The rule of the scene that has ended the run before its time, or empty.
   [[nodiscard]] const std::string& stopped_by() const { return stopped_by_; }
+  /// At its end, or stopped by a rule of the scene for good.
+  [[nodiscard]] bool ended() const;
   /// Why the run has stopped; empty if it is done.
   [[nodiscard]] const std::string& message() const { return message_; }
   /// Reasons to doubt the results, as whole sentences: those of warn(), and at the end of run()
@@ -108,18 +127,24 @@ class Run {
  private:
   void start();
   [[nodiscard]] bool reached(double time) const;
+  void require_forces() const;
   void loop(double until);
+  bool try_step();
+  void dynamic_step();
   bool load_step();
   void record(bool row, bool frame);
   void write_row();
   void write_frame();
   void flush();
-  void save(StateFile kind);
+  void write(StateFile kind);
+  void go_on(const std::string& file);
   void close();
   void judge();
-  /// At its end, or stopped by a rule of the scene for good.
-  [[nodiscard]] bool ended() const;
   void look_for_stop();
+  [[nodiscard]] bool asked_to_stop() const { return settings_.stop_if && settings_.stop_if(); }
+  template <class Work>
+  void note_failures(const Work& work);
+  void update_progress();
 
   Scene scene_;
   RunSettings settings_;
@@ -130,8 +155,11 @@ class Run {
   std::optional<FrameWriter> frames_;     // likewise
   Schedule rows_, pictures_;
   std::int64_t last_row_ = -1, last_frame_ = -1;  // steps
-  std::atomic<bool> stop_ = false;
   std::function<void(const Run&)> on_progress_;
+  std::function<void()> on_step_;
+  std::vector<AddedForce> forces_;
+  /// Of the run that goes on here, before its first step.
+  std::optional<std::vector<AddedForce>> forces_before_;
   Status status_ = Status::running;
   std::string message_;
   std::vector<std::string> warnings_;

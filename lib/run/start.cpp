@@ -43,12 +43,14 @@ std::string depth_text(const Model& model, const ExpectedDepth& e, const char* c
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start) {
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads, Start start,
+                                            const std::function<bool()>& stop) {
   TimeSettings time = scene.time;
   if (start == Start::checkpoint) time.settled = false;
   std::unique_ptr<Simulation> simulation;
   try {
-    simulation = std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads);
+    simulation =
+        std::make_unique<Simulation>(scene.model, time, scene.output.frames, threads, stop);
   } catch (const Unrunnable& error) {
     throw scene.error_at(error.body() >= 0 ? place_of(scene, error.body()) : "/" + error.key(),
                          error.what());

@@ -1,6 +1,7 @@
 // The start of a run: a simulation from a scene, and what the user should know before it begins.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,9 +17,10 @@ enum class Start { scene, other_run, checkpoint };
 
 /// Throws SceneError, with the place in the scene, instead of Unrunnable; also if bodies overlap by
 /// more than kSmallOverlap at the start, unless the scene accepts that or starts settled. The scene
-/// must outlive the simulation.
+/// must outlive the simulation. `stop`: see Simulation.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, int threads,
-                                            Start start = Start::scene);
+                                            Start start = Start::scene,
+                                            const std::function<bool()>& stop = {});
 
 /// Overlaps of bodies at the start that pass for touching, of the smaller inradius of the two.
 inline constexpr double kSmallOverlap = 1e-3;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 
 #include "apothem/execution/elementary.hpp"
@@ -12,6 +13,7 @@
 #include "apothem/geometry/packing/block_shapes.hpp"
 #include "apothem/geometry/packing/voronoi_blocks.hpp"
 #include "apothem/geometry/polygon/ring_area.hpp"
+#include "apothem/geometry/spatial/hilbert.hpp"
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/polygon_value.hpp"
 #include "apothem/scene/value_maker.hpp"
@@ -400,11 +402,21 @@ class Fill {
                               : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
                                                                : grow(space, random, blocks, turns);
     refuse_shortfall(blocks, found, space.area());
-    for (size_t i = 0; i < blocks.size(); ++i) {
-      const std::vector<Vec2>& ring = found.rings[i];
-      add_body(filled, ring);
-      if (stays) obstacles.push_back(ring);
+    for (const int i : along_curve(found.rings)) {
+      add_body(filled, found.rings[i]);
+      if (stays) obstacles.push_back(found.rings[i]);
     }
+  }
+
+  // The numbers of blocks are such that neighbours in space are near each other in memory.
+  static std::vector<int> along_curve(const std::vector<std::vector<Vec2>>& rings) {
+    std::vector<Vec2> middles;
+    middles.reserve(rings.size());
+    for (const std::vector<Vec2>& ring : rings) {
+      const Vec2 sum = std::accumulate(ring.begin(), ring.end(), Vec2(Vec2::Zero()));
+      middles.emplace_back(sum / static_cast<double>(ring.size()));
+    }
+    return hilbert_order(middles);
   }
 
   void refuse_shortfall(const std::vector<Block>& blocks, const Arrangement& found,
@@ -439,7 +451,9 @@ class Fill {
     const double size = std::sqrt(area_moments(*outline_).area / cells_.cells);
     const PackingSpace space = space_of(obstacles, size);
     try {
-      for (const std::vector<Vec2>& ring : voronoi_blocks(*outline_, cells_, gap_)) {
+      const std::vector<std::vector<Vec2>> rings = voronoi_blocks(*outline_, cells_, gap_);
+      for (const int i : along_curve(rings)) {
+        const std::vector<Vec2>& ring = rings[i];
         if (!space.is_clear(shrunk(ring, kTouching))) {
           in_.fail(value_,
                    "a cell of the region overlaps a body of the scene; keep bodies out of "

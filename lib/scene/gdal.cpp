@@ -26,7 +26,8 @@ Gdal load_gdal() {
   void* library = dlopen(kGdalLibrary, RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) {
     throw std::runtime_error(std::string("drawings are read by GDAL, which cannot be loaded (") +
-                             dlerror() + "); install the library GDAL");
+                             dlerror() + "); install the library GDAL (on Debian: " + kGdalPackage +
+                             ")");
   }
   Gdal functions;
 #define APOTHEM_FIND(name) find_function(library, #name, functions.name);

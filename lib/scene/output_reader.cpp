@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "apothem/mesh/locate.hpp"
-#include "apothem/model/columns.hpp"
 #include "apothem/model/state.hpp"
 
 namespace apothem {
@@ -139,18 +138,16 @@ void OutputReader::history(const JsonValue& value) {
 }
 
 // Of all histories.
-std::vector<std::string> OutputReader::columns() const {
-  std::vector<std::string> columns = names_of(history_columns(model_, output_));
-  for (const std::vector<std::string>& ledger :
-       {names_of(kEnergyColumns), names_of(kMomentumColumns)}) {
-    columns.insert(columns.end(), ledger.begin(), ledger.end());
-  }
-  columns.emplace_back("time");
+std::vector<HistoryColumn> OutputReader::columns() const {
+  std::vector<HistoryColumn> columns = history_columns(model_, output_);
+  for (const Column& column : kEnergyColumns) columns.push_back({column.name, column.unit});
+  for (const Column& column : kMomentumColumns) columns.push_back({column.name, column.unit});
+  columns.push_back({"time", "s"});
   return columns;
 }
 
 std::vector<Expectation> OutputReader::expectations(const JsonValue& value, double end) const {
-  const std::vector<std::string> known = columns();
+  const std::vector<HistoryColumn> known = columns();
   std::vector<Expectation> expectations;
   for (const JsonValue& item : in_.array(value)) {
     expectations.push_back(expectation(item, known, end));
@@ -160,7 +157,7 @@ std::vector<Expectation> OutputReader::expectations(const JsonValue& value, doub
 
 std::vector<Measure> OutputReader::measures(const JsonValue& value, double end,
                                             const std::vector<std::string>& stops) const {
-  const std::vector<std::string> known = columns();
+  const std::vector<HistoryColumn> known = columns();
   std::vector<Measure> measures;
   for (const JsonValue& item : in_.array(value)) {
     JsonObject object(in_, item);
@@ -191,15 +188,20 @@ std::vector<Measure> OutputReader::measures(const JsonValue& value, double end,
 }
 
 void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
-                             const std::vector<std::string>& columns, double end,
+                             const std::vector<HistoryColumn>& columns, double end,
                              Reduction& result) const {
   result.quantity = in_.string(quantity);
-  if (std::find(columns.begin(), columns.end(), result.quantity) == columns.end()) {
-    in_.fail(quantity, "no history has a column " + suggest(result.quantity, columns));
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const HistoryColumn& c) {
+    return c.name == result.quantity;
+  });
+  if (found == columns.end()) {
+    in_.fail(quantity, "no history has a column " + suggest(result.quantity, names_of(columns)));
   }
+  result.unit = found->unit;
   if (const JsonValue* v = object.optional("take")) {
     result.take = static_cast<Reduction::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
   }
+  if (result.take == Reduction::Take::slope) result.unit += " per s";
   if (const JsonValue* v = object.optional("between")) {
     const std::vector<double> t = in_.numbers(*v, 2, "[from, until] in s");
     if (!(t[0] <= t[1])) in_.fail(*v, "must not end before it starts");
@@ -210,7 +212,7 @@ void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
 }
 
 Expectation OutputReader::expectation(const JsonValue& item,
-                                      const std::vector<std::string>& columns, double end) const {
+                                      const std::vector<HistoryColumn>& columns, double end) const {
   JsonObject object(in_, item);
   Expectation e;
   reduction(object, object.required("quantity", "a column of a history"), columns, end, e);
@@ -224,7 +226,10 @@ Expectation OutputReader::expectation(const JsonValue& item,
   }
   if (!(e.tolerance > 0)) in_.fail(*relative, "a relative tolerance needs a value other than 0");
   if (const JsonValue* v = object.optional("label")) e.label = in_.string(*v);
-  if (const JsonValue* v = object.optional("source")) in_.string(*v);
+  if (const JsonValue* v = object.optional("basis")) {
+    e.basis = static_cast<Basis>(in_.choice(*v, {kBases.begin(), kBases.end()}));
+  }
+  if (const JsonValue* v = object.optional("source")) e.source = in_.string(*v);
   object.finish();
   return e;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apothem/model/columns.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
 #include "apothem/scene/compatibility.hpp"
@@ -38,11 +39,12 @@ class OutputReader {
   void tracked(const JsonValue& item);
   void track_once(std::vector<int>& list, int body, const JsonValue& value) const;
   void tracked_point(int deformable, const JsonValue& point, const JsonValue* label);
-  [[nodiscard]] std::vector<std::string> columns() const;
+  [[nodiscard]] std::vector<HistoryColumn> columns() const;
   void reduction(JsonObject& object, const JsonValue& quantity,
-                 const std::vector<std::string>& columns, double end, Reduction& result) const;
+                 const std::vector<HistoryColumn>& columns, double end, Reduction& result) const;
   [[nodiscard]] Expectation expectation(const JsonValue& item,
-                                        const std::vector<std::string>& columns, double end) const;
+                                        const std::vector<HistoryColumn>& columns,
+                                        double end) const;
 
   const JsonReader& in_;
   const Model& model_;

@@ -206,9 +206,14 @@ void Scene::drop_rings() {
 }
 
 Scene read_scene(const std::string& file, const std::vector<Setting>& settings) {
+  return read_scene_text(read_text(file, kLargestJson), file, settings);
+}
+
+Scene read_scene_text(std::string text, const std::string& file,
+                      const std::vector<Setting>& settings) {
   Scene scene;
   scene.file = file;
-  scene.text = read_text(file, kLargestJson);
+  scene.text = std::move(text);
   scene.text.shrink_to_fit();
   scene.settings = settings;
   scene.document = parse_json(scene.text, file);

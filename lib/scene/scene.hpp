@@ -34,5 +34,9 @@ struct Scene {
 /// Reads a scene, with settings in place of values of the file. Throws SceneError if it cannot be
 /// read or is not a valid scene.
 Scene read_scene(const std::string& file, const std::vector<Setting>& settings = {});
+/// The same with a text in place of the contents of the file, which need not exist: it names the
+/// place of errors, and the files that the scene names are relative to its folder.
+Scene read_scene_text(std::string text, const std::string& file,
+                      const std::vector<Setting>& settings = {});
 
 }  // namespace apothem

@@ -44,7 +44,7 @@ TEST_CASE("a misspelt command line says what it may have meant and where help is
            {{"rum"}, "unknown command \"rum\"; did you mean \"run\"?", "see apothem --help"},
            {{"polygn", "a.wkt"}, "did you mean \"polygon\"?", "see apothem --help"},
            {{"xyzzy"},
-            "unknown command \"xyzzy\" (known: run, sweep, check,",
+            "unknown command \"xyzzy\" (known: run, sweep, picture,",
             "see apothem --help"},
            {{"scene.json"}, "did you mean \"apothem run scene.json\"?", "see apothem --help"},
            {{"--versoin"}, "did you mean \"--version\"?", "see apothem --help"},

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
+#include "apothem/output/run_folder.hpp"
 #include "folder.hpp"
 #include "program.hpp"
 
@@ -199,8 +199,19 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
   CHECK(run({"run", scene, "-o", folder / "blocks", "--resume"}, folder).code == 2);
 }
 
+TEST_CASE("Ctrl-C ends the search for a settled start, and no run has begun", "[program]") {
+  const Folder folder;
+  const Result r = run({"run", test::kSource + "/data/scenes/slope-stands.json", "--set",
+                        "contact.friction.coefficient=0.56", "-o", folder / "out"},
+                       folder, {.interrupt_after = 1});
+  INFO(r.err);
+  CHECK(r.code == 130);
+  CHECK_THAT(r.err, Catch::Contains("not at rest yet"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out/run.json"));
+}
+
 TEST_CASE("Ctrl-C during a load step keeps the one before, and --resume goes on from it",
-          "[program]") {
+          "[program][slow]") {
   const Folder folder;
   const std::string file = folder.write("bent.json", R"({
     "materials": { "rock": { "density": 2000, "young": 20e9, "poisson": 0.2 } },
@@ -577,7 +588,7 @@ TEST_CASE("a load too heavy for the material stops with the place", "[program]")
   CHECK(Json::parse(content(folder / "crushed/run.json"))["status"] == "unstable");
 }
 
-TEST_CASE("a resumed run continues bit for bit", "[program]") {
+TEST_CASE("a resumed run continues bit for bit", "[program][slow]") {
   const Folder folder;
   const std::string file = test::kSource + "/data/scenes/two-body-collision.json";
   REQUIRE(run({"run", file, "-o", folder / "whole"}, folder).code == 0);
@@ -631,7 +642,9 @@ TEST_CASE("a resumed run continues bit for bit", "[program]") {
 TEST_CASE("a system that fails gives exit code 4 and keeps what was complete", "[program]") {
   const Folder folder;
   CHECK(run({"run", kScene, "-o", "/dev/null/out"}, folder).code == 4);
-  CHECK(run({"run", kScene, "-o", "/proc/out"}, folder).code == 4);
+  const Result no_folder = run({"run", kScene, "-o", "/proc/out"}, folder);
+  CHECK(no_folder.code == 4);
+  CHECK(no_folder.err.find("choose a folder that can be made") != std::string::npos);
   // Files may not grow beyond 24 kB: the histories hit that after some frames.
   const Result r = run({"run", kScene, "-o", folder / "full"}, folder, {.file_size = 24 << 10});
   INFO(r.err);

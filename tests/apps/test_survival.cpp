@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apothem/output/frames.hpp"
+#include "apothem/output/run_folder.hpp"
 #include "program.hpp"
 #include "run/hopper.hpp"
 

@@ -288,7 +288,7 @@ TEST_CASE("runs that fail are rows with their message, and are repeated on reque
   CHECK(repeated == 3);
 }
 
-TEST_CASE("a run that crashes takes no other down", "[sweep]") {
+TEST_CASE("a run that crashes takes no other down", "[sweep][slow]") {
   const Folder folder;
   const std::string scene = folder.write("long.json", kLongFall);
   const Words sweep{"sweep",  scene,

@@ -180,7 +180,7 @@ TEST_CASE("swapping two rigid bodies swaps their forces to the last bit",
 }
 
 TEST_CASE("contact of rigid bodies has the same bits for any number of threads",
-          "[polygon_kernel][contact]") {
+          "[polygon_kernel][contact][slow]") {
   const FrictionLaw friction_law = GENERATE(FrictionLaw::resultant, FrictionLaw::per_edge);
   ContactLaw law = rough_law(friction_law, .2);
   // Some pairs have neither friction nor damping.

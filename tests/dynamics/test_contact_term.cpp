@@ -36,7 +36,7 @@ Model box_of_three(std::optional<ForceDistribution> elements) {
 
 }  // namespace
 
-TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", "[surface]") {
+TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", "[surface][slow]") {
   for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
     for (const double mu : {0., .3}) {
       Model model = empty_model();

@@ -80,7 +80,7 @@ double collar_of(const Mesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("a block, a disc and a membrane are squeezed to half between plates", "[deep]") {
+TEST_CASE("a block, a disc and a membrane are squeezed to half between plates", "[deep][slow]") {
   struct Squeezed {
     const char* name;
     Mesh mesh;

@@ -11,7 +11,7 @@
 using namespace apothem;
 using namespace apothem::test;
 
-TEST_CASE("a spinning free body keeps energy and momenta over 100 turns", "[deformable]") {
+TEST_CASE("a spinning free body keeps energy and momenta over 100 turns", "[deformable][slow]") {
   for (const ElementKind kind :
        {ElementKind::tri3, ElementKind::quad4, ElementKind::quad4_full, ElementKind::polygon}) {
     DeformableBody body = block({1, .5}, {8, 4}, kind);

@@ -85,7 +85,7 @@ void print_row(const std::string& name, const std::string& shape, const std::str
 }  // namespace
 
 TEST_CASE("an impact keeps the energy to 1e-4 at the usual step, and with its square",
-          "[surface][impact_energy]") {
+          "[surface][impact_energy][slow]") {
   for (const char* name : kScenes) {
     for (const char* shape : kShapes) {
       const Scene scene = read(shipped(name, shape));

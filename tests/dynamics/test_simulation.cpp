@@ -227,7 +227,7 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
   CHECK(ram[2] == Approx(1).epsilon(1e-12));
 }
 
-TEST_CASE("the same bits for any number of threads", "[dynamics]") {
+TEST_CASE("the same bits for any number of threads", "[dynamics][slow]") {
   Model model = falling_model(1e8);
   samples::Random random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads

@@ -143,7 +143,7 @@ TEST_CASE("a contact that ends and begins again beside another one is damped as 
   }
 }
 
-TEST_CASE("what should stick rests on a slope, and slides beyond its limit", "[viscous]") {
+TEST_CASE("what should stick rests on a slope, and slides beyond its limit", "[viscous][slow]") {
   const Kind kind = GENERATE(Kind::rigid, Kind::quads, Kind::triangles, Kind::polygons);
   const bool slides = GENERATE(false, true);
   CAPTURE(kind, slides);

@@ -15,6 +15,7 @@
 #include "apothem/geometry/polygon/convex_parts.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/output/frames.hpp"
+#include "apothem/output/run_folder.hpp"
 #include "contact/bodies.hpp"
 #include "folder.hpp"
 #include "shapes.hpp"

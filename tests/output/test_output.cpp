@@ -278,12 +278,13 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   writer.flush();
   const double top = 3 + model.origin.y();
   using Take = Expectation::Take;
-  CHECK(evaluate({"one.y", Take::maximum, {}, {}, top, 1e-12}, folder.path()).met);
-  CHECK_FALSE(evaluate({"one.y", Take::maximum, {}, {}, top + 1e-3, 1e-4}, folder.path()).met);
-  CHECK(evaluate({"one.y", Take::first, {}, {}, top - 1.03 * 1.03, 1e-12}, folder.path()).met);
-  CHECK(evaluate({"one.y", Take::last, {}, {}, top - .97 * .97, 1e-12}, folder.path()).met);
-  CHECK(evaluate({"one.y", Take::maximum, {}, 0.55, top - .53 * .53, 1e-12}, folder.path()).met);
-  CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, 0, 1}, folder.path()));
+  CHECK(evaluate({"one.y", Take::maximum, {}, {}, "m", top, 1e-12}, folder.path()).met);
+  CHECK_FALSE(evaluate({"one.y", Take::maximum, {}, {}, "m", top + 1e-3, 1e-4}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::first, {}, {}, "m", top - 1.03 * 1.03, 1e-12}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::last, {}, {}, "m", top - .97 * .97, 1e-12}, folder.path()).met);
+  CHECK(
+      evaluate({"one.y", Take::maximum, {}, 0.55, "m", top - .53 * .53, 1e-12}, folder.path()).met);
+  CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, "m", 0, 1}, folder.path()));
   const auto reduced = [&](Take take) { return reduce({"one.y", take, {}, {}}, folder.path()); };
   CHECK(reduced(Take::increase) == Approx(1.03 * 1.03 - .97 * .97));
   CHECK(reduced(Take::decrease) == Approx(.97 * .97 - 1.03 * 1.03));

@@ -54,7 +54,7 @@ TEST_CASE("the format follows from the file's name", "[picture]") {
   for (const char* name : {"a", "a.jpg", "a.png.bak", "svg", ""}) CHECK(!picture_format(name));
 }
 
-TEST_CASE("pictures of any polygon, in both formats, twice the same", "[picture]") {
+TEST_CASE("pictures of any polygon, in both formats, twice the same", "[picture][slow]") {
   Ring far = l_ring(), tiny = l_ring(), huge = star_ring(5, .5), sliver{{0, 0}, {1, 0}, {.3, 1e-6}};
   for (Vec2& v : far) v += Vec2(1e9, -2e9);
   for (Vec2& v : tiny) v *= 1e-9;

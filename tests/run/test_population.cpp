@@ -4,8 +4,8 @@
 #include <random>
 
 #include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
+#include "apothem/output/run_folder.hpp"
 #include "apothem/run/hash.hpp"
 #include "apothem/run/run.hpp"
 #include "folder.hpp"

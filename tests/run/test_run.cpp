@@ -1,6 +1,7 @@
 // A run: a scene that is stepped, recorded, stopped and asked about, with files and without.
 #include "apothem/run/run.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "apothem/dynamics/unstable.hpp"
@@ -76,14 +77,57 @@ TEST_CASE("a run that is stepped by hand goes where one that runs does", "[run]"
   CHECK(stepped.state().step == ran.state().step);
 }
 
+TEST_CASE("a run tells of every step, and goes on after what it was told", "[run]") {
+  struct Enough {};
+  const Folder folder;
+  int steps = 0;
+  Run run(scene_of(folder, flying_block()), {.stop_if = [&] { return steps == 20; }});
+  run.on_step([&] {
+    if (++steps == 10) throw Enough();
+  });
+  CHECK_THROWS_AS(run.advance(), Enough);
+  CHECK(run.state().step == 10);
+  run.advance();
+  CHECK(run.state().step == 20);
+  CHECK(run.status() == Run::Status::interrupted);
+  CHECK(run.step());
+  run.advance();
+  CHECK(run.state().step == 500);
+  CHECK(run.finish() == Run::Status::done);
+}
+
+TEST_CASE("the vectors of a state stay in place, and its velocities are set with their energy",
+          "[run]") {
+  const Folder folder;
+  Run run(scene_of(folder, rubbing_scenes()[1].text), {});
+  const State& state = run.state();
+  const std::array places{state.x.data(), state.v.data(), state.f.data()};
+  std::vector<double> v = state.v;
+  for (int i = 0; i < 200; ++i) {
+    REQUIRE(run.step());
+    REQUIRE(places == std::array{state.x.data(), state.v.data(), state.f.data()});
+    if (i != 100) continue;
+    v = state.v;
+    for (double& value : v) value += .01;
+    const Energies before = run.simulation().energies();
+    run.simulation().set_velocities(v);
+    const Energies after = run.simulation().energies();
+    CHECK(after.kinetic > before.kinetic);
+    CHECK(after.total_error == Approx(before.total_error).margin(1e-12 * after.kinetic));
+    CHECK(state.v[3] == v[3]);
+    CHECK(state.v[0] == 0);  // of the slope, which is fixed
+  }
+}
+
 TEST_CASE("a run stops when it is asked to, and says so", "[run]") {
   const Folder folder;
-  Run run(scene_of(folder, flying_block()), {});
+  bool enough = false;
+  Run run(scene_of(folder, flying_block()), {.stop_if = [&] { return enough; }});
   std::int64_t looks = 0;
   run.on_progress([&](const Run& now) {
     ++looks;
     CHECK(&now == &run);
-    if (now.state().step >= 100) run.request_stop();
+    enough = now.state().step >= 100;
   });
   CHECK(run.run() == Run::Status::interrupted);
   CHECK(looks > 0);
@@ -94,7 +138,8 @@ TEST_CASE("a run stops when it is asked to, and says so", "[run]") {
 
 TEST_CASE("a static run takes whole load steps, and none if it is stopped within one", "[run]") {
   const Folder folder;
-  Run run(scene_of(folder, pressed_blocks(4)), {});
+  bool enough = false;
+  Run run(scene_of(folder, pressed_blocks(4)), {.stop_if = [&] { return enough; }});
   CHECK(run.run(.6) == Run::Status::done);  // the third one leads beyond
   REQUIRE(run.load_steps().size() == 2);
   CHECK(run.state().time == .5);
@@ -102,7 +147,7 @@ TEST_CASE("a static run takes whole load steps, and none if it is stopped within
   REQUIRE(run.step());
   CHECK(run.state().time == .75);
   const State before = run.state();
-  run.request_stop();
+  enough = true;
   CHECK_FALSE(run.step());
   CHECK(run.state().time == .75);
   CHECK(run.state().x == before.x);

@@ -398,7 +398,15 @@ TEST_CASE("the JSON Schema and the reader agree", "[scene]") {
   for (const auto& entry : std::filesystem::directory_iterator(test::kSource + "/data/scenes")) {
     INFO(entry.path());
     CHECK(valid(schema, read_text(entry.path().string())));
-    CHECK_NOTHROW(read_scene(entry.path().string()));
+    Scene scene;
+    REQUIRE_NOTHROW(scene = read_scene(entry.path().string()));
+    // What the report of `apothem reproduce` states beside each number.
+    for (const Expectation& e : scene.expectations) {
+      INFO(e.quantity);
+      CHECK(e.basis.has_value());
+      CHECK_FALSE(e.source.empty());
+      CHECK_FALSE(e.unit.empty());
+    }
     ++shipped;
   }
   CHECK(shipped >= 7);

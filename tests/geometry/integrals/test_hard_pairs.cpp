@@ -240,7 +240,7 @@ TEST_CASE("hard pairs moved: the oracle decides again", "[hard_pairs]") {
   CHECK(edge.above_goal == 0);
 }
 
-TEST_CASE("hard pairs in other words: the same bits", "[hard_pairs]") {
+TEST_CASE("hard pairs in other words: the same bits", "[hard_pairs][slow]") {
   for (const PolygonPair& entry : list()) {
     INFO(entry.name);
     const Pair pair = listed(entry);
@@ -280,7 +280,7 @@ TEST_CASE("hard pairs in other words: the same bits", "[hard_pairs]") {
   }
 }
 
-TEST_CASE("hard pairs from other vertices, and with doubled ones", "[hard_pairs]") {
+TEST_CASE("hard pairs from other vertices, and with doubled ones", "[hard_pairs][slow]") {
   Figures edge, overlap;
   for (const PolygonPair& entry : list()) {
     INFO(entry.name);

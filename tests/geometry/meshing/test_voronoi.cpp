@@ -405,7 +405,7 @@ TEST_CASE("pieces that the outline cuts off join a neighbour", "[voronoi]") {
   CHECK_FALSE(contains(cell_ring(voronoi.mesh, voronoi.mesh.cells[0]), piece));
 }
 
-TEST_CASE("the same seed gives the same bits, also far away", "[voronoi]") {
+TEST_CASE("the same seed gives the same bits, also far away", "[voronoi][slow]") {
   for (const Shape& shape : shapes()) {
     Ring ring = shape.ring;  // on a grid of 2^-20, so that shifts are exact
     for (Vec2& v : ring) v = (v * 0x1p20).array().round() / 0x1p20;

@@ -182,7 +182,7 @@ TEST_CASE("circles that are not unique", "[inscribed_circle]") {
   CHECK((circle.centres.front() - circle.centres.back()).norm() == Approx(.39).epsilon(1e-12));
 }
 
-TEST_CASE("the largest circle agrees with brute force", "[inscribed_circle]") {
+TEST_CASE("the largest circle agrees with brute force", "[inscribed_circle][slow]") {
   checked(scaled(comb(12, 8, 1), .1), 1e-3);
   checked(spiral(4, 50, .1, .05));
   checked(star(7, .2));

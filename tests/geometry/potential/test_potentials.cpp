@@ -1,9 +1,7 @@
 #include "apothem/geometry/potential/potentials.hpp"
 
 #include <catch2/catch.hpp>
-#include <csignal>
 
-#include "apothem/geometry/skeleton/child_process.hpp"
 #include "geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
@@ -204,7 +202,7 @@ TEST_CASE("forces of copies agree with those of polygons that have their own ske
   }
 }
 
-TEST_CASE("potentials have the same bits for any number of child processes", "[similar]") {
+TEST_CASE("potentials have the same bits for any number of helper processes", "[similar]") {
   Random random(41);
   std::vector<Polygon> list;
   const std::vector<Polygon> shapes = uneven_polygons();
@@ -233,32 +231,4 @@ TEST_CASE("a polygon without a potential does not harm the others", "[similar]")
   CHECK(potentials.make(0).roof);
   CHECK_THROWS_AS(potentials.make(1), InvalidPolygon);
   CHECK(potentials.make(2).roof);
-}
-
-TEST_CASE("several children work at the same time, and each fails for itself", "[child]") {
-  using End = ChildAnswer::End;
-  const std::vector<ChildAnswer> answers =
-      run_in_children({[](const SendNumbers& send) {
-                         send({1});
-                         send(std::vector<double>(100000, 2));
-                       },
-                       [](const SendNumbers& send) {
-                         send({3});
-                         std::raise(SIGKILL);
-                       },
-                       [](const SendNumbers& send) { send({4}); },
-                       [](const SendNumbers&) {
-                         volatile bool forever = true;
-                         while (forever) {
-                         }
-                       }},
-                      1);
-  REQUIRE(answers.size() == 4);
-  CHECK(answers[0].end == End::finished);
-  CHECK(answers[0].numbers.size() == 100001);
-  CHECK(answers[1].end == End::crashed);
-  CHECK(answers[1].numbers == std::vector<double>{3});
-  CHECK(answers[2].end == End::finished);
-  CHECK(answers[2].numbers == std::vector<double>{4});
-  CHECK(answers[3].end == End::silent);
 }

@@ -1,0 +1,214 @@
+// Geometry on its own: polygons, their potentials, contact, overlaps and Voronoi meshes.
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/exact/pair_methods.hpp"
+#include "apothem/geometry/integrals/penetration.hpp"
+#include "apothem/geometry/meshing/voronoi.hpp"
+#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "bindings.hpp"
+
+namespace apothem::python {
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+Polygon polygon_of(const Array& points) {
+  if (points.ndim() != 2 || points.shape(1) != 2) {
+    throw std::invalid_argument("points must have the shape (n, 2)");
+  }
+  const auto at = points.unchecked<2>();
+  std::vector<Vec2> ring;
+  for (py::ssize_t i = 0; i < points.shape(0); ++i) ring.emplace_back(at(i, 0), at(i, 1));
+  // A closed ring of other libraries repeats its first point.
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  return Polygon(std::move(ring));
+}
+
+py::tuple pair(const Vec2& v) { return py::make_tuple(v.x(), v.y()); }
+
+py::list rings_of(const std::vector<std::vector<Vec2>>& rings, const Vec2& shift) {
+  py::list list;
+  for (const std::vector<Vec2>& ring : rings) list.append(array_of(ring, shift));
+  return list;
+}
+
+Skeleton skeleton_of(const Polygon& polygon) {
+  const py::gil_scoped_release release;
+  return straight_skeleton(polygon, [](const Stage& /*stage*/) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  });
+}
+
+py::object inscribed_circle_of(const Polygon& polygon) {
+  const InscribedCircle circle = largest_inscribed_circle(polygon);
+  return result("InscribedCircle", circle.radius, array_of(circle.centres, polygon.origin()));
+}
+
+py::object roof_of(const Polygon& polygon) {
+  const Skeleton skeleton = skeleton_of(polygon);
+  py::array_t<double> nodes({static_cast<py::ssize_t>(skeleton.nodes.size()), py::ssize_t{3}});
+  auto node = nodes.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < nodes.shape(0); ++i) {
+    const Vec2 p = world_point(polygon, skeleton.nodes, static_cast<int>(i));
+    node(i, 0) = p.x();
+    node(i, 1) = p.y();
+    node(i, 2) = skeleton.nodes[static_cast<size_t>(i)].height;
+  }
+  py::array_t<int> arcs({static_cast<py::ssize_t>(skeleton.arcs.size()), py::ssize_t{2}});
+  auto arc = arcs.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < arcs.shape(0); ++i) {
+    arc(i, 0) = skeleton.arcs[static_cast<size_t>(i)].start;
+    arc(i, 1) = skeleton.arcs[static_cast<size_t>(i)].end;
+  }
+  return result("Roof", skeleton.roof_height, nodes, arcs, index_lists(skeleton.faces));
+}
+
+py::object singular_area_of(const Polygon& polygon, std::optional<double> depth) {
+  const Skeleton skeleton = skeleton_of(polygon);
+  const SingularArea area = singular_area(skeleton, depth.value_or(skeleton.roof_height));
+  py::list segments;
+  for (const std::array<Vec2, 2>& ends : area.segments) {
+    segments.append(array_of({ends[0], ends[1]}, polygon.origin()));
+  }
+  return result("SingularArea", kind_name(area.kind()), area.area(),
+                array_of(area.points, polygon.origin()), segments,
+                rings_of(area.polygons, polygon.origin()));
+}
+
+template <class Table>
+auto& named(const Table& table, const std::string& name, const char* what) {
+  std::string names;
+  for (const auto& entry : table) {
+    if (entry.name == name) return entry;
+    names += (names.empty() ? "\"" : ", \"") + std::string(entry.name) + "\"";
+  }
+  throw std::invalid_argument(std::string(what) + " must be one of " + names);
+}
+
+PotentialChoice choice_of(const std::string& potential, const std::string& field,
+                          const py::object& reference) {
+  PotentialChoice choice;
+  choice.kind = named(kPotentials, potential, "potential").kind;
+  choice.field = named(kFields, field, "field").field;
+  if (py::isinstance<py::str>(reference)) {
+    choice.reference = named(kReferences, reference.cast<std::string>(), "reference").reference;
+    return choice;
+  }
+  choice.reference = PotentialChoice::Reference::length;
+  try {
+    choice.length = reference.cast<double>();
+  } catch (const py::cast_error&) {
+    throw py::type_error("reference must be \"roof\", \"inscribed_circle\" or a length in m");
+  }
+  if (!(choice.length > 0 && std::isfinite(choice.length)))
+    throw std::invalid_argument("reference must be a positive length in m");
+  return choice;
+}
+
+py::object contact(const Polygon& a, const Polygon& b, const std::string& method, double stiffness,
+                   const std::string& potential, const std::string& field,
+                   const py::object& reference) {
+  if (std::find(kPairMethods.begin(), kPairMethods.end(), method) == kPairMethods.end()) {
+    throw std::invalid_argument("method must be one of \"edge\", \"overlap\", \"exact\"");
+  }
+  if (!(stiffness > 0 && std::isfinite(stiffness))) {
+    throw std::invalid_argument("stiffness must be positive, in Pa");
+  }
+  const PotentialChoice choice = choice_of(potential, field, reference);
+  const PairResult found = [&] {
+    const py::gil_scoped_release release;
+    return evaluate_pair(method, a, b, choice);
+  }();
+  const PairIntegral& p = found.integral;
+  const double k = stiffness;
+  return result("PairContact", method, pair(k * p.force), k * p.moment_a, k * p.moment_b,
+                pair(world_loading_point(p, a)), k * found.volume.energy, found.volume.overlap_area,
+                p.own_length_a, p.own_length_b, k * p.weight, penetration(a, b), p.largest_phi);
+}
+
+py::list overlap(const Polygon& a, const Polygon& b) {
+  py::list list;
+  for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
+    list.append(array_of(part.vertices, a.origin()));
+  }
+  return list;
+}
+
+py::object voronoi(const Polygon& region, int n, std::uint64_t seed, int lloyd,
+                   double shortest_edge) {
+  const auto [mesh, sites] = [&] {
+    const py::gil_scoped_release release;
+    const VoronoiMesh found = voronoi_mesh(region, {n, seed, lloyd, shortest_edge});
+    return std::pair(in_world(region, found.mesh), found.sites);
+  }();
+  return result("VoronoiCells", array_of(mesh.points), index_lists(mesh.cells),
+                array_of(sites, region.origin()));
+}
+
+void bind_polygon(py::module_& module) {
+  py::class_<Polygon>(module, "Polygon", R"(A simple polygon.
+
+Polygon(points)
+    points: array (n, 2) of at least three vertices in either sense, m, without holes. A last point
+    that repeats the first one is left out.
+
+Raises SceneError, with the number of the vertex, if the outline crosses or touches itself, or has no
+area.)")
+      .def(py::init(&polygon_of), py::arg("points"))
+      .def_property_readonly(
+          "points", [](const Polygon& p) { return array_of(p.vertices()); },
+          "Copy (n, 2): vertices, counter-clockwise, m.")
+      .def_property_readonly(
+          "area", [](const Polygon& p) { return area_moments(p).area; }, "Area, m^2.")
+      .def_property_readonly(
+          "centroid", [](const Polygon& p) { return pair(p.origin() + area_moments(p).centroid); },
+          "Centroid (x, y), m.")
+      .def_property_readonly(
+          "polar_moment", [](const Polygon& p) { return area_moments(p).polar; },
+          "Polar second moment of area about the centroid, m^4.")
+      .def_property_readonly("is_convex", &Polygon::is_convex, "Whether the polygon is convex.")
+      .def("inscribed_circle", &inscribed_circle_of,
+           "The largest inscribed circle: an InscribedCircle.")
+      .def("roof", &roof_of,
+           "The roof over the straight skeleton: a Roof. Raises SceneError if none is found.")
+      .def("singular_area", &singular_area_of, py::arg("r") = py::none(),
+           "Where the distance potential with the reference length r, m, by default the height of "
+           "the roof, is 1: a SingularArea. Raises ValueError unless r > 0.")
+      .def("__len__", &Polygon::size);
+}
+
+}  // namespace
+
+void bind_geometry(py::module_& module) {
+  bind_polygon(module);
+  module.def(
+      "contact", &contact, py::arg("a"), py::arg("b"), py::arg("method") = "edge",
+      py::arg("stiffness") = 1., py::arg("potential") = "distance", py::arg("field") = "roof",
+      py::arg("reference") = "roof",
+      R"(The contact of two polygons that overlap, as `apothem contact` computes it: a PairContact.
+
+method: "edge", integrals along the edges; "overlap", Eq. 8 of the paper (doi:10.1007/s00466-020-01913-2)
+on the overlap polygon; or "exact", the same with 100 digits, which takes long.
+stiffness: k_n, Pa. potential: "distance", or "area" for triangles. field: "roof" or "distance", what
+measures the depth in a polygon that is not convex. reference: "roof", "inscribed_circle" or a length, m.
+
+Raises SceneError if a polygon has no such potential, ValueError for a wrong option.)");
+  module.def(
+      "overlap", &overlap, py::arg("a"), py::arg("b"),
+      "The components of the overlap of two polygons, exact up to the rounding of their "
+      "vertices: list of arrays (k, 2), m, counter-clockwise. Empty if they do not overlap.");
+  module.def("voronoi", &voronoi, py::arg("region"), py::arg("n"), py::arg("seed") = 1,
+             py::arg("lloyd") = 50, py::arg("shortest_edge") = .1,
+             R"(Cuts a polygon into n Voronoi cells that tile it exactly: a VoronoiCells.
+
+seed: of the random sites. lloyd: largest number of steps of Lloyd's iteration, which evens the cells
+out. shortest_edge: length below which edges are collapsed, over the size of a cell, 0 to 0.5.
+
+Raises SceneError if the region is too thin, ValueError for a wrong option.)");
+}
+
+}  // namespace apothem::python

@@ -1,0 +1,252 @@
+#include "apothem/output/run_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/locale/encoding_utf.hpp>
+#include <cmath>
+#include <filesystem>
+
+#include "apothem/output/convex_cells.hpp"
+#include "apothem/output/vtu_file.hpp"
+
+namespace apothem {
+namespace {
+
+std::vector<Vec2> vectors(const VtuArray& array, size_t count) {
+  std::vector<Vec2> result;
+  result.reserve(count);
+  for (size_t i = 0; i < count; ++i) result.push_back(array.vector(i));
+  return result;
+}
+
+const std::vector<std::string>& texts(const VtuFile& file, const char* name) {
+  static const std::vector<std::string> none;
+  const auto found = file.texts.find(name);
+  return found == file.texts.end() ? none : found->second;
+}
+
+// The arrays of the cells of a frame.
+struct CellArrays {
+  explicit CellArrays(const VtuFile& file)
+      : body(file.cell_array("body")),
+        part(file.cell_array("part")),
+        material(file.cell_array("material")),
+        motion(file.cell_array("motion")),
+        rotation(file.cell_array("rotation")),
+        spin(file.cell_array("spin")),
+        coordination(file.cell_array("coordination")),
+        mean_stress(file.cell_array("mean_stress", 3)) {}
+  const VtuArray &body, &part, &material, &motion, &rotation, &spin, &coordination, &mean_stress;
+};
+
+// The values of cell `c` for the body that it belongs to.
+void read_body(const CellArrays& arrays, size_t c, FrameBody& body) {
+  body.present = true;
+  body.rotation = arrays.rotation(c);
+  body.spin = arrays.spin(c);
+  body.coordination = static_cast<int>(arrays.coordination(c));
+  const VtuArray& mean = arrays.mean_stress;
+  body.mean_stress = {mean(c, 0), mean(c, 1), mean(c, 2), 0, 0};
+  body.motion = static_cast<Motion>(std::lround(arrays.motion(c)));
+}
+
+void read_bodies(const VtuFile& file, Frame& frame) {
+  for (const std::string& name : texts(file, "body_names")) frame.bodies.emplace_back().name = name;
+  frame.material_names = texts(file, "material_names");
+  const auto rigid = file.of_file.find("rigid_bodies");
+  const size_t first_meshed = rigid == file.of_file.end() || rigid->second.values.empty()
+                                  ? frame.bodies.size()
+                                  : static_cast<size_t>(rigid->second(0));
+  for (size_t b = first_meshed; b < frame.bodies.size(); ++b) frame.bodies[b].meshed = true;
+}
+
+// Adds the element or rigid body of cell `c`.
+void add_element(const VtuFile& file, const CellArrays& arrays, size_t c, Frame& frame) {
+  const int body = static_cast<int>(arrays.body(c));
+  if (body < 0 || body >= static_cast<int>(frame.bodies.size())) {
+    throw ResultsError(fmt::format("{}: there is no name of body {}", file.name, body));
+  }
+  frame.body.push_back(body);
+  frame.material.push_back(static_cast<int>(arrays.material(c)));
+  FrameBody& of_element = frame.bodies[body];
+  if (!of_element.present) read_body(arrays, c, of_element);
+}
+
+// The stresses of the elements, of which each begins with one of these cells.
+void read_stresses(const VtuFile& file, const std::vector<size_t>& cells, Frame& frame) {
+  frame.stress.resize(cells.size());
+  if (all_rigid(frame)) return;
+  const VtuArray &in_plane = file.cell_array("stress", 3), &across = file.cell_array("stress_zz");
+  for (size_t e = 0; e < cells.size(); ++e) {
+    if (!frame.body_of(static_cast<int>(e)).meshed) continue;
+    const size_t c = cells[e];
+    frame.stress[e] = {in_plane(c, 0), in_plane(c, 1), in_plane(c, 2), across(c)};
+  }
+}
+
+}  // namespace
+
+bool all_rigid(const Frame& frame) {
+  return std::none_of(frame.bodies.begin(), frame.bodies.end(),
+                      [](const FrameBody& body) { return body.meshed; });
+}
+
+RunFolder::RunFolder(std::string folder) : folder_(std::move(folder)) {
+  if (!std::filesystem::is_directory(folder_)) {
+    throw ResultsError(folder_ + ": there is no such folder");
+  }
+  const std::string list = folder_ + "/frames.pvd";
+  if (!std::filesystem::exists(list)) {
+    throw ResultsError(list + ": there is no such file; give the folder of results of a run");
+  }
+  for (auto& [time, file] : read_pvd(list)) {
+    times_.push_back(time);
+    files_.push_back(std::move(file));
+  }
+  if (times_.empty()) throw ResultsError(list + ": there is no frame in it yet");
+}
+
+size_t RunFolder::nearest(double time) const {
+  const double margin = 1e-9 * (times_.back() - times_.front());
+  if (!(time >= times_.front() - margin && time <= times_.back() + margin)) {
+    throw ResultsError(fmt::format("{}: there is no frame at {} s; there are {} from {} s to {} s",
+                                   folder_, time, times_.size(), times_.front(), times_.back()));
+  }
+  size_t best = 0;
+  for (size_t i = 1; i < times_.size(); ++i) {
+    if (std::abs(times_[i] - time) < std::abs(times_[best] - time)) best = i;
+  }
+  return best;
+}
+
+// All files of a frame are written before a .pvd file lists its bodies.
+std::string RunFolder::file_of(const char* series, size_t number) const {
+  static const std::string kBodies = "/bodies_";
+  std::string file = folder_ + "/" + files_.at(number);
+  const size_t at = file.rfind(kBodies);
+  if (at != std::string::npos) file.replace(at, kBodies.size(), fmt::format("/{}_", series));
+  return file;
+}
+
+Frame RunFolder::frame(size_t number) const {
+  const VtuFile file = read_vtu(file_of("bodies", number));
+  Frame frame;
+  frame.time = times_.at(number);
+  read_bodies(file, frame);
+  frame.position = file.points;
+  frame.displacement = vectors(file.point_array("displacement", 2), file.points.size());
+  frame.velocity = vectors(file.point_array("velocity", 2), file.points.size());
+  frame.mesh.nodes.reserve(file.points.size());
+  for (size_t i = 0; i < file.points.size(); ++i) {
+    frame.mesh.nodes.emplace_back(file.points[i] - frame.displacement[i]);
+  }
+  const CellArrays arrays(file);
+  std::vector<size_t> first;  // cells of the elements
+  for (size_t c = 0; c < file.cells();) {
+    size_t end = c + 1;
+    while (end < file.cells() && arrays.part(end) > 0) ++end;
+    if (end == c + 1) {
+      frame.mesh.add_element(
+          std::span(file.corners)
+              .subspan(file.first[c], static_cast<size_t>(file.first[c + 1] - file.first[c])));
+    } else {
+      std::vector<std::vector<int>> parts;
+      for (size_t i = c; i < end; ++i) parts.push_back(file.cell(i));
+      frame.mesh.add_element(joined(parts));
+    }
+    add_element(file, arrays, c, frame);
+    first.push_back(c);
+    c = end;
+  }
+  read_stresses(file, first, frame);
+  return frame;
+}
+
+std::vector<ForceChain> RunFolder::chains(size_t number) const {
+  const VtuFile file = read_vtu(file_of("chains", number));
+  const VtuArray &a = file.cell_array("body_a"), &b = file.cell_array("body_b");
+  const VtuArray& normal = file.cell_array("normal_force");
+  std::vector<ForceChain> chains;
+  chains.reserve(file.cells());
+  for (size_t c = 0; c < file.cells(); ++c) {
+    chains.push_back({static_cast<int>(a(c)), static_cast<int>(b(c)), file.line(c), normal(c)});
+    if (chains.back().line.size() < 2) {
+      throw ResultsError(file.name + ": a chain has fewer than two points");
+    }
+  }
+  return chains;
+}
+
+std::vector<SurfaceRecord> RunFolder::surfaces(size_t number) const {
+  const VtuFile file = read_vtu(file_of("surfaces", number));
+  std::vector<SurfaceRecord> surfaces;
+  for (size_t c = 0; c < file.cells(); ++c) {
+    const std::vector<Vec2> ends = file.line(c);
+    if (ends.size() != 2) throw ResultsError(file.name + ": a part of a surface is no line");
+    surfaces.push_back({static_cast<int>(file.cell_array("body")(c)), ends[0], ends[1],
+                        file.cell_array("contact_pressure")(c),
+                        file.cell_array("tangential_traction")(c)});
+  }
+  return surfaces;
+}
+
+bool RunFolder::has(const std::string& file) const {
+  return std::filesystem::exists(folder_ + '/' + file);
+}
+
+std::vector<Rose> RunFolder::roses(size_t number) const {
+  const VtuFile file = read_vtu(file_of("roses", number));
+  const VtuArray& frequency = file.point_array("frequency");
+  std::vector<Rose> roses;
+  for (size_t c = 0; c < file.cells(); ++c) {
+    Rose& rose = roses.emplace_back();
+    rose.line = file.line(c);
+    for (const int point : file.cell(c)) rose.frequency.push_back(frequency(point));
+  }
+  return roses;
+}
+
+std::string folder_title(const std::string& folder) {
+  const std::filesystem::path path =
+      std::filesystem::absolute(std::filesystem::path(folder)).lexically_normal();
+  const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
+  return boost::locale::conv::utf_to_utf<char>(name);  // pictures cannot have invalid UTF-8
+}
+
+HistoryTable read_table(const std::string& folder, const std::string& file) {
+  const std::string path = folder + "/" + file;
+  if (!std::filesystem::exists(path)) {
+    throw ResultsError(path + ": there is no such file; give the folder of results of a run");
+  }
+  try {
+    return read_history(path);
+  } catch (const std::runtime_error& error) {
+    throw ResultsError(error.what());
+  }
+}
+
+namespace {
+
+// The first frame not before `time` and not after `latest`, s.
+size_t first_between(const RunFolder& run, double time, double latest) {
+  const std::vector<double>& times = run.times();
+  for (size_t i = 0; i < times.size(); ++i) {
+    if (times[i] >= time - 1e-6 * (latest - time) && times[i] <= latest) return i;
+  }
+  throw ResultsError(fmt::format("{}: there is no frame at {} s", run.path(), time));
+}
+
+}  // namespace
+
+Frame read_frame(const std::string& folder, double time, double latest) {
+  const RunFolder run(folder);
+  return run.frame(first_between(run, time, latest));
+}
+
+std::vector<SurfaceRecord> read_surfaces(const std::string& folder, double time, double latest) {
+  const RunFolder run(folder);
+  return run.surfaces(first_between(run, time, latest));
+}
+
+}  // namespace apothem

@@ -1,0 +1,176 @@
+#include "apothem/output/vtu_file.hpp"
+
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkExecutive.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLDataParser.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <filesystem>
+
+#include "apothem/output/run_folder.hpp"
+
+namespace apothem {
+namespace {
+
+// For a missing file VTK would print a message of its own.
+void require_file(const std::string& file) {
+  if (!std::filesystem::exists(file)) throw ResultsError(file + ": there is no such file");
+}
+
+// Counts the errors of a reader in place of printing them.
+class Errors {
+ public:
+  Errors() {
+    command_->SetClientData(&count_);
+    command_->SetCallback(
+        [](vtkObject*, unsigned long, void* count, void*) { ++*static_cast<int*>(count); });
+  }
+  [[nodiscard]] vtkCommand* observer() const { return command_; }
+  [[nodiscard]] bool none() const { return count_ == 0; }
+
+ private:
+  int count_ = 0;
+  vtkNew<vtkCallbackCommand> command_;
+};
+
+ResultsError damaged(const std::string& file) {
+  return ResultsError(file + ": is no VTK file, or a damaged one");
+}
+
+VtuArray array_of(vtkDataArray* data) {
+  VtuArray array{data->GetNumberOfComponents(), {}};
+  const vtkIdType count = data->GetNumberOfValues();
+  if (auto* reals = vtkDoubleArray::SafeDownCast(data)) {
+    array.values.assign(reals->GetPointer(0), reals->GetPointer(0) + count);
+    return array;
+  }
+  array.values.reserve(static_cast<size_t>(count));
+  for (vtkIdType i = 0; i < data->GetNumberOfTuples(); ++i) {
+    for (int k = 0; k < array.components; ++k) array.values.push_back(data->GetComponent(i, k));
+  }
+  return array;
+}
+
+VtuFile::Arrays arrays_of(vtkFieldData* data) {
+  VtuFile::Arrays arrays;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = data->GetArray(i);  // null for strings
+    if (array && array->GetName()) arrays[array->GetName()] = array_of(array);
+  }
+  return arrays;
+}
+
+void read_texts(vtkFieldData* data, VtuFile& result) {
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+    auto* array = vtkStringArray::SafeDownCast(data->GetAbstractArray(i));
+    if (!array || !array->GetName()) continue;
+    std::vector<std::string>& texts = result.texts[array->GetName()];
+    for (vtkIdType k = 0; k < array->GetNumberOfValues(); ++k) texts.push_back(array->GetValue(k));
+  }
+}
+
+const VtuArray& find(const VtuFile& file, const VtuFile::Arrays& arrays, const char* name,
+                     int components, size_t count) {
+  static const VtuArray nothing;
+  const auto found = arrays.find(name);
+  if (found != arrays.end() && found->second.components >= components &&
+      found->second.values.size() >= count * static_cast<size_t>(found->second.components)) {
+    return found->second;
+  }
+  if (file.cells() == 0) return nothing;  // VTK may leave out arrays without values
+  throw ResultsError(fmt::format(
+      "{}: has no array \"{}\"; it is no frame of a run, or one of an older version of the program",
+      file.name, name));
+}
+
+}  // namespace
+
+std::vector<Vec2> VtuFile::line(size_t c) const {
+  std::vector<Vec2> places;
+  for (int i = first[c]; i < first[c + 1]; ++i) places.push_back(points[corners[i]]);
+  return places;
+}
+
+const VtuArray& VtuFile::point_array(const char* array, int components) const {
+  return find(*this, of_points, array, components, points.size());
+}
+
+const VtuArray& VtuFile::cell_array(const char* array, int components) const {
+  return find(*this, of_cells, array, components, cells());
+}
+
+VtuFile read_vtu(const std::string& file) {
+  require_file(file);
+  const Errors errors;
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  for (const unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
+    reader->AddObserver(event, errors.observer());
+  }
+  reader->SetReaderErrorObserver(errors.observer());
+  reader->SetParserErrorObserver(errors.observer());
+  reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors.observer());
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  if (!errors.none()) throw damaged(file);
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  VtuFile result;
+  result.name = file;
+  const auto count = static_cast<size_t>(grid->GetNumberOfPoints());
+  result.points.reserve(count);
+  if (count > 0) {
+    const VtuArray places = array_of(grid->GetPoints()->GetData());
+    for (size_t i = 0; i < count; ++i) result.points.push_back(places.vector(i));
+  }
+  const auto cells = static_cast<size_t>(grid->GetNumberOfCells());
+  result.first.reserve(cells + 1);
+  const vtkIdType* corners = nullptr;
+  for (size_t c = 0; c < cells; ++c) {
+    vtkIdType of_cell = 0;
+    grid->GetCellPoints(static_cast<vtkIdType>(c), of_cell, corners);
+    for (vtkIdType k = 0; k < of_cell; ++k) {
+      if (corners[k] < 0 || corners[k] >= static_cast<vtkIdType>(count)) throw damaged(file);
+      result.corners.push_back(static_cast<int>(corners[k]));
+    }
+    result.first.push_back(static_cast<int>(result.corners.size()));
+  }
+  result.of_points = arrays_of(grid->GetPointData());
+  result.of_cells = arrays_of(grid->GetCellData());
+  result.of_file = arrays_of(grid->GetFieldData());
+  read_texts(grid->GetFieldData(), result);
+  return result;
+}
+
+std::vector<std::pair<double, std::string>> read_pvd(const std::string& file) {
+  require_file(file);
+  const Errors errors;
+  vtkNew<vtkXMLDataParser> parser;
+  parser->AddObserver(vtkCommand::ErrorEvent, errors.observer());
+  parser->SetFileName(file.c_str());
+  const bool parsed = parser->Parse() != 0;
+  vtkXMLDataElement* root = parsed ? parser->GetRootElement() : nullptr;
+  vtkXMLDataElement* list = root ? root->FindNestedElementWithName("Collection") : nullptr;
+  if (!list) throw ResultsError(file + ": is no VTK collection, or a damaged one");
+  std::vector<std::pair<double, std::string>> entries;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* entry = list->GetNestedElement(i);
+    double time = 0;
+    if (!entry->GetScalarAttribute("timestep", time) || !entry->GetAttribute("file")) continue;
+    entries.emplace_back(time, entry->GetAttribute("file"));
+  }
+  return entries;
+}
+
+}  // namespace apothem

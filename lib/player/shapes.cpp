@@ -1,0 +1,133 @@
+#include "apothem/player/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/mesh/edges.hpp"
+#include "apothem/model/rotation.hpp"
+#include "apothem/output/convex_cells.hpp"
+
+namespace apothem {
+namespace {
+
+// Convex parts of a ring as fans of triangles.
+std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec2>& ring) {
+  std::vector<std::array<int, 3>> triangles;
+  for (const std::vector<int>& cell : convex_cells(ring)) {
+    for (size_t i = 1; i + 1 < cell.size(); ++i) {
+      triangles.push_back({cell[0], cell[i], cell[i + 1]});
+    }
+  }
+  return triangles;
+}
+
+void add_rigid(const Frame& frame, int element, Shapes::Body& body) {
+  std::vector<Vec2> ring = ring_of(frame, element);
+  const RingMeasure whole = measure(ring);
+  body.area = whole.area;
+  body.triangles = triangles_of(ring);
+  for (Vec2& p : ring) {
+    p = turned(Vec2(p - whole.centroid), -frame.body_of(element).rotation);
+    body.radius = std::max(body.radius, p.norm());
+  }
+  body.ring = std::move(ring);
+}
+
+void add_meshed(const Frame& frame, int b, const FramePart& part, Shapes& shapes) {
+  Shapes::Body& body = shapes.bodies[b];
+  body.first_node = shapes.nodes;
+  body.first_element = static_cast<int>(shapes.elements.size());
+  Mesh mesh;  // of this body alone, for its edges
+  Vec2 moment = Vec2::Zero();
+  for (int e = part.element; e < part.element + part.elements; ++e) {
+    const RingMeasure of_element = measure(ring_of(frame, e));
+    body.area += of_element.area;
+    moment += of_element.area * of_element.centroid;
+    std::vector<int> nodes;
+    std::vector<Vec2> ring;
+    for (const int node : frame.mesh.element(e)) {
+      nodes.push_back(node - part.node);
+      ring.push_back(frame.mesh.nodes[node]);
+      shapes.nodes = std::max(shapes.nodes, body.first_node + nodes.back() + 1);
+    }
+    mesh.add_element(nodes);
+    Shapes::Element& added = shapes.elements.emplace_back();
+    added.body = b;
+    added.material = frame.material[e];
+    added.triangles = triangles_of(ring);
+    for (int& node : nodes) node += body.first_node;
+    for (auto& triangle : added.triangles) {
+      for (int& corner : triangle) corner = nodes[corner];
+    }
+    added.nodes = std::move(nodes);
+  }
+  const Vec2 centroid = moment / body.area;
+  for (int n = 0; n < shapes.nodes - body.first_node; ++n) {
+    body.radius = std::max(body.radius, (frame.position[part.node + n] - centroid).norm());
+  }
+  mesh.nodes.resize(static_cast<size_t>(shapes.nodes - body.first_node));
+  for (const MeshEdge& edge : mesh_edges(mesh)) {
+    (edge.on_boundary() ? shapes.boundary : shapes.inner)
+        .push_back({b, {body.first_node + edge.nodes[0], body.first_node + edge.nodes[1]}});
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> ring_of(const Frame& frame, int element) {
+  std::vector<Vec2> ring;
+  for (const int node : frame.mesh.element(element)) ring.push_back(frame.position[node]);
+  return ring;
+}
+
+RingMeasure measure(const std::vector<Vec2>& ring) {
+  RingMeasure result;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
+    const double twice = a.x() * b.y() - a.y() * b.x();
+    result.area += twice / 2;
+    result.centroid += twice / 6 * (a + b);
+  }
+  result.centroid = ring[0] + (result.area != 0 ? Vec2(result.centroid / result.area) : Vec2(0, 0));
+  return result;
+}
+
+std::vector<FramePart> parts_of(const Frame& frame) {
+  std::vector<FramePart> parts(frame.bodies.size());
+  for (int e = 0; e < frame.mesh.element_count(); ++e) {
+    FramePart& part = parts[static_cast<size_t>(frame.body[e])];
+    if (part.element < 0) part.element = e;
+    ++part.elements;
+    for (const int node : frame.mesh.element(e)) {
+      if (part.node < 0 || node < part.node) part.node = node;
+    }
+  }
+  return parts;
+}
+
+Shapes read_shapes(const RunFolder& run) {
+  Shapes shapes;
+  size_t known = 0;
+  for (size_t k = 0; k < run.times().size(); ++k) {
+    const Frame frame = run.frame(k);
+    shapes.bodies.resize(frame.bodies.size());
+    const std::vector<FramePart> parts = parts_of(frame);
+    for (size_t b = 0; b < parts.size(); ++b) {
+      Shapes::Body& body = shapes.bodies[b];
+      if (body.known || parts[b].element < 0) continue;
+      body.known = true;
+      body.meshed = frame.bodies[b].meshed;
+      body.material = frame.material[parts[b].element];
+      if (body.meshed) {
+        add_meshed(frame, static_cast<int>(b), parts[b], shapes);
+      } else {
+        add_rigid(frame, parts[b].element, body);
+      }
+      ++known;
+    }
+    if (known == shapes.bodies.size()) break;
+  }
+  return shapes;
+}
+
+}  // namespace apothem

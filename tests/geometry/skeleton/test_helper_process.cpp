@@ -1,0 +1,131 @@
+#include "apothem/geometry/skeleton/helper_process.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <system_error>
+
+#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "geometry/skeleton/faults.hpp"
+#include "shapes.hpp"
+
+using namespace apothem;
+using test::Fault;
+using End = HelperAnswer::End;
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+Numbers request(Fault fault, const Numbers& numbers) {
+  Numbers all{static_cast<double>(fault)};
+  all.insert(all.end(), numbers.begin(), numbers.end());
+  return all;
+}
+
+HelperAnswer ask(Fault fault, const Numbers& numbers, double seconds = 1,
+                 const std::function<void()>& meanwhile = {}) {
+  return run_helpers(APOTHEM_FAULTY_HELPER, {request(fault, numbers)}, seconds, meanwhile).front();
+}
+
+// Sets an environment variable for a while.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~Variable() { unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+}  // namespace
+
+TEST_CASE("a helper program hands over its numbers", "[helper]") {
+  Numbers many(100002, 3);
+  many[1] = 2;
+  const HelperAnswer answer = ask(Fault::none, many, 10);
+  CHECK(answer.end == End::finished);
+  CHECK(answer.numbers == many);
+  CHECK(answer.failure().empty());
+}
+
+TEST_CASE("what goes wrong in a helper program stays there", "[helper]") {
+  const HelperAnswer crashed = ask(Fault::crash, {1});
+  CHECK(crashed.end == End::crashed);
+  CHECK(crashed.signal == SIGKILL);
+  CHECK(crashed.numbers == Numbers{1});
+  const HelperAnswer silent = ask(Fault::loop, {1});
+  CHECK(silent.end == End::silent);
+  CHECK(silent.numbers == Numbers{1});
+  const HelperAnswer asleep = ask(Fault::sleep, {});
+  CHECK(asleep.end == End::silent);
+  const HelperAnswer greedy = ask(Fault::greed, {});
+  CHECK(greedy.end != End::finished);
+  CHECK(!greedy.failure().empty());
+  const HelperAnswer failed = ask(Fault::exception, {1});
+  CHECK(failed.end == End::failed);
+  CHECK(failed.numbers == Numbers{1});
+}
+
+TEST_CASE("several helpers work at the same time, and each fails for itself", "[helper]") {
+  const std::vector<HelperAnswer> answers =
+      run_helpers(APOTHEM_FAULTY_HELPER,
+                  {request(Fault::none, Numbers(100001, 2)), request(Fault::crash, {3}),
+                   request(Fault::none, {4}), request(Fault::loop, {})},
+                  1);
+  REQUIRE(answers.size() == 4);
+  CHECK(answers[0].end == End::finished);
+  CHECK(answers[0].numbers.size() == 100001);
+  CHECK(answers[1].end == End::crashed);
+  CHECK(answers[1].numbers == Numbers{3});
+  CHECK(answers[2].end == End::finished);
+  CHECK(answers[2].numbers == Numbers{4});
+  CHECK(answers[3].end == End::silent);
+}
+
+TEST_CASE("a program may lose patience with its helper", "[helper]") {
+  struct Enough {};
+  int calls = 0;
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_THROWS_AS(ask(Fault::sleep, {}, 60,
+                      [&] {
+                        if (++calls == 3) throw Enough();
+                      }),
+                  Enough);
+  CHECK(calls == 3);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
+  CHECK(waitpid(-1, nullptr, WNOHANG) == -1);  // no process is left
+}
+
+TEST_CASE("a helper has no signals, files or terminal of the program", "[helper]") {
+  const int leaked = fcntl(open("/dev/null", O_RDONLY), F_DUPFD, 3);  // without O_CLOEXEC
+  const auto before = std::signal(SIGINT, SIG_IGN);
+  const HelperAnswer answer = ask(Fault::report, {});
+  std::signal(SIGINT, before);
+  close(leaked);
+  REQUIRE(answer.numbers.size() == 3);
+  CHECK(answer.numbers[0] != getpgrp());
+  CHECK(answer.numbers[1] == 0);
+  CHECK(answer.numbers[2] == 0);
+}
+
+TEST_CASE("a helper program that cannot be started is an error of the system", "[helper]") {
+  CHECK_THROWS_AS(run_helpers("/nowhere/apothem-skeleton", {{}}, 1), std::system_error);
+  const Variable variable("APOTHEM_SKELETON_PROGRAM", "/nowhere/apothem-skeleton");
+  CHECK(skeleton_program() == "/nowhere/apothem-skeleton");
+  CHECK_THROWS_WITH(straight_skeleton(test::cross_shape()),
+                    Catch::Contains("/nowhere/apothem-skeleton"));
+}
+
+TEST_CASE("a helper of another version is no source of skeletons", "[helper]") {
+  const Variable variable("APOTHEM_SKELETON_PROGRAM", APOTHEM_FAULTY_HELPER);
+  CHECK_THROWS_AS(straight_skeleton(test::cross_shape()), SkeletonFailure);
+}

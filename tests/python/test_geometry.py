@@ -1,0 +1,120 @@
+"""Geometry from Python: the same numbers as the program's, and the errors of bad polygons."""
+import json
+import math
+import subprocess
+import unittest
+
+import apothem
+import numpy
+from support import PROGRAM, SOURCE, FolderCase, square
+
+BOULDER = json.loads((SOURCE / "data/polygons/boulder.json").read_text())
+BOULDER = BOULDER["polygon"] if isinstance(BOULDER, dict) else BOULDER
+
+
+def program(*words):
+    words = [PROGRAM, *map(str, words), "--json"]
+    return json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+
+
+class Polygons(FolderCase):
+    def test_a_square(self):
+        polygon = apothem.Polygon(square(1, 2, 2)[::-1])
+        self.assertEqual((len(polygon), polygon.area, polygon.centroid), (4, 4, (2, 3)))
+        self.assertTrue(polygon.is_convex)
+        self.assertAlmostEqual(polygon.polar_moment, 16 / 6, 14)
+        circle = polygon.inscribed_circle()
+        self.assertEqual((circle.radius, circle.centres.tolist()), (1, [[2, 3]]))
+        roof = polygon.roof()
+        self.assertEqual(roof.height, 1)
+        self.assertEqual(roof.nodes[-1].tolist(), [2, 3, 1])
+        self.assertEqual([face[0] for face in roof.faces], [0, 1, 2, 3])
+        self.assertEqual(polygon.singular_area().kind, "point")
+        area = polygon.singular_area(0.5)
+        self.assertEqual((area.kind, area.area), ("polygons", 1))
+        self.assertEqual(apothem.Polygon([[0, 0], [4, 0], [4, 1], [0, 1]]).singular_area().kind,
+                         "segment")
+
+    def test_numbers_are_those_of_the_program(self):
+        file = SOURCE / "data/polygons/boulder.json"
+        expected = program("polygon", file, "--reference", 0.62)
+        polygon = apothem.Polygon(BOULDER)
+        self.assertEqual(polygon.area, expected["area"])
+        self.assertEqual(list(polygon.centroid), expected["centroid"])
+        self.assertEqual(polygon.inscribed_circle().radius, expected["inradius"])
+        roof = polygon.roof()
+        self.assertEqual(roof.height, expected["roof_height"])
+        self.assertEqual(polygon.singular_area(0.62).area, expected["singular_area"]["area"])
+        edges = {face["edge"]: face["polygon"] for face in expected["faces"]}
+        faces = [roof.nodes[face].tolist() for face in roof.faces]
+        self.assertEqual(sorted(faces), sorted(edges.values()))
+
+    def test_a_closed_ring_is_the_same_polygon(self):
+        ring = square(0, 0, 1)
+        self.assertEqual(len(apothem.Polygon(ring + ring[:1])), 4)
+
+    def test_bad_polygons(self):
+        bow_tie = [[0, 0], [1, 1], [1, 0], [0, 1]]
+        with self.assertRaises(apothem.SceneError) as caught:
+            apothem.Polygon(bow_tie)
+        self.assertIn(caught.exception.vertex, range(4))
+        for points in [[[0, 0], [1, 1]], [[0, 0], [1, 0], [math.nan, 1]]]:
+            with self.assertRaises(apothem.SceneError):
+                apothem.Polygon(points)
+        with self.assertRaises(ValueError):
+            apothem.Polygon([0, 1, 2])
+        with self.assertRaises(ValueError):
+            apothem.Polygon(square(0, 0, 1)).singular_area(0)
+
+
+class Contact(FolderCase):
+    def test_methods_are_those_of_the_program(self):
+        a, b = square(0, 0, 1), [[0.9, 0.3], [2, 0.1], [1.8, 1.2]]
+        for name, ring in [("a", a), ("b", b)]:
+            (self.folder / name).write_text(json.dumps(ring))
+        results = program("contact", self.folder / "a", self.folder / "b", "--method", "all",
+                          "--stiffness", 3)["results"]
+        self.assertEqual([r["method"] for r in results], ["edge", "overlap", "exact"])
+        for expected in results:
+            found = apothem.contact(apothem.Polygon(a), apothem.Polygon(b), expected["method"],
+                                    stiffness=3)
+            with self.subTest(method=found.method):
+                for key, value in found._asdict().items():
+                    value = list(value) if isinstance(value, tuple) else value
+                    self.assertEqual(value, expected[key], key)
+
+    def test_choices(self):
+        a = apothem.Polygon([[0, 0], [1, 0], [0.5, 1]])
+        b = apothem.Polygon([[0.5, 0.9], [1.5, 0.8], [1, 2]])
+        forces = {apothem.contact(a, b, **choice).force for choice in
+                  [{}, {"reference": "inscribed_circle"}, {"reference": 0.1}, {"potential": "area"}]}
+        self.assertEqual(len(forces), 3)  # roof and circle agree where polygons are convex
+        for choice in [{"method": "magic"}, {"reference": "size"}, {"reference": -1}, {"field": "far"}]:
+            with self.assertRaises(ValueError):
+                apothem.contact(a, b, **choice)
+        with self.assertRaises(apothem.SceneError):
+            apothem.contact(apothem.Polygon(BOULDER), b, potential="area")
+
+    def test_overlap(self):
+        a = apothem.Polygon(square(0, 0, 1))
+        parts = apothem.overlap(a, apothem.Polygon(square(0.75, 0.5, 1)))
+        self.assertEqual(len(parts), 1)
+        self.assertEqual(apothem.Polygon(parts[0]).area, 0.125)
+        self.assertEqual(apothem.overlap(a, apothem.Polygon(square(2, 0, 1))), [])
+
+
+class Voronoi(unittest.TestCase):
+    def test_cells_tile_the_region(self):
+        region = apothem.Polygon(BOULDER)
+        mesh = apothem.voronoi(region, 50, seed=3)
+        self.assertEqual((len(mesh.cells), mesh.sites.shape), (50, (50, 2)))
+        areas = [apothem.Polygon(mesh.points[cell]).area for cell in mesh.cells]
+        self.assertAlmostEqual(sum(areas) / region.area, 1, 12)
+        again = apothem.voronoi(region, 50, seed=3)
+        numpy.testing.assert_array_equal(again.points, mesh.points)
+        with self.assertRaises(ValueError):
+            apothem.voronoi(region, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
