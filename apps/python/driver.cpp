@@ -13,6 +13,9 @@ namespace {
 // Between two looks for Ctrl-C. To look takes Python's lock, which another thread may hold.
 constexpr std::chrono::milliseconds kLook{100};
 
+// How long the end of Python waits for a step, or for a callback that does not return.
+constexpr std::chrono::seconds kEnd{10};
+
 // Threads that step a run now, and whether Python is about to end.
 std::atomic<int> turns = 0;
 std::atomic<bool> ending = false;
@@ -22,7 +25,10 @@ std::atomic<bool> ending = false;
 void Driver::stop_all() {
   ending = true;
   const py::gil_scoped_release release;
-  while (turns > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto end = std::chrono::steady_clock::now() + kEnd;
+  while (turns > 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 const Run& SharedRun::look() const {
@@ -45,6 +51,7 @@ Driver::~Driver() {
   try {
     if (!shared_->run.settings().folder.empty()) close();
   } catch (const std::exception& error) {
+    const py::error_scope kept;  // the simulation may go because of another error
     PyErr_SetString(PyExc_RuntimeError, error.what());
     PyErr_WriteUnraisable(nullptr);
   }

@@ -47,8 +47,8 @@ class Driver : public std::enable_shared_from_this<Driver> {
   int traverse(visitproc visit, void* argument) const;
   void clear() { callbacks_.clear(); }
 
-  /// Stops all runs and waits for them: before Python ends, which would end their threads within
-  /// a step.
+  /// Stops all runs and waits for them, at most 10 s: before Python ends, which would end their
+  /// threads within a step.
   static void stop_all();
 
  private:
