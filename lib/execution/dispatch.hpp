@@ -22,12 +22,14 @@ using Lanes = std::integral_constant<int, lanes>;
 enum class Machine { any, avx2, avx512 };
 
 inline Machine machine() {
-  if (__builtin_cpu_supports("avx512f")) return Machine::avx512;
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
+    return Machine::avx512;
+  }
   return __builtin_cpu_supports("avx2") ? Machine::avx2 : Machine::any;
 }
 
 template <class Kernel>
-[[gnu::target("avx512f")]] double with_avx512(const Kernel& kernel) {
+[[gnu::target("avx512f,avx512vl,avx512dq")]] double with_avx512(const Kernel& kernel) {
   return kernel(Lanes<8>());
 }
 template <class Kernel>

@@ -15,7 +15,7 @@ using Work = void (*)(void* task, int worker, int workers);
 
 // Loops of a step follow each other closely: a thread that is done looks for the next one for this
 // long before it sleeps. It lets others have its core meanwhile.
-constexpr int kLooks = 1000, kYields = 1000;
+constexpr int kLooks = 1000, kYields = 10000;
 constexpr int kMostThreads = 4096;
 
 template <class Ready>
