@@ -6,6 +6,11 @@
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
+namespace {
+
+constexpr double kAmple = 1e-9;  // share of a length that rounding does not reach
+
+}  // namespace
 
 int PlacedShapes::add(const Potential& potential) {
   Shape shape{x_.size(),
@@ -129,8 +134,11 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
 }
 
 bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
-  const auto [s, c] = sine_cosine(angle);
   const Vec2& body = shapes_[i].top;
+  // Mostly the shapes are too far from each other for that; the radius of a deforming one is 0.
+  const double reach = (1 + kAmple) * (body.norm() + shapes_[j].radius);
+  if (shapes_[j].radius > 0 && offset.squaredNorm() > reach * reach) return false;
+  const auto [s, c] = sine_cosine(angle);
   const Vec2 top = offset + Vec2(c * body.x() - s * body.y(), s * body.x() + c * body.y());
   // Even-odd rule, for convex and other shapes.
   const PlacedPotential other = view(j);
