@@ -8,7 +8,12 @@
 namespace apothem {
 namespace {
 
-constexpr double kAmple = 1e-9;  // share of a length that rounding does not reach
+// A point in the frame of the edge from `v` to `w`: its components along and across, over the
+// length of the edge.
+Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
+  const Vec2 edge = w - v, from = point - v;
+  return Vec2(edge.dot(from), cross(edge, from)) / edge.squaredNorm();
+}
 
 }  // namespace
 
@@ -20,7 +25,7 @@ int PlacedShapes::add(const Potential& potential) {
               0,
               potential.steepest,
               apothem::depth_ratio(potential),
-              potential.top_points.front(),
+              by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
               potential.roof ? &*potential.roof : nullptr,
               node_x_.size(),
               potential.distance ? &*potential.distance : nullptr};
@@ -111,7 +116,7 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
   const double* const inverse = inverse_length_.data() + shape.edges;
   const int n = shape.size;
   Box box;
-  shape.top = Vec2::Zero();
+  Vec2 mean = Vec2::Zero();
   bool convex = true;
   Vec2 before = vertices[0] - vertices[n - 1];
   for (int k = 0; k < n; ++k) {
@@ -125,21 +130,22 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
     convex = convex && cross(before, along) > 0;
     before = along;
     box.include(v.x(), v.y());
-    shape.top += v / n;
+    mean += v / n;
   }
+  shape.top = by_edge(mean, vertices[0], vertices[1]);
   vx[n] = vx[0];
   vy[n] = vy[0];
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
   return convex;
 }
 
-bool PlacedShapes::top_inside(int i, double angle, int j, const Vec2& offset) const {
-  const Vec2& body = shapes_[i].top;
-  // Mostly the shapes are too far from each other for that; the radius of a deforming one is 0.
-  const double reach = (1 + kAmple) * (body.norm() + shapes_[j].radius);
-  if (shapes_[j].radius > 0 && offset.squaredNorm() > reach * reach) return false;
-  const auto [s, c] = sine_cosine(angle);
-  const Vec2 top = offset + Vec2(c * body.x() - s * body.y(), s * body.x() + c * body.y());
+bool PlacedShapes::top_inside(int i, int j, const Vec2& offset) const {
+  const Shape& shape = shapes_[i];
+  const double* const x = x_.data() + shape.vertices;
+  const double* const y = y_.data() + shape.vertices;
+  const Vec2 edge(x[1] - x[0], y[1] - y[0]);
+  const Vec2 top =
+      offset + Vec2(x[0], y[0]) + shape.top.x() * edge + shape.top.y() * Vec2(-edge.y(), edge.x());
   // Even-odd rule, for convex and other shapes.
   const PlacedPotential other = view(j);
   bool inside = false;

@@ -50,8 +50,8 @@ class PlacedShapes {
             s.slope};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
-  /// `offset` is i's reference point minus j's, `angle` that of i.
-  [[nodiscard]] bool top_inside(int i, double angle, int j, const Vec2& offset) const;
+  /// `offset` is i's reference point minus j's.
+  [[nodiscard]] bool top_inside(int i, int j, const Vec2& offset) const;
   [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   /// Largest distance of a vertex from the reference point, m.
@@ -70,7 +70,7 @@ class PlacedShapes {
     double radius;
     double slope;
     double depth_ratio;
-    Vec2 top;          // of the potential, body frame; of a deforming shape the mean vertex
+    Vec2 top;          // of the potential (see by_edge); of a deforming shape the mean vertex
     const Roof* roof;  // if not convex, or
     size_t nodes;      // (first of its placed nodes)
     const DistanceField* distance;

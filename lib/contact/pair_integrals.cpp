@@ -169,8 +169,7 @@ bool PairIntegrals::too_deep(size_t p) const {
   }
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 offset = surfaces_.between(a, b);
-  return shapes.top_inside(a, surfaces_.pose(a)[2], b, offset) ||
-         shapes.top_inside(b, surfaces_.pose(b)[2], a, -offset);
+  return shapes.top_inside(a, b, offset) || shapes.top_inside(b, a, -offset);
 }
 
 }  // namespace apothem

@@ -1,20 +1,33 @@
 #include "apothem/contact/stiffness.hpp"
 
-#include <Eigen/Eigenvalues>
-
 namespace apothem {
+namespace {
 
-Eigen::Matrix3d BodyStiffness::over(const std::array<double, 3>& inverse_mass) const {
-  const Eigen::Vector3d root(std::sqrt(inverse_mass[0]), std::sqrt(inverse_mass[1]),
-                             std::sqrt(inverse_mass[2]));
-  Eigen::Matrix3d k;
-  k << xx_, xy_, xt_, xy_, yy_, yt_, xt_, yt_, tt_;
-  return root.asDiagonal() * k * root.asDiagonal();
-}
+constexpr double kSharp = 1e-9;  // relative error of a rate
+constexpr int kMostLooks = 100;
 
+}  // namespace
+
+// Newton's method on the characteristic polynomial: from above its largest zero it comes down to it
+// and does not pass it. The functions of Eigen for this have other bits on other processors.
 double BodyStiffness::rate(const std::array<double, 3>& inverse_mass) const {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  return solver.computeDirect(over(inverse_mass), Eigen::EigenvaluesOnly).eigenvalues()[2];
+  const auto& [wx, wy, wt] = inverse_mass;
+  const double x = xx_ * wx, y = yy_ * wy, t = tt_ * wt;
+  const double xy2 = xy_ * xy_ * wx * wy, xt2 = xt_ * xt_ * wx * wt, yt2 = yt_ * yt_ * wy * wt;
+  const double sum = x + y + t;
+  const double minors = (x * y - xy2) + (x * t - xt2) + (y * t - yt2);
+  const double determinant =
+      x * y * t + 2 * (xy_ * wx) * (yt_ * wy) * (xt_ * wt) - x * yt2 - y * xt2 - t * xy2;
+  double rate = rate_bound(inverse_mass);
+  for (int i = 0; i < kMostLooks; ++i) {
+    const double value = ((rate - sum) * rate + minors) * rate - determinant;
+    const double slope = (3 * rate - 2 * sum) * rate + minors;
+    if (!(value > 0 && slope > 0)) break;
+    const double step = value / slope;
+    rate -= step;
+    if (step < kSharp * rate) break;
+  }
+  return rate;
 }
 
 // Mean and variance of the eigenvalues: the largest one is at most mean + sqrt(2 variance).

@@ -7,7 +7,6 @@
 //   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,8 +53,6 @@ class BodyStiffness {
   [[nodiscard]] double rate_bound(const std::array<double, 3>& inverse_mass) const;
 
  private:
-  [[nodiscard]] Eigen::Matrix3d over(const std::array<double, 3>& inverse_mass) const;
-
   double xx_ = 0, xy_ = 0, yy_ = 0, xt_ = 0, yt_ = 0, tt_ = 0;
 };
 

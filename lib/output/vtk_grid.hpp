@@ -7,6 +7,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <cstdlib>
 #include <string>
 
 namespace apothem {
@@ -29,6 +30,10 @@ inline vtkNew<vtkIntArray> integers(const char* name) {
 /// The grid as the text of a .vtu file. Data are base64 and zlib, which readers other than VTK's
 /// accept as well.
 inline std::string xml(vtkUnstructuredGrid* grid) {
+  // VTK would wake threads for the extremes of every array, which takes longer than to find them.
+  // The function that says so needs headers of TBB.
+  [[maybe_unused]] static const int sequential =
+      setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", /*overwrite=*/0);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);
   writer->SetDataModeToBinary();
