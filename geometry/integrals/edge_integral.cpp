@@ -36,8 +36,8 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
                            EdgeWorkspace& workspace, NearEdges& near) {
   if (are_quads(a, b) && near.of_a == NearEdges::kAll && near.of_b == NearEdges::kAll) {
     PairIntegral pair;
-    with_widest([&](auto lanes) APOTHEM_LAMBDA {
-      quad_integral<QuadReal<lanes.value>>(a, b, offset.x(), offset.y(), near, pair);
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      quad_integral(a, b, offset, near, pair);
       return 0.;
     });
     return pair;

@@ -3,8 +3,6 @@
 // edge_integral.cpp.
 #pragma once
 
-#include <type_traits>
-
 #include "apothem/execution/dispatch.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
 
@@ -12,9 +10,8 @@ namespace apothem::edge_detail {
 
 using Four = PackOf<4>;
 
-// Numbers of the edges of a and of the edges of b. The work on both has no order, so that a
-// processor does it at the same time. Where registers have eight lanes, a pack of eight takes its
-// place.
+// Numbers of the edges of a and of the edges of b. What is done with the ones does not wait for the
+// others.
 struct TwiceMask {
   Four::Mask a, b;
   friend APOTHEM_INLINE TwiceMask operator&(const TwiceMask& p, const TwiceMask& q) {
@@ -67,29 +64,11 @@ APOTHEM_INLINE Twice magnitude(const Twice& p) { return {magnitude(p.a), magnitu
 APOTHEM_INLINE bool any(const TwiceMask& mask) { return any(mask.a | mask.b); }
 APOTHEM_INLINE Twice square_root(const Twice& p) { return {square_root(p.a), square_root(p.b)}; }
 
-APOTHEM_INLINE Four of_a(const Twice& p) { return p.a; }
-APOTHEM_INLINE Four of_b(const Twice& p) { return p.b; }
-APOTHEM_INLINE void join_halves(const Four& a, const Four& b, Twice& p) { p = {a, b}; }
-
-using Eight = PackOf<8>;
-APOTHEM_INLINE Four of_a(const Eight& p) {
-  return Four(__builtin_shufflevector(p.v, p.v, 0, 1, 2, 3));
-}
-APOTHEM_INLINE Four of_b(const Eight& p) {
-  return Four(__builtin_shufflevector(p.v, p.v, 4, 5, 6, 7));
-}
-APOTHEM_INLINE void join_halves(const Four& a, const Four& b, Eight& p) {
-  p.v = __builtin_shufflevector(a.v, b.v, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
-// Lanes 1, 2, 3 and 0 of both halves.
+// Lanes 1, 2, 3 and 0.
 APOTHEM_INLINE Four next(const Four& p) {
   return Four(__builtin_shufflevector(p.v, p.v, 1, 2, 3, 0));
 }
 APOTHEM_INLINE Twice next(const Twice& p) { return {next(p.a), next(p.b)}; }
-APOTHEM_INLINE Eight next(const Eight& p) {
-  return Eight(__builtin_shufflevector(p.v, p.v, 1, 2, 3, 0, 5, 6, 7, 4));
-}
 
 // The same lanes of four packs, as a matrix that is turned round its diagonal.
 APOTHEM_INLINE void transpose(const Four& p, const Four& q, const Four& r, const Four& s,
@@ -103,31 +82,15 @@ APOTHEM_INLINE void transpose(const Four& p, const Four& q, const Four& r, const
   lanes[2].v = __builtin_shufflevector(even, even2, 2, 3, 6, 7);
   lanes[3].v = __builtin_shufflevector(odd, odd2, 2, 3, 6, 7);
 }
-APOTHEM_INLINE void transpose(const Eight& p, const Eight& q, const Eight& r, const Eight& s,
-                              Eight* lanes) {
-  const auto even = __builtin_shufflevector(p.v, q.v, 0, 8, 2, 10, 4, 12, 6, 14);
-  const auto odd = __builtin_shufflevector(p.v, q.v, 1, 9, 3, 11, 5, 13, 7, 15);
-  const auto even2 = __builtin_shufflevector(r.v, s.v, 0, 8, 2, 10, 4, 12, 6, 14);
-  const auto odd2 = __builtin_shufflevector(r.v, s.v, 1, 9, 3, 11, 5, 13, 7, 15);
-  lanes[0].v = __builtin_shufflevector(even, even2, 0, 1, 8, 9, 4, 5, 12, 13);
-  lanes[1].v = __builtin_shufflevector(odd, odd2, 0, 1, 8, 9, 4, 5, 12, 13);
-  lanes[2].v = __builtin_shufflevector(even, even2, 2, 3, 10, 11, 6, 7, 14, 15);
-  lanes[3].v = __builtin_shufflevector(odd, odd2, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-APOTHEM_INLINE void transpose(const Twice& p, const Twice& q, const Twice& r, const Twice& s,
-                              Twice* lanes) {
-  Four a[4], b[4];
-  transpose(p.a, q.a, r.a, s.a, a);
-  transpose(p.b, q.b, r.b, s.b, b);
-  for (int i = 0; i < 4; ++i) lanes[i] = {a[i], b[i]};
-}
 
-// Sums of the lanes of four packs, from the first lane on; of both halves.
-template <class Real>
-APOTHEM_INLINE Real sums(const Real& p, const Real& q, const Real& r, const Real& s) {
-  Real lanes[4];
+// Sums of the lanes of four packs, from the first lane on.
+APOTHEM_INLINE Four sums(const Four& p, const Four& q, const Four& r, const Four& s) {
+  Four lanes[4];
   transpose(p, q, r, s, lanes);
   return lanes[0] + lanes[1] + lanes[2] + lanes[3];
+}
+APOTHEM_INLINE Twice sums(const Twice& p, const Twice& q, const Twice& r, const Twice& s) {
+  return {sums(p.a, q.a, r.a, s.a), sums(p.b, q.b, r.b, s.b)};
 }
 
 template <class Real>
@@ -167,33 +130,31 @@ APOTHEM_INLINE Half half_of(const Four& linear, const Four& others, double large
   return half;
 }
 
-// The parts of edges inside the other quadrilateral.
-template <class Real>
+// The parts of edges inside the other quadrilateral, and phi along them.
 struct QuadEdges {
-  Real qx, qy, ex, ey;  // of the edges, as those of PlacedEdge
-  Truth<Real> inside;
-  Real s0, s1;
-  EnvelopeMoments<Real> moments;
+  Twice qx, qy, ex, ey;  // of the edges, as those of PlacedEdge
+  TwiceMask inside;
+  Twice s0, s1;
+  EnvelopeMoments<Twice> moments;
 
   // What the edges add up to, as `accumulate` does it one by one.
   APOTHEM_INLINE void add_up(Half& half_a, Half& half_b) const {
-    const Real zero(0.), length2 = ex * ex + ey * ey, length = square_root(length2);
-    const auto there = [&](const Real& p) APOTHEM_LAMBDA { return select(inside, p, zero); };
-    const Real& sum = moments.sum;
-    const Real& first = moments.first;
-    const Real linear =
+    const Twice zero(0.), length2 = ex * ex + ey * ey, length = square_root(length2);
+    const auto there = [&](const Twice& p) APOTHEM_LAMBDA { return select(inside, p, zero); };
+    const Twice& sum = moments.sum;
+    const Twice& first = moments.first;
+    const Twice linear =
         sums(there(ey * sum), there(-(ex * sum)),
              there(-((qx * ex + qy * ey) * sum + length2 * first)), there(length * sum));
     Four bits;
     for (int e = 0; e < 4; ++e) bits.v[e] = 1 << e;
-    Real vertices;
-    join_halves(bits, bits, vertices);
-    const Real others =
+    const Twice vertices(bits, bits);
+    const Twice others =
         sums(there(length * (qx * sum + ex * first)), there(length * (qy * sum + ey * first)),
              there(length * (s1 - s0)), select(inside & (s0 == zero), vertices, zero));
-    const Real phi = there(moments.largest);
-    half_a = half_of(of_a(linear), of_a(others), largest(of_a(phi)));
-    half_b = half_of(of_b(linear), of_b(others), largest(of_b(phi)));
+    const Twice phi = there(moments.largest);
+    half_a = half_of(linear.a, others.a, largest(phi.a));
+    half_b = half_of(linear.b, others.b, largest(phi.b));
   }
 
   // The part of `join` that needs the ends of edges.
@@ -203,57 +164,55 @@ struct QuadEdges {
     if (!(size > 0)) return;
     const double nx = fx / size, ny = fy / size;
     const double shift = nx * arm.y() - ny * arm.x();
-    Real shifts;
-    join_halves(Four(0.), Four(shift), shifts);
-    const auto along = [&](const Real& s) APOTHEM_LAMBDA {
-      return Real(nx) * (qy + s * ey) - Real(ny) * (qx + s * ex) + shifts;
+    const Twice shifts(Four(0.), Four(shift));
+    const auto along = [&](const Twice& s) APOTHEM_LAMBDA {
+      return Twice(nx) * (qy + s * ey) - Twice(ny) * (qx + s * ex) + shifts;
     };
-    const Real p = along(s0), q = along(s1);
-    const Real high = select(inside, larger(p, q), Real(-HUGE_VAL));
-    const Real low = select(inside, larger(-p, -q), Real(-HUGE_VAL));
-    const double highest = largest(larger(of_a(high), of_b(high)));
-    const double lowest = -largest(larger(of_a(low), of_b(low)));
+    const Twice p = along(s0), q = along(s1);
+    const Twice high = select(inside, larger(p, q), Twice(-HUGE_VAL));
+    const Twice low = select(inside, larger(-p, -q), Twice(-HUGE_VAL));
+    const double highest = largest(larger(high.a, high.b));
+    const double lowest = -largest(larger(low.a, low.b));
     pair.breadth = highest - lowest;
     pair.middle = (highest + lowest) / 2 - shift;
   }
 };
 
-template <class Real>
-APOTHEM_INLINE void quad_integral(const PlacedPotential& a, const PlacedPotential& b, double dx,
-                                  double dy, NearEdges& near, PairIntegral& pair) {
+// The integrals of a pair of quadrilaterals; nothing where they do not touch.
+APOTHEM_INLINE void quad_integral(const PlacedPotential& a, const PlacedPotential& b,
+                                  const Vec2& offset, NearEdges& near, PairIntegral& pair) {
   const Four ax = Four::load(a.x), ay = Four::load(a.y);
   const Four bx = Four::load(b.x), by = Four::load(b.y);
-  const Four pax = ax + Four(dx), pay = ay + Four(dy), pbx = bx - Four(dx), pby = by - Four(dy);
-  Four heights_a[4], heights_b[4];
-  if (separated(quad_heights(b, pax, pay, heights_a), a, b, b.steepest, near)) return;
-  if (separated(quad_heights(a, pbx, pby, heights_b), a, b, a.steepest, near)) return;
-  Real from[4], until[4];
-  for (int i = 0; i < 4; ++i) {
-    join_halves(heights_a[i], heights_b[i], from[i]);
-    until[i] = next(from[i]);
+  const Four dx(offset.x()), dy(offset.y());
+  const Twice px(ax + dx, bx - dx), py(ay + dy, by - dy);
+  Four of_a[4], of_b[4];
+  if (separated(quad_heights(b, px.a, py.a, of_a), a, b, b.steepest, near) ||
+      separated(quad_heights(a, px.b, py.b, of_b), a, b, a.steepest, near)) {
+    return;
   }
-  const Row<Real> row{from, until, 4, 4};
-  QuadEdges<Real> edges;
+  Twice from[4], until[4];
+  for (int i = 0; i < 4; ++i) {
+    from[i] = {of_a[i], of_b[i]};
+    until[i] = {next(of_a[i]), next(of_b[i])};
+  }
+  const Row<Twice> row{from, until, 4, 4};
+  QuadEdges edges;
   edges.inside = clip(row, edges.s0, edges.s1);
   if (!any(edges.inside)) return;
   walk_envelope(row, edges.s0, edges.s1, edges.inside,
-                [&](const Truth<Real>& there, const Real& u1, const Real& v1, const Real& u2,
-                    const Real& v2) APOTHEM_LAMBDA { edges.moments.add(there, u1, v1, u2, v2); });
-  join_halves(pax - Four(b.reference.x()), pbx - Four(a.reference.x()), edges.qx);
-  join_halves(pay - Four(b.reference.y()), pby - Four(a.reference.y()), edges.qy);
-  join_halves(Four::load(a.x + 1) - ax, Four::load(b.x + 1) - bx, edges.ex);
-  join_halves(Four::load(a.y + 1) - ay, Four::load(b.y + 1) - by, edges.ey);
+                [&](const TwiceMask& there, const Twice& u1, const Twice& v1, const Twice& u2,
+                    const Twice& v2) APOTHEM_LAMBDA { edges.moments.add(there, u1, v1, u2, v2); });
+  edges.qx = {px.a - Four(b.reference.x()), px.b - Four(a.reference.x())};
+  edges.qy = {py.a - Four(b.reference.y()), py.b - Four(a.reference.y())};
+  edges.ex = {Four::load(a.x + 1) - ax, Four::load(b.x + 1) - bx};
+  edges.ey = {Four::load(a.y + 1) - ay, Four::load(b.y + 1) - by};
   Half half_a, half_b;
   edges.add_up(half_a, half_b);
-  const Vec2 r = arm(a, b, {dx, dy});
+  const Vec2 r = arm(a, b, offset);
   pair = combine(half_a, half_b, r);
   pair.depth = depth(a, b, half_a, half_b);
   edges.find_breadth(r, pair);
 }
-
-/// The number type for so many lanes.
-template <int lanes>
-using QuadReal = std::conditional_t<lanes == 8, Eight, Twice>;
 
 /// True if `quad_integral` serves the pair: two convex quadrilaterals of which no edge is
 /// shortened.

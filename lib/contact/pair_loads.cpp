@@ -8,7 +8,7 @@
 namespace apothem {
 namespace {
 
-constexpr int kAtOnce = 4;  // GCC takes masks of eight lanes apart
+constexpr int kAtOnce = 4;
 
 using Four = PackOf<kAtOnce>;
 

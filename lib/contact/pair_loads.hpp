@@ -1,5 +1,5 @@
 // What touching pairs of rigid bodies do to their bodies: the normal force, and how stiff the
-// contact holds them, as many pairs at a time as the processor has lanes.
+// contact holds them, four pairs at a time.
 #pragma once
 
 #include <span>

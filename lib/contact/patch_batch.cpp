@@ -115,11 +115,10 @@ PatchForces<double> step_one(const PatchScene& scene, const PatchWork& work, boo
   return step_patch(p, rough, damped, scene.dt, scene.now.finite, damper);
 }
 
-template <int lanes>
-APOTHEM_INLINE void PatchBatch::step(const PatchScene& scene, int first) {
-  using Pack = PackOf<lanes>;
-  const PatchWork* const work = &work_[static_cast<size_t>(first)];
-  const PatchTarget* const to = &targets_[static_cast<size_t>(first)];
+APOTHEM_INLINE void PatchBatch::step(const PatchScene& scene) {
+  using Pack = PackOf<kAtOnce>;
+  const PatchWork* const work = work_.data();
+  const PatchTarget* const to = targets_.data();
   PatchStep<Pack> p;
   DamperOf<Pack> damper;
   read_step(scene, work, p, damper);
@@ -149,7 +148,7 @@ APOTHEM_INLINE void PatchBatch::step(const PatchScene& scene, int first) {
                 [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->elastic; });
     write_lanes(damper.damping,
                 [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->damping; });
-    for (int k = 0; k < lanes; ++k) {
+    for (int k = 0; k < kAtOnce; ++k) {
       to[k].force->power_before = now.power_before.v[k];
       to[k].damper->tangential = damper.tangential.v[k];
       to[k].book->damping_loss = lost.v[k];
@@ -161,7 +160,7 @@ APOTHEM_INLINE void PatchBatch::step(const PatchScene& scene, int first) {
   const Pack energy = forces.spring * forces.spring / (Pack(2.) * p.tangential_stiffness);
   write_rows({forces.spring, p.tangential_stiffness, forces.tangent.x, forces.tangent.y},
              [&](int k) APOTHEM_LAMBDA { return &to[k].spring->force; });
-  for (int k = 0; k < lanes; ++k) {
+  for (int k = 0; k < kAtOnce; ++k) {
     to[k].book->energy = energy.v[k];
     to[k].book->loss = forces.lost.v[k];
   }
@@ -174,8 +173,8 @@ void PatchBatch::flush(const PatchScene& scene) {
                            &spare_.book};
   std::fill(work_.begin() + count_, work_.end(), work_[static_cast<size_t>(count_ - 1)]);
   std::fill(targets_.begin() + count_, targets_.end(), nobody);
-  with_widest([&](auto lanes) APOTHEM_LAMBDA {
-    for (int first = 0; first < count_; first += lanes.value) step<lanes.value>(scene, first);
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    step(scene);
     return 0.;
   });
   count_ = 0;

@@ -1,5 +1,5 @@
-// Steps of contact patches of rigid bodies with friction or damping, as many at a time as the
-// processor has lanes. The formulas are those of patch_laws.hpp.
+// Steps of contact patches of rigid bodies with friction or damping, four at a time. The formulas
+// are those of patch_laws.hpp.
 #pragma once
 
 #include <array>
@@ -80,19 +80,20 @@ class PatchBatch {
     damped_ = damped;
     work_[static_cast<size_t>(count_)] = work;
     targets_[static_cast<size_t>(count_)] = target;
-    if (++count_ == kLanes) flush(scene);
+    if (++count_ == kAtOnce) flush(scene);
   }
   /// Takes all patches that have been added a step further.
   void flush(const PatchScene& scene);
 
  private:
-  template <int lanes>
-  void step(const PatchScene& scene, int first);
+  static constexpr int kAtOnce = 4;
+
+  void step(const PatchScene& scene);
 
   int count_ = 0;
   bool rough_ = false, damped_ = false;
-  std::array<PatchWork, kLanes> work_{};
-  std::array<PatchTarget, kLanes> targets_{};
+  std::array<PatchWork, kAtOnce> work_{};
+  std::array<PatchTarget, kAtOnce> targets_{};
   struct {
     TangentialForce force;
     PairStiffness held;

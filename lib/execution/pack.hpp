@@ -22,7 +22,8 @@
 
 namespace apothem {
 
-/// One truth value for each lane of a pack.
+/// One truth value for each lane of a pack. GCC takes those of eight lanes apart: kernels that
+/// choose have packs of four.
 template <int lanes>
 struct MaskOf {
   // GCC forgets the attribute of an alias that depends on a parameter.
@@ -34,33 +35,6 @@ struct MaskOf {
   friend APOTHEM_INLINE MaskOf operator|(const MaskOf& a, const MaskOf& b) { return {a.m | b.m}; }
   friend APOTHEM_INLINE MaskOf operator!(const MaskOf& a) { return {~a.m}; }
 };
-
-/// Of eight lanes: 1 or 0, because GCC takes masks of integers apart that are as wide as the
-/// registers of AVX-512.
-template <>
-struct MaskOf<8> {
-  using Vector = double __attribute__((vector_size(64)));
-  using Bits = std::int64_t __attribute__((vector_size(64)));
-  Vector m;
-
-  friend APOTHEM_INLINE MaskOf operator&(const MaskOf& a, const MaskOf& b) {
-    return {Vector(Bits(a.m) & Bits(b.m))};
-  }
-  friend APOTHEM_INLINE MaskOf operator|(const MaskOf& a, const MaskOf& b) {
-    return {Vector(Bits(a.m) | Bits(b.m))};
-  }
-  friend APOTHEM_INLINE MaskOf operator!(const MaskOf& a) { return {1. - a.m}; }
-};
-
-// A comparison of packs. GCC makes good code of the choice only where it sees the comparison in it.
-#define APOTHEM_COMPARE(op)                                                  \
-  friend APOTHEM_INLINE Mask operator op(const PackOf& a, const PackOf& b) { \
-    if constexpr (lanes == 8) {                                              \
-      return {(a.v op b.v) ? 1. - Vector{} : Vector{}};                      \
-    } else {                                                                 \
-      return {a.v op b.v};                                                   \
-    }                                                                        \
-  }
 
 /// Doubles with elementwise arithmetic. A default-constructed pack is not initialised.
 template <int lanes>
@@ -97,14 +71,12 @@ struct PackOf {
     v += b.v;
     return *this;
   }
-  APOTHEM_COMPARE(<)
-  APOTHEM_COMPARE(>)
-  APOTHEM_COMPARE(<=)
-  APOTHEM_COMPARE(>=)
-  APOTHEM_COMPARE(==)
+  friend APOTHEM_INLINE Mask operator<(const PackOf& a, const PackOf& b) { return {a.v < b.v}; }
+  friend APOTHEM_INLINE Mask operator>(const PackOf& a, const PackOf& b) { return {a.v > b.v}; }
+  friend APOTHEM_INLINE Mask operator<=(const PackOf& a, const PackOf& b) { return {a.v <= b.v}; }
+  friend APOTHEM_INLINE Mask operator>=(const PackOf& a, const PackOf& b) { return {a.v >= b.v}; }
+  friend APOTHEM_INLINE Mask operator==(const PackOf& a, const PackOf& b) { return {a.v == b.v}; }
 };
-
-#undef APOTHEM_COMPARE
 
 /// How many numbers a number type holds.
 template <class Real>
@@ -123,29 +95,18 @@ using Truth = decltype(std::declval<const Real&>() < std::declval<const Real&>()
 template <int lanes>
 APOTHEM_INLINE PackOf<lanes> select(const MaskOf<lanes>& mask, const PackOf<lanes>& a,
                                     const PackOf<lanes>& b) {
-  if constexpr (lanes == 8) {
-    return PackOf<lanes>((mask.m > typename PackOf<lanes>::Vector{}) ? a.v : b.v);
-  } else {
-    return PackOf<lanes>(mask.m ? a.v : b.v);
-  }
+  return PackOf<lanes>(mask.m ? a.v : b.v);
 }
 template <class Real>
 APOTHEM_INLINE Real select(bool mask, const Real& a, const Real& b) {
   return mask ? a : b;
 }
-/// -1 if the mask is true in any lane, else 0.
-APOTHEM_INLINE int all_or_none(const MaskOf<4>& mask) {
+/// True if the mask is true in any lane.
+APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
   using Half = std::int64_t __attribute__((vector_size(16)));
   const Half low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
   const Half both = low | __builtin_shufflevector(mask.m, mask.m, 2, 3);
-  return static_cast<int>(both[0] | both[1]);
-}
-/// True if the mask is true in any lane.
-APOTHEM_INLINE bool any(const MaskOf<4>& mask) { return all_or_none(mask) != 0; }
-APOTHEM_INLINE bool any(const MaskOf<8>& mask) {
-  const auto bits = MaskOf<8>::Bits(mask.m);
-  return any(MaskOf<4>{__builtin_shufflevector(bits, bits, 0, 1, 2, 3) |
-                       __builtin_shufflevector(bits, bits, 4, 5, 6, 7)});
+  return (both[0] | both[1]) != 0;
 }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
 
@@ -210,26 +171,6 @@ APOTHEM_INLINE void read_rows(const Row& row, FourOf<PackOf<4>>& to) {
     to[k + 2].v = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
   }
 }
-template <class Row>
-APOTHEM_INLINE void read_rows(const Row& row, FourOf<PackOf<8>>& to) {
-  using V = PackOf<8>::Vector;
-  using Half = PackOf<4>::Vector;
-  V r[4], t[4];
-  for (int k = 0; k < 4; ++k) {
-    Half low, high;
-    std::memcpy(&low, row(k), sizeof(Half));
-    std::memcpy(&high, row(k + 4), sizeof(Half));
-    r[k] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-  }
-  for (int k = 0; k < 4; k += 2) {
-    t[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-    t[k + 1] = __builtin_shufflevector(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (size_t k = 0; k < 2; ++k) {
-    to[k].v = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-    to[k + 2].v = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-  }
-}
 
 /// Writes four consecutive doubles from row(k) on for every lane k.
 template <class Row>
@@ -245,18 +186,6 @@ APOTHEM_INLINE void write_rows(const FourOf<PackOf<4>>& from, const Row& row) {
     r[k + 2] = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
   }
   for (int k = 0; k < 4; ++k) std::memcpy(row(k), &r[k], sizeof(V));
-}
-template <class Row>
-APOTHEM_INLINE void write_rows(const FourOf<PackOf<8>>& from, const Row& row) {
-  for (int half = 0; half < 2; ++half) {
-    FourOf<PackOf<4>> part;
-    for (size_t k = 0; k < 4; ++k) {
-      const PackOf<8>::Vector& v = from[k].v;
-      part[k].v = half == 0 ? __builtin_shufflevector(v, v, 0, 1, 2, 3)
-                            : __builtin_shufflevector(v, v, 4, 5, 6, 7);
-    }
-    write_rows(part, [&](int k) APOTHEM_LAMBDA { return row(4 * half + k); });
-  }
 }
 
 }  // namespace apothem
