@@ -168,13 +168,11 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t index,
             .total = all_.forces_[to.pair],
             .held = all_.stiffness_[to.pair],
             .book = all_.books_[to.pair]};
-  pair.total = {};
-  pair.total.a = a;
-  pair.total.b = b;
-  pair.held = {};
-  pair.book = {};
   PairHistory& history = all_.now_.pairs[to.pair] = {a, b, 0, 0};
-  if (!pair.rough && !pair.damped) return;
+  if (!pair.rough && !pair.damped) {
+    pair.clear();
+    return;
+  }
   runs_ = pairs.runs(index);
   patches_ = pairs.patches(index);
   history.patches = static_cast<int>(patches_.size());
@@ -190,6 +188,7 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t index,
     add_alone(pair, scene);
     return;
   }
+  pair.clear();
   find_shares(before);
   step_patches(pair, scene);
   if (pair.rough && all_.edgewise()) per_edge(pair, scene);
@@ -202,6 +201,9 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t index,
 
 // The one patch of a pair, which had one or none before.
 void PatchTangential::Range::add_alone(const Pair& pair, const PatchScene& scene) {
+  if (!pair.rough || !pair.damped) pair.clear();  // otherwise all of it will be written
+  pair.total.a = pair.a;
+  pair.total.b = pair.b;
   Spring* spring = nullptr;
   if (pair.rough) {
     spring = &all_.springs_[pair.to.spring];

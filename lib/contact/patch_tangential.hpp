@@ -107,6 +107,14 @@ class PatchTangential {
       TangentialForce& total;
       PairStiffness& held;
       PairBook& book;
+
+      void clear() const {
+        total = {};
+        total.a = a;
+        total.b = b;
+        held = {};
+        book = {};
+      }
     };
     const PairHistory* find_before(RigidIndex a, RigidIndex b);
     void release(const TangentialForce& last, const PatchScene& scene);
