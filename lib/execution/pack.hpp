@@ -91,6 +91,11 @@ template <class Real>
 APOTHEM_INLINE Real select(bool mask, const Real& a, const Real& b) {
   return mask ? a : b;
 }
+template <int lanes>
+APOTHEM_INLINE MaskOf<lanes> select(const MaskOf<lanes>& mask, const MaskOf<lanes>& a,
+                                    const MaskOf<lanes>& b) {
+  return (mask & a) | ((!mask) & b);
+}
 /// -1 if the mask is true in any lane, else 0.
 APOTHEM_INLINE int all_or_none(const MaskOf<4>& mask) {
   using Half = std::int64_t __attribute__((vector_size(16)));
@@ -101,6 +106,18 @@ APOTHEM_INLINE int all_or_none(const MaskOf<4>& mask) {
 /// True if the mask is true in any lane.
 APOTHEM_INLINE bool any(const MaskOf<4>& mask) { return all_or_none(mask) != 0; }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
+
+/// A pack of f(0), f(1) and so on.
+template <int lanes, class F>
+APOTHEM_INLINE PackOf<lanes> pack_of(const F& f) {
+  static_assert(lanes == 4 || lanes == 8);
+  using Vector = typename PackOf<lanes>::Vector;
+  if constexpr (lanes == 4) {
+    return PackOf<lanes>(Vector{f(0), f(1), f(2), f(3)});
+  } else {
+    return PackOf<lanes>(Vector{f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)});
+  }
+}
 
 /// The absolute value.
 template <int lanes>
