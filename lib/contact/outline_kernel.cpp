@@ -117,8 +117,8 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
                         std::span<const EdgeFace>(candidates_)
                             .subspan(static_cast<size_t>(first), static_cast<size_t>(end - first));
                     EdgeFaceMeetings& found = found_[static_cast<size_t>(worker)];
-                    with_widest([&](auto width) __attribute__((always_inline)) {
-                      find_meetings<decltype(width)::value>(o, part, laws_, found);
+                    with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+                      find_meetings<kComparedLanes>(o, part, laws_, found);
                       return 0.;
                     });
                   });
@@ -190,19 +190,21 @@ double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
 
 void OutlineKernel::add_forces(const ForceViews& forces) {
   const Outlines& o = outlines_;
-  const auto add_to_nodes = [&](std::span<const double> fx, std::span<const double> fy) {
-    o.each_active_vertex([&](int i) {
-      if (o.node[i] < 0) return;
-      forces.nodes[2 * static_cast<size_t>(o.node[i])] += fx[i];
-      forces.nodes[2 * static_cast<size_t>(o.node[i]) + 1] += fy[i];
-    });
-  };
-  add_to_nodes(fx_, fy_);
-  if (friction_) {
-    for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
-      if (!part->x.empty()) add_to_nodes(part->x, part->y);
+  const VertexForces* const friction = friction_ ? &friction_->friction() : nullptr;
+  const VertexForces* const damping =
+      friction_ && !friction_->damping().empty() ? &friction_->damping() : nullptr;
+  o.each_active_vertex([&](int i) {
+    if (o.node[i] < 0) return;
+    const size_t vertex = 2 * static_cast<size_t>(i);
+    double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
+    f[0] += fx_[i];
+    f[1] += fy_[i];
+    for (const VertexForces* part : {friction, damping}) {
+      if (!part) continue;
+      f[0] += (*part)[vertex];
+      f[1] += (*part)[vertex + 1];
     }
-  }
+  });
   for (const BodyIndex b : o.active()) {
     if (!o.bodies[b].is_rigid()) continue;
     const Resultant on = resultant(b);
@@ -213,24 +215,25 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-Resultant OutlineKernel::sum(BodyIndex b, std::span<const double> fx,
-                             std::span<const double> fy) const {
+template <class Force>
+Resultant OutlineKernel::sum(BodyIndex b, const Force& force) const {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
   Resultant sum;
   for (int i = body.first; i < body.end; ++i) {
-    sum.force += Vec2(fx[i], fy[i]);
-    sum.moment += (o.x[i] - body.cx) * fy[i] - (o.y[i] - body.cy) * fx[i];
+    const Vec2 f = force(static_cast<size_t>(i));
+    sum.force += f;
+    sum.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
   }
   return sum;
 }
 
 Resultant OutlineKernel::resultant(BodyIndex body) const {
-  Resultant on = sum(body, fx_, fy_);
+  Resultant on = sum(body, [&](size_t i) { return Vec2(fx_[i], fy_[i]); });
   if (!friction_) return on;
-  for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
-    if (part->x.empty()) continue;
-    const Resultant other = sum(body, part->x, part->y);
+  for (const VertexForces* part : {&friction_->friction(), &friction_->damping()}) {
+    if (part->empty()) continue;
+    const Resultant other = sum(body, [&](size_t i) { return Vec2(&(*part)[2 * i]); });
     on.force += other.force;
     on.moment += other.moment;
   }

@@ -77,8 +77,8 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
   void take(EdgeFaceMeetings& found, std::vector<Contact>& contacts);
   void add_plateaus(std::vector<Contact>& contacts);
-  [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
-                              std::span<const double> fy) const;
+  template <class Force>
+  [[nodiscard]] Resultant sum(BodyIndex body, const Force& force) const;
   [[nodiscard]] OutlineState state() const {
     return {slopes_, contacts_, plateaus_, friction_ ? &*friction_ : nullptr};
   }

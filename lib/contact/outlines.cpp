@@ -230,8 +230,8 @@ void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
 // The edges of a body follow each other, but for those that close a line.
 void Outlines::find_edges(std::span<const BodyIndex> of) {
   const EdgeGeometry<> g{*this};
-  with_widest([&](auto width) __attribute__((always_inline)) {
-    constexpr int lanes = decltype(width)::value;
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
     for (const BodyIndex b : of) {
       const Body& at = bodies[static_cast<size_t>(b)];
       const std::span<const Loop> lines = std::span(loops).subspan(
@@ -278,8 +278,8 @@ void Outlines::find_boxes(double growth) {
 bool Outlines::have_tops_strayed() const {
   const EdgeGeometry<const Outlines> g{*this};
   const double limit = growth();
-  const auto look = [&](auto width) __attribute__((always_inline)) {
-    constexpr int lanes = decltype(width)::value;
+  const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
     for (const BodyIndex b : active_) {
       const Body& of = bodies[static_cast<size_t>(b)];
       std::array<double, lanes> farthest{};

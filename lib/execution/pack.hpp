@@ -76,6 +76,8 @@ struct PackOf {
 
 /// Number of doubles in the widest pack.
 inline constexpr int kLanes = 8;
+/// The same for kernels that compare much: compilers compare packs of eight lane by lane.
+inline constexpr int kComparedLanes = 4;
 
 /// What a comparison of numbers of this type gives.
 template <class Real>
@@ -133,7 +135,16 @@ APOTHEM_INLINE Real magnitude(const Real& a) {
 template <int lanes>
 APOTHEM_INLINE PackOf<lanes> square_root(const PackOf<lanes>& a) {
   PackOf<lanes> r;
+#if defined(__x86_64__)
+  // std::sqrt looks at every lane for a negative one, because of errno.
+  using Pair = double __attribute__((vector_size(16)));
+  for (int i = 0; i < lanes; i += 2) {
+    const Pair root = __builtin_ia32_sqrtpd(Pair{a.v[i], a.v[i + 1]});
+    r.v[i] = root[0], r.v[i + 1] = root[1];
+  }
+#else
   for (int i = 0; i < lanes; ++i) r.v[i] = std::sqrt(a.v[i]);
+#endif
   return r;
 }
 APOTHEM_INLINE double square_root(double a) { return std::sqrt(a); }
