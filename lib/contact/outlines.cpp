@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -12,6 +13,7 @@
 namespace apothem {
 namespace {
 
+constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
 constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
 
 void include(Box& box, const Box& other) {
@@ -186,41 +188,55 @@ void Outlines::close_body(const Body& added) {
   forget();
 }
 
-void Outlines::place(const Kinematics& now, const PlacedShapes& polygons) {
-  strayed_ = kept_.x.empty();
-  move(now, polygons);
-  find_edges(active_);
-  if (!strayed_) strayed_ = have_tops_strayed();
+void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+  std::atomic<bool> strayed = kept_.x.empty();
+  const int count = static_cast<int>(bodies.size());
+  const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
+  threads.chunks(count, kMoveTime * vertices, [&](int first, int end, int) {
+    for (int b = first; b < end; ++b) {
+      if (!move(bodies[b], now, polygons)) strayed = true;
+    }
+  });
+  if (strayed) require_finite();
+  threads.chunks(static_cast<int>(active_.size()), kEdgeTime * vertices,
+                 [&](int first, int end, int) {
+                   const std::span part = active().subspan(first, end - first);
+                   find_edges(part);
+                   if (!strayed && have_tops_strayed(part)) strayed = true;
+                 });
+  strayed_ = strayed;
 }
 
-void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
+// False if a vertex is not near where it was at the last search, or not at a finite place.
+bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
   const bool compare = !kept_.x.empty();
   const double limit = growth();
-  for (Body& b : bodies) {
-    bool far = !compare;
-    const auto put = [&](int i, double px, double py) {
-      x[i] = px, y[i] = py;
-      if (!compare) return;
-      // Written so that NaN is far.
-      const bool near_x = std::abs(px - kept_.x[i]) <= limit;
-      const bool near_y = std::abs(py - kept_.y[i]) <= limit;
-      far |= !(near_x & near_y);
-    };
-    if (b.is_rigid()) {
-      const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
-      const PlacedPotential polygon = polygons.view(b.rigid);
-      b.cx = q[0], b.cy = q[1];
-      for (int i = b.first; i < b.end; ++i) {
-        put(i, q[0] + polygon.x[i - b.first], q[1] + polygon.y[i - b.first]);
-      }
-    } else {
-      for (int i = b.first; i < b.end; ++i) {
-        const double* u = now.displacement.data() + 2 * static_cast<size_t>(node[i]);
-        put(i, x0_[i] + u[0], y0_[i] + u[1]);
-      }
+  bool near = true;
+  const auto put = [&](int i, double px, double py) {
+    x[i] = px, y[i] = py;
+    if (!compare) return;
+    const bool near_x = std::abs(px - kept_.x[i]) <= limit;
+    const bool near_y = std::abs(py - kept_.y[i]) <= limit;
+    near &= near_x & near_y;
+  };
+  if (b.is_rigid()) {
+    const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
+    const PlacedPotential polygon = polygons.view(b.rigid);
+    b.cx = q[0], b.cy = q[1];
+    for (int i = b.first; i < b.end; ++i) {
+      put(i, q[0] + polygon.x[i - b.first], q[1] + polygon.y[i - b.first]);
     }
-    if (!far) continue;
-    strayed_ = true;
+  } else {
+    for (int i = b.first; i < b.end; ++i) {
+      const double* u = now.displacement.data() + 2 * static_cast<size_t>(node[i]);
+      put(i, x0_[i] + u[0], y0_[i] + u[1]);
+    }
+  }
+  return near;
+}
+
+void Outlines::require_finite() const {
+  for (const Body& b : bodies) {
     double all = 0;  // NaN if a place is not finite
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
     if (all != 0) throw NotFinite(body[b.first]);
@@ -275,12 +291,12 @@ void Outlines::find_boxes(double growth) {
 
 // Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
 // bodies that are not active without a look at their faces.
-bool Outlines::have_tops_strayed() const {
+bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
   const EdgeGeometry<const Outlines> g{*this};
   const double limit = growth();
   const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
-    for (const BodyIndex b : active_) {
+    for (const BodyIndex b : among) {
       const Body& of = bodies[static_cast<size_t>(b)];
       std::array<double, lanes> farthest{};
       each_pack<lanes>(

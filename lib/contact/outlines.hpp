@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/collar.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -70,7 +71,8 @@ class Outlines {
   /// Moves the outlines to where the bodies are; those of rigid bodies follow their polygons. Those
   /// of active bodies get their tangents, bisectors and depths. Throws NotFinite if a vertex is not
   /// at a finite place.
-  void place(const Kinematics& now, const PlacedShapes& polygons);
+  void place(const Kinematics& now, const PlacedShapes& polygons,
+             const Threads& threads = Threads());
 
   /// True if a vertex, or a face of an active body, has moved through half the skin since the last
   /// search, where the outlines have been placed.
@@ -121,9 +123,10 @@ class Outlines {
  private:
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
-  void move(const Kinematics& now, const PlacedShapes& polygons);
+  bool move(Body& body, const Kinematics& now, const PlacedShapes& polygons);
+  void require_finite() const;
   void find_edges(std::span<const BodyIndex> of);
-  [[nodiscard]] bool have_tops_strayed() const;
+  [[nodiscard]] bool have_tops_strayed(std::span<const BodyIndex> among) const;
   void find_boxes(double growth);
 
   double skin_;

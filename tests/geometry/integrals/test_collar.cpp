@@ -368,11 +368,15 @@ void compare_packs(int count) {
       REQUIRE(meets == (found.met.m[l] != 0));
       if (!meets) continue;
       ++met;
-      REQUIRE(std::array{found.from.v[l], found.to.v[l], found.sum.v[l], found.first.v[l],
-                         found.area.v[l], found.along.v[l], found.height.v[l],
-                         found.deepest.v[l]} == std::array{piece.from, piece.to, piece.sum,
-                                                           piece.first, piece.area, piece.along,
-                                                           piece.height, piece.deepest});
+      const std::array of_pack{found.from.v[l],   found.to.v[l],     found.sum.v[l],
+                               found.first.v[l],  found.area.v[l],   found.along.v[l],
+                               found.height.v[l], found.deepest.v[l]};
+      const std::array of_one{piece.from, piece.to,    piece.sum,    piece.first,
+                              piece.area, piece.along, piece.height, piece.deepest};
+      for (size_t k = 0; k < of_one.size(); ++k) {
+        CAPTURE(k, of_pack[k], of_one[k]);
+        REQUIRE((of_pack[k] == of_one[k] || (std::isnan(of_pack[k]) && std::isnan(of_one[k]))));
+      }
     }
   }
   CHECK(met > count / 50);
