@@ -20,6 +20,8 @@
 #include <complex>
 #include <limits>
 
+#include "apothem/execution/pack.hpp"
+
 namespace apothem {
 
 inline double real_part(double x) { return x; }
@@ -31,21 +33,25 @@ template <class Number>
 struct Mitre {
   Number x, y;
 
-  Mitre(const Number& px, const Number& py, const Number& qx, const Number& qy) {
+  APOTHEM_INLINE Mitre(const Number& px, const Number& py, const Number& qx, const Number& qy) {
     const Number scale = 1. / (1. + (px * qx + py * qy));
     x = -(py + qy) * scale;
     y = (px + qx) * scale;
   }
 };
 
-/// Height at which a face between bisectors of these slopes shrinks to a point.
-inline double collar_event(double length, double alpha, double beta) {
-  return alpha > beta ? length / (alpha - beta) : std::numeric_limits<double>::infinity();
+/// Height at which a face between bisectors of these slopes shrinks to a point. Of numbers or
+/// packs.
+template <class Real>
+APOTHEM_INLINE Real collar_event(const Real& length, const Real& alpha, const Real& beta) {
+  return select(alpha > beta, length / (alpha - beta),
+                Real(std::numeric_limits<double>::infinity()));
 }
 
 /// The height up to which an edge needs no look at the top of a cell or at its negative part.
-inline double plain_depth(double depth, double event) {
-  return std::min(depth, event) * (1 - 1e-9);
+template <class Real>
+APOTHEM_INLINE Real plain_depth(const Real& depth, const Real& event) {
+  return select(event < depth, event, depth) * Real(1 - 1e-9);
 }
 
 template <class Number>

@@ -35,7 +35,7 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
 }
 
 bool Contacts::search_if_stale() {
-  if (!search_.stale(surfaces_)) return false;
+  if (!search_.stale(surfaces_, threads_)) return false;
   search_.search(surfaces_);
   ++searches_;
   for (std::vector<BoxPair>& pairs : pairs_) pairs.clear();
@@ -156,6 +156,13 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     raise(c, depth / length(c), found.relative);
   }
   return found;
+}
+
+bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const {
+  constexpr double kRoundOff = 1 - 1e-12;
+  const double least = std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
+  const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
+  return std::ranges::any_of(contacts_, deeper);
 }
 
 PairPeak Contacts::largest_force() const {

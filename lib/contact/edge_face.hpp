@@ -21,6 +21,7 @@ struct EdgeFaceLaw {
   double spring;        ///< k_s thickness / r of the faces, N/m^2
   double friction;      ///< mu
   std::int32_t bodies;  ///< index of the two bodies in DampingTimes
+  bool self;            ///< both are one body
 };
 
 /// An edge that meets a face.
@@ -33,18 +34,30 @@ struct EdgeFaceContact {
 
 /// The normal forces of a contact, N, each along the inward normal of its edge or face, on its
 /// start and on its end. The edge gets the pressure against its outward normal, and the face gives
-/// way.
+/// way. Of numbers or packs.
+template <class Real>
 struct EdgeFaceForces {
-  double edge_start, edge_end, face_start, face_end;
+  Real edge_start, edge_end, face_start, face_end;
 };
 
-/// `slope` of the face, as above; lengths of the edge and of the face's base, m.
-inline EdgeFaceForces edge_face_forces(const CollarPiece<double>& p, double slope,
-                                       double edge_length, double face_length) {
-  const double on_edge = slope * edge_length;
-  const double on_face_end = slope * p.along / face_length;
+/// `piece` has the members of CollarPiece. `slope` of the face, as above; lengths of the edge and
+/// of the face's base, m.
+template <class Real, class Piece>
+APOTHEM_INLINE EdgeFaceForces<Real> edge_face_forces(const Piece& p, const Real& slope,
+                                                     const Real& edge_length,
+                                                     const Real& face_length) {
+  const Real on_edge = slope * edge_length;
+  const Real on_face_end = slope * p.along / face_length;
   return {on_edge * (p.sum - p.first), on_edge * p.first, slope * p.area - on_face_end,
           on_face_end};
+}
+
+/// The height up to which an edge's height in a face is surely its depth, unless the body is
+/// squeezed to less than the collar. `plain` of the face and `depth` of the collar, m.
+template <class Real>
+APOTHEM_INLINE Real sure_depth(const Real& plain, const Real& depth) {
+  const Real half = Real(.5) * depth;
+  return select(half < plain, half, plain);
 }
 
 }  // namespace apothem

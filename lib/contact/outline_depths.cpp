@@ -2,16 +2,11 @@
 
 #include <algorithm>
 
+#include "apothem/contact/edge_face.hpp"
+
 namespace apothem {
-namespace {
-
-constexpr double kSurelyDepth = .5;  // of a collar: up to here h is a depth in a plain face,
-                                     // unless the body is squeezed to less than the collar
-
-}  // namespace
-
 bool OutlineDepths::is_depth(int face, const CollarPiece<double>& piece) const {
-  return piece.deepest <= std::min(outlines_.plain[face], kSurelyDepth * outlines_.depth[face]);
+  return piece.deepest <= sure_depth(outlines_.plain[face], outlines_.depth[face]);
 }
 
 void OutlineDepths::forget() {

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "apothem/contact/kernel.hpp"
+#include "apothem/execution/dispatch.hpp"
 #include "apothem/execution/elementary.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kFollowTime = 80, kGatherTime = 25;  // of a contact, ns
+constexpr double kSlipTime = 20, kFollowTime = 30, kGatherTime = 15;  // of a contact, ns
 
 // Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
 // rigid bodies are long: they have one for each face, which the face takes with it.
@@ -23,40 +24,27 @@ double length_of(const Outlines& o, const EdgeFaceContact& c) {
 
 }  // namespace
 
-OutlineFriction::Slip OutlineFriction::slip_of(const EdgeFaceContact& c) const {
-  const Outlines& o = outlines_;
-  const int p = c.edge, q = o.next[p], a = c.face;
-  const double tx = o.tx[a], ty = o.ty[a];
-  const double scale = 1 / o.length[a];
-  const double px = (o.x[p] - o.x[a]) * scale, py = (o.y[p] - o.y[a]) * scale;
-  const double dx = (o.x[q] - o.x[p]) * scale, dy = (o.y[q] - o.y[p]) * scale;
-  const double start = tx * px + ty * py, rise = tx * dx + ty * dy;
-  const double weight = c.slope * o.length[p];
-  const double sum = weight * c.piece.sum, first = weight * c.piece.first;
-  const double b = start * sum + rise * first;
-  const double couple = (tx * py - ty * px) * sum + (tx * dy - ty * dx) * first;
-  return {p, q, a, o.next[a], tx, ty, sum - first, first, b - sum, -b, couple, start, rise, 0, 0};
-}
-
 void OutlineFriction::find_velocities(const Kinematics& now, double dt) {
   const Outlines& o = outlines_;
-  vx_.resize(o.size()), vy_.resize(o.size());
+  velocities_.resize(2 * static_cast<size_t>(o.size()));
   const auto find = [&](const Outlines::Body& body) {
     for (int i = body.first; i < body.end; ++i) {
-      if (body.is_rigid()) {
-        const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
-        vx_[i] = v[0] - v[2] * (o.y[i] - body.cy);
-        vy_[i] = v[1] + v[2] * (o.x[i] - body.cx);
-        if (!now.finite) continue;
-        // From where the vertex was, along the chord of its arc.
-        const double angle = v[2] * dt, half = sine_cosine(angle / 2).sine;
-        const double turned = sine_cosine(angle).sine / dt - v[2], drawn = 2 * half * half / dt;
-        vx_[i] += drawn * (o.x[i] - body.cx) - turned * (o.y[i] - body.cy);
-        vy_[i] += drawn * (o.y[i] - body.cy) + turned * (o.x[i] - body.cx);
-      } else {
-        vx_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i])];
-        vy_[i] = now.node_velocity[2 * static_cast<size_t>(o.node[i]) + 1];
+      double* const to = &velocities_[2 * static_cast<size_t>(i)];
+      if (!body.is_rigid()) {
+        const double* v = now.node_velocity.data() + 2 * static_cast<size_t>(o.node[i]);
+        to[0] = v[0], to[1] = v[1];
+        continue;
       }
+      const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
+      const double x = o.x[i] - body.cx, y = o.y[i] - body.cy;
+      to[0] = v[0] - v[2] * y;
+      to[1] = v[1] + v[2] * x;
+      if (!now.finite) continue;
+      // From where the vertex was, along the chord of its arc.
+      const double angle = v[2] * dt, half = sine_cosine(angle / 2).sine;
+      const double turned = sine_cosine(angle).sine / dt - v[2], drawn = 2 * half * half / dt;
+      to[0] += drawn * x - turned * y;
+      to[1] += drawn * y + turned * x;
     }
   };
   if (everywhere_) {
@@ -86,58 +74,43 @@ void OutlineFriction::find_groups(const Step& step, FrictionMemory& memory) {
       groups_.back().end = i + 1;
       continue;
     }
-    Group& group = groups_.emplace_back(Group{i, i + 1, nullptr, {key}, false, 0, 0});
+    Group& group = groups_.emplace_back(Group{i, i + 1, nullptr, {key}, false});
     if (!(step.laws[static_cast<size_t>(step.contacts[i].pair)].friction > 0)) continue;
     const std::span<const Spring> before = memory.before(key.law, key.a, key.b);
     if (!before.empty()) group.before = before.data();
   }
 }
 
-// Dashpots in the two points of Gauss, which are exact for what is linear along the piece.
-void OutlineFriction::damp_normal(const EdgeFaceContact& c, double time, Slip& s) const {
-  constexpr double kGauss = .57735026918962576451;
-  const double from = c.piece.from, part = c.piece.to - from;
-  if (!(part > 0 && c.piece.sum > 0)) return;
-  const double middle = from + part / 2, mean = c.piece.sum / part;  // of u, and of the depth
-  const double slope = 12 * (c.piece.first - middle * c.piece.sum) / (part * part * part);
-  // How fast the edge closes in on the face, along the inward normal (-ty, tx), is linear in u.
-  const double fx = vx_[s.b] - vx_[s.a], fy = vy_[s.b] - vy_[s.a];
-  const double x0 = vx_[s.p] - vx_[s.a] - s.start * fx, y0 = vy_[s.p] - vy_[s.a] - s.start * fy;
-  const double x1 = vx_[s.q] - vx_[s.p] - s.rise * fx, y1 = vy_[s.q] - vy_[s.p] - s.rise * fy;
-  const double at_p = s.tx * y0 - s.ty * x0, change = s.tx * y1 - s.ty * x1;
-  const double weight = c.slope * outlines_.length[c.edge] * part / 2;
-  for (const double place : {-kGauss, kGauss}) {
-    const double u = middle + place * part / 2;
-    const double depth = mean + slope * (u - middle);
-    const double force = weight * std::max(time * (at_p + u * change), -depth);
-    s.push += force;
-    s.push_at_q += u * force;
-  }
+void OutlineFriction::find_slips(const Step& step, size_t first, size_t end) {
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr size_t lanes = kComparedLanes;
+    for (size_t i = first; i < end; i += lanes) {
+      std::array<double, lanes> times{};
+      for (size_t l = 0; step.dashpots && l < lanes && i + l < end; ++l) {
+        const auto pair = static_cast<size_t>(step.contacts[i + l].pair);
+        times[l] = times_[step.laws[pair].bodies].normal_time;
+      }
+      apothem::find_slips<lanes>(outlines_, step.contacts, step.laws, velocities_, times, i,
+                                 slips_);
+    }
+    return 0.;
+  });
 }
 
-// Finds the slips, the spring and the dashpots of the contacts of a spring.
+// Finds the spring and the dashpot along the face of the contacts of a spring.
 void OutlineFriction::follow(const Step& step, Group& group) {
-  const Outlines& o = outlines_;
+  using S = OutlineSlips;
   const EdgeFaceLaw& law = step.laws[static_cast<size_t>(step.contacts[group.first].pair)];
-  const DampingTimes::Pair* const pair = step.dashpots ? &times_[law.bodies] : nullptr;
   Spring& spring = group.spring;
   double pushes = 0, normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
   for (size_t i = group.first; i < group.end; ++i) {
-    const EdgeFaceContact& c = step.contacts[i];
-    Slip& s = slips_[i] = slip_of(c);
-    if (pair && pair->normal_time > 0) damp_normal(c, pair->normal_time, s);
-    pushes_[i] = s.push;
-    pushes += s.push;
-    const double length = length_of(o, c);
-    normal += s.at_p + s.at_q;
-    spring.stiffness += law.spring * length;
-    const double x = s.at_p * vx_[s.p] + s.at_q * vx_[s.q] + s.at_a * vx_[s.a] + s.at_b * vx_[s.b];
-    const double y = s.at_p * vy_[s.p] + s.at_q * vy_[s.q] + s.at_a * vy_[s.a] + s.at_b * vy_[s.b];
-    rate += s.tx * x + s.ty * y +
-            s.couple * (s.tx * (vy_[s.b] - vy_[s.a]) - s.ty * (vx_[s.b] - vx_[s.a]));
-    approach += s.tx * y - s.ty * x;
-    width += length;
-    depth += c.piece.sum * o.length[c.edge];
+    pushes += pushes_[i] = slips_.of(i, S::push);
+    normal += slips_.of(i, S::normal);
+    spring.stiffness += slips_.of(i, S::stiffness);
+    rate += slips_.of(i, S::rate);
+    approach += slips_.of(i, S::approach);
+    width += slips_.of(i, S::length);
+    depth += slips_.of(i, S::depth);
   }
   if (!(law.friction > 0 && normal > 0)) return;
   group.slides = true;
@@ -153,44 +126,29 @@ void OutlineFriction::follow(const Step& step, Group& group) {
   const double slip = rate / normal;  // m/s
   spring.force = apothem::slide(force, slip * step.dt, spring.stiffness, limit);
   double dashpot = 0;
-  if (pair && pair->tangential_time > 0) {
-    const double resists = spring.force - pair->tangential_time * spring.stiffness * slip;
+  const double time = step.dashpots ? times_[law.bodies].tangential_time : 0;
+  if (time > 0) {
+    const double resists = spring.force - time * spring.stiffness * slip;
     dashpot = std::clamp(resists, -limit, limit) - spring.force;
   }
-  group.friction = spring.force / normal;
-  group.dashpot = dashpot / normal;
   for (size_t i = group.first; i < group.end; ++i) {
-    shares_[i] = (spring.force + dashpot) / normal * (slips_[i].at_p + slips_[i].at_q);
+    *slips_.at(i, S::friction) = spring.force / normal;
+    *slips_.at(i, S::dashpot) = dashpot / normal;
+    shares_[i] = (spring.force + dashpot) / normal * slips_.of(i, S::normal);
   }
 }
 
 // Adds the forces on the vertices from `first` to `end` - 1, those of whole bodies, for every
-// vertex in the order of the contacts. The force along a face times the coefficients of the slip
-// rate acts on the vertices.
+// vertex in the order of the contacts.
 void OutlineFriction::add_forces(int first, int end) {
-  for (const Group& group : groups_) {
-    for (size_t i = group.first; i < group.end; ++i) {
-      const Slip& s = slips_[i];
-      const auto add = [&](VertexForces& forces, int vertex, double along, double across) {
-        forces.x[vertex] += along * s.tx + across * s.ty;
-        forces.y[vertex] += along * s.ty - across * s.tx;
-      };
-      const bool edge = s.p >= first && s.p < end, face = s.a >= first && s.a < end;
-      const auto drag = [&](VertexForces& forces, double force) {
-        if (edge) add(forces, s.p, force * s.at_p, 0), add(forces, s.q, force * s.at_q, 0);
-        if (!face) return;
-        add(forces, s.a, force * s.at_a, force * s.couple);
-        add(forces, s.b, force * s.at_b, -force * s.couple);
-      };
-      if (group.slides) drag(friction_, group.friction);
-      if (group.dashpot != 0) drag(damping_, group.dashpot);
-      if (s.push == 0 && s.push_at_q == 0) continue;
-      if (edge) add(damping_, s.p, 0, s.push - s.push_at_q), add(damping_, s.q, 0, s.push_at_q);
-      if (!face) continue;
-      const double on_b = s.start * s.push + s.rise * s.push_at_q;
-      add(damping_, s.a, 0, on_b - s.push), add(damping_, s.b, 0, -on_b);
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr size_t lanes = kComparedLanes;
+    for (size_t i = 0; i < shares_.size(); i += lanes) {
+      add_slip_forces<lanes>(slips_, i, std::min(lanes, shares_.size() - i), first, end, friction_,
+                             damping_);
     }
-  }
+    return 0.;
+  });
 }
 
 double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
@@ -200,18 +158,25 @@ double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
   // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
   const Step step{contacts, laws, dt, now.finite, damped_ && dt > 0};
   find_velocities(now, dt);
-  const auto n = static_cast<size_t>(o.size());
-  for (VertexForces* forces : {&friction_, &damping_}) forces->x.resize(n), forces->y.resize(n);
+  const size_t n = 2 * static_cast<size_t>(o.size());
+  friction_.resize(n);
+  if (damped_) damping_.resize(n);
   std::swap(friction_, friction_before_);
-  const double power_before = power(friction_before_), damping_before = power(damping_);
-  friction_.x.assign(n, 0), friction_.y.assign(n, 0);
+  const Powers before = powers(friction_before_);
+  friction_.assign(n, 0);
   if (step.dashpots) {
-    damping_.x.assign(n, 0), damping_.y.assign(n, 0);
+    damping_.assign(n, 0);
     find_times(step);
   }
-  shares_.assign(contacts.size(), 0);
-  pushes_.assign(contacts.size(), 0);
-  slips_.resize(contacts.size());
+  const size_t count = contacts.size();
+  shares_.assign(count, 0);
+  pushes_.resize(count);
+  slips_.resize(count);
+  const auto blocks = static_cast<int>((count + kLanes - 1) / kLanes);
+  threads_.chunks(blocks, kLanes * kSlipTime, [&](int first, int end, int) {
+    find_slips(step, static_cast<size_t>(first) * kLanes,
+               std::min(static_cast<size_t>(end) * kLanes, count));
+  });
   find_groups(step, memory);
   threads_.chunks(static_cast<int>(groups_.size()), kFollowTime, [&](int first, int end, int) {
     for (int g = first; g < end; ++g) follow(step, groups_[static_cast<size_t>(g)]);
@@ -226,21 +191,29 @@ double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
                     if (first == end) return;
                     add_forces(o.bodies[active[first]].first, o.bodies[active[end - 1]].end);
                   });
-  const double damping_now = damped_ ? power(damping_) : 0;
-  const double power_now = power(friction_);
+  const Powers after = powers(friction_);
   everywhere_ = !(dt > 0);
-  if (damped_) memory.damp(-dt / 2 * (damping_before + damping_now));
-  return dt / 2 * (power_before + power_now);
+  if (damped_) memory.damp(-dt / 2 * (before.damping + after.damping));
+  return dt / 2 * (before.friction + after.friction);
 }
 
-// Of the forces on the bodies, W.
-double OutlineFriction::power(const VertexForces& forces) const {
-  double sum = 0;
-  const auto add = [&](int i) { sum += forces.x[i] * vx_[i] + forces.y[i] * vy_[i]; };
+// Both sums at once, so that neither waits for its own last addition only.
+OutlineFriction::Powers OutlineFriction::powers(const VertexForces& friction) const {
+  Powers sum;
+  const auto add = [&](int first, int end) {
+    for (size_t c = 2 * static_cast<size_t>(first); c < 2 * static_cast<size_t>(end); c += 2) {
+      const double vx = velocities_[c], vy = velocities_[c + 1];
+      sum.friction += friction[c] * vx + friction[c + 1] * vy;
+      if (damped_) sum.damping += damping_[c] * vx + damping_[c + 1] * vy;
+    }
+  };
   if (everywhere_) {
-    for (int i = 0; i < outlines_.size(); ++i) add(i);
+    add(0, outlines_.size());
   } else {
-    outlines_.each_active_vertex(add);
+    for (const BodyIndex b : outlines_.active()) {
+      const Outlines::Body& body = outlines_.bodies[static_cast<size_t>(b)];
+      add(body.first, body.end);
+    }
   }
   return sum;
 }

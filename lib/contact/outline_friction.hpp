@@ -17,6 +17,7 @@
 #include "apothem/contact/edge_face.hpp"
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/outline_slip.hpp"
 #include "apothem/contact/outlines.hpp"
 #include "apothem/contact/pair_table.hpp"
 #include "apothem/execution/parallel.hpp"
@@ -49,7 +50,7 @@ class OutlineFriction {
                const Kinematics& now, double dt, FrictionMemory& memory);
 
   void fields(Archive& archive) {
-    if (damped_) archive("damping_x", damping_.x)("damping_y", damping_.y);
+    if (damped_) archive("damping", damping_);
   }
   /// Takes back the last slide of a scene without damping.
   void undo_slide() {
@@ -57,10 +58,6 @@ class OutlineFriction {
     everywhere_ = true;
   }
 
-  /// Forces on the vertices of the outlines, N.
-  struct VertexForces {
-    std::vector<double> x, y;
-  };
   [[nodiscard]] const VertexForces& friction() const { return friction_; }
   /// Of all dashpots; none where no pair is damped.
   [[nodiscard]] const VertexForces& damping() const { return damping_; }
@@ -70,25 +67,12 @@ class OutlineFriction {
   [[nodiscard]] const std::vector<double>& pushes() const { return pushes_; }
 
  private:
-  /// An edge against a face: pressure-weighted coefficients of the slip rate, and the dashpots
-  /// along the normal. With t, the unit tangent of the face from a to b, and n its inward normal: t
-  /// counts at both ends of the edge from p to q and of the face, n at the ends of the face.
-  struct Slip {
-    int p, q, a, b;
-    double tx, ty;
-    double at_p, at_q, at_a, at_b, couple;
-    /// The foot of the edge's point u, from 0 at p to 1 at q, is at the share start + u rise of the
-    /// face.
-    double start, rise;
-    double push, push_at_q;  ///< of the dashpots, against the face, and what q has of it, N
-  };
   /// The contacts from `first` to `end` - 1, which have one spring.
   struct Group {
     size_t first, end;
     const Spring* before;  ///< of the step before, or null
     Spring spring;
-    bool slides;               ///< whether it has friction
-    double friction, dashpot;  ///< forces along the tangent over the normal force
+    bool slides;  ///< whether it has friction
   };
   struct Step {
     std::span<const EdgeFaceContact> contacts;
@@ -99,21 +83,24 @@ class OutlineFriction {
   };
 
   void find_velocities(const Kinematics& now, double dt);
-  [[nodiscard]] double power(const VertexForces& forces) const;
+  /// Of the forces of springs and dashpots on the bodies, W.
+  struct Powers {
+    double friction = 0, damping = 0;
+  };
+  [[nodiscard]] Powers powers(const VertexForces& friction) const;
   void find_times(const Step& step);
   void find_groups(const Step& step, FrictionMemory& memory);
   void follow(const Step& step, Group& group);
-  [[nodiscard]] Slip slip_of(const EdgeFaceContact& contact) const;
-  void damp_normal(const EdgeFaceContact& contact, double time, Slip& slip) const;
+  void find_slips(const Step& step, size_t first, size_t end);
   void add_forces(int first, int end);
 
   const Outlines& outlines_;
   bool damped_;
   Threads threads_;
   DampingTimes times_;
-  bool everywhere_ = true;       // bodies that have become inactive may still have forces
-  std::vector<double> vx_, vy_;  // of the vertices
-  std::vector<Slip> slips_;      // of the contacts
+  bool everywhere_ = true;          // bodies that have become inactive may still have forces
+  std::vector<double> velocities_;  // of the vertices, interleaved
+  OutlineSlips slips_;              // of the contacts
   std::vector<Group> groups_;
   VertexForces friction_, friction_before_, damping_;
   std::vector<double> shares_, pushes_;

@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/execution/dispatch.hpp"
 
 namespace apothem {
 namespace {
 
-constexpr double kCandidateTime = 40;  // ns
+constexpr double kCandidateTime = 20;  // ns
 constexpr double kInsideTop = 2;       // share of a contact that is not with a face
-constexpr double kNothing = 1e-12;     // of a collar: round-off where an edge begins on a face
-
-// A bound of the distance from the boundary over the height in a face, which reaches beyond the end
-// of its edge at a reflex vertex.
-double depth_ratio(const CollarFace<double>& face) {
-  const double beyond = std::max(-face.alpha(), face.beta());
-  return beyond > 0 ? std::sqrt(1 + beyond * beyond) : 1;
-}
 
 }  // namespace
 
@@ -28,6 +21,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       table_(table),
       slopes_{outlines, table, thickness},
       threads_(threads),
+      found_(static_cast<size_t>(threads_.count())),
       plateaus_(outlines),
       depths_(outlines),
       onset_(outlines, slopes_) {
@@ -57,7 +51,7 @@ EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
   const double spring =
       friction.tangential_stiffness * thickness_ / outlines_.bodies[faces].reference;
   return {slopes_(faces, edges), spring, friction.coefficient,
-          friction_ ? friction_->bodies(edges, faces) : 0};
+          friction_ ? friction_->bodies(edges, faces) : 0, edges == faces};
 }
 
 // An edge of a body lies on its own face, without a depth, and in those of the edges next to it
@@ -116,28 +110,19 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   depths_.forget();
   o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
   plateaus_.begin();
-  const int count = static_cast<int>(candidates_.size());
-  const auto find = [&](int c, Met& found) {
-    const auto [e, f, pair] = candidates_[c];
-    const int q = o.next[e];
-    found.top.count = 0;
-    found.met = collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], found.piece, found.top);
-  };
-  const auto use = [&](int c, const Met& found) {
-    if (!found.met) return;
-    add_contact(candidates_[c], found.piece, contacts);
-    plateaus_.add(candidates_[c], found.top);
-  };
-  if (!threads_.worth(count, kCandidateTime)) {
-    Met found;
-    for (int c = 0; c < count; ++c) find(c, found), use(c, found);
-  } else {
-    met_.resize(count);
-    threads_.chunks(count, kCandidateTime, [&](int begin, int end, int) {
-      for (int c = begin; c < end; ++c) find(c, met_[c]);
-    });
-    for (int c = 0; c < count; ++c) use(c, met_[c]);
-  }
+  for (EdgeFaceMeetings& found : found_) found.clear();
+  threads_.chunks(static_cast<int>(candidates_.size()), kCandidateTime,
+                  [&](int first, int end, int worker) {
+                    const auto part =
+                        std::span<const EdgeFace>(candidates_)
+                            .subspan(static_cast<size_t>(first), static_cast<size_t>(end - first));
+                    EdgeFaceMeetings& found = found_[static_cast<size_t>(worker)];
+                    with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+                      find_meetings<kComparedLanes>(o, part, laws_, found);
+                      return 0.;
+                    });
+                  });
+  for (EdgeFaceMeetings& found : found_) take(found, contacts);
   add_plateaus(contacts);
   o.each_active_vertex([&](int i) {
     const int p = o.previous[i];
@@ -147,26 +132,22 @@ void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
   });
 }
 
-void OutlineKernel::add_contact(const EdgeFace& pair, const CollarPiece<double>& p,
-                                std::vector<Contact>& contacts) {
-  const Outlines& o = outlines_;
-  const auto [e, f, law] = pair;
-  const double slope = laws_[static_cast<size_t>(law)].slope;
-  const EdgeFaceForces force = edge_face_forces(p, slope, o.length[e], o.length[f]);
-  ends_[e][0] += force.edge_start;
-  ends_[e][1] += force.edge_end;
-  ends_[f][0] += force.face_start;
-  ends_[f][1] += force.face_end;
-
-  const bool self = o.body[e] == o.body[f];
-  if (!(p.deepest <= (self ? kNothing * o.depth[f] : 0))) {
-    const double surely = depths_.is_depth(f, p) ? p.deepest : 0;
-    const bool known = self && surely > 0;
-    contacts_.push_back({e, f, law, slope, p});
-    contacts.push_back(
-        {outline_kernel, e, f, surely, known ? surely : p.deepest * depth_ratio(o.face(f)),
-         std::min(1., p.deepest / o.depth[f]), slope * o.length[e] * (p.to - p.from)});
+void OutlineKernel::take(EdgeFaceMeetings& found, std::vector<Contact>& contacts) {
+  for (const EdgeFaceMeetings::Push& push : found.pushes) {
+    Ends& edge = ends_[static_cast<size_t>(push.edge)];
+    edge[0] += push.force.edge_start;
+    edge[1] += push.force.edge_end;
+    Ends& face = ends_[static_cast<size_t>(push.face)];
+    face[0] += push.force.face_start;
+    face[1] += push.force.face_end;
   }
+  contacts.insert(contacts.end(), found.records.begin(), found.records.end());
+  if (contacts_.empty()) {
+    contacts_.swap(found.contacts);
+  } else {
+    contacts_.insert(contacts_.end(), found.contacts.begin(), found.contacts.end());
+  }
+  for (const auto& [pair, top] : found.crossings) plateaus_.add(pair, top);
 }
 
 // An edge inside the top of a body is a contact with that body, and has the first face of its
@@ -209,19 +190,21 @@ double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
 
 void OutlineKernel::add_forces(const ForceViews& forces) {
   const Outlines& o = outlines_;
-  const auto add_to_nodes = [&](std::span<const double> fx, std::span<const double> fy) {
-    o.each_active_vertex([&](int i) {
-      if (o.node[i] < 0) return;
-      forces.nodes[2 * static_cast<size_t>(o.node[i])] += fx[i];
-      forces.nodes[2 * static_cast<size_t>(o.node[i]) + 1] += fy[i];
-    });
-  };
-  add_to_nodes(fx_, fy_);
-  if (friction_) {
-    for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
-      if (!part->x.empty()) add_to_nodes(part->x, part->y);
+  const VertexForces* const friction = friction_ ? &friction_->friction() : nullptr;
+  const VertexForces* const damping =
+      friction_ && !friction_->damping().empty() ? &friction_->damping() : nullptr;
+  o.each_active_vertex([&](int i) {
+    if (o.node[i] < 0) return;
+    const size_t vertex = 2 * static_cast<size_t>(i);
+    double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
+    f[0] += fx_[i];
+    f[1] += fy_[i];
+    for (const VertexForces* part : {friction, damping}) {
+      if (!part) continue;
+      f[0] += (*part)[vertex];
+      f[1] += (*part)[vertex + 1];
     }
-  }
+  });
   for (const BodyIndex b : o.active()) {
     if (!o.bodies[b].is_rigid()) continue;
     const Resultant on = resultant(b);
@@ -232,24 +215,25 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-Resultant OutlineKernel::sum(BodyIndex b, std::span<const double> fx,
-                             std::span<const double> fy) const {
+template <class Force>
+Resultant OutlineKernel::sum(BodyIndex b, const Force& force) const {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
   Resultant sum;
   for (int i = body.first; i < body.end; ++i) {
-    sum.force += Vec2(fx[i], fy[i]);
-    sum.moment += (o.x[i] - body.cx) * fy[i] - (o.y[i] - body.cy) * fx[i];
+    const Vec2 f = force(static_cast<size_t>(i));
+    sum.force += f;
+    sum.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
   }
   return sum;
 }
 
 Resultant OutlineKernel::resultant(BodyIndex body) const {
-  Resultant on = sum(body, fx_, fy_);
+  Resultant on = sum(body, [&](size_t i) { return Vec2(fx_[i], fy_[i]); });
   if (!friction_) return on;
-  for (const auto* part : {&friction_->friction(), &friction_->damping()}) {
-    if (part->x.empty()) continue;
-    const Resultant other = sum(body, part->x, part->y);
+  for (const VertexForces* part : {&friction_->friction(), &friction_->damping()}) {
+    if (part->empty()) continue;
+    const Resultant other = sum(body, [&](size_t i) { return Vec2(&(*part)[2 * i]); });
     on.force += other.force;
     on.moment += other.moment;
   }

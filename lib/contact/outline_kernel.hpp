@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "apothem/contact/edge_face_pack.hpp"
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/outline_depths.hpp"
 #include "apothem/contact/outline_friction.hpp"
@@ -74,11 +75,10 @@ class OutlineKernel final : public Kernel {
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
-  void add_contact(const EdgeFace& pair, const CollarPiece<double>& piece,
-                   std::vector<Contact>& contacts);
+  void take(EdgeFaceMeetings& found, std::vector<Contact>& contacts);
   void add_plateaus(std::vector<Contact>& contacts);
-  [[nodiscard]] Resultant sum(BodyIndex body, std::span<const double> fx,
-                              std::span<const double> fy) const;
+  template <class Force>
+  [[nodiscard]] Resultant sum(BodyIndex body, const Force& force) const;
   [[nodiscard]] OutlineState state() const {
     return {slopes_, contacts_, plateaus_, friction_ ? &*friction_ : nullptr};
   }
@@ -92,12 +92,7 @@ class OutlineKernel final : public Kernel {
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // of these
   std::vector<int> near_edges_, near_faces_;
-  struct Met {
-    CollarPiece<double> piece;
-    CollarCrossings<double> top;
-    bool met;
-  };
-  std::vector<Met> met_;  // of the candidates, with several threads
+  std::vector<EdgeFaceMeetings> found_;  // of each thread
   std::vector<EdgeFaceContact> contacts_;
   using Ends = std::array<double, 2>;
   std::vector<Ends> ends_;       // force of each edge on its two ends, along its inward normal, N

@@ -246,7 +246,8 @@ void OutlineOnset::find_forces() {
     if (!collar_piece(face_f, x_[e], y_[e], x_[q], y_[q], piece, top)) continue;
     const Vec2 edge = point(q) - point(e);
     const double length = edge.norm();
-    const EdgeFaceForces force = edge_face_forces(piece, slopes_.of({e, f}), length, face_f.length);
+    const EdgeFaceForces<double> force =
+        edge_face_forces(piece, slopes_.of({e, f}), length, face_f.length);
     const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length;
     push(e, from_edge, force.edge_start);
     push(q, from_edge, force.edge_end);

@@ -1,18 +1,105 @@
 #include "apothem/contact/outlines.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
+#include "apothem/execution/dispatch.hpp"
 #include "apothem/geometry/spatial/loops.hpp"
 
 namespace apothem {
 namespace {
 
+constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
 constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
 
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
   box.include(other.x1, other.y1);
+}
+
+template <class Number>
+APOTHEM_INLINE Number load(const double* from) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return *from;
+  } else {
+    return Number::load(from);
+  }
+}
+APOTHEM_INLINE void store(double value, double* to) { *to = value; }
+template <int lanes>
+APOTHEM_INLINE void store(const PackOf<lanes>& value, double* to) {
+  value.store(to);
+}
+template <class Number>
+APOTHEM_INLINE Number loaded(const std::vector<double>& from, int i) {
+  return load<Number>(from.data() + i);
+}
+template <class Number>
+APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
+  store(value, to.data() + i);
+}
+
+// Tangents, bisectors and plain depths of outlines. Each member does one edge or vertex, or a pack
+// of them that follow each other in all arrays.
+template <class Of = Outlines>
+struct EdgeGeometry {
+  Of& o;
+
+  template <class Number>
+  APOTHEM_INLINE void tangent(int i, int next) const {
+    const Number dx = loaded<Number>(o.x, next) - loaded<Number>(o.x, i);
+    const Number dy = loaded<Number>(o.y, next) - loaded<Number>(o.y, i);
+    const Number length = square_root(dx * dx + dy * dy);
+    const Number scale = Number(1.) / length;
+    store(length, o.length, i);
+    store(dx * scale, o.tx, i);
+    store(dy * scale, o.ty, i);
+  }
+  template <class Number>
+  APOTHEM_INLINE void bisector(int i, int previous) const {
+    const Mitre<Number> m(loaded<Number>(o.tx, previous), loaded<Number>(o.ty, previous),
+                          loaded<Number>(o.tx, i), loaded<Number>(o.ty, i));
+    store(m.x, o.mx, i);
+    store(m.y, o.my, i);
+  }
+  template <class Number>
+  APOTHEM_INLINE void plain(int i, int next) const {
+    const Number tx = loaded<Number>(o.tx, i), ty = loaded<Number>(o.ty, i);
+    const Number alpha = loaded<Number>(o.mx, i) * tx + loaded<Number>(o.my, i) * ty;
+    const Number beta = loaded<Number>(o.mx, next) * tx + loaded<Number>(o.my, next) * ty;
+    const Number event = collar_event(loaded<Number>(o.length, i), alpha, beta);
+    store(plain_depth(loaded<Number>(o.depth, i), event), o.plain, i);
+  }
+  /// Raises `farthest` to how far a vertex of the top is from a place.
+  template <class Number>
+  APOTHEM_INLINE void stray(int i, const std::vector<double>& top_x,
+                            const std::vector<double>& top_y, double* farthest) const {
+    const Number h = loaded<Number>(o.depth, i);
+    const Number x = loaded<Number>(o.x, i) + h * loaded<Number>(o.mx, i);
+    const Number y = loaded<Number>(o.y, i) + h * loaded<Number>(o.my, i);
+    const Number dx = magnitude(x - loaded<Number>(top_x, i));
+    const Number dy = magnitude(y - loaded<Number>(top_y, i));
+    Number most = load<Number>(farthest);
+    most = select(dx > most, dx, most);
+    most = select(dy > most, dy, most);
+    store(most, farthest);
+  }
+};
+
+// f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some may
+// be done twice.
+template <int lanes, class F>
+APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
+  if (end - first < lanes) {
+    for (int i = first; i < end; ++i) f(std::type_identity<double>(), i);
+    return;
+  }
+  for (int i = first; i < end - lanes; i += lanes) f(std::type_identity<PackOf<lanes>>(), i);
+  f(std::type_identity<PackOf<lanes>>(), end - lanes);
 }
 
 // The area over the length of the boundary, m: no more than the inradius of the body.
@@ -89,7 +176,10 @@ void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeInd
 }
 
 void Outlines::close_body(const Body& added) {
+  const int first_loop = bodies.empty() ? 0 : bodies.back().end_loop;
   bodies.push_back(added);
+  bodies.back().first_loop = first_loop;
+  bodies.back().end_loop = static_cast<int>(loops.size());
   const size_t n = x.size();
   for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
   depth.resize(n, added.depth);
@@ -98,59 +188,91 @@ void Outlines::close_body(const Body& added) {
   forget();
 }
 
-void Outlines::place(const Kinematics& now, const PlacedShapes& polygons) {
-  move(now, polygons);
-  for (const BodyIndex b : active_) find_edges(bodies[b]);
+void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+  std::atomic<bool> strayed = kept_.x.empty();
+  const int count = static_cast<int>(bodies.size());
+  const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
+  threads.chunks(count, kMoveTime * vertices, [&](int first, int end, int) {
+    for (int b = first; b < end; ++b) {
+      if (!move(bodies[b], now, polygons)) strayed = true;
+    }
+  });
+  if (strayed) require_finite();
+  threads.chunks(static_cast<int>(active_.size()), kEdgeTime * vertices,
+                 [&](int first, int end, int) {
+                   const std::span part = active().subspan(first, end - first);
+                   find_edges(part);
+                   if (!strayed && have_tops_strayed(part)) strayed = true;
+                 });
+  strayed_ = strayed;
 }
 
-void Outlines::move(const Kinematics& now, const PlacedShapes& polygons) {
-  for (Body& b : bodies) {
-    double all = 0;  // NaN if a place is not finite
-    if (b.is_rigid()) {
-      const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
-      const PlacedPotential polygon = polygons.view(b.rigid);
-      b.cx = q[0], b.cy = q[1];
-      for (int i = b.first; i < b.end; ++i) {
-        x[i] = q[0] + polygon.x[i - b.first];
-        y[i] = q[1] + polygon.y[i - b.first];
-      }
-    } else {
-      for (int i = b.first; i < b.end; ++i) {
-        const double* u = now.displacement.data() + 2 * static_cast<size_t>(node[i]);
-        x[i] = x0_[i] + u[0];
-        y[i] = y0_[i] + u[1];
-      }
+// False if a vertex is not near where it was at the last search, or not at a finite place.
+bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
+  const bool compare = !kept_.x.empty();
+  const double limit = growth();
+  bool near = true;
+  const auto put = [&](int i, double px, double py) {
+    x[i] = px, y[i] = py;
+    if (!compare) return;
+    const bool near_x = std::abs(px - kept_.x[i]) <= limit;
+    const bool near_y = std::abs(py - kept_.y[i]) <= limit;
+    near &= near_x & near_y;
+  };
+  if (b.is_rigid()) {
+    const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
+    const PlacedPotential polygon = polygons.view(b.rigid);
+    b.cx = q[0], b.cy = q[1];
+    for (int i = b.first; i < b.end; ++i) {
+      put(i, q[0] + polygon.x[i - b.first], q[1] + polygon.y[i - b.first]);
     }
+  } else {
+    for (int i = b.first; i < b.end; ++i) {
+      const double* u = now.displacement.data() + 2 * static_cast<size_t>(node[i]);
+      put(i, x0_[i] + u[0], y0_[i] + u[1]);
+    }
+  }
+  return near;
+}
+
+void Outlines::require_finite() const {
+  for (const Body& b : bodies) {
+    double all = 0;  // NaN if a place is not finite
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
     if (all != 0) throw NotFinite(body[b.first]);
   }
 }
 
-void Outlines::find_edges(const Body& of) {
-  for (int i = of.first; i < of.end; ++i) {
-    const double dx = x[next[i]] - x[i], dy = y[next[i]] - y[i];
-    length[i] = std::sqrt(dx * dx + dy * dy);
-    const double scale = 1 / length[i];
-    tx[i] = dx * scale;
-    ty[i] = dy * scale;
-  }
-  for (int i = of.first; i < of.end; ++i) {
-    const int p = previous[i];
-    const Mitre<double> m(tx[p], ty[p], tx[i], ty[i]);
-    mx[i] = m.x, my[i] = m.y;
-  }
-  for (int i = of.first; i < of.end; ++i) {
-    const int j = next[i];
-    const double alpha = mx[i] * tx[i] + my[i] * ty[i];
-    const double beta = mx[j] * tx[i] + my[j] * ty[i];
-    plain[i] = plain_depth(depth[i], collar_event(length[i], alpha, beta));
-  }
-}
-
-Outlines::Corners Outlines::corners(int i) const {
-  const int j = next[i];
-  const double h = depth[i];
-  return {x[i], y[i], x[i] + h * mx[i], y[i] + h * my[i], x[j] + h * mx[j], y[j] + h * my[j]};
+// The edges of a body follow each other, but for those that close a line.
+void Outlines::find_edges(std::span<const BodyIndex> of) {
+  const EdgeGeometry<> g{*this};
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
+    for (const BodyIndex b : of) {
+      const Body& at = bodies[static_cast<size_t>(b)];
+      const std::span<const Loop> lines = std::span(loops).subspan(
+          static_cast<size_t>(at.first_loop), static_cast<size_t>(at.end_loop - at.first_loop));
+      each_pack<lanes>(
+          at.first,
+          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.tangent<N>(i, i + 1);
+          });
+      for (const Loop& l : lines) g.tangent<double>(l.end - 1, l.first);
+      each_pack<lanes>(
+          at.first + 1,
+          at.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.bisector<N>(i, i - 1);
+          });
+      for (const Loop& l : lines) g.bisector<double>(l.first, l.end - 1);
+      each_pack<lanes>(
+          at.first,
+          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.plain<N>(i, i + 1);
+          });
+      for (const Loop& l : lines) g.plain<double>(l.end - 1, l.first);
+    }
+    return 0.;
+  });
 }
 
 void Outlines::find_boxes(double growth) {
@@ -162,37 +284,31 @@ void Outlines::find_boxes(double growth) {
     box.include(x[i], y[i]);
     box.include(x[j], y[j]);
     edge_boxes[i] = box.grown(growth);
-    const Corners c = corners(i);
-    box.include(c[2], c[3]);
-    box.include(c[4], c[5]);
+    for (const Vec2& corner : {top(i), top(j)}) box.include(corner.x(), corner.y());
     face_boxes[i] = box.grown(growth);
   }
 }
 
 // Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
 // bodies that are not active without a look at their faces.
-bool Outlines::stale() const {
-  if (static_cast<int>(kept_.size()) != size()) return true;
-  double farthest = 0;
-  const auto note = [&](double now, double before) {
-    const double moved = std::abs(now - before);
-    farthest = moved > farthest ? moved : farthest;
-  };
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    if (is_active_[b]) {
-      for (int i = bodies[b].first; i < bodies[b].end; ++i) {
-        const Corners now = corners(i);
-        for (size_t k = 0; k < now.size(); ++k) note(now[k], kept_[i][k]);
-      }
-    } else {
-      for (int i = bodies[b].first; i < bodies[b].end; ++i) {
-        note(x[i], kept_[i][0]);
-        note(y[i], kept_[i][1]);
-      }
+bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
+  const EdgeGeometry<const Outlines> g{*this};
+  const double limit = growth();
+  const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
+    for (const BodyIndex b : among) {
+      const Body& of = bodies[static_cast<size_t>(b)];
+      std::array<double, lanes> farthest{};
+      each_pack<lanes>(
+          of.first,
+          of.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.template stray<N>(i, kept_.top_x, kept_.top_y, farthest.data());
+          });
+      if (!(*std::ranges::max_element(farthest) <= limit)) return 1.;
     }
-    if (!(farthest <= skin_ / 2)) return true;
-  }
-  return false;
+    return 0.;
+  };
+  return with_widest(look) != 0;
 }
 
 void Outlines::activate(std::span<const BoxPair> pairs) {
@@ -206,14 +322,18 @@ void Outlines::activate(std::span<const BoxPair> pairs) {
 
 void Outlines::prepare_search() {
   const int count = static_cast<int>(bodies.size());
-  for (int b = 0; b < count; ++b) {
-    if (!is_active_[b]) find_edges(bodies[b]);
+  std::vector<BodyIndex> others;
+  for (BodyIndex b = 0; b < count; ++b) {
+    if (!is_active_[b]) others.push_back(b);
   }
-  find_boxes(skin_ / 2);
-  kept_.clear();
+  find_edges(others);
+  find_boxes(growth());
+  strayed_ = false;
+  kept_.x = x, kept_.y = y;
+  kept_.top_x.resize(x.size()), kept_.top_y.resize(x.size());
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
-    kept_.push_back(corners(i));
+    kept_.top_x[i] = top(i).x(), kept_.top_y[i] = top(i).y();
     include(body_boxes[body[i]], edge_boxes[i]);
     include(body_boxes[body[i]], face_boxes[i]);
   }

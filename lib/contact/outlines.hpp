@@ -7,12 +7,12 @@
 // all outlines form one list; edge i leads from vertex i to vertex next[i].
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/collar.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -30,6 +30,7 @@ class Outlines {
     double reference;       ///< r of its potential, m; it does not follow the deformation
     double depth;           ///< of its collar, m; nor does this
     double cx = 0, cy = 0;  ///< mass centre of a rigid body, m
+    int first_loop = 0, end_loop = 0;  ///< its closed lines
 
     [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
     [[nodiscard]] double slope() const { return 1 / reference; }  ///< of its potential, 1/m
@@ -70,13 +71,17 @@ class Outlines {
   /// Moves the outlines to where the bodies are; those of rigid bodies follow their polygons. Those
   /// of active bodies get their tangents, bisectors and depths. Throws NotFinite if a vertex is not
   /// at a finite place.
-  void place(const Kinematics& now, const PlacedShapes& polygons);
+  void place(const Kinematics& now, const PlacedShapes& polygons,
+             const Threads& threads = Threads());
 
   /// True if a vertex, or a face of an active body, has moved through half the skin since the last
-  /// search.
-  [[nodiscard]] bool stale() const;
-  /// Has the next look find the outlines stale.
-  void forget() { kept_.clear(); }
+  /// search, where the outlines have been placed.
+  [[nodiscard]] bool stale() const { return strayed_; }
+  /// Has the outlines be stale until the next search.
+  void forget() {
+    kept_ = {};
+    strayed_ = true;
+  }
   /// Renews the boxes for the search.
   void prepare_search();
   /// After a search: only bodies of these pairs are active, as others are near nothing. Until the
@@ -118,16 +123,20 @@ class Outlines {
  private:
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
-  void move(const Kinematics& now, const PlacedShapes& polygons);
-  void find_edges(const Body& body);
+  bool move(Body& body, const Kinematics& now, const PlacedShapes& polygons);
+  void require_finite() const;
+  void find_edges(std::span<const BodyIndex> of);
+  [[nodiscard]] bool have_tops_strayed(std::span<const BodyIndex> among) const;
   void find_boxes(double growth);
-  /// x, y of the start of an edge and of both upper ends of its face.
-  using Corners = std::array<double, 6>;
-  [[nodiscard]] Corners corners(int edge) const;
 
   double skin_;
   std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
-  std::vector<Corners> kept_;    // of the last search
+  /// The vertices of the outlines and of their tops at the last search.
+  struct Kept {
+    std::vector<double> x, y, top_x, top_y;
+  };
+  Kept kept_;
+  bool strayed_ = true;
   std::vector<BodyIndex> active_;
   std::vector<char> is_active_;  // of each body
 };

@@ -1,16 +1,28 @@
 #include "apothem/contact/search.hpp"
 
-namespace apothem {
+#include <atomic>
 
-bool Search::stale(const Surfaces& surfaces) const {
+namespace apothem {
+namespace {
+
+constexpr double kLookTime = 2;  // of a box, ns
+
+}  // namespace
+
+bool Search::stale(const Surfaces& surfaces, const Threads& threads) const {
   if (static_cast<int>(kept_.size()) != surfaces.size()) return true;
+  if (surfaces.has_outlines() && surfaces.outlines().stale()) return true;
   const std::vector<Box>& boxes = surfaces.shapes().boxes();
-  for (size_t i = 0; i < boxes.size(); ++i) {
-    if (!contains(kept_[i], boxes[i]) && surfaces.is_present(static_cast<SurfaceIndex>(i))) {
-      return true;
+  std::atomic<bool> left = false;
+  threads.chunks(static_cast<int>(boxes.size()), kLookTime, [&](int first, int end, int) {
+    for (SurfaceIndex i = first; i < end; ++i) {
+      if (!contains(kept_[i], boxes[i]) && surfaces.is_present(i)) {
+        left = true;
+        return;
+      }
     }
-  }
-  return surfaces.has_outlines() && surfaces.outlines().stale();
+  });
+  return left;
 }
 
 void Search::search(Surfaces& surfaces) {

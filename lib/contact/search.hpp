@@ -16,7 +16,7 @@ namespace apothem {
 class Search {
  public:
   /// True if a surface has left its box since the last search, or is not at a finite place.
-  [[nodiscard]] bool stale(const Surfaces& surfaces) const;
+  [[nodiscard]] bool stale(const Surfaces& surfaces, const Threads& threads = Threads()) const;
   /// Has the next look find the pairs stale.
   void forget() { kept_.clear(); }
   /// Finds all pairs of near surfaces of two bodies, at least one of which forces can move. All

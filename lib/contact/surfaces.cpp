@@ -64,19 +64,19 @@ bool Surfaces::place_polygon(RigidIndex i, const Kinematics& now) {
   return true;
 }
 
-void Surfaces::place_meshes(const Kinematics& now) {
+void Surfaces::place_meshes(const Kinematics& now, const Threads& threads) {
   if (elements_.size() > 0) {
     const auto first = static_cast<size_t>(rigid_count());
     elements_.place(now, rigid_count(), shapes_, std::span(pose_).subspan(first));
   }
-  if (has_outlines()) outlines_.place(now, shapes_);
+  if (has_outlines()) outlines_.place(now, shapes_, threads);
 }
 
 void Surfaces::place_all(const Kinematics& now) {
   for (RigidIndex i = 0; i < rigid_count(); ++i) {
     if (!place_polygon(i, now)) throw NotFinite(i);
   }
-  place_meshes(now);
+  place_meshes(now, Threads());
 }
 
 void Surfaces::place(const Kinematics& now, const Threads& threads) {
@@ -87,7 +87,7 @@ void Surfaces::place(const Kinematics& now, const Threads& threads) {
     }
   });
   if (!finite) place_all(now);  // says which one it is
-  place_meshes(now);
+  place_meshes(now, threads);
 }
 
 }  // namespace apothem

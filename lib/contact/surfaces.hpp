@@ -9,7 +9,9 @@
 // outlines touch them by these.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -37,6 +39,8 @@ class Surfaces {
     std::array<double, 3> inverse_mass;  ///< 1/m, 1/m, 1/I where forces can move it, else 0
     double inradius;                     ///< m
     bool moves;                          ///< it can change its place
+    /// How far its boundary may move between two searches, twice over, m: no more than this.
+    double skin = HUGE_VAL;
   };
   /// Adds the polygon of the next rigid body. The potential is about its mass centre and must
   /// outlive this object.
@@ -74,7 +78,8 @@ class Surfaces {
   [[nodiscard]] double inradius(SurfaceIndex i) const;
   /// How far the box of a surface grows for the search, m.
   [[nodiscard]] double growth(SurfaceIndex i) const {
-    return (is_rigid(i) ? polygon_skin_ : mesh_skin_) / 2;
+    if (!is_rigid(i)) return mesh_skin_ / 2;
+    return std::min(polygon_skin_, rigid_[i].skin) / 2;
   }
 
   /// Polygons and elements, with the numbers of their surfaces.
@@ -94,7 +99,7 @@ class Surfaces {
  private:
   /// False, and it stays where it is, if it would not be at a finite place.
   bool place_polygon(RigidIndex i, const Kinematics& now);
-  void place_meshes(const Kinematics& now);
+  void place_meshes(const Kinematics& now, const Threads& threads);
 
   double polygon_skin_, mesh_skin_;
   bool collars_;

@@ -13,18 +13,27 @@
 namespace apothem {
 namespace {
 
-constexpr double kPolygonSkin = 0.1;  // of the mean size of rigid bodies
+constexpr double kPolygonSkin = 0.1;  // of the size of a rigid body
 constexpr double kMeshSkin = 0.25;    // of the shortest reference length
+constexpr double kStrideTime = 2;     // of a body, ns
 
-double polygon_skin(const Model& model) {
-  double area = 0;
+// How far the boundary of a body may move between two searches, twice over, m. Small bodies have
+// small boxes. One that stays in its place needs no room.
+double own_skin(const RigidBody& body) {
+  return body.can_move() ? kPolygonSkin * std::sqrt(body.area) : 0;
+}
+
+// The harmonic mean of these. The boxes of large bodies have no more room, so that they do not meet
+// those of small ones that are far from them.
+double common_skin(const Model& model) {
+  double sum = 0;
   int count = 0;
   for (const RigidBody& body : model.bodies) {
     if (!body.can_move()) continue;
-    area += body.area;
+    sum += 1 / own_skin(body);
     ++count;
   }
-  return count > 0 ? kPolygonSkin * std::sqrt(area / count) : 0;
+  return count > 0 ? count / sum : 0;
 }
 
 }  // namespace
@@ -59,10 +68,11 @@ Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& do
   };
   const bool meshes = !model.deformables.empty();
   const bool outlines = meshes && model.contact.surface == ContactSurface::body;
-  Surfaces surfaces(polygon_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
+  Surfaces surfaces(common_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
                     outlines);
   for (const RigidBody& body : model.bodies) {
-    surfaces.add_polygon(body.potential, {body.inverse_mass(), body.inradius, body.can_move()});
+    surfaces.add_polygon(body.potential,
+                         {body.inverse_mass(), body.inradius, body.can_move(), own_skin(body)});
   }
   const PotentialChoice& choice = model.contact.potential;
   std::optional<double> reference;
@@ -88,6 +98,7 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
                          int threads)
     : model_(model),
       dofs_(dofs),
+      threads_(threads),
       contacts_(model.contact, model.thickness, surfaces_of(model, dofs), pair_table(model),
                 threads) {
   double inradius = HUGE_VAL;
@@ -95,6 +106,7 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
   largest_stride_ = kLargestStride * inradius;
   const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
   for (BodyIndex i = 0; i < bodies; ++i) inradius_.push_back(inradius_of(model, i));
+  shortest_inradius_ = *std::ranges::min_element(inradius_);
   if (!state.absent.empty()) contacts_.set_absent(state.absent);
   try {
     contacts_.place_all(state.kinematics(state.v));
@@ -148,19 +160,20 @@ std::string ContactTerm::describe() const {
 }
 
 void ContactTerm::check_drift(const State& state, double dt) {
-  double stride = 0;
-  RigidIndex farthest = -1;
   const Surfaces& surfaces = contacts_.surfaces();
-  for (RigidIndex i = 0; i < surfaces.rigid_count(); ++i) {
-    if (!surfaces.rigid(i).moves) continue;
-    const double* v = &state.v[state.layout.rigid(i)];
-    const double far =
-        std::max(std::abs(v[0]), std::abs(v[1])) + std::abs(v[2]) * surfaces.shapes().radius(i);
-    if (far > stride) {
-      stride = far;
-      farthest = i;
+  strides_.assign(static_cast<size_t>(threads_.count()), {});
+  threads_.chunks(surfaces.rigid_count(), kStrideTime, [&](int first, int end, int worker) {
+    Stride longest;
+    for (RigidIndex i = first; i < end; ++i) {
+      if (!surfaces.rigid(i).moves) continue;
+      const double* v = &state.v[state.layout.rigid(i)];
+      const double far =
+          std::max(std::abs(v[0]), std::abs(v[1])) + std::abs(v[2]) * surfaces.shapes().radius(i);
+      if (far > longest.speed) longest = {far, i};
     }
-  }
+    strides_[static_cast<size_t>(worker)] = longest;
+  });
+  const auto [stride, farthest] = *std::ranges::max_element(strides_, {}, &Stride::speed);
   if (!(stride * dt > largest_stride_) || surfaces.rigid_count() < 2) return;
   throw Unstable(
       fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
@@ -207,8 +220,12 @@ void ContactTerm::note_peaks(const State& state) {
   const auto note = [&](const PairPeak& found, Peak& peak) {
     if (found.value > peak.value) peak = {found.value, state.time, found.a, found.b};
   };
-  const Penetrations found =
-      contacts_.penetrations(inradius_, {{penetration_.value}, {relative_penetration_.value}});
+  const Penetrations floors{{penetration_.value}, {relative_penetration_.value}};
+  if (!contacts_.may_be_deeper(floors, shortest_inradius_)) {
+    note(contacts_.largest_force(), force_);
+    return;
+  }
+  const Penetrations found = contacts_.penetrations(inradius_, floors);
   note(found.largest, penetration_);
   note(found.relative, relative_penetration_);
   note(contacts_.largest_force(), force_);

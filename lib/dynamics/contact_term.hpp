@@ -26,6 +26,7 @@ class ContactTerm final : public Term {
   [[nodiscard]] std::string describe() const override;
   /// Throws Unstable where bodies are out of the method's range.
   void add_forces(const Evaluation& evaluation) override;
+  [[nodiscard]] bool has_onsets() const override { return true; }
   bool find_onsets(const State& state, std::span<const double> before, double dt) override {
     return contacts_.find_onsets(state.kinematics(state.v),
                                  {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
@@ -77,11 +78,20 @@ class ContactTerm final : public Term {
   void note_peaks(const State& state);
   [[nodiscard]] const std::string& name(BodyIndex body) const { return model_.name_of(body); }
 
+  /// The fastest of some bodies: the largest speed of a point of it, m/s.
+  struct Stride {
+    double speed = 0;
+    RigidIndex body = -1;
+  };
+
   const Model& model_;
   const DegreesOfFreedom& dofs_;
+  Threads threads_;
   Contacts contacts_;
   double largest_stride_ = 0;     // m
+  std::vector<Stride> strides_;   // of each thread
   std::vector<double> inradius_;  // of each body, m
+  double shortest_inradius_ = 0;  // of these, m
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
 };

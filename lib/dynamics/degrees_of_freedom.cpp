@@ -6,9 +6,16 @@
 #include "apothem/model/rotation.hpp"
 
 namespace apothem {
+namespace {
 
-DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> node_mass)
+constexpr double kKickTime = .7, kDriftTime = .5;  // of a coordinate, ns
+
+}  // namespace
+
+DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> node_mass,
+                                   int threads)
     : model_(model),
+      threads_(threads),
       layout_{static_cast<int>(model.bodies.size()), static_cast<int>(node_mass.size())} {
   for (const RigidBody& body : model.bodies) add_rigid(body);
   for (const DeformableBody& body : model.deformables) {
@@ -184,14 +191,17 @@ State DegreesOfFreedom::start() const {
 }
 
 void DegreesOfFreedom::kick(State& state, double h) const {
-  const size_t n = inverse_mass_.size();
-  double* __restrict v = state.v.data();
-  const double* __restrict f = state.f.data();
-  if (acceleration_.empty()) {
-    for (size_t c = 0; c < n; ++c) v[c] += h * (inverse_mass_[c] * f[c]);
-  } else {
-    for (size_t c = 0; c < n; ++c) v[c] += h * (inverse_mass_[c] * f[c] + acceleration_[c]);
-  }
+  threads_.chunks(static_cast<int>(inverse_mass_.size()), kKickTime, [&](int first, int end, int) {
+    double* __restrict v = state.v.data();
+    const double* __restrict f = state.f.data();
+    const double* const w = inverse_mass_.data();
+    if (acceleration_.empty()) {
+      for (int c = first; c < end; ++c) v[c] += h * (w[c] * f[c]);
+    } else {
+      const double* const g = acceleration_.data();
+      for (int c = first; c < end; ++c) v[c] += h * (w[c] * f[c] + g[c]);
+    }
+  });
 }
 
 // Gives the wall whose coordinates begin with `first` its velocity.
@@ -216,22 +226,29 @@ void DegreesOfFreedom::steer(State& state, double dt) {
 }
 
 void DegreesOfFreedom::drift(State& state, double dt) const {
-  const size_t rigid = layout_.node(0), n = layout_.size();
-  double* __restrict x = state.x.data();
-  const double* __restrict v = state.v.data();
-  double* __restrict r = state.remainder.data();
+  const auto rigid = static_cast<int>(layout_.node(0));
   // Compensated sum (Kahan): at constant velocity every step rounds the same way, and the angular
   // momentum of a million steps would show it. Displacements of nodes are small: they need none.
-  for (size_t c = 0; c < rigid; ++c) {
-    if (!(inverse_mass_[c] > 0)) continue;
-    const double dx = dt * v[c] + r[c];
-    const double sum = x[c] + dx;
-    r[c] = dx - (sum - x[c]);
-    x[c] = sum;
-  }
-  for (size_t c = rigid; c < n; ++c) x[c] += dt * v[c];
+  threads_.chunks(rigid, kDriftTime, [&](int first, int end, int) {
+    double* __restrict x = state.x.data();
+    const double* __restrict v = state.v.data();
+    double* __restrict r = state.remainder.data();
+    for (int c = first; c < end; ++c) {
+      if (!(inverse_mass_[c] > 0)) continue;
+      const double dx = dt * v[c] + r[c];
+      const double sum = x[c] + dx;
+      r[c] = dx - (sum - x[c]);
+      x[c] = sum;
+    }
+  });
+  const int nodes = static_cast<int>(layout_.size()) - rigid;
+  threads_.chunks(nodes, kDriftTime, [&](int first, int end, int) {
+    double* __restrict x = state.x.data();
+    const double* __restrict v = state.v.data();
+    for (int c = rigid + first; c < rigid + end; ++c) x[c] += dt * v[c];
+  });
   for (const Driven& d : driven_) {
-    if (d.coordinate < rigid) x[d.coordinate] += d.move;
+    if (d.coordinate < layout_.node(0)) state.x[d.coordinate] += d.move;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "apothem/execution/parallel.hpp"
 #include "apothem/model/model.hpp"
 #include "apothem/model/state.hpp"
 
@@ -24,7 +25,7 @@ struct Impulse {
 class DegreesOfFreedom {
  public:
   /// `node_mass` in kg.
-  DegreesOfFreedom(const Model& model, std::span<const double> node_mass);
+  DegreesOfFreedom(const Model& model, std::span<const double> node_mass, int threads = 1);
 
   /// Where all bodies are, and how they move, at time 0.
   [[nodiscard]] State start() const;
@@ -104,6 +105,7 @@ class DegreesOfFreedom {
   void add_supports(const DeformableBody& body);
 
   const Model& model_;
+  Threads threads_;
   Layout layout_;
   std::vector<double> inverse_mass_, mass_, acceleration_, weight_;
   std::vector<double> start_;  // x, y, angle of rigid bodies; places of nodes in the mesh as given

@@ -36,7 +36,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
                        const std::function<bool()>& stop)
     : model_(model),
       own_elements_(Elements::needed(model) ? std::make_unique<Elements>(model, threads) : nullptr),
-      dofs_(model, mass_of(own_elements_.get())),
+      dofs_(model, mass_of(own_elements_.get()), threads),
       state_(dofs_.start()),
       ledger_(dofs_),
       onsets_(time.onsets),
@@ -127,7 +127,7 @@ void Simulation::take_step() {
   dofs_.drift(state_, dt);
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
-  forces_ = state_.f;
+  if (watches_onsets()) forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
@@ -196,11 +196,16 @@ void Simulation::find_forces(std::span<const double> velocity, double dt, double
     term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit});
 }
 
+bool Simulation::watches_onsets() const {
+  return onsets_ &&
+         std::ranges::any_of(terms_, [](const auto& term) { return term->has_onsets(); });
+}
+
 // Contacts that begin or end within the step push in its second half as if they had pushed when
 // they did. True if there are any: state.f holds their forces as well, and forces_ the others
 // alone.
 bool Simulation::add_onsets(double dt) {
-  if (!onsets_) return false;
+  if (!watches_onsets()) return false;
   bool found = false;
   for (const auto& term : terms_) found = term->find_onsets(state_, forces_, dt) || found;
   if (!found) return false;

@@ -127,6 +127,7 @@ class Simulation {
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0);
+  [[nodiscard]] bool watches_onsets() const;
   bool add_onsets(double dt);
   void settle(const std::function<bool()>& stop);
   void watch();

@@ -46,6 +46,8 @@ class Term {
   /// and those of the nodes with the elements' (Elements is the first term where there are nodes).
   /// Throws Unstable.
   virtual void add_forces(const Evaluation& /*evaluation*/) {}
+  /// True if find_onsets may find something.
+  [[nodiscard]] virtual bool has_onsets() const { return false; }
   /// After add_forces at the end of a drift of dt (s): finds the impulses that the two ends of the
   /// step do not tell of, because a force has begun or ended in between. `before`: all forces at
   /// the start of the step. True if there is one.

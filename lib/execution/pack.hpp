@@ -22,8 +22,7 @@
 
 namespace apothem {
 
-/// One truth value for each lane of a pack. GCC takes those of eight lanes apart: kernels that
-/// choose have packs of four.
+/// One truth value for each lane of a pack.
 template <int lanes>
 struct MaskOf {
   // GCC forgets the attribute of an alias that depends on a parameter.
@@ -86,6 +85,8 @@ inline constexpr int lanes_of<PackOf<lanes>> = lanes;
 
 /// Number of doubles in the widest pack.
 inline constexpr int kLanes = 8;
+/// The same for kernels that compare much: compilers compare packs of eight lane by lane.
+inline constexpr int kComparedLanes = 4;
 
 /// What a comparison of numbers of this type gives.
 template <class Real>
@@ -101,6 +102,11 @@ template <class Real>
 APOTHEM_INLINE Real select(bool mask, const Real& a, const Real& b) {
   return mask ? a : b;
 }
+template <int lanes>
+APOTHEM_INLINE MaskOf<lanes> select(const MaskOf<lanes>& mask, const MaskOf<lanes>& a,
+                                    const MaskOf<lanes>& b) {
+  return (mask & a) | ((!mask) & b);
+}
 /// True if the mask is true in any lane.
 APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
   using Half = std::int64_t __attribute__((vector_size(16)));
@@ -109,6 +115,18 @@ APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
   return (both[0] | both[1]) != 0;
 }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
+
+/// A pack of f(0), f(1) and so on.
+template <int lanes, class F>
+APOTHEM_INLINE PackOf<lanes> pack_of(const F& f) {
+  static_assert(lanes == 4 || lanes == 8);
+  using Vector = typename PackOf<lanes>::Vector;
+  if constexpr (lanes == 4) {
+    return PackOf<lanes>(Vector{f(0), f(1), f(2), f(3)});
+  } else {
+    return PackOf<lanes>(Vector{f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)});
+  }
+}
 
 /// The absolute value.
 template <int lanes>
@@ -124,7 +142,16 @@ APOTHEM_INLINE Real magnitude(const Real& a) {
 template <int lanes>
 APOTHEM_INLINE PackOf<lanes> square_root(const PackOf<lanes>& a) {
   PackOf<lanes> r;
+#if defined(__x86_64__)
+  // std::sqrt looks at every lane for a negative one, because of errno.
+  using Pair = double __attribute__((vector_size(16)));
+  for (int i = 0; i < lanes; i += 2) {
+    const Pair root = __builtin_ia32_sqrtpd(Pair{a.v[i], a.v[i + 1]});
+    r.v[i] = root[0], r.v[i + 1] = root[1];
+  }
+#else
   for (int i = 0; i < lanes; ++i) r.v[i] = std::sqrt(a.v[i]);
+#endif
   return r;
 }
 APOTHEM_INLINE double square_root(double a) { return std::sqrt(a); }

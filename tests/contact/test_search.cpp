@@ -22,9 +22,10 @@ struct Scene {
 
   explicit Scene(bool outlines = false) : surfaces(kSkin, kSkin, outlines) {}
   void add_polygon(const Polygon& polygon, const std::array<double, 3>& place = {},
-                   const std::array<double, 3>& inverse_mass = {1, 1, 1}) {
+                   const std::array<double, 3>& inverse_mass = {1, 1, 1}, double skin = HUGE_VAL) {
     potentials.push_back(about_centre(polygon));
-    surfaces.add_polygon(potentials.back(), {inverse_mass, 1 / potentials.back().steepest, true});
+    surfaces.add_polygon(potentials.back(),
+                         {inverse_mass, 1 / potentials.back().steepest, true, skin});
     pose.insert(pose.end(), place.begin(), place.end());
   }
   void add_mesh(const Mesh& mesh, bool outline) {
@@ -93,7 +94,8 @@ Scene random_scene(samples::Random& random, int polygons, int meshes, bool outli
     const std::array<double, 3> place{random.uniform(0, 5), random.uniform(0, 5),
                                       random.uniform(-3, 3)};
     const double mobility = random.integer(0, 3) ? 1 : 0;
-    scene.add_polygon(samples::scaled(shape, size), place, {mobility, mobility, mobility});
+    const double skin = random.uniform(.7, 1.5) * kSkin;  // its own, or that of the scene
+    scene.add_polygon(samples::scaled(shape, size), place, {mobility, mobility, mobility}, skin);
   }
   for (int i = 0; i < meshes; ++i) scene.add_mesh(random_mesh(random), outlines);
   return scene;

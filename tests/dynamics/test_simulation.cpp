@@ -277,6 +277,24 @@ TEST_CASE("a pair search with a skin changes nothing", "[dynamics]") {
   CHECK(simulation.counts().searches < simulation.state().step / 2);
 }
 
+TEST_CASE("large bodies do not widen the search among small ones", "[dynamics]") {
+  Model model = falling_model(1e8);
+  const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  // Gaps of a fifth of the small ones, which is twice their skin.
+  constexpr int kColumns = 30;
+  for (int i = 0; i < kColumns * kColumns; ++i) {
+    const Vec2 place(.012 * (i % kColumns), .012 * (i / kColumns));
+    model.bodies.push_back(make_body(model, std::to_string(i),
+                                     samples::posed(samples::scaled(square, .01), place, 0)));
+  }
+  for (int i = 0; i < 10; ++i) {
+    model.bodies.push_back(make_body(model, "large", samples::posed(square, {1.5 * i, -1.002}, 0)));
+  }
+  Simulation simulation(model, {.end = 1}, 1, 1);
+  simulation.step();
+  CHECK(simulation.counts().candidate_pairs == 0);
+}
+
 TEST_CASE("a scene far from the world's zero moves as near it", "[dynamics]") {
   const auto fall = [](const Vec2& offset) {
     Model model = falling_model();

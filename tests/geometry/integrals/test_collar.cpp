@@ -3,6 +3,7 @@
 #include <complex>
 
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/geometry/integrals/collar_pack.hpp"
 #include "contact/outline_pairs.hpp"
 
 using namespace apothem;
@@ -296,4 +297,95 @@ TEST_CASE("NaN is never a miss", "[collar]") {
   CHECK(collar_piece(face, .5, .1, .5, nan, piece, top));
   CHECK(std::isnan(piece.sum));
   CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, top));
+}
+
+namespace {
+
+// Places on a coarse grid, so that many edges touch corners, bases and bisectors exactly.
+struct EdgeAndFace {
+  CollarFace<double> face;
+  Vec2 p, q;
+
+  explicit EdgeAndFace(samples::Random& random) {
+    const bool coarse = random.uniform(0, 1) < .5;
+    const auto place = [&](double reach) {
+      const double x = random.uniform(-reach, reach);
+      return coarse ? std::round(4 * x) / 4 : x;
+    };
+    Vec2 before, a, b, after;
+    const auto far = [](const Vec2& u, const Vec2& v) { return (u - v).norm() > .2; };
+    do {
+      before = {place(2), place(2)}, a = {place(2), place(2)};
+      b = {place(2), place(2)}, after = {place(2), place(2)};
+    } while (!far(before, a) || !far(a, b) || !far(b, after));
+    const Vec2 t0 = (a - before).normalized(), t = (b - a).normalized(),
+               t1 = (after - b).normalized();
+    const Mitre<double> ma(t0.x(), t0.y(), t.x(), t.y()), mb(t.x(), t.y(), t1.x(), t1.y());
+    face = CollarFace<double>{a.x(), a.y(), b.x(),          b.y(),
+                              t.x(), t.y(), (b - a).norm(), ma.x,
+                              ma.y,  mb.x,  mb.y,           random.uniform(.1, 2),
+                              0}
+               .with_plain();
+    p = {place(3), place(3)}, q = {place(3), place(3)};
+  }
+};
+
+template <int lanes>
+void compare_packs(int count) {
+  using Pack = PackOf<lanes>;
+  samples::Random random(lanes);
+  int met = 0, deep = 0;
+  for (int i = 0; i < count; i += lanes) {
+    std::vector<EdgeAndFace> all;
+    for (int l = 0; l < lanes; ++l) all.emplace_back(random);
+    const auto each = [&](const auto& f) {
+      return pack_of<lanes>([&](int l) { return f(all[static_cast<size_t>(l)]); });
+    };
+    const auto of_face = [&](double CollarFace<double>::*number) {
+      return each([&](const EdgeAndFace& e) { return e.face.*number; });
+    };
+    using Face = CollarFace<double>;
+    const CollarFaces<Pack> faces{
+        of_face(&Face::ax),  of_face(&Face::ay),  of_face(&Face::bx),     of_face(&Face::by),
+        of_face(&Face::tx),  of_face(&Face::ty),  of_face(&Face::length), of_face(&Face::max),
+        of_face(&Face::may), of_face(&Face::mbx), of_face(&Face::mby),    of_face(&Face::plain)};
+    const CollarPieces<Pack> found =
+        collar_pieces(faces, each([](const EdgeAndFace& e) { return e.p.x(); }),
+                      each([](const EdgeAndFace& e) { return e.p.y(); }),
+                      each([](const EdgeAndFace& e) { return e.q.x(); }),
+                      each([](const EdgeAndFace& e) { return e.q.y(); }));
+    for (int l = 0; l < lanes; ++l) {
+      const EdgeAndFace& e = all[static_cast<size_t>(l)];
+      CollarPiece<double> piece;
+      CollarCrossings<double> top;
+      const bool meets = collar_piece(e.face, e.p.x(), e.p.y(), e.q.x(), e.q.y(), piece, top);
+      if (found.deep.m[l] != 0) {
+        ++deep;
+        REQUIRE(found.met.m[l] == 0);
+        continue;
+      }
+      REQUIRE(top.count == 0);
+      REQUIRE(meets == (found.met.m[l] != 0));
+      if (!meets) continue;
+      ++met;
+      const std::array of_pack{found.from.v[l],   found.to.v[l],     found.sum.v[l],
+                               found.first.v[l],  found.area.v[l],   found.along.v[l],
+                               found.height.v[l], found.deepest.v[l]};
+      const std::array of_one{piece.from, piece.to,    piece.sum,    piece.first,
+                              piece.area, piece.along, piece.height, piece.deepest};
+      for (size_t k = 0; k < of_one.size(); ++k) {
+        CAPTURE(k, of_pack[k], of_one[k]);
+        REQUIRE((of_pack[k] == of_one[k] || (std::isnan(of_pack[k]) && std::isnan(of_one[k]))));
+      }
+    }
+  }
+  CHECK(met > count / 50);
+  CHECK(deep > count / 50);
+}
+
+}  // namespace
+
+TEST_CASE("packs of edges and cells have the bits of single ones", "[collar]") {
+  compare_packs<4>(scaled(40000));
+  compare_packs<8>(scaled(40000));
 }
