@@ -8,7 +8,9 @@
 #include "apothem/model/columns.hpp"
 #include "apothem/output/history.hpp"
 #include "figure.hpp"
+#include "figure_comparison.hpp"
 #include "figure_sources.hpp"
+#include "figure_text.hpp"
 
 namespace apothem {
 namespace {
@@ -47,10 +49,12 @@ class FigureReader {
     JsonObject top(in_, document);
     figure_.shown.title = in_.string(top.required("title", "string"));
     figure_.shown_fields.title = figure_.shown.title;
-    if (const JsonValue* v = top.optional("about")) figure_.about = in_.string(*v);
+    figure_.text = read_figure_text(in_, top);
     if (const JsonValue* v = top.optional("panels")) {
       for (const JsonValue& item : in_.array(*v)) {
-        if (item.find("field")) {
+        if (item.find("shapes")) {
+          figure_.potentials.push_back(read_potential_panel(in_, item));
+        } else if (item.find("field")) {
           field_panel(item);
         } else {
           panel(item);
@@ -63,8 +67,28 @@ class FigureReader {
         figure_.numbers[in_.string(item)].clear();
       }
     }
+    if (const JsonValue* v = top.optional("studies")) {
+      for (const JsonValue& item : in_.array(*v)) figure_.studies.push_back(read_study(in_, item));
+    }
+    if (const JsonValue* v = top.optional("compare")) {
+      for (const JsonValue& item : in_.array(*v)) {
+        figure_.comparisons.push_back(read_comparison(in_, item, data_));
+      }
+    }
+    if (const JsonValue* v = top.optional("players")) {
+      for (const JsonValue& item : in_.array(*v)) {
+        if (item.type() == JsonValue::Type::object) {
+          JsonObject object(in_, item);
+          figure_.study_players.push_back(in_.string(object.required("study", "folder of a run")));
+          object.finish();
+        } else {
+          figure_.players.push_back(figure_.scenes[in_.choice(item, figure_.scenes)]);
+        }
+      }
+    }
     top.finish();
-    if (figure_.scenes.empty() && figure_.shown.panels.empty() && figure_.field_sources.empty()) {
+    if (figure_.scenes.empty() && figure_.shown.panels.empty() && figure_.field_sources.empty() &&
+        figure_.potentials.empty()) {
       in_.fail(document, "has neither panels nor numbers");
     }
   }
@@ -93,11 +117,19 @@ class FigureReader {
     if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
     panel.x_label = axis_label(object.required("x", "name [unit]"));
     panel.y_label = axis_label(object.required("y", "name [unit]"));
+    if (const JsonValue* v = object.optional("x_logarithmic")) panel.x_logarithmic = v->boolean();
+    if (const JsonValue* v = object.optional("y_logarithmic")) panel.y_logarithmic = v->boolean();
     if (const JsonValue* v = object.optional("x_range")) panel.x_range = range(*v);
     if (const JsonValue* v = object.optional("y_range")) panel.y_range = range(*v);
     const JsonValue& curves = object.required("curves", "array of curves");
     for (const JsonValue& item : in_.array(curves)) curve(item, panel);
     if (panel.curves.empty()) in_.fail(curves, "must hold at least one curve");
+    const std::vector<CurveSource>& sources = figure_.sources.back();
+    for (size_t c = 0; c < sources.size(); ++c) {
+      if (sources[c].compared && !reference_of(panel, sources, c)) {
+        in_.fail(curves.items()[c], "is compared with a \"reference\" of the same panel; add one");
+      }
+    }
     object.finish();
   }
 
@@ -109,7 +141,15 @@ class FigureReader {
     curve.colour = static_cast<int>(panel.curves.size()) - 1;
     if (const JsonValue* v = object.optional("colour")) curve.colour = in_.count(*v);
     if (const JsonValue* v = object.optional("style")) {
-      curve.style = static_cast<CurveStyle>(in_.choice(*v, {"line", "dashed", "marks"}));
+      curve.style =
+          static_cast<CurveStyle>(in_.choice(*v, {"line", "dashed", "marks", "error_bars"}));
+    }
+    if (is_table_source(value)) {
+      source.rows = read_table_source(in_, object, data_);
+      return object.finish();
+    }
+    if (curve.style == CurveStyle::error_bars) {
+      in_.fail(value, "has no intervals: only curves of a \"study\" or a \"table\" do");
     }
     const JsonValue* scene = object.optional("scene");
     const JsonValue* reference = object.optional("reference");
@@ -137,6 +177,7 @@ class FigureReader {
     }
     (is_scene ? source.scene : source.reference) = in_.string(name);
     if (is_scene) {
+      if (const JsonValue* v = object.optional("compare")) source.compared = compared(*v);
       if (const JsonValue* body = object.optional("surface")) {
         return surface(object, source, name, *body, x, y);
       }
@@ -152,6 +193,18 @@ class FigureReader {
     if (!is_scene) return;
     std::vector<std::string>& stated = figure_.numbers[source.scene];
     if (index_of(stated, y.string()) == stated.size()) stated.push_back(y.string());
+  }
+
+  CurveSource::Tolerance compared(const JsonValue& value) {
+    JsonObject object(in_, value);
+    const auto part = [&](const char* key) {
+      return in_.positive(object.required(key, "a part of the reference's largest value"), "");
+    };
+    const double rms = part("rms"), largest = part("max");
+    const JsonValue& basis = object.required("basis", "what the reference rests on");
+    const auto kind = static_cast<Basis>(in_.choice(basis, {kBases.begin(), kBases.end()}));
+    object.finish();
+    return {rms, largest, kind};
   }
 
   void surface(JsonObject& object, CurveSource& source, const JsonValue& name,
@@ -236,10 +289,14 @@ class FigureReader {
     if (const JsonValue* v = object.optional("label")) shown.label = in_.string(*v);
     const JsonValue* scene = object.optional("scene");
     const JsonValue* reference = object.optional("reference");
-    if (!scene == !reference) {
-      in_.fail(value, "must give either \"scene\" or \"reference\"");
+    const JsonValue* study = object.optional("study");
+    if (!scene + !reference + !study != 2) {
+      in_.fail(value, "must give either \"scene\" or \"reference\" (or \"study\")");
     }
-    if (scene) {
+    if (study) {
+      source.study = in_.string(*study);
+      source.frame.from = in_.number(object.required("time", "s"), "s");
+    } else if (scene) {
       frame(object, source, *scene, *panel.quantity);
     } else {
       const JsonValue& column = object.required("column", "a column");
@@ -344,7 +401,8 @@ std::vector<std::string> figure_names(const std::string& data) {
     constexpr const char* kDigits = "0123456789";
     const size_t from = std::min(name.find_first_of(kDigits), name.size());
     const size_t to = std::min(name.find_first_not_of(kDigits, from), name.size());
-    return std::tuple(name.substr(0, from), to - from, name.substr(from));
+    const bool of_paper = name.starts_with("fig-");
+    return std::tuple(!of_paper, name.substr(0, from), to - from, name.substr(from));
   };
   std::sort(names.begin(), names.end(),
             [&](const std::string& a, const std::string& b) { return key(a) < key(b); });

@@ -4,16 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "apothem/output/files.hpp"
 #include "apothem/output/report.hpp"
+#include "apothem/player/player.hpp"
 #include "commands.hpp"
 #include "data_folder.hpp"
 #include "figure.hpp"
+#include "figure_comparison.hpp"
+#include "figure_runs.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -69,7 +70,10 @@ std::string in_words(const nlohmann::json& expectation) {
 class Reproduction {
  public:
   Reproduction(const ReproduceOptions& options, std::string data)
-      : options_(options), data_(std::move(data)) {}
+      : options_(options),
+        data_(std::move(data)),
+        folders_{data_, options.folder + "/runs", options.folder + "/studies"},
+        runs_(data_, folders_.runs, folders_.studies, options.threads) {}
 
   int execute(const std::vector<std::string>& names) {
     std::vector<Figure> figures;
@@ -77,10 +81,16 @@ class Reproduction {
     for (const std::string& name : names) figures.push_back(read_figure(data_, name));
     create_folder(options_.folder);
     for (const Figure& figure : figures) {
+      runs_.plan(figure.scenes);
+      for (const FigureStudy& study : figure.studies) runs_.plan(study, options_.quick);
+    }
+    for (const Figure& figure : figures) {
       for (const std::string& scene : figure.scenes) {
-        if (!outcomes_.count(scene) && run_scene(figure.name, scene) == exit_code::interrupted) {
-          return exit_code::interrupted;
-        }
+        if (runs_.run(figure.name, scene) == exit_code::interrupted) return exit_code::interrupted;
+      }
+      for (const FigureStudy& study : figure.studies) {
+        const int code = runs_.run(figure.name, study, options_.quick);
+        if (code == exit_code::interrupted) return code;
       }
       draw(figure);
     }
@@ -97,36 +107,22 @@ class Reproduction {
     if (!broken_.empty()) {
       throw std::runtime_error(broken_ + "/picture.gnuplot: gnuplot failed, see its message");
     }
-    if (unstable_) return exit_code::unstable;
+    if (runs_.unstable()) return exit_code::unstable;
     return options_.verify && missed_ > 0 ? exit_code::missed : exit_code::done;
   }
 
  private:
-  [[nodiscard]] std::string runs() const { return options_.folder + "/runs"; }
-
-  int run_scene(const std::string& figure, const std::string& scene) {
-    const auto start = std::chrono::steady_clock::now();
-    RunOptions run;
-    run.scene = data_ + "/scenes/" + scene + ".json";
-    run.folder = runs() + "/" + scene;
-    run.threads = options_.threads;
-    run.overwrite = run.quiet = true;
-    const int code = run_command(run);
-    unstable_ = unstable_ || code == exit_code::unstable;
-    outcomes_[scene] = nlohmann::json::parse(read_text(run.folder + "/run.json"));
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print("{}: {} {} ({:.1f} s)\n", figure, scene,
-               outcomes_[scene].at("status").get<std::string>(), seconds);
-    std::fflush(stdout);
-    return code;
-  }
-
   void draw(const Figure& figure) {
     ReportFigure& report = reports_.emplace_back();
     report.name = figure.name;
     report.title = figure.shown.title;
-    report.about = figure.about;
+    report.text = figure.text;
+    for (const FigureStudy& study : figure.studies) {
+      for (const std::vector<std::string>& command : study.of(options_.quick)) {
+        report.commands.push_back(
+            command_line(words_of(command, data_, folders_.studies + "/" + study.name)));
+      }
+    }
     const std::string folder = options_.folder + "/" + figure.name;
     const auto unless_cut_short =
         [&](void (Reproduction::*part)(const Figure&, const std::string&, ReportFigure&)) {
@@ -142,11 +138,17 @@ class Reproduction {
     if (!figure.sources.empty()) unless_cut_short(&Reproduction::draw_curves);
     for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
     if (!figure.field_sources.empty()) unless_cut_short(&Reproduction::draw_fields);
+    if (!figure.comparisons.empty()) unless_cut_short(&Reproduction::compare_tables);
+    if (!figure.potentials.empty()) draw_potentials(figure, folder, report);
+    if (!figure.players.empty() || !figure.study_players.empty())
+      unless_cut_short(&Reproduction::write_players);
   }
 
   void draw_curves(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    const CurveFigure drawn = figure.drawn(folders_);
+    for (const ReportNumber& number : curve_numbers(figure, drawn)) state(number, report);
     std::vector<std::string> files;
-    switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
+    switch (write_curves(folder, drawn, files)) {
       case Plotted::yes:
         report.pictures.push_back(folder + "/picture.png");
         files.insert(files.begin(), {"picture.png", "picture.svg"});
@@ -164,13 +166,50 @@ class Reproduction {
   }
 
   void draw_fields(const Figure& figure, const std::string& folder, ReportFigure& report) {
-    const DrawnFields drawn = figure.drawn_fields(data_, runs());
+    const DrawnFields drawn = figure.drawn_fields(folders_);
     write_fields(folder, drawn.figure);
     report.pictures.push_back(folder + "/fields.png");
     for (const char* file : {"fields.png", "fields.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
     for (const ReportNumber& number : drawn.numbers) state(number, report);
+  }
+
+  void draw_potentials(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    write_potentials(folder, potential_figure(figure.shown.title, figure.potentials));
+    report.pictures.push_back(folder + "/potentials.png");
+    for (const char* file : {"potentials.png", "potentials.svg"}) {
+      report.links.push_back(figure.name + "/" + file);
+    }
+    for (const ReportNumber& number : potential_numbers(figure.potentials)) state(number, report);
+  }
+
+  void compare_tables(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
+    for (const TableComparison& comparison : figure.comparisons) {
+      for (const ReportNumber& number : numbers_of(comparison, data_, folders_.studies)) {
+        state(number, report);
+      }
+    }
+  }
+
+  void write_players(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
+    create_folder(options_.folder + "/players");
+    for (const std::string& scene : figure.players) {
+      write_player(folders_.runs + "/" + scene, scene, scene, report);
+    }
+    for (const std::string& run : figure.study_players) {
+      std::string name = run;
+      std::replace(name.begin(), name.end(), '/', '-');
+      write_player(folders_.studies + "/" + run, run, name, report);
+    }
+  }
+
+  void write_player(const std::string& run, const std::string& title, const std::string& name,
+                    ReportFigure& report) const {
+    const std::string file = "players/" + name + ".html";
+    write_file(options_.folder + "/" + file,
+               player_page(RunFolder(run), title, fmt::format("apothem {}", kVersion)));
+    report.players.push_back({title, file});
   }
 
   void state(const ReportNumber& number, ReportFigure& report) {
@@ -182,7 +221,7 @@ class Reproduction {
   }
 
   void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
-    const nlohmann::json& outcome = outcomes_.at(scene);
+    const nlohmann::json& outcome = runs_.outcome(scene);
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
       report.faults.push_back(scene + ": " + outcome["message"].get<std::string>());
@@ -204,10 +243,11 @@ class Reproduction {
 
   const ReproduceOptions& options_;
   std::string data_;
-  std::map<std::string, nlohmann::json> outcomes_;  // content of run.json of each scene
+  FigureFolders folders_;
+  FigureRuns runs_;
   std::vector<ReportFigure> reports_;
   int numbers_ = 0, missed_ = 0;
-  bool no_gnuplot_ = false, unstable_ = false;
+  bool no_gnuplot_ = false;
   std::string broken_;  // folder in which gnuplot failed
 };
 
