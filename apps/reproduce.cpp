@@ -40,17 +40,17 @@ constexpr const char* kAboutReport =
     "<a href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. "
     "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
     "them. The paper shows its results as curves and fields. No number here is read off its "
-    "pictures: each has another reference, which is named beside it. Forces are per thickness of "
-    "1 m.</p>";
+    "pictures: each has another reference, which is named beside it, or rests on what its text "
+    "states. Forces are per thickness of 1 m.</p>";
 
 constexpr const char* kFiguresLeftOut =
     "<h2>Figures of the paper that are not here</h2>\n"
-    "<p>Figs. 1 to 5 define potentials; <code>apothem polygon FILE --picture FILE.png</code> draws "
-    "such pictures for any polygon. Figs. 6 to 12, 16, 18, 22, 23, 25, 29 and 33 are sketches of "
-    "the algorithm, of models and of a load, and show no results. Figs. 34 and 35 show single "
-    "moments of a hopper that empties. The paper does not give the random arrangement of the "
-    "blocks, on which such a moment depends, so the hopper is studied by many runs instead: "
-    "<code>data/studies</code>, with the results in docs/verification.md.</p>\n";
+    "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
+    "of "
+    "a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) hold "
+    "the models. Fig. 35 shows single moments of a hopper with deformable blocks. What comes out "
+    "depends on the random arrangement of the blocks, which the paper does not give; "
+    "docs/verification.md has a study of it (<code>data/studies/soft-flow.json</code>).</p>\n";
 
 std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   const nlohmann::json& name = expectation.at("basis");

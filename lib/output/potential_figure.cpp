@@ -113,11 +113,8 @@ void draw_map(Canvas& canvas, const ShownMap& shown, const Box& frame) {
   canvas.text({frame.x0, frame.y0 - 11}, shown.label, {10.5});
 }
 
-// Four maps stand in two rows of two.
-size_t columns_of(const PotentialPanel& panel) {
-  constexpr size_t kMost = 3;
-  return panel.maps.size() == kMost + 1 ? 2 : std::min(kMost, panel.maps.size());
-}
+// No more than two, so that labels can be read on a narrow screen.
+size_t columns_of(const PotentialPanel& panel) { return std::min<size_t>(2, panel.maps.size()); }
 
 size_t columns_of(const PotentialFigure& figure) {
   size_t columns = 1;

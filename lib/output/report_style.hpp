@@ -33,7 +33,7 @@ p.top { font-size: 14px; }
   table, tbody, tr, td { display: block; }
   tr:first-child { display: none; }
   tr { border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
-  td, td.number { text-align: left; border: 0; padding: .1em 0 .1em 7.5em; position: relative; min-height: 1.4em; }
+  td, td.number { text-align: left; border: 0; padding: .1em 0 .1em 8.5em; position: relative; min-height: 1.4em; }
   td.number, td.verdict { white-space: normal; }
   td::before { content: attr(data-head); position: absolute; left: 0; color: #666; font-weight: normal; }
 }

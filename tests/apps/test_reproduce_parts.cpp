@@ -78,7 +78,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
   folder.write("data/reference/fall.csv", "time,speed\n0,0\n0.005,-0.06\n0.01,-0.1\n");
   const Result changed = reproduce(folder, {"--verify"});
   CHECK(changed.code == 1);
-  CHECK(changed.out.find("fall completed (unchanged, not run again)") != std::string::npos);
+  CHECK(changed.out.find("fall done (unchanged, not run again)") != std::string::npos);
   const std::string again = content(folder / "out/report.html");
   CHECK(again.find("not reproduced by this run: 2 of 3 numbers missed") != std::string::npos);
   CHECK(again.find("badge explained") == std::string::npos);
@@ -102,7 +102,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
 TEST_CASE("runs that are there are kept, others are done again", "[reproduce]") {
   const Folder folder;
   data_folder(folder, R"({ "title": "Fall", "numbers": ["fall"] })");
-  CHECK(reproduce(folder).out.find("fall completed (0.") != std::string::npos);
+  CHECK(reproduce(folder).out.find("fall done (0.") != std::string::npos);
   CHECK(reproduce(folder).out.find("unchanged, not run again") != std::string::npos);
   folder.write("data/scenes/fall.json", replaced(kFall, "\"end\": 0.01", "\"end\": 0.02"));
   CHECK(reproduce(folder).out.find("unchanged") == std::string::npos);
