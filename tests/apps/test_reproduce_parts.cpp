@@ -152,10 +152,10 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
                  "quick": [ ["sweep", "{data}/scenes/fall.json", "--vary", "time.end=0.01,0.3", "--quiet", "-o", "{out}"] ] } ],
   "panels": [
     { "x": "end [s]", "y": "share [1]", "curves": [
-      { "study": "falls/runs.csv", "where": { "status": "done" }, "take": "share", "style": "error_bars", "x": "end", "y": "fast" },
+      { "study": "falls/runs.csv", "where": { "status": "done" }, "take": "share", "style": "error_bars", "x": "time.end", "y": "fast" },
       { "table": "reference/trials.csv", "where": { "kind": "a*" }, "take": "counts", "style": "error_bars", "x": "width", "y": "events", "of": "n" } ] },
     { "x": "end [s]", "y": "speed [m/s]", "x_logarithmic": true, "curves": [
-      { "study": "falls/runs.csv", "take": "mean", "x": "end", "y": "speed", "y_offset": 0.1, "y_absolute": true } ] } ],
+      { "study": "falls/runs.csv", "take": "mean", "x": "time.end", "y": "speed", "y_offset": 0.1, "y_absolute": true } ] } ],
   "compare": [
     { "label": "same", "state": "ratio", "at": "width", "value": 2.5, "tolerance": 0.1, "basis": "code", "source": "s",
       "first": { "table": "reference/trials.csv", "where": { "kind": ["a"] }, "x": "width", "y": "events", "y_scale": 0.125 },
