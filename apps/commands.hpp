@@ -174,6 +174,7 @@ struct ReproduceOptions {
   std::string data;  ///< folder of figures, scenes and references; empty: the program's own
   int threads = 1;
   bool verify = false;
+  bool quick = false;  ///< studies of a few runs
 };
 /// Runs the scenes of figures and writes their curves, pictures and a report.
 int reproduce_command(const ReproduceOptions& options);

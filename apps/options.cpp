@@ -340,6 +340,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)")
       ->type_name("DIR");
   add_threads(sub, o.threads);
+  sub->add_flag("--quick", o.quick, "Make studies with a few runs, in minutes");
   sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
 }
 
