@@ -431,8 +431,8 @@ class Fill {
 
   void refuse_shortfall(const std::vector<Block>& blocks, const Arrangement& found,
                         double area) const {
-    const auto share = [&](double part) {
-      return fmt::format("solid fraction {:.3g}", part / area);
+    const auto solid = [&](double part, double whole) {
+      return fmt::format("solid fraction {:.3g} instead of {:.3g}", part / area, whole / area);
     };
     double all = 0, placed = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
@@ -441,19 +441,18 @@ class Fill {
       if (!found.rings[i].empty()) placed += own;
     }
     if (found.placed < static_cast<int>(blocks.size())) {
-      in_.fail(value_, fmt::format("{} of {} blocks could be placed ({} of {}): give fewer or "
+      in_.fail(value_, fmt::format("{} of {} blocks could be placed ({}): give fewer or "
                                    "smaller blocks, a larger region, or another arrangement; "
                                    "\"dense\" packs most",
-                                   found.placed, blocks.size(), share(placed), share(all)));
+                                   found.placed, blocks.size(), solid(placed, all)));
     }
     if (found.scale < 1) {
       const double part = found.scale * found.scale;
-      in_.fail(
-          value_,
-          fmt::format("{} of {} blocks could be placed: all {} fit at {:.4g} of their size "
-                      "only ({} of {}); give fewer or smaller blocks, or a larger region",
-                      static_cast<int>(part * static_cast<double>(blocks.size())), blocks.size(),
-                      blocks.size(), found.scale, share(part * all), share(all)));
+      in_.fail(value_,
+               fmt::format("{} of {} blocks could be placed: all {} fit at {:.4g} of their size "
+                           "only ({}); give fewer or smaller blocks, or a larger region",
+                           static_cast<int>(part * static_cast<double>(blocks.size())),
+                           blocks.size(), blocks.size(), found.scale, solid(part * all, all)));
     }
   }
 
