@@ -55,7 +55,12 @@ void FigureReader::curve(const JsonValue& value, CurvePanel& panel) {
   }
   if (is_table_source(value)) {
     source.rows = read_table_source(in_, object, data_);
-    return object.finish();
+    object.finish();
+    if (source.rows->absent) {
+      panel.curves.pop_back();
+      figure_.sources.back().pop_back();
+    }
+    return;
   }
   if (curve.style == CurveStyle::error_bars) {
     in_.fail(value, "has no intervals: only curves of a \"study\" or a \"table\" do");

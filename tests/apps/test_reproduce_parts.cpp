@@ -20,7 +20,7 @@ const char* const kFall = R"({ "materials": { "rock": { "density": 2000 } }, "gr
   "time": { "end": 0.01, "step": 1e-4 }, "output": { "frames": 2, "history": { "interval": 1e-3 } },
   "measure": [ { "name": "fast", "stopped_by": "fast" }, { "name": "speed", "quantity": "stone.vy", "take": "min" } ],
   "stop": [ { "name": "fast", "region": "above", "count_below": 1 } ],
-  "regions": { "above": { "polygon": [[-1, -0.2], [2, -0.2], [2, 2], [-1, 2]] } },
+  "regions": { "above": { "polygon": [[-1, 0.2], [2, 0.2], [2, 2], [-1, 2]] } },
   "expect": [ { "quantity": "stone.vy", "take": "last", "value": -0.1, "tolerance": 1e-9, "basis": "paper", "source": "Sec. 9" } ] })";
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
