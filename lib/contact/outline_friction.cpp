@@ -11,6 +11,7 @@ namespace apothem {
 namespace {
 
 constexpr double kSlipTime = 20, kFollowTime = 30, kGatherTime = 15;  // of a contact, ns
+constexpr size_t kPart = 128;                                         // contacts of a part
 
 // Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
 // rigid bodies are long: they have one for each face, which the face takes with it.
@@ -81,30 +82,34 @@ void OutlineFriction::find_groups(const Step& step, FrictionMemory& memory) {
   }
 }
 
-void OutlineFriction::find_slips(const Step& step, size_t first, size_t end) {
+void OutlineFriction::find_slips(const Step& step, const Part& part) {
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr size_t lanes = kComparedLanes;
-    for (size_t i = first; i < end; i += lanes) {
+    for (size_t i = part.first; i < part.end; i += lanes) {
       std::array<double, lanes> times{};
-      for (size_t l = 0; step.dashpots && l < lanes && i + l < end; ++l) {
+      for (size_t l = 0; step.dashpots && l < lanes && i + l < part.end; ++l) {
         const auto pair = static_cast<size_t>(step.contacts[i + l].pair);
         times[l] = times_[step.laws[pair].bodies].normal_time;
       }
-      apothem::find_slips<lanes>(outlines_, step.contacts, step.laws, velocities_, times, i,
-                                 slips_);
+      apothem::find_slips<lanes>(outlines_, step.contacts.first(part.end), step.laws, velocities_,
+                                 times, i, part.place + i - part.first, slips_);
     }
     return 0.;
   });
 }
 
-// Finds the spring and the dashpot along the face of the contacts of a spring.
-void OutlineFriction::follow(const Step& step, Group& group) {
+// Finds the spring and the dashpot along the face of the contacts of a spring. `place` of the slip
+// of the first of them.
+void OutlineFriction::follow(const Step& step, Group& group, size_t place) {
   using S = OutlineSlips;
+  const size_t count = group.end - group.first;
   const EdgeFaceLaw& law = step.laws[static_cast<size_t>(step.contacts[group.first].pair)];
   Spring& spring = group.spring;
   double pushes = 0, normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
-  for (size_t i = group.first; i < group.end; ++i) {
-    pushes += pushes_[i] = slips_.of(i, S::push);
+  for (size_t k = 0; k < count; ++k) {
+    const size_t i = place + k;
+    pushes_[group.first + k] = slips_.of(i, S::push);
+    pushes += slips_.of(i, S::push);
     normal += slips_.of(i, S::normal);
     spring.stiffness += slips_.of(i, S::stiffness);
     rate += slips_.of(i, S::rate);
@@ -131,24 +136,72 @@ void OutlineFriction::follow(const Step& step, Group& group) {
     const double resists = spring.force - time * spring.stiffness * slip;
     dashpot = std::clamp(resists, -limit, limit) - spring.force;
   }
-  for (size_t i = group.first; i < group.end; ++i) {
+  for (size_t k = 0; k < count; ++k) {
+    const size_t i = place + k;
     *slips_.at(i, S::friction) = spring.force / normal;
     *slips_.at(i, S::dashpot) = dashpot / normal;
-    shares_[i] = (spring.force + dashpot) / normal * slips_.of(i, S::normal);
+    shares_[group.first + k] = (spring.force + dashpot) / normal * slips_.of(i, S::normal);
   }
 }
 
 // Adds the forces on the vertices from `first` to `end` - 1, those of whole bodies, for every
 // vertex in the order of the contacts.
-void OutlineFriction::add_forces(int first, int end) {
+void OutlineFriction::add_forces(const Part& part, int first, int end) {
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr size_t lanes = kComparedLanes;
-    for (size_t i = 0; i < shares_.size(); i += lanes) {
-      add_slip_forces<lanes>(slips_, i, std::min(lanes, shares_.size() - i), first, end, friction_,
-                             damping_);
+    const size_t count = part.end - part.first;
+    for (size_t i = 0; i < count; i += lanes) {
+      add_slip_forces<lanes>(slips_, part.place + i, std::min(lanes, count - i), first, end,
+                             friction_, damping_);
     }
     return 0.;
   });
+}
+
+// One part after the other, each with all that is to be done, so that its slips stay in the cache.
+void OutlineFriction::slide_by_parts(const Step& step, FrictionMemory& memory) {
+  for (size_t g = 0; g < groups_.size();) {
+    Part part{groups_[g].first, groups_[g].end, 0};
+    size_t end = g + 1;
+    while (end < groups_.size() && groups_[end].end - part.first <= kPart) {
+      part.end = groups_[end++].end;
+    }
+    slips_.resize(part.end - part.first);
+    find_slips(step, part);
+    for (; g < end; ++g) {
+      Group& group = groups_[g];
+      follow(step, group, group.first - part.first);
+      if (group.slides) memory.keep(group.spring);
+    }
+    add_forces(part, 0, outlines_.size());
+  }
+}
+
+void OutlineFriction::slide_on_threads(const Step& step, FrictionMemory& memory) {
+  const size_t count = step.contacts.size();
+  slips_.resize(count);
+  const auto blocks = static_cast<int>((count + kLanes - 1) / kLanes);
+  threads_.chunks(blocks, kLanes * kSlipTime, [&](int first, int end, int) {
+    const size_t begin = static_cast<size_t>(first) * kLanes;
+    find_slips(step, {begin, std::min(static_cast<size_t>(end) * kLanes, count), begin});
+  });
+  threads_.chunks(static_cast<int>(groups_.size()), kFollowTime, [&](int first, int end, int) {
+    for (int g = first; g < end; ++g) {
+      Group& group = groups_[static_cast<size_t>(g)];
+      follow(step, group, group.first);
+    }
+  });
+  for (const Group& group : groups_) {
+    if (group.slides) memory.keep(group.spring);
+  }
+  const std::span<const BodyIndex> active = outlines_.active();
+  const int bodies = static_cast<int>(active.size());
+  threads_.chunks(bodies, kGatherTime * static_cast<double>(count) / std::max(bodies, 1),
+                  [&](int first, int end, int) {
+                    if (first == end) return;
+                    add_forces({0, count, 0}, outlines_.bodies[active[first]].first,
+                               outlines_.bodies[active[end - 1]].end);
+                  });
 }
 
 double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
@@ -171,26 +224,12 @@ double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
   const size_t count = contacts.size();
   shares_.assign(count, 0);
   pushes_.resize(count);
-  slips_.resize(count);
-  const auto blocks = static_cast<int>((count + kLanes - 1) / kLanes);
-  threads_.chunks(blocks, kLanes * kSlipTime, [&](int first, int end, int) {
-    find_slips(step, static_cast<size_t>(first) * kLanes,
-               std::min(static_cast<size_t>(end) * kLanes, count));
-  });
   find_groups(step, memory);
-  threads_.chunks(static_cast<int>(groups_.size()), kFollowTime, [&](int first, int end, int) {
-    for (int g = first; g < end; ++g) follow(step, groups_[static_cast<size_t>(g)]);
-  });
-  for (const Group& group : groups_) {
-    if (group.slides) memory.keep(group.spring);
+  if (threads_.worth(static_cast<int>(count), kSlipTime)) {
+    slide_on_threads(step, memory);
+  } else {
+    slide_by_parts(step, memory);
   }
-  const std::span<const BodyIndex> active = o.active();
-  const int bodies = static_cast<int>(active.size());
-  threads_.chunks(bodies, kGatherTime * static_cast<double>(contacts.size()) / std::max(bodies, 1),
-                  [&](int first, int end, int) {
-                    if (first == end) return;
-                    add_forces(o.bodies[active[first]].first, o.bodies[active[end - 1]].end);
-                  });
   const Powers after = powers(friction_);
   everywhere_ = !(dt > 0);
   if (damped_) memory.damp(-dt / 2 * (before.damping + after.damping));

@@ -90,9 +90,16 @@ class OutlineFriction {
   [[nodiscard]] Powers powers(const VertexForces& friction) const;
   void find_times(const Step& step);
   void find_groups(const Step& step, FrictionMemory& memory);
-  void follow(const Step& step, Group& group);
-  void find_slips(const Step& step, size_t first, size_t end);
-  void add_forces(int first, int end);
+  void follow(const Step& step, Group& group, size_t place);
+  /// Some contacts, by their numbers from `first` to `end` - 1, whose slips have the places from
+  /// `place` on.
+  struct Part {
+    size_t first, end, place;
+  };
+  void find_slips(const Step& step, const Part& part);
+  void add_forces(const Part& part, int first, int end);
+  void slide_by_parts(const Step& step, FrictionMemory& memory);
+  void slide_on_threads(const Step& step, FrictionMemory& memory);
 
   const Outlines& outlines_;
   bool damped_;

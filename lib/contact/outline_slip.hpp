@@ -45,10 +45,11 @@ class OutlineSlips {
     std::int32_t p, q, a, b;
   };
 
+  /// Makes room for so many contacts; what they had is lost.
   void resize(size_t contacts) {
+    if (ends_.size() >= contacts) return;
     ends_.resize(contacts);
-    const size_t size = (contacts + kLanes - 1) / kLanes * kLanes * numbers;
-    if (values_.size() < size) values_.resize(size);
+    values_.resize((contacts + kLanes - 1) / kLanes * kLanes * numbers);
   }
   [[nodiscard]] Ends& ends(size_t contact) { return ends_[contact]; }
   /// A number of contacts from this one on, as many as a pack has that begins here.
@@ -64,13 +65,14 @@ class OutlineSlips {
 };
 
 /// Finds what does not depend on springs, of the contacts from `first` on: as many as there are
-/// lanes, or fewer at the end. `velocities` of the vertices, interleaved, m/s; `times`: strength of
+/// lanes, or fewer at the end. They get their places from `place` on, a multiple of the lanes.
+/// `velocities` of the vertices, interleaved, m/s; `times`: strength of
 /// the dashpots across the faces, s.
 template <int lanes>
 APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContact> contacts,
                                std::span<const EdgeFaceLaw> laws,
                                const std::vector<double>& velocities,
-                               const std::array<double, lanes>& times, size_t first,
+                               const std::array<double, lanes>& times, size_t first, size_t place,
                                OutlineSlips& slips) {
   using Pack = PackOf<lanes>;
   using S = OutlineSlips;
@@ -82,7 +84,7 @@ APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContac
     of[l] = &contacts[i];
     p[l] = of[l]->edge, a[l] = of[l]->face;
     q[l] = o.next[p[l]], b[l] = o.next[a[l]];
-    slips.ends(i) = {p[l], q[l], a[l], b[l]};
+    slips.ends(place + i - first) = {p[l], q[l], a[l], b[l]};
     damped = damped || times[l] > 0;
   }
   const auto at = [](const std::vector<double>& from, const std::array<std::int32_t, lanes>& i)
@@ -102,7 +104,7 @@ APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContac
                               __attribute__((always_inline)) { return of[l]->piece.*number; });
   };
   const auto put = [&](S::Number number, const Pack& value) __attribute__((always_inline)) {
-    value.store(slips.at(first, number));
+    value.store(slips.at(place, number));
   };
   const Pack from = piece(&CollarPiece<double>::from), to = piece(&CollarPiece<double>::to);
   const Pack depth = piece(&CollarPiece<double>::sum), moment = piece(&CollarPiece<double>::first);
@@ -155,8 +157,8 @@ APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContac
   const Pack closing = tx * y0 - ty * x0, change = tx * y1 - ty * x1;
   const Pack share = slope * edge_length * part / two;
   Pack push = zero, push_at_q = zero;
-  for (const double place : {-kGauss, kGauss}) {
-    const Pack u = middle + Pack(place) * part / two;
+  for (const double point : {-kGauss, kGauss}) {
+    const Pack u = middle + Pack(point) * part / two;
     const Pack at_u = mean + steepness * (u - middle);
     const Pack resists = time * (closing + u * change);
     const Pack force = share * select(resists < -at_u, -at_u, resists);
