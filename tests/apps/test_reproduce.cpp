@@ -9,6 +9,7 @@
 using namespace apothem;
 using test::content;
 using test::Folder;
+using test::replaced;
 using test::Result;
 using test::run;
 
@@ -46,12 +47,6 @@ const char* const kFieldFigure = R"({ "title": "Pulled", "panels": [
                 { "label": "table", "reference": "pulled.csv", "column": "sxx", "cell": [0.5, 0.5] } ] },
   { "field": "ux", "fields": [ { "scene": "pulled", "time": 0.5 } ] },
   { "x": "time [s]", "y": "stress [Pa]", "curves": [ { "scene": "fall", "y": "stone.vy" } ] } ] })";
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
 
 // A data folder with one figure.
 std::string data_folder(const Folder& folder, const std::string& figure = kFigure) {

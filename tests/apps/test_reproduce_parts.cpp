@@ -9,13 +9,15 @@
 using namespace apothem;
 using test::content;
 using test::Folder;
+using test::replaced;
 using test::Result;
 using test::run;
 
 namespace {
 
 // A stone falls for 10 ms.
-const char* const kFall = R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -10],
+const char* const kMeasuredFall =
+    R"({ "materials": { "rock": { "density": 2000 } }, "gravity": [0, -10],
   "bodies": [ { "name": "stone", "material": "rock", "polygon": [[0,0],[1,0],[1,1],[0,1]] } ],
   "time": { "end": 0.01, "step": 1e-4 }, "output": { "frames": 2, "history": { "interval": 1e-3 } },
   "measure": [ { "name": "fast", "stopped_by": "fast" }, { "name": "speed", "quantity": "stone.vy", "take": "min" } ],
@@ -23,17 +25,11 @@ const char* const kFall = R"({ "materials": { "rock": { "density": 2000 } }, "gr
   "regions": { "above": { "polygon": [[-1, 0.2], [2, 0.2], [2, 2], [-1, 2]] } },
   "expect": [ { "quantity": "stone.vy", "take": "last", "value": -0.1, "tolerance": 1e-9, "basis": "paper", "source": "Sec. 9" } ] })";
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
-
-std::string data_folder(const Folder& folder, const std::string& figure) {
+std::string folder_of(const Folder& folder, const std::string& figure) {
   for (const char* part : {"data/figures", "data/scenes", "data/reference"}) {
     std::filesystem::create_directories(folder / part);
   }
-  folder.write("data/scenes/fall.json", kFall);
+  folder.write("data/scenes/fall.json", kMeasuredFall);
   folder.write("data/reference/fall.csv", "time,speed\n0,0\n0.005,-0.05\n0.01,-0.1\n");
   folder.write("data/reference/trials.csv",
                "kind,width,n,events,rate\na,1,10,10,\na,2,10,4,5\nb,2,20,2,8\n");
@@ -41,7 +37,7 @@ std::string data_folder(const Folder& folder, const std::string& figure) {
   return folder / "data";
 }
 
-Result reproduce(const Folder& folder, const std::vector<std::string>& more = {}) {
+Result reproduce_all(const Folder& folder, const std::vector<std::string>& more = {}) {
   std::vector<std::string> words{"reproduce",     "all", "--data",
                                  folder / "data", "-o",  folder / "out"};
   words.insert(words.end(), more.begin(), more.end());
@@ -58,8 +54,8 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
   "panels": [ { "x": "time [s]", "y": "speed [m/s]", "curves": [
     { "label": "ours", "scene": "fall", "y": "stone.vy", "compare": { "rms": 1e-9, "max": 1e-9, "basis": "theory" } },
     { "label": "theory", "reference": "fall.csv", "y": "speed", "style": "marks" } ] } ] })";
-  data_folder(folder, figure);
-  REQUIRE(reproduce(folder).code == 0);
+  folder_of(folder, figure);
+  REQUIRE(reproduce_all(folder).code == 0);
   const std::string report = content(folder / "out/report.html");
   for (const char* text :
        {"What the paper shows</h3>\n<p>A stone &amp; its fall.",
@@ -76,7 +72,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
 
   // A changed number of the reference takes the verdict away.
   folder.write("data/reference/fall.csv", "time,speed\n0,0\n0.005,-0.06\n0.01,-0.1\n");
-  const Result changed = reproduce(folder, {"--verify"});
+  const Result changed = reproduce_all(folder, {"--verify"});
   CHECK(changed.code == 1);
   CHECK(changed.out.find("fall done (unchanged, not run again)") != std::string::npos);
   const std::string again = content(folder / "out/report.html");
@@ -91,7 +87,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
         std::tuple("\"reference\": \"fall.csv\", \"y\": \"speed\"", "\"points\": [[0, 0]]",
                    "/panels/0/curves/0: is compared with a \"reference\"")}) {
     folder.write("data/figures/fig-7.json", replaced(figure, what, by));
-    const Result wrong = reproduce(folder);
+    const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
     CHECK(test::lines(wrong.err) == 1);
@@ -101,15 +97,15 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
 
 TEST_CASE("runs that are there are kept, others are done again", "[reproduce]") {
   const Folder folder;
-  data_folder(folder, R"({ "title": "Fall", "numbers": ["fall"] })");
-  CHECK(reproduce(folder).out.find("fall done (0.") != std::string::npos);
-  CHECK(reproduce(folder).out.find("unchanged, not run again") != std::string::npos);
-  folder.write("data/scenes/fall.json", replaced(kFall, "\"end\": 0.01", "\"end\": 0.02"));
-  CHECK(reproduce(folder).out.find("unchanged") == std::string::npos);
+  folder_of(folder, R"({ "title": "Fall", "numbers": ["fall"] })");
+  CHECK(reproduce_all(folder).out.find("fall done (0.") != std::string::npos);
+  CHECK(reproduce_all(folder).out.find("unchanged, not run again") != std::string::npos);
+  folder.write("data/scenes/fall.json", replaced(kMeasuredFall, "\"end\": 0.01", "\"end\": 0.02"));
+  CHECK(reproduce_all(folder).out.find("unchanged") == std::string::npos);
   // One that was left in the middle is done again.
   folder.write("out/runs/fall/reproduced.json",
                replaced(content(folder / "out/runs/fall/reproduced.json"), "true", "false"));
-  CHECK(reproduce(folder).out.find("unchanged") == std::string::npos);
+  CHECK(reproduce_all(folder).out.find("unchanged") == std::string::npos);
 }
 
 TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
@@ -121,8 +117,8 @@ TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
       { "quantity": "gradient", "edge": 1, "value": 2, "tolerance": 1e-13, "basis": "theory", "source": "1/r" } ] },
     { "label": "triangle", "potential": "area", "polygon": [[0,0],[3,0],[0,3]], "expect": [
       { "quantity": "phi", "at": [1, 1], "value": 0.9, "tolerance": 1e-3, "basis": "theory", "source": "wrong" } ] } ] } ] })";
-  data_folder(folder, figure);
-  const Result r = reproduce(folder);
+  folder_of(folder, figure);
+  const Result r = reproduce_all(folder);
   INFO(r.err);
   REQUIRE(r.code == 0);
   CHECK(r.out.find("3 of 4 numbers") != std::string::npos);
@@ -138,7 +134,7 @@ TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
         std::tuple("\"quantity\": \"phi\", \"at\": [1, 1]", "\"quantity\": \"singular_area\"",
                    "only the distance potential")}) {
     folder.write("data/figures/fig-7.json", replaced(figure, what, by));
-    const Result wrong = reproduce(folder);
+    const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
     CHECK(wrong.err.find(place) != std::string::npos);
@@ -163,12 +159,12 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
     { "label": "shares", "state": "difference", "at": "width", "value": 0, "tolerance": 1.96, "basis": "code", "source": "s",
       "first": { "table": "reference/trials.csv", "where": { "kind": "a" }, "take": "counts", "x": "width", "y": "events", "of": "n" },
       "second": { "table": "reference/trials.csv", "where": { "kind": "b" }, "take": "counts", "x": "width", "y": "events", "of": "n" } } ] })";
-  data_folder(folder, figure);
-  const Result quick = reproduce(folder, {"--quick"});
+  folder_of(folder, figure);
+  const Result quick = reproduce_all(folder, {"--quick"});
   INFO(quick.out << quick.err);
   REQUIRE(quick.code == 0);
   CHECK(read_history(folder / "out/fig-7/curve-2-1.csv").columns[0].size() == 2);
-  const Result r = reproduce(folder);
+  const Result r = reproduce_all(folder);
   REQUIRE(r.code == 0);
   const HistoryTable shares = read_history(folder / "out/fig-7/curve-1-1.csv");
   CHECK(shares.columns[0] == std::vector<double>{.01, .2, .3});
@@ -187,7 +183,8 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
   // (5/12 - 3/22) / sqrt(5/12 7/12 / 12 + 3/22 19/22 / 22)
   CHECK(report.find("data-head=\"result\">1.7516") != std::string::npos);
   CHECK(report.find("apothem sweep") != std::string::npos);
-  CHECK(reproduce(folder).out.find("falls done (unchanged, not run again)") != std::string::npos);
+  CHECK(reproduce_all(folder).out.find("falls done (unchanged, not run again)") !=
+        std::string::npos);
 
   for (const auto& [what, by, place] :
        {std::tuple("\"take\": \"counts\", \"style\"", "\"take\": \"sum\", \"style\"",
@@ -200,7 +197,7 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
         std::tuple("\"name\": \"falls\"", "\"name\": \"../falls\"",
                    "letters, digits and hyphens")}) {
     folder.write("data/figures/fig-7.json", replaced(figure, what, by));
-    const Result wrong = reproduce(folder);
+    const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
     CHECK(wrong.err.find(place) != std::string::npos);
