@@ -67,8 +67,8 @@ inline int lines(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
 
-/// A text with the first `what` replaced.
-inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
+/// A text with the first `what` exchanged.
+inline std::string exchanged(std::string text, const std::string& what, const std::string& by) {
   const size_t at = text.find(what);
   if (at == std::string::npos) throw std::logic_error("\"" + what + "\" is not in the text");
   return text.replace(at, what.size(), by);

@@ -8,8 +8,8 @@
 
 using namespace apothem;
 using test::content;
+using test::exchanged;
 using test::Folder;
-using test::replaced;
 using test::Result;
 using test::run;
 
@@ -169,7 +169,7 @@ TEST_CASE("a curve along a surface", "[reproduce]") {
        {std::array{"\"block\"", "\"floor\"", "unknown choice \"floor\""},
         {"\"time\": 1", "\"time\": 0.7", "is not the time of a frame"},
         {"\"y\": \"pressure\"", "\"y\": \"presure\"", "pressure"}}) {
-    folder.write("data/figures/fig-7.json", replaced(figure, from, to));
+    folder.write("data/figures/fig-7.json", exchanged(figure, from, to));
     const Result wrong = run(all, folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
@@ -244,8 +244,8 @@ TEST_CASE("a run that ends before its picture leaves a report", "[reproduce]") {
   const std::string data = data_folder(
       folder,
       R"({ "title": "T", "panels": [ { "field": "speed", "fields": [ { "scene": "torn", "time": 1 } ] } ] })");
-  folder.write("data/scenes/torn.json", replaced(kPulled, "\"right\" }, \"traction\": [1e6, 0]",
-                                                 "\"right\" }, \"traction\": [-1e12, 0]"));
+  folder.write("data/scenes/torn.json", exchanged(kPulled, "\"right\" }, \"traction\": [1e6, 0]",
+                                                  "\"right\" }, \"traction\": [-1e12, 0]"));
   const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "out"}, folder);
   INFO(r.out << r.err);
   CHECK(r.code == 3);
@@ -292,7 +292,7 @@ TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reprodu
                    ":5: /panels/1/fields/0: must give either \"scene\" or \"reference\""),
         std::tuple("[ { \"scene\": \"pulled\", \"time\": 0.5 } ]", "[]",
                    ":5: /panels/1/fields: must hold at least one field")}) {
-    folder.write("data/figures/fig-7.json", replaced(kFieldFigure, what, by));
+    folder.write("data/figures/fig-7.json", exchanged(kFieldFigure, what, by));
     const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "bad"}, folder);
     INFO(by << ": " << r.err);
     CHECK(r.code == 2);
@@ -332,7 +332,7 @@ TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[repr
         std::tuple("[[0, 500], [10, 600]]", "[]", ":5: /panels/0/curves/2/points: must hold"),
         std::tuple("\"marks\"", "\"mark\"", "did you mean \"marks\""),
         std::tuple("\"points\"", "\"scene\": \"fall\", \"points\"", ":5: /panels/0/curves/2: ")}) {
-    folder.write("data/figures/fig-7.json", replaced(kFigure, what, by));
+    folder.write("data/figures/fig-7.json", exchanged(kFigure, what, by));
     const Result r = run({"reproduce", "all", "--data", data, "-o", folder / "bad"}, folder);
     INFO(r.err);
     CHECK(r.code == 2);

@@ -8,8 +8,8 @@
 
 using namespace apothem;
 using test::content;
+using test::exchanged;
 using test::Folder;
-using test::replaced;
 using test::Result;
 using test::run;
 
@@ -86,7 +86,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
         std::tuple("\"rms\": 1e-9, ", "", "/panels/0/curves/0/compare"),
         std::tuple("\"reference\": \"fall.csv\", \"y\": \"speed\"", "\"points\": [[0, 0]]",
                    "/panels/0/curves/0: is compared with a \"reference\"")}) {
-    folder.write("data/figures/fig-7.json", replaced(figure, what, by));
+    folder.write("data/figures/fig-7.json", exchanged(figure, what, by));
     const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
@@ -100,11 +100,11 @@ TEST_CASE("runs that are there are kept, others are done again", "[reproduce]") 
   folder_of(folder, R"({ "title": "Fall", "numbers": ["fall"] })");
   CHECK(reproduce_all(folder).out.find("fall done (0.") != std::string::npos);
   CHECK(reproduce_all(folder).out.find("unchanged, not run again") != std::string::npos);
-  folder.write("data/scenes/fall.json", replaced(kMeasuredFall, "\"end\": 0.01", "\"end\": 0.02"));
+  folder.write("data/scenes/fall.json", exchanged(kMeasuredFall, "\"end\": 0.01", "\"end\": 0.02"));
   CHECK(reproduce_all(folder).out.find("unchanged") == std::string::npos);
   // One that was left in the middle is done again.
   folder.write("out/runs/fall/reproduced.json",
-               replaced(content(folder / "out/runs/fall/reproduced.json"), "true", "false"));
+               exchanged(content(folder / "out/runs/fall/reproduced.json"), "true", "false"));
   CHECK(reproduce_all(folder).out.find("unchanged") == std::string::npos);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
         std::tuple("\"reference\": 0.5", "\"reference\": -1", "/shapes/0/reference: "),
         std::tuple("\"quantity\": \"phi\", \"at\": [1, 1]", "\"quantity\": \"singular_area\"",
                    "only the distance potential")}) {
-    folder.write("data/figures/fig-7.json", replaced(figure, what, by));
+    folder.write("data/figures/fig-7.json", exchanged(figure, what, by));
     const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
@@ -196,7 +196,7 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
         std::tuple("[\"sweep\"", "[\"rm\"", "must be a command"),
         std::tuple("\"name\": \"falls\"", "\"name\": \"../falls\"",
                    "letters, digits and hyphens")}) {
-    folder.write("data/figures/fig-7.json", replaced(figure, what, by));
+    folder.write("data/figures/fig-7.json", exchanged(figure, what, by));
     const Result wrong = reproduce_all(folder);
     INFO(wrong.err);
     CHECK(wrong.code == 2);
