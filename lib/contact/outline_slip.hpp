@@ -173,9 +173,10 @@ APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContac
 /// Forces on vertices, interleaved, N.
 using VertexForces = std::vector<double>;
 
-/// Adds to the forces on the vertices from `first` to `end` - 1 those of some contacts: of the
-/// springs to `friction`, of the dashpots to `damping`. The force along a face times the
-/// coefficients of the slip rate acts on the vertices.
+/// Adds to the forces on the vertices from `first` to `end` - 1 those of some contacts, one after
+/// the other because they may share vertices: of the springs to `friction`, of the dashpots to
+/// `damping`, which may be empty. The force along a face times the coefficients of the slip rate
+/// acts on the vertices.
 template <int lanes>
 APOTHEM_INLINE void add_slip_forces(OutlineSlips& slips, size_t contact, size_t count,
                                     std::int32_t first, std::int32_t end, VertexForces& friction,
@@ -186,57 +187,65 @@ APOTHEM_INLINE void add_slip_forces(OutlineSlips& slips, size_t contact, size_t 
   const auto get = [&](S::Number number) __attribute__((always_inline)) {
     return Pack::load(slips.at(contact, number));
   };
-  const Pack tx = get(S::tx), ty = get(S::ty), at_p = get(S::at_p), at_q = get(S::at_q);
-  const Pack at_a = get(S::at_a), at_b = get(S::at_b), couple = get(S::couple);
-  std::array<std::array<double, lanes>, 8> of;  // x and y on p, q, a and b
-  const auto put = [&](size_t vertex, const Pack& x, const Pack& y) __attribute__((always_inline)) {
-    x.store(of[2 * vertex].data());
-    y.store(of[2 * vertex + 1].data());
+  const auto any_of = [&](S::Number number) __attribute__((always_inline)) {
+    const double* const each = slips.at(contact, number);
+    bool any = false;
+    for (size_t l = 0; l < count; ++l) any = any || each[l] != 0;
+    return any;
   };
-  // Lane by lane, because two contacts may share a vertex.
-  const auto scatter = [&](const auto& acts, VertexForces& forces) __attribute__((always_inline)) {
-    for (size_t l = 0; l < count; ++l) {
-      if (!acts(l)) continue;
-      const S::Ends& e = slips.ends(contact + l);
-      const auto add = [&](std::int32_t vertex, size_t k) __attribute__((always_inline)) {
-        double* const f = &forces[2 * static_cast<size_t>(vertex)];
-        const Pair sum = Pair{f[0], f[1]} + Pair{of[2 * k][l], of[2 * k + 1][l]};
-        f[0] = sum[0], f[1] = sum[1];
-      };
-      if (e.p >= first && e.p < end) add(e.p, 0), add(e.q, 1);
-      if (e.a >= first && e.a < end) add(e.a, 2), add(e.b, 3);
+  struct Forces {
+    std::array<std::array<double, lanes>, 8> of;  // x and y on p, q, a and b
+    APOTHEM_INLINE void put(size_t vertex, const Pack& x, const Pack& y) {
+      x.store(of[2 * vertex].data());
+      y.store(of[2 * vertex + 1].data());
     }
   };
-  const auto drag = [&](S::Number number, VertexForces & forces) __attribute__((always_inline)) {
-    const double* const each = slips.at(contact, number);
-    if (std::all_of(each, each + count, [](double f) { return f == 0; })) return;
-    const Pack force = get(number);
-    const auto along = [&](size_t vertex, const Pack& f) __attribute__((always_inline)) {
-      put(vertex, f * tx, f * ty);
+  const auto add = [&](const Forces& forces, size_t l, VertexForces& to)
+      __attribute__((always_inline)) {
+    const S::Ends& e = slips.ends(contact + l);
+    const auto add_to = [&](std::int32_t vertex, size_t k) __attribute__((always_inline)) {
+      double* const f = &to[2 * static_cast<size_t>(vertex)];
+      const Pair sum = Pair{f[0], f[1]} + Pair{forces.of[2 * k][l], forces.of[2 * k + 1][l]};
+      f[0] = sum[0], f[1] = sum[1];
     };
-    along(0, force * at_p), along(1, force * at_q);
-    const Pack on_a = force * at_a, on_b = force * at_b, turn = force * couple;
-    put(2, on_a * tx + turn * ty, on_a * ty - turn * tx);
-    put(3, on_b * tx - turn * ty, on_b * ty + turn * tx);
-    scatter([&](size_t l) { return each[l] != 0; }, forces);
+    if (e.p >= first && e.p < end) add_to(e.p, 0), add_to(e.q, 1);
+    if (e.a >= first && e.a < end) add_to(e.a, 2), add_to(e.b, 3);
   };
-  drag(S::friction, friction);
+  const Pack tx = get(S::tx), ty = get(S::ty);
+  const auto drag = [&](S::Number number, Forces & to) __attribute__((always_inline)) {
+    const Pack force = get(number), on_p = force * get(S::at_p), on_q = force * get(S::at_q);
+    const Pack on_a = force * get(S::at_a), on_b = force * get(S::at_b);
+    const Pack turn = force * get(S::couple);
+    to.put(0, on_p * tx, on_p * ty);
+    to.put(1, on_q * tx, on_q * ty);
+    to.put(2, on_a * tx + turn * ty, on_a * ty - turn * tx);
+    to.put(3, on_b * tx - turn * ty, on_b * ty + turn * tx);
+  };
+  const auto acts = [&](S::Number number, size_t l) __attribute__((always_inline)) {
+    return slips.at(contact, number)[l] != 0;
+  };
+  Forces along, across;
+  if (any_of(S::friction)) {
+    drag(S::friction, along);
+    for (size_t l = 0; l < count; ++l) {
+      if (acts(S::friction, l)) add(along, l, friction);
+    }
+  }
   if (damping.empty()) return;
-  drag(S::dashpot, damping);
-  const double *const pushes = slips.at(contact, S::push), *const at_end =
-                                                               slips.at(contact, S::push_at_q);
-  const auto pushed = [&](size_t l) { return pushes[l] != 0 || at_end[l] != 0; };
-  bool any_pushed = false;
-  for (size_t l = 0; l < count; ++l) any_pushed = any_pushed || pushed(l);
-  if (!any_pushed) return;
-  const Pack push = get(S::push), push_at_q = get(S::push_at_q);
-  const Pack foot = get(S::start) * push + get(S::rise) * push_at_q;
-  const auto across = [&](size_t vertex, const Pack& f) __attribute__((always_inline)) {
-    put(vertex, f * ty, -(f * tx));
-  };
-  across(0, push - push_at_q), across(1, push_at_q);
-  across(2, foot - push), across(3, -foot);
-  scatter(pushed, damping);
+  const bool dragged = any_of(S::dashpot), pushed = any_of(S::push) || any_of(S::push_at_q);
+  if (dragged) drag(S::dashpot, along);
+  if (pushed) {
+    const Pack push = get(S::push), push_at_q = get(S::push_at_q), on_p = push - push_at_q;
+    const Pack on_b = get(S::start) * push + get(S::rise) * push_at_q, on_a = on_b - push;
+    across.put(0, on_p * ty, -(on_p * tx));
+    across.put(1, push_at_q * ty, -(push_at_q * tx));
+    across.put(2, on_a * ty, -(on_a * tx));
+    across.put(3, -(on_b * ty), on_b * tx);
+  }
+  for (size_t l = 0; l < count; ++l) {
+    if (dragged && acts(S::dashpot, l)) add(along, l, damping);
+    if (pushed && (acts(S::push, l) || acts(S::push_at_q, l))) add(across, l, damping);
+  }
 }
 
 }  // namespace apothem
