@@ -162,8 +162,8 @@ int FigureRuns::run(const std::string& figure, const std::string& scene) {
     code = run_command(run);
     if (code == exit_code::interrupted) return interrupted();
   }
-  outcomes_[scene] = nlohmann::json::parse(read_text(planned.folder + "/run.json"));
-  const std::string status = outcomes_[scene].at("status");
+  const std::string& outcome = outcomes_[scene] = read_text(planned.folder + "/run.json");
+  const std::string status = nlohmann::json::parse(outcome).at("status");
   unstable_ = unstable_ || status == "unstable";
   if (planned.ended) {
     keep(figure, scene, status);

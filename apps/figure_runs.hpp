@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -28,8 +27,8 @@ class FigureRuns {
   /// a command has failed, which is printed.
   int run(const std::string& figure, const FigureStudy& study, bool quick);
 
-  /// The content of run.json of a scene that was run.
-  [[nodiscard]] const nlohmann::json& outcome(const std::string& scene) const {
+  /// The text of run.json of a scene that was run.
+  [[nodiscard]] const std::string& outcome(const std::string& scene) const {
     return outcomes_.at(scene);
   }
   [[nodiscard]] bool has(const std::string& scene) const { return outcomes_.count(scene) > 0; }
@@ -62,7 +61,7 @@ class FigureRuns {
   int threads_;
   std::map<std::string, double> usual_;  // seconds of scenes, from data/figures/seconds.csv
   std::map<std::string, Planned> planned_;
-  std::map<std::string, nlohmann::json> outcomes_;
+  std::map<std::string, std::string> outcomes_;  // run.json of scenes
   double expected_ = 0, taken_ = 0;  // seconds of the runs that were done
   bool unstable_ = false;
   size_t done_ = 0, kept_ = 0;

@@ -235,7 +235,7 @@ class Reproduction {
   }
 
   void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
-    const nlohmann::json& outcome = runs_.outcome(scene);
+    const auto outcome = nlohmann::json::parse(runs_.outcome(scene));
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
       report.faults.push_back(scene + ": " + outcome["message"].get<std::string>());
