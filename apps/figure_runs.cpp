@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apothem/output/files.hpp"
 #include "apothem/run/checkpoint.hpp"
