@@ -55,12 +55,7 @@ void FigureReader::curve(const JsonValue& value, CurvePanel& panel) {
   }
   if (is_table_source(value)) {
     source.rows = read_table_source(in_, object, data_);
-    object.finish();
-    if (source.rows->absent) {
-      panel.curves.pop_back();
-      figure_.sources.back().pop_back();
-    }
-    return;
+    return object.finish();
   }
   if (curve.style == CurveStyle::error_bars) {
     in_.fail(value, "has no intervals: only curves of a \"study\" or a \"table\" do");

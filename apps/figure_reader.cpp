@@ -55,9 +55,7 @@ void FigureReader::read(const JsonValue& document) {
   }
   if (const JsonValue* v = top.optional("compare")) {
     for (const JsonValue& item : in_.array(*v)) {
-      TableComparison comparison = read_comparison(in_, item, data_);
-      if (comparison.first.absent || comparison.second.absent) continue;
-      figure_.comparisons.push_back(std::move(comparison));
+      figure_.comparisons.push_back(read_comparison(in_, item, data_));
     }
   }
   if (const JsonValue* v = top.optional("players")) players(*v);

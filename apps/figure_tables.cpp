@@ -161,12 +161,10 @@ TableSource read_table_source(const JsonReader& in, JsonObject& object, const st
     source.of = in.string(object.required("of", "column with the number of trials"));
   }
   if (table) {
-    const JsonValue* optional = object.optional("optional");
     try {
       require_columns(source, path_of(source, data, {}));
     } catch (const SceneError& error) {
-      source.absent = optional && optional->boolean();
-      if (!source.absent) in.fail(*table, error.what());
+      in.fail(*table, error.what());
     }
   }
   return source;

@@ -31,8 +31,7 @@ struct TableSource {
   std::vector<std::pair<std::string, std::vector<std::string>>> where;
   Kind kind = Kind::value;
   Axis x, y;
-  std::string of;       ///< column with the number of trials, of counts
-  bool absent = false;  ///< it may be left out, and its file is not there or has no such row
+  std::string of;  ///< column with the number of trials, of counts
 };
 
 /// A point of a curve. The ends of its interval are those of 95 %: Wilson's of shares and counts,

@@ -46,12 +46,8 @@ constexpr const char* kAboutReport =
 constexpr const char* kFiguresLeftOut =
     "<h2>Figures of the paper that are not here</h2>\n"
     "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
-    "of "
-    "a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) hold "
-    "the models. Fig. 35 shows single moments of a hopper with deformable blocks (E = 1.2, 0.5 and "
-    "0.3 GPa in the text, 2.4 in place of 1.2 in the caption). What comes out depends on the "
-    "random arrangement of the blocks, which the paper does not give; docs/verification.md has a "
-    "study of it (<code>data/studies/soft-flow.json</code>).</p>\n";
+    "of a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) "
+    "hold the models.</p>\n";
 
 std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   const nlohmann::json& name = expectation.at("basis");

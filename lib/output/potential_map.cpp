@@ -66,12 +66,20 @@ std::vector<PotentialPiece> lines_of(const Potential& potential, const Polygon& 
 std::vector<PotentialPiece> pieces_of(const Potential& potential, const Polygon& polygon) {
   const std::vector<PotentialPiece> lines = lines_of(potential, polygon);
   if (!potential.roof) return envelope(polygon.vertices(), lines);
+  // The values of the roof, not the lines, are what the kernels integrate.
   std::vector<PotentialPiece> pieces;
   const Roof& roof = *potential.roof;
   for (size_t e = 0; e < roof.faces.size(); ++e) {
     PotentialPiece& piece = pieces.emplace_back(lines[e]);
+    const Vec2 inward = lines[e].gradient.normalized();
+    double highest = 0;
     for (const int node : roof.faces[e]) {
       piece.ring.push_back(polygon.origin() + roof.points[node]);
+      const double height = inward.dot(piece.ring.back() - piece.base);
+      if (height > highest) {
+        highest = height;
+        piece.gradient = inward * (roof.values[node] / height);
+      }
     }
   }
   return pieces;
