@@ -62,7 +62,7 @@ class FigureRuns {
   std::map<std::string, double> usual_;  // seconds of scenes, from data/figures/seconds.csv
   std::map<std::string, Planned> planned_;
   std::map<std::string, std::string> outcomes_;  // run.json of scenes
-  double expected_ = 0, taken_ = 0;  // seconds of the runs that were done
+  double expected_ = 0, taken_ = 0;              // seconds of the runs that were done
   bool unstable_ = false;
   size_t done_ = 0, kept_ = 0;
 };
