@@ -30,46 +30,17 @@ Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double d
   return half;
 }
 
-// pair_integral for two quadrilaterals.
-PairIntegral quad_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                           EdgeWorkspace& workspace, NearEdges& near) {
-  const double dx = offset.x();
-  const double dy = offset.y();
-  QuadEdges found;
-  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
-    trace_quads(a, b, dx, dy, found);
-    return 0.;
-  });
-  if (separated(found.gap_a, a, b, b.steepest, near) ||
-      separated(found.gap_b, a, b, a.steepest, near)) {
-    return {};
-  }
-  RunEnds ends(workspace.ends);
-  Half of_a, of_b;
-  int i = 0;
-  const auto add = [&](const PlacedPotential& x, const PlacedPotential& y, double shift_x,
-                       double shift_y, int first, Half& half) {
-    for (; i < found.count && found.parts[i].edge < first + 4; ++i) {
-      const QuadEdges::Part& part = found.parts[i];
-      const int e = part.edge - first;
-      const PlacedEdge edge(x, y, e, shift_x, shift_y);
-      accumulate(edge, {part.sum, part.first, part.largest}, part.s1 - part.s0, half);
-      half.inside ^= std::uint64_t{part.s0 == 0} << e;
-      ends.add(edge, part.s0, part.s1);
-    }
-  };
-  add(a, b, dx, dy, 0, of_a);
-  const size_t middle = ends.used();
-  add(b, a, -dx, -dy, 4, of_b);
-  return join(a, b, offset, of_a, of_b, ends, middle);
-}
-
 }  // namespace
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near) {
   if (are_quads(a, b) && near.of_a == NearEdges::kAll && near.of_b == NearEdges::kAll) {
-    return quad_integral(a, b, offset, workspace, near);
+    PairIntegral pair;
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      quad_integral(a, b, offset, near, pair);
+      return 0.;
+    });
+    return pair;
   }
   const HeightRows height = height_rows(a, b, workspace.values);
   const double dx = offset.x();
@@ -180,8 +151,7 @@ PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const
 
 Vec2 loading_point(const PairIntegral& pair) {
   const double size = pair.force.norm();
-  // If the tractions cancel, the line of action is determined by round-off only.
-  if (!(size > 1e-12 * pair.weight)) return pair.centre;
+  if (!(size > kNoLineOfAction * pair.weight)) return pair.centre;
   const Vec2 tangent(-pair.force.y() / size, pair.force.x() / size);
   return pair.centre + tangent * ((cross(pair.centre, pair.force) - pair.moment_a) / size);
 }

@@ -109,6 +109,9 @@ struct PairVolume {
 /// is too slow for the step loop. The arguments are those of pair_integral.
 PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
 
+/// Below this share of the weight the line of action of a force is determined by round-off only.
+inline constexpr double kNoLineOfAction = 1e-12;
+
 /// Returns the loading point of the resultant force, relative to a's reference point, m. It is the
 /// weighted centre, moved along the tangent onto the line of action of (force, moment_a); see
 /// docs/theory.md, "Normal contact". Without a resultant force it is the weighted centre itself.

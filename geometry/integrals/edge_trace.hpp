@@ -68,7 +68,9 @@ APOTHEM_INLINE void walk_envelope(const Row<Real>& row, const Real& s0, const Re
   for (Real s = s0; any(inside);) {
     // The next function of the envelope is the one that falls faster than the present one and meets
     // it first. The fractions gap/fall are compared by cross-multiplication, which needs one
-    // division per piece instead of one per function.
+    // division per piece instead of one per function. No function is below the present one, so that
+    // one that does not fall faster is never nearer. Of functions that meet it at the same point,
+    // the others follow after pieces of no length.
     Truth<Real> found = s < s;
     Real gap = s1 - s;
     Real fall(1);
@@ -79,10 +81,7 @@ APOTHEM_INLINE void walk_envelope(const Row<Real>& row, const Real& s0, const Re
       const Real f = slope - m;
       const Real above = row.a[i] + s * m - height;
       const Real g = select(above < Real(0), Real(0), above);
-      const Real left = g * fall;
-      const Real right = gap * f;
-      const Truth<Real> nearer =
-          (f > Real(0)) & ((left < right) | ((left == right) & found & (m < next_slope)));
+      const Truth<Real> nearer = g * fall < gap * f;
       gap = select(nearer, g, gap);
       fall = select(nearer, f, fall);
       next_base = select(nearer, row.a[i], next_base);

@@ -67,8 +67,7 @@ void exchange(Spring& spring, bool per_edge, int edges_a, int edges_b) {
 
 void exchange(PatchDamper& damper) {
   for (PairForce* f : {&damper.elastic, &damper.damping}) {
-    f->force = -f->force;
-    std::swap(f->moment_a, f->moment_b);
+    *f = {-f->x, -f->y, f->b, f->a};
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "apothem/contact/normal_damping.hpp"
+#include "apothem/contact/pair_vector.hpp"
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/spatial/groups.hpp"
 #include "apothem/mesh/locate.hpp"

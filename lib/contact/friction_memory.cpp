@@ -39,12 +39,9 @@ std::span<const Spring> find(const std::vector<Spring>& springs, size_t& next,
 
 }  // namespace
 
-void SpringRange::begin(const std::vector<Spring>& before, size_t next, std::span<Spring> now) {
+void SpringRange::begin(const std::vector<Spring>& before, size_t next) {
   before_ = &before;
   next_ = next;
-  now_ = now;
-  lost_ = 0;
-  energies_.clear();
   losses_.clear();
   damping_losses_.clear();
 }
@@ -55,20 +52,15 @@ std::span<const Spring> SpringRange::before(int law, int a, int b) {
   });
 }
 
-void FrictionMemory::begin(SpringRange& range, const std::pair<int, int>& behind, size_t first) {
+void FrictionMemory::begin(SpringRange& range, const std::pair<int, int>& behind) {
   const std::tuple pair(0, behind.first, behind.second);
   const auto place = std::partition_point(before_.begin(), before_.end(),
                                           [&](const Spring& s) { return pair_of(s) <= pair; });
-  range.begin(before_, static_cast<size_t>(place - before_.begin()),
-              std::span(now_).subspan(first));
+  range.begin(before_, static_cast<size_t>(place - before_.begin()));
 }
 
 void FrictionMemory::add(const SpringRange& range) {
   next_ = std::max(next_, range.next_);
-  for (size_t i = 0; i < range.energies_.size(); ++i) {
-    energy_ += range.energies_[i];
-    if (!range.now_[i].accounted) balanced_ += range.energies_[i];
-  }
   for (const double energy : range.losses_) loss_ += energy;
   for (const double energy : range.damping_losses_) damping_loss_ += energy;
 }

@@ -53,34 +53,31 @@ inline double slide(double force, double slip, double stiffness, double limit) {
   return std::clamp(force - stiffness * slip, -limit, limit);
 }
 
-/// The springs of a range of pairs in a step, for one thread. What it books is a list, so that sums
-/// do not depend on how pairs are divided.
+/// What one pair books in a step, J. Each has an entry of its own, which is summed over the pairs
+/// in their order, so that sums do not depend on who works on which pairs.
+struct PairBook {
+  double energy = 0;        ///< that its springs store
+  double loss = 0;          ///< that its springs have lost
+  double damping_loss = 0;  ///< that damping has taken from the bodies
+};
+
+/// The springs of the step before, for a range of pairs that one thread works on. What contacts
+/// lose that are over is a list, so that sums do not depend on how pairs are divided.
 class SpringRange {
  public:
-  /// Begins a step with the springs `before`, from `next` on, and keeps springs in `now`.
-  void begin(const std::vector<Spring>& before, size_t next, std::span<Spring> now);
-  /// As the members of FrictionMemory.
+  /// Begins a step with the springs `before`, from `next` on.
+  void begin(const std::vector<Spring>& before, size_t next);
+  /// As the member of FrictionMemory.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
-  void keep(const Spring& spring) {
-    now_[energies_.size()] = spring;
-    energies_.push_back(spring.energy());
-  }
-  void lose(double energy) {
-    losses_.push_back(energy);
-    lost_ += energy;
-  }
+  /// Of a contact that is over, J.
+  void lose(double energy) { losses_.push_back(energy); }
   void damp(double energy) { damping_losses_.push_back(energy); }
-  /// What has been lost since begin_pair(), J.
-  [[nodiscard]] double lost() const { return lost_; }
-  void begin_pair() { lost_ = 0; }
 
  private:
   friend class FrictionMemory;
   const std::vector<Spring>* before_ = nullptr;
   size_t next_ = 0;
-  double lost_ = 0;
-  std::span<Spring> now_;
-  std::vector<double> energies_, losses_, damping_losses_;
+  std::vector<double> losses_, damping_losses_;
 };
 
 class FrictionMemory {
@@ -92,13 +89,21 @@ class FrictionMemory {
   /// The springs that a pair had in the step before, in the order of their parts; empty if it is
   /// new. Pairs must be asked for in ascending order.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
-  /// Makes room for the springs that ranges keep, those of the first law.
-  void make_room(size_t springs) { now_.resize(springs); }
-  /// Has a range begin behind all springs of a pair in the step before, and keep springs from
-  /// number `first` on.
-  void begin(SpringRange& range, const std::pair<int, int>& behind, size_t first);
+  /// Makes room for the springs of the first law, which are put there in ascending order of their
+  /// keys. All of them must be accounted.
+  [[nodiscard]] std::span<Spring> make_room(size_t springs) {
+    now_.resize(springs);
+    return now_;
+  }
+  /// Has a range begin behind all springs of a pair in the step before.
+  void begin(SpringRange& range, const std::pair<int, int>& behind);
   /// Takes what a range has booked. Ranges are added in ascending order.
   void add(const SpringRange& range);
+  void add(const PairBook& book) {
+    energy_ += book.energy;
+    loss_ += book.loss;
+    damping_loss_ += book.damping_loss;
+  }
   /// Keeps a spring for the next step; in ascending order of the keys.
   void keep(const Spring& spring) {
     now_.push_back(spring);

@@ -9,42 +9,14 @@
 #include <vector>
 
 #include "apothem/contact/law.hpp"
-#include "apothem/contact/normal_damping.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/contact/patch_batch.hpp"
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
 namespace apothem {
-
-/// Friction and damping of one pair; moments about the mass centres.
-struct TangentialForce {
-  RigidIndex a = -1, b = -1;
-  PairForce all = {};
-  PairForce damping = {};            ///< of this
-  PairForce change_of_damping = {};  ///< in the last step
-  PairRate rate = {};                ///< in the last half step
-  double power_before = 0;           ///< of the change at the rate before that one, W
-
-  /// Finds what has changed since the step before, in which the pair may have touched. With dt = 0
-  /// nothing has.
-  void compare_with(const TangentialForce* last, const PairRate& now, double dt) {
-    rate = now;
-    if (!(dt > 0)) return;
-    change_of_damping = damping;
-    if (last) change_of_damping += -1 * last->damping;
-    power_before = change_of_damping.power(last ? last->rate : now);
-  }
-  void add_damping(const PairForce& f) {
-    all += f;
-    damping += f;
-  }
-  void fields(Archive& archive) {
-    archive("a", a)("b", b)("all", all)("damping", damping)("change_of_damping", change_of_damping)(
-        "rate", rate)("power_before", power_before);
-  }
-};
 
 class PatchTangential {
  public:
@@ -114,39 +86,52 @@ class PatchTangential {
 
     // Begins a step behind a pair of the last step, or with the first one.
     void begin(const Place& place, size_t force);
-    void step_pair(const PairIntegrals& pairs, size_t pair, const Place& to, const Kinematics& now,
-                   double dt);
+    // Takes the touching pair number i a step further, or adds it to those that wait for others.
+    void step_pair(const PairIntegrals& pairs, size_t pair, size_t i, const PatchScene& scene);
+    void finish(const PatchScene& scene) { batch_.flush(scene); }
     // Pairs that touch no more and come before this one.
-    void release_until(RigidIndex a, RigidIndex b, const Kinematics& now, double dt);
+    void release_until(RigidIndex a, RigidIndex b, const PatchScene& scene);
 
     SpringRange springs;
 
    private:
+    // A pair in a step.
+    struct Pair {
+      RigidIndex a, b;
+      const PairLaw& law;
+      bool rough, damped;
+      const TangentialForce* last;           // of the step before, or null
+      std::span<const Spring> springs;       // of the step before
+      std::span<const PatchDamper> dampers;  // of the step before
+      Place to;
+      TangentialForce& total;
+      PairStiffness& held;
+      PairBook& book;
+
+      void clear() const {
+        total = {};
+        total.a = a;
+        total.b = b;
+        held = {};
+        book = {};
+      }
+    };
     const PairHistory* find_before(RigidIndex a, RigidIndex b);
-    void book_damping(const TangentialForce* last, const TangentialForce& force,
-                      const PairRate& rate, double dt);
-    void release(const TangentialForce& last, const Kinematics& now, double dt);
+    void release(const TangentialForce& last, const PatchScene& scene);
     void find_shares(const PairHistory* before);
     [[nodiscard]] bool inherit_whole() const;
     template <class T, class Add>
     void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
-    [[nodiscard]] double lost_by_balance(std::span<const Spring> before,
-                                         const TangentialForce* last, const TangentialForce& force,
-                                         const PairRate& rate, double dt) const;
-    void resultant(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
-                   const PairIntegral& patch, double force_error, Spring& spring,
-                   PatchDamper* damper);
-    void per_edge(const PairMotion& motion, double dt, const PairLaw& law, SpringKey key,
-                  std::span<const Spring> before);
-    void add_spring(double size, double stiffness, const Vec2& tangent, const Vec2& point,
-                    const Vec2& between);
+    [[nodiscard]] double lost_by_balance(const Pair& pair, double dt) const;
+    void add_alone(const Pair& pair, const PatchScene& scene);
+    void step_patches(const Pair& pair, const PatchScene& scene);
+    void per_edge(const Pair& pair, const PatchScene& scene);
 
     PatchTangential& all_;
     Place place_;      // of the next pair of the step before
     size_t last_ = 0;  // of its forces
+    PatchBatch batch_;
     // Of the pair at hand.
-    TangentialForce* total_ = nullptr;
-    PairStiffness* stiffness_ = nullptr;
     std::span<const BoundaryRun> runs_;
     std::span<const PairIntegral> patches_;
     size_t ancestors_ = 0;
@@ -173,7 +158,10 @@ class PatchTangential {
   std::vector<Place> places_;  // of each touching pair, and behind the last one
   History now_, before_;
   std::vector<TangentialForce> forces_, forces_before_;
-  std::span<PairStiffness> stiffness_;  // of each touching pair, while it slides
+  // Of each touching pair, while it slides.
+  std::span<PairStiffness> stiffness_;
+  std::span<Spring> springs_;
+  std::vector<PairBook> books_;
 };
 
 }  // namespace apothem

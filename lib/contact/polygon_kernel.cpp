@@ -11,7 +11,7 @@ namespace apothem {
 namespace {
 
 // Of a touching pair, ns.
-constexpr double kContactTime = 20, kLoadTime = 60, kGatherTime = 20;
+constexpr double kContactTime = 20, kLoadTime = 30, kGatherTime = 20;
 
 // What friction and damping need.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
@@ -109,56 +109,22 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 }
 
 void PolygonKernel::find_loads() {
+  const auto count = static_cast<int>(touching_.size());
   loads_.resize(touching_.size());
   if (!tangential_) pair_stiffness_.resize(touching_.size());
   for (Found& found : found_) found.largest_force = {};
-  const auto pair_of = [&](int i) { return pairs_.pairs()[static_cast<size_t>(touching_[i])]; };
-  threads_.chunks(
-      static_cast<int>(touching_.size()), kLoadTime, [&](int first, int end, int worker) {
-        PairPeak& largest = found_[static_cast<size_t>(worker)].largest_force;
-        for (int i = first; i < end; ++i) {
-          const auto [a, b] = pair_of(i);
-          const Load& load = loads_[static_cast<size_t>(i)] = load_of(static_cast<size_t>(i));
-          const double fx = load.force.x(), fy = load.force.y();
-          const double force = std::sqrt(fx * fx + fy * fy);
-          if (force > largest.value) largest = {force, a, b};
-        }
-      });
+  const TouchingPairs all{surfaces_, pairs_, touching_, stiffness_, contact_stiffness_};
+  threads_.chunks(count, kLoadTime, [&](int first, int end, int worker) {
+    if (first == end) return;
+    const int i =
+        apothem::find_loads(all, first, end, tangential_.has_value(), loads_, pair_stiffness_);
+    const PairLoad& load = loads_[static_cast<size_t>(i)];
+    found_[static_cast<size_t>(worker)].largest_force = {load.force.plane().size(), load.a, load.b};
+  });
   largest_force_ = {};
   for (const Found& found : found_) {
     if (found.largest_force.value > largest_force_.value) largest_force_ = found.largest_force;
   }
-}
-
-// The displacements of both bodies add: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
-PolygonKernel::Load PolygonKernel::load_of(size_t i) {
-  const auto p = static_cast<size_t>(touching_[i]);
-  const PairIntegral& pair = pairs_[p];
-  const auto [a, b] = pairs_.pairs()[p];
-  const double k = stiffness_[i];
-  const double stiffness = contact_stiffness_[i];
-  const double size = pair.force.norm();
-  // Of the pushes of the edges: 1 if all have one direction.
-  const double aligned = std::min(size / pair.weight, 1.);
-  const Vec2 normal = size > 0 ? Vec2(pair.force / size) : Vec2(1, 0);
-  const Vec2 tangent(-normal.y(), normal.x());
-  const double across = (1 - aligned * aligned) * stiffness;
-  const double times = surfaces_.responsive(a) && surfaces_.responsive(b) ? 2 : 1;
-  // Where the resultant acts says little: boundary that is hardly inside is as stiff as any other.
-  const Vec2 middle = pair.middle * tangent;
-  const auto add = [&](BodyStiffness& held, const Vec2& point, const Vec2& centre) {
-    BodyStiffness sum;
-    sum.add(stiffness, normal, cross(point, normal));
-    sum.add(across, tangent, cross(centre, tangent));
-    sum.add_rotation(stiffness * pair.breadth * pair.breadth / 12);
-    if (tangential_) sum.add(held, 1);
-    held = {};
-    held.add(sum, times);
-  };
-  const Vec2 between = surfaces_.between(a, b);
-  add(pair_stiffness_[i].a, middle, pair.centre);
-  add(pair_stiffness_[i].b, middle + between, pair.centre + between);
-  return {a, b, k * pair.force, k * pair.moment_a, k * pair.moment_b};
 }
 
 void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end) {
@@ -171,38 +137,39 @@ void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidI
   };
   for (RigidIndex i = first; i < end; ++i) body_stiffness_[static_cast<size_t>(i)] = {};
   for (size_t i = 0; i < loads_.size(); ++i) {
-    const Load& load = loads_[i];
+    const PairLoad& load = loads_[i];
+    const PairForce& f = load.force;
     if (here(load.a)) {
-      add(load.a, load.force.x(), load.force.y(), load.moment_a);
+      add(load.a, f.x, f.y, f.a);
       body_stiffness_[static_cast<size_t>(load.a)].add(pair_stiffness_[i].a, 1);
     }
     if (here(load.b)) {
-      add(load.b, -load.force.x(), -load.force.y(), load.moment_b);
+      add(load.b, -f.x, -f.y, f.b);
       body_stiffness_[static_cast<size_t>(load.b)].add(pair_stiffness_[i].b, 1);
     }
   }
   if (tangential_) {
     for (const TangentialForce& t : tangential_->forces()) {
       const PairForce& f = t.all;
-      if (here(t.a)) add(t.a, f.force.x(), f.force.y(), f.moment_a);
-      if (here(t.b)) add(t.b, -f.force.x(), -f.force.y(), f.moment_b);
+      if (here(t.a)) add(t.a, f.x, f.y, f.a);
+      if (here(t.b)) add(t.b, -f.x, -f.y, f.b);
     }
   }
   for (RigidIndex i = first; i < end; ++i) {
     rate_bounds_[static_cast<size_t>(i)] =
-        body_stiffness_[static_cast<size_t>(i)].rate_bound(surfaces_.rigid(i).inverse_mass);
+        rate_bound_of(body_stiffness_[static_cast<size_t>(i)], surfaces_.rigid(i).inverse_mass);
   }
 }
 
 // The largest one is exact above the limit, so that it does not shorten the step in vain.
 void PolygonKernel::add_rates(std::span<double> rates, double limit) {
   double largest = 0;
-  for (const Load& load : loads_) {
+  for (const PairLoad& load : loads_) {
     for (const RigidIndex body : {load.a, load.b}) {
       const auto i = static_cast<size_t>(body);
       double rate = std::exchange(rate_bounds_[i], 0);
       if (rate > limit && rate > largest) {
-        rate = body_stiffness_[i].rate(surfaces_.rigid(body).inverse_mass);
+        rate = rate_of(body_stiffness_[i], surfaces_.rigid(body).inverse_mass);
         largest = std::max(largest, rate);
       }
       rates[i] += rate;

@@ -7,6 +7,7 @@
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/onset.hpp"
 #include "apothem/contact/pair_integrals.hpp"
+#include "apothem/contact/pair_loads.hpp"
 #include "apothem/contact/patch_tangential.hpp"
 #include "apothem/contact/stiffness.hpp"
 #include "apothem/execution/parallel.hpp"
@@ -57,12 +58,6 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
     return table_.between(a, b).normal_stiffness * thickness_;
   }
-  // What a touching pair does to its bodies.
-  struct Load {
-    RigidIndex a, b;
-    Vec2 force;                 // on a, N
-    double moment_a, moment_b;  // N m
-  };
   // The touching pairs that one thread has found.
   struct Found {
     std::vector<int> touching;
@@ -70,7 +65,6 @@ class PolygonKernel final : public Kernel {
   };
   void find_contacts(std::vector<Contact>& contacts);
   void find_loads();
-  Load load_of(size_t touching);
   void add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end);
   void add_rates(std::span<double> rates, double limit);
 
@@ -85,7 +79,7 @@ class PolygonKernel final : public Kernel {
   std::vector<int> touching_;                  // pairs
   std::vector<double> stiffness_;              // k_n times the thickness of these, N/m
   std::vector<double> contact_stiffness_;      // of their contacts, N/m
-  std::vector<Load> loads_;                    // of these
+  std::vector<PairLoad> loads_;                // of these
   std::vector<PairStiffness> pair_stiffness_;  // of these: of springs, then also of the contacts
   std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
   std::vector<double> rate_bounds_;            // of each rigid body, 1/s^2

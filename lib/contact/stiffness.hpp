@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "apothem/execution/pack.hpp"
 
 namespace apothem {
 
@@ -25,36 +25,37 @@ inline double strip_mobility(const std::array<double, 3>& inverse_mass, double a
 }
 
 /// How the contacts of a rigid body resist its displacement (x, y) and rotation, N/m, N and N m.
-class BodyStiffness {
- public:
-  /// A spring of the stiffness `k` (N/m) along a unit vector that has the lever `arm` (m).
-  void add(double k, const Vec2& direction, double arm) {
-    const double x = k * direction.x(), y = k * direction.y();
-    xx_ += x * direction.x();
-    xy_ += x * direction.y();
-    yy_ += y * direction.y();
-    xt_ += x * arm;
-    yt_ += y * arm;
-    tt_ += k * arm * arm;
-  }
-  /// Against rotation alone, N m.
-  void add_rotation(double k) { tt_ += k; }
-  void add(const BodyStiffness& other, double times) {
-    xx_ += times * other.xx_;
-    xy_ += times * other.xy_;
-    yy_ += times * other.yy_;
-    xt_ += times * other.xt_;
-    yt_ += times * other.yt_;
-    tt_ += times * other.tt_;
-  }
-  /// The largest eigenvalue of stiffness by inertia, 1/s^2, with the inverse masses 1/m, 1/m, 1/I.
-  [[nodiscard]] double rate(const std::array<double, 3>& inverse_mass) const;
-  /// Not less than `rate`, and faster.
-  [[nodiscard]] double rate_bound(const std::array<double, 3>& inverse_mass) const;
+template <class Real>
+struct BodyStiffnessOf {
+  Real xx{}, xy{}, yy{}, xt{}, yt{}, tt{};
 
- private:
-  double xx_ = 0, xy_ = 0, yy_ = 0, xt_ = 0, yt_ = 0, tt_ = 0;
+  /// A spring of the stiffness `k` (N/m) along the unit vector (nx, ny) that has the lever `arm`
+  /// (m).
+  APOTHEM_INLINE void add(const Real& k, const Real& nx, const Real& ny, const Real& arm) {
+    const Real x = k * nx, y = k * ny;
+    xx = xx + x * nx;
+    xy = xy + x * ny;
+    yy = yy + y * ny;
+    xt = xt + x * arm;
+    yt = yt + y * arm;
+    tt = tt + k * arm * arm;
+  }
+  APOTHEM_INLINE void add(const BodyStiffnessOf& other, const Real& times) {
+    xx = xx + times * other.xx;
+    xy = xy + times * other.xy;
+    yy = yy + times * other.yy;
+    xt = xt + times * other.xt;
+    yt = yt + times * other.yt;
+    tt = tt + times * other.tt;
+  }
 };
+
+using BodyStiffness = BodyStiffnessOf<double>;
+
+/// The largest eigenvalue of stiffness by inertia, 1/s^2, with the inverse masses 1/m, 1/m, 1/I.
+double rate_of(const BodyStiffness& stiffness, const std::array<double, 3>& inverse_mass);
+/// Not less than `rate_of`, and faster.
+double rate_bound_of(const BodyStiffness& stiffness, const std::array<double, 3>& inverse_mass);
 
 /// How stiff the contact of a pair, or a part of it, holds its two bodies.
 struct PairStiffness {

@@ -7,6 +7,7 @@
 // with all of these instruction sets.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -16,10 +17,13 @@
 // Forces inlining. A kernel is compiled once per instruction set, and every function that it calls
 // has to be inlined, so that it is compiled for the same instruction set.
 #define APOTHEM_INLINE inline __attribute__((always_inline))
+// The same for a lambda, behind its parameters.
+#define APOTHEM_LAMBDA __attribute__((always_inline))
 
 namespace apothem {
 
-/// One truth value for each lane of a pack.
+/// One truth value for each lane of a pack. GCC takes those of eight lanes apart: kernels that
+/// choose have packs of four.
 template <int lanes>
 struct MaskOf {
   // GCC forgets the attribute of an alias that depends on a parameter.
@@ -74,6 +78,12 @@ struct PackOf {
   friend APOTHEM_INLINE Mask operator==(const PackOf& a, const PackOf& b) { return {a.v == b.v}; }
 };
 
+/// How many numbers a number type holds.
+template <class Real>
+inline constexpr int lanes_of = 1;
+template <int lanes>
+inline constexpr int lanes_of<PackOf<lanes>> = lanes;
+
 /// Number of doubles in the widest pack.
 inline constexpr int kLanes = 8;
 
@@ -91,15 +101,13 @@ template <class Real>
 APOTHEM_INLINE Real select(bool mask, const Real& a, const Real& b) {
   return mask ? a : b;
 }
-/// -1 if the mask is true in any lane, else 0.
-APOTHEM_INLINE int all_or_none(const MaskOf<4>& mask) {
+/// True if the mask is true in any lane.
+APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
   using Half = std::int64_t __attribute__((vector_size(16)));
   const Half low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
   const Half both = low | __builtin_shufflevector(mask.m, mask.m, 2, 3);
-  return static_cast<int>(both[0] | both[1]);
+  return (both[0] | both[1]) != 0;
 }
-/// True if the mask is true in any lane.
-APOTHEM_INLINE bool any(const MaskOf<4>& mask) { return all_or_none(mask) != 0; }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
 
 /// The absolute value.
@@ -138,5 +146,46 @@ struct Stored<PackOf<lanes>> {
     return PackOf<lanes>::load(base + k * kLanes);
   }
 };
+
+/// Four numbers of any type that kernels use.
+template <class Real>
+using FourOf = std::array<Real, 4>;
+
+/// Reads four consecutive doubles from row(k) on for every lane k of packs; for plain numbers from
+/// row(0).
+template <class Row>
+APOTHEM_INLINE void read_rows(const Row& row, FourOf<double>& to) {
+  std::memcpy(to.data(), row(0), sizeof(to));
+}
+template <class Row>
+APOTHEM_INLINE void read_rows(const Row& row, FourOf<PackOf<4>>& to) {
+  using V = PackOf<4>::Vector;
+  V r[4], t[4];
+  for (int k = 0; k < 4; ++k) std::memcpy(&r[k], row(k), sizeof(V));
+  for (int k = 0; k < 4; k += 2) {
+    t[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 4, 2, 6);
+    t[k + 1] = __builtin_shufflevector(r[k], r[k + 1], 1, 5, 3, 7);
+  }
+  for (size_t k = 0; k < 2; ++k) {
+    to[k].v = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 4, 5);
+    to[k + 2].v = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
+  }
+}
+
+/// Writes four consecutive doubles from row(k) on for every lane k.
+template <class Row>
+APOTHEM_INLINE void write_rows(const FourOf<PackOf<4>>& from, const Row& row) {
+  using V = PackOf<4>::Vector;
+  V t[4], r[4];
+  for (size_t k = 0; k < 4; k += 2) {
+    t[k] = __builtin_shufflevector(from[k].v, from[k + 1].v, 0, 4, 2, 6);
+    t[k + 1] = __builtin_shufflevector(from[k].v, from[k + 1].v, 1, 5, 3, 7);
+  }
+  for (size_t k = 0; k < 2; ++k) {
+    r[k] = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 4, 5);
+    r[k + 2] = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
+  }
+  for (int k = 0; k < 4; ++k) std::memcpy(row(k), &r[k], sizeof(V));
+}
 
 }  // namespace apothem

@@ -79,7 +79,8 @@ TEST_CASE("polygon prints the contract's keys and the benchmark's numbers", "[pr
   CHECK(o["arithmetic"] == "inexact");
 }
 
-TEST_CASE("polygon reads WKT and objects; --reference chooses the depth", "[program][polygon]") {
+TEST_CASE("polygon reads WKT and objects, and --reference chooses the depth",
+          "[program][polygon]") {
   const Folder folder;
   const std::string wkt = folder.write("r.wkt", "POLYGON((10 20, 14 20, 14 22, 10 22, 10 20))");
   const Json ridge = Json::parse(run({"polygon", wkt, "--json"}, folder).out)["singular_area"];

@@ -206,3 +206,17 @@ TEST_CASE("the user guide shows the example that is built and run", "[architectu
   };
   CHECK(text("docs/how-to/own-force.md").find(text("tests/package/wind.cpp")) != std::string::npos);
 }
+
+// CMake cuts such a name off, and what is left selects no test, which passes.
+TEST_CASE("no test has a semicolon in its name", "[architecture]") {
+  const std::regex pattern(R"re(TEST_CASE\(\s*"[^"]*;)re");
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(apothem::test::kSource) / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    std::ifstream stream(entry.path());
+    std::stringstream text;
+    text << stream.rdbuf();
+    INFO(entry.path().string());
+    CHECK_FALSE(std::regex_search(text.str(), pattern));
+  }
+}

@@ -46,7 +46,7 @@ Served served(Bodies& bodies) {
 
 }  // namespace
 
-TEST_CASE("each pair of kinds of surfaces has one kernel; elements and outlines never meet",
+TEST_CASE("each pair of kinds of surfaces has one kernel, and elements and outlines never meet",
           "[surfaces][contact]") {
   using enum SurfaceKind;
   CHECK(kernel_of(polygon, polygon) == polygon_kernel);
@@ -91,7 +91,7 @@ TEST_CASE("polygons have the first numbers, then come the outermost elements of 
   }
 }
 
-TEST_CASE("a mesh has one outline; polygons beside it have their collars as well",
+TEST_CASE("a mesh has one outline, and polygons beside it have their collars as well",
           "[surfaces][contact]") {
   Pile pile(ContactSurface::body);
   const Surfaces& s = *pile.surfaces;
@@ -134,7 +134,7 @@ TEST_CASE("boxes of polygons and of meshes grow by half of their own skins",
   }
 }
 
-TEST_CASE("a body responds to forces if one of its coordinates is free; meshes always do",
+TEST_CASE("a body responds to forces if one of its coordinates is free, and meshes always do",
           "[surfaces][contact]") {
   Bodies bodies(law_of(1));
   const Potential potential = about_centre(kSquares[0]);

@@ -55,7 +55,8 @@ TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", 
   }
 }
 
-TEST_CASE("discs that rub by their elements keep momenta; the ledger knows the loss", "[surface]") {
+TEST_CASE("discs that rub by their elements keep momenta, and the ledger knows the loss",
+          "[surface]") {
   for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
     Model model = empty_model();
     model.contact.surface = ContactSurface::element;

@@ -132,7 +132,7 @@ TEST_CASE("free bodies that rub keep their momenta, and the ledger closes with o
   CHECK(errors[1] < errors[0] / 3);
 }
 
-TEST_CASE("straight approach meets no friction, not even round-off; per edge it does",
+TEST_CASE("straight approach meets no friction, not even round-off, but per edge it does",
           "[friction]") {
   for (const FrictionLaw law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
     for (const double half : {.3, .523, 1.1}) {

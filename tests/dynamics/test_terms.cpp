@@ -137,9 +137,13 @@ TEST_CASE("a mesh alone needs its elements, and a look at whether it folds", "[t
   CHECK(terms_of(mesh_and(0)) == Names{"elements", "fold watch"});
 }
 
-TEST_CASE("contact of boundaries looks at folds itself; contact of elements does not", "[terms]") {
+TEST_CASE("who computes contact of a mesh with itself needs no look at whether it folds",
+          "[terms]") {
   Model model = mesh_and(1);
+  CHECK(terms_of(model) == Names{"elements", "contact", "fold watch"});
+  model.contact.self = true;
   CHECK(terms_of(model) == Names{"elements", "contact"});
+  model.contact.self = false;
   model.contact.surface = ContactSurface::element;
   model.contact.distribution = ForceDistribution::resultant;
   CHECK(terms_of(model) == Names{"elements", "contact", "fold watch"});

@@ -148,7 +148,7 @@ TEST_CASE("bodies keep their springs where others come, go, or stand in another 
   }
 }
 
-TEST_CASE("a mesh may be given at another place; its strain comes along", "[run][from]") {
+TEST_CASE("a mesh may be given at another place, and its strain comes along", "[run][from]") {
   const Folder folder;
   const auto beam = [](const char* origin, const char* more) {
     return std::string(

@@ -233,7 +233,7 @@ TEST_CASE("a line of a batch is read strictly, and says where it is wrong", "[sc
   refused("3 0 0 1 0 0 1 7", 0, "text behind the last vertex: \"7\"");
 }
 
-TEST_CASE("blank lines and comments of a batch are skipped; one without a line is refused",
+TEST_CASE("blank lines and comments of a batch are skipped, one without a line is refused",
           "[scene][text]") {
   const Folder folder;
   std::vector<std::string> names;

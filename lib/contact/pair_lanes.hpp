@@ -1,0 +1,87 @@
+// Private header: how packs read and write what pairs of rigid bodies have, one pair in each lane.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include "apothem/contact/pair_vector.hpp"
+#include "apothem/contact/stiffness.hpp"
+#include "apothem/contact/surfaces.hpp"
+#include "apothem/geometry/integrals/edge_integral.hpp"
+
+namespace apothem {
+
+// A number of each lane; a plain number is that of the first one.
+template <class F>
+APOTHEM_INLINE void read_lanes(double& number, const F& of) {
+  number = of(0);
+}
+template <int lanes, class F>
+APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
+  pack = [&]<int... k>(std::integer_sequence<int, k...>) APOTHEM_LAMBDA {
+    return PackOf<lanes>(typename PackOf<lanes>::Vector{of(k)...});
+  }
+  (std::make_integer_sequence<int, lanes>());
+}
+// A truth value of each lane, from 1 or 0.
+template <class F>
+APOTHEM_INLINE void read_lanes(bool& truth, const F& of) {
+  truth = of(0) > 0;
+}
+template <int lanes, class F>
+APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& of) {
+  PackOf<lanes> number;
+  read_lanes(number, of);
+  mask = number > PackOf<lanes>(0.);
+}
+template <class Real, class F>
+APOTHEM_INLINE void read_lanes(PairVectorOf<Real>& vector, const F& of) {
+  FourOf<Real> four;
+  read_rows([&](int k) APOTHEM_LAMBDA { return &of(k).x; }, four);
+  vector = {four[0], four[1], four[2], four[3]};
+}
+
+template <int lanes, class F>
+APOTHEM_INLINE void write_lanes(const PairVectorOf<PackOf<lanes>>& vector, const F& to) {
+  write_rows({vector.x, vector.y, vector.a, vector.b},
+             [&](int k) APOTHEM_LAMBDA { return &to(k).x; });
+}
+template <int lanes, class F>
+APOTHEM_INLINE void write_held(const BodyStiffnessOf<PackOf<lanes>>& s, const F& to) {
+  write_rows({s.xx, s.xy, s.yy, s.xt}, [&](int k) APOTHEM_LAMBDA { return &to(k).xx; });
+  for (int k = 0; k < lanes; ++k) {
+    to(k).yt = s.yt.v[k];
+    to(k).tt = s.tt.v[k];
+  }
+}
+
+// The mass centre of a minus that of b; `lanes` have these numbers.
+template <class Real, class Lane>
+APOTHEM_INLINE void read_between(const Surfaces& surfaces, const Lane* lanes,
+                                 VectorOf<Real>& between) {
+  read_lanes(between.x, [&](int k) APOTHEM_LAMBDA {
+    return surfaces.pose(lanes[k].a)[0] - surfaces.pose(lanes[k].b)[0];
+  });
+  read_lanes(between.y, [&](int k) APOTHEM_LAMBDA {
+    return surfaces.pose(lanes[k].a)[1] - surfaces.pose(lanes[k].b)[1];
+  });
+}
+
+// The numbers of an integral come in fours: force and moments; weight, one that means nothing, and
+// centre; both own lengths and two more; breadth, middle and two that are no numbers.
+inline constexpr int kForceNumbers = 0, kCentreNumbers = 4, kLengthNumbers = 8,
+                     kBreadthNumbers = 12;
+static_assert(offsetof(PairIntegral, moment_a) == 2 * sizeof(double) &&
+              offsetof(PairIntegral, moment_b) == 3 * sizeof(double) &&
+              offsetof(PairIntegral, weight) == 4 * sizeof(double) &&
+              offsetof(PairIntegral, centre) == 6 * sizeof(double) &&
+              offsetof(PairIntegral, own_length_a) == 8 * sizeof(double) &&
+              offsetof(PairIntegral, own_length_b) == 9 * sizeof(double) &&
+              offsetof(PairIntegral, breadth) == 12 * sizeof(double) &&
+              offsetof(PairIntegral, middle) == 13 * sizeof(double) &&
+              sizeof(PairIntegral) == 16 * sizeof(double));
+APOTHEM_INLINE const double* integral_numbers(const PairIntegral& pair) {
+  return reinterpret_cast<const double*>(&pair);  // NOLINT: see above
+}
+
+}  // namespace apothem
