@@ -174,18 +174,21 @@ struct ReproduceOptions {
   std::string data;  ///< folder of figures, scenes and references; empty: the program's own
   int threads = 1;
   bool verify = false;
+  bool quick = false;  ///< studies of a few runs
 };
 /// Runs the scenes of figures and writes their curves, pictures and a report.
 int reproduce_command(const ReproduceOptions& options);
 
 /// Options of `apothem view`.
 struct ViewOptions {
-  std::string folder;   ///< results of a run
-  std::string output;   ///< HTML file; empty: view.html in the folder
-  std::string movie;    ///< file of a movie, in place of the page; empty: none
-  std::string colour;   ///< of the movie; empty: chosen by what the run holds
-  bool chains = false;  ///< in the movie
-  int rate = 20;        ///< of the movie, frames per second
+  std::string folder;          ///< results of a run
+  std::string output;          ///< HTML file; empty: view.html in the folder
+  std::string movie;           ///< file of a movie, in place of the page; empty: none
+  std::string colour;          ///< of the movie; empty: chosen by what the run holds
+  bool chains = false;         ///< in the movie
+  std::vector<double> window;  ///< of the movie: X0, Y0, X1, Y1 in m; empty: all bodies
+  std::vector<double> range;   ///< of the movie: ends of the colour scale; empty: all values
+  int rate = 20;               ///< of the movie, frames per second
 };
 /// Writes a run as a page that plays it, or as a movie.
 int view_command(const ViewOptions& options);

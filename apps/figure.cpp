@@ -34,6 +34,22 @@ std::vector<Vec2> profile(const CurveSource& source, const std::string& runs) {
   return points;
 }
 
+// The frame nearest to a time, s; the last one if the run has ended before.
+Frame nearest_frame(const std::string& folder, double time) {
+  const RunFolder run(folder);
+  return run.frame(run.nearest(std::clamp(time, run.times().front(), run.times().back())));
+}
+
+void add_rows(const std::vector<TablePoint>& points, Curve& curve) {
+  for (const TablePoint& p : points) {
+    curve.x.push_back(p.x);
+    curve.y.push_back(p.y);
+    if (curve.style != CurveStyle::error_bars) continue;
+    curve.low.push_back(p.low);
+    curve.high.push_back(p.high);
+  }
+}
+
 }  // namespace
 
 const FieldSource* first_reference(const std::vector<FieldSource>& sources) {
@@ -47,12 +63,17 @@ CellTable cells_of(const std::string& data, const FieldSource& source) {
   return cell_table(table, source.column, source.cell);
 }
 
-CurveFigure Figure::drawn(const std::string& data, const std::string& runs) const {
+CurveFigure Figure::drawn(const FigureFolders& folders) const {
+  const std::string &data = folders.data, &runs = folders.runs;
   CurveFigure result = shown;
   for (size_t p = 0; p < sources.size(); ++p) {
     for (size_t c = 0; c < sources[p].size(); ++c) {
       const CurveSource& source = sources[p][c];
       Curve& curve = result.panels[p].curves[c];
+      if (source.rows) {
+        add_rows(points_of(*source.rows, data, folders.studies), curve);
+        continue;
+      }
       const bool profiled = source.surface >= 0;
       for (const Vec2& point : profiled ? profile(source, runs) : source.points) {
         curve.x.push_back(point.x());
@@ -69,7 +90,8 @@ CurveFigure Figure::drawn(const std::string& data, const std::string& runs) cons
   return result;
 }
 
-DrawnFields Figure::drawn_fields(const std::string& data, const std::string& runs) const {
+DrawnFields Figure::drawn_fields(const FigureFolders& folders) const {
+  const std::string &data = folders.data, &runs = folders.runs;
   DrawnFields result{shown_fields, {}};
   for (size_t p = 0; p < field_sources.size(); ++p) {
     FieldPanel& panel = result.figure.panels[p];
@@ -82,7 +104,9 @@ DrawnFields Figure::drawn_fields(const std::string& data, const std::string& run
         continue;
       }
       const Frame frame =
-          read_frame(runs + "/" + source.scene, source.frame.from, source.frame.latest);
+          source.study.empty()
+              ? read_frame(runs + "/" + source.scene, source.frame.from, source.frame.latest)
+              : nearest_frame(folders.studies + "/" + source.study, source.frame.from);
       one.field = field_of(frame, *panel.quantity);
       if (!source.statics) {
         if (!one.label.empty()) one.label += ", ";

@@ -10,6 +10,9 @@
 #include "apothem/output/field_picture.hpp"
 #include "apothem/output/report.hpp"
 #include "apothem/scene/scene.hpp"
+#include "figure_potentials.hpp"
+#include "figure_studies.hpp"
+#include "figure_tables.hpp"
 
 namespace apothem {
 
@@ -18,8 +21,16 @@ struct FrameTime {
   double from = 0, latest = 0;
 };
 
-/// The origin of a curve, one of four: columns of a scene's histories, columns of a table in
-/// data/reference, the contact on a body's surface in one frame of a scene, or given points.
+/// Where results and data are.
+struct FigureFolders {
+  std::string data;     ///< figures, scenes, references, studies
+  std::string runs;     ///< results of scenes
+  std::string studies;  ///< results of studies
+};
+
+/// The origin of a curve, one of five: columns of a scene's histories, columns of a table in
+/// data/reference, the contact on a body's surface in one frame of a scene, rows of a table of
+/// text, or given points.
 struct CurveSource {
   /// A column and how its values are shown: as (value + offset) scale.
   struct Axis {
@@ -33,11 +44,20 @@ struct CurveSource {
   Axis x{"time"}, y;
   int surface = -1;  ///< number of the body (rigid ones first) whose surface is shown; -1: none
   FrameTime frame;   ///< frame whose surface is shown
+  std::optional<TableSource> rows;  ///< rows of a table of text
+  /// Tolerances of the differences to the panel's reference curve, over its largest value.
+  struct Tolerance {
+    double rms, largest;
+    Basis basis;
+  };
+  std::optional<Tolerance> compared;  ///< empty: not compared
 };
 
-/// The origin of a field: a frame of a scene, or a table of cells in data/reference.
+/// The origin of a field: a frame of a scene or of a run of a study, or a table of cells in
+/// data/reference.
 struct FieldSource {
   std::string scene;  ///< name of a scene, if the field comes from one
+  std::string study;  ///< folder of a run of a study; shown is the frame nearest to frame.from
   FrameTime frame;
   bool statics = false;      ///< whether the scene is static
   std::string reference;     ///< file of a table, if the field comes from one
@@ -59,27 +79,32 @@ struct DrawnFields {
 /// A figure as its file describes it.
 struct Figure {
   std::string name;                                     ///< name of the file, without extension
-  std::string about;                                    ///< description; may be empty
+  FigureText text;                                      ///< what it says in words
   CurveFigure shown;                                    ///< panels and curves, still without points
   std::vector<std::vector<CurveSource>> sources;        ///< of each curve of each panel
   FieldFigure shown_fields;                             ///< panels of fields, still without fields
   std::vector<std::vector<FieldSource>> field_sources;  ///< of each field of each panel
+  std::vector<PotentialPanelSource> potentials;         ///< panels of potentials
   /// Scenes whose expectations the report states, with their quantities; all of them if there are
   /// none.
   std::map<std::string, std::vector<std::string>> numbers;
-  std::vector<std::string> scenes;  ///< scenes to run, each listed once
+  std::vector<FigureStudy> studies;          ///< studies to make
+  std::vector<TableComparison> comparisons;  ///< of tables, stated as numbers
+  std::vector<std::string> scenes;           ///< scenes to run, each listed once
+  /// Runs that the report lets readers play: some of the scenes, and folders of studies' runs.
+  std::vector<std::string> players, study_players;
 
-  /// The curves with their points, from the results in `runs`/SCENE and the tables in
-  /// `data`/reference. Throws std::runtime_error, which names a table that cannot be read.
-  [[nodiscard]] CurveFigure drawn(const std::string& data, const std::string& runs) const;
+  /// The curves with their points. Throws std::runtime_error, which names a table that cannot be
+  /// read.
+  [[nodiscard]] CurveFigure drawn(const FigureFolders& folders) const;
 
   /// The fields with their values. Throws std::runtime_error, which names what cannot be read or
   /// compared.
-  [[nodiscard]] DrawnFields drawn_fields(const std::string& data, const std::string& runs) const;
+  [[nodiscard]] DrawnFields drawn_fields(const FigureFolders& folders) const;
 };
 
-/// Names of the figures in a data folder, in reading order (fig-4 before fig-13). Throws SceneError
-/// if there are none.
+/// Names of the figures in a data folder, in reading order: those of the paper first, fig-4 before
+/// fig-13. Throws SceneError if there are none.
 std::vector<std::string> figure_names(const std::string& data);
 
 /// Reads a figure and makes all checks that are possible before a run: its scenes are valid and

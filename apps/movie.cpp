@@ -10,6 +10,7 @@
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_picture.hpp"
 #include "child_program.hpp"
+#include "picture_extent.hpp"
 #include "work_line.hpp"
 
 namespace apothem {
@@ -63,6 +64,8 @@ void write_movie(const ViewOptions& options) {
   std::iota(choice.frames.begin(), choice.frames.end(), 0);
   if (!options.colour.empty()) choice.quantity = field_quantity(options.colour);
   choice.chains = options.chains;
+  choice.window = box_of(options.window);
+  choice.range = range_of(options.range);
   const auto all = static_cast<double>(choice.frames.size());
   const FieldFigure figure = picture_of(run, choice, [&](size_t read) {
     line.report({"read", static_cast<double>(read) / all});

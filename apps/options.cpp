@@ -93,6 +93,24 @@ std::vector<std::string> quantity_names() {
   return names;
 }
 
+CLI::Option* add_window(CLI::App* sub, std::vector<double>& window) {
+  return sub
+      ->add_option("--window", window, "Corners of the visible region, m (default: all bodies)")
+      ->type_name("X0,Y0,X1,Y1")
+      ->delimiter(',')
+      ->check(kDecimal)
+      ->expected(4);
+}
+
+CLI::Option* add_range(CLI::App* sub, std::vector<double>& range) {
+  return sub
+      ->add_option("--range", range, "Ends of the colour scale, SI units (default: all values)")
+      ->type_name("LOW,HIGH")
+      ->delimiter(',')
+      ->check(kDecimal)
+      ->expected(2);
+}
+
 void add_picture(CLI::App& app, PictureOptions& o) {
   CLI::App* sub = app.add_subcommand("picture", "Draw the results of a run");
   sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
@@ -124,18 +142,8 @@ void add_picture(CLI::App& app, PictureOptions& o) {
           ->check(kDecimal)
           ->excludes(chains)
           ->excludes(roses);
-  CLI::Option* window = sub->add_option("--window", o.window,
-                                        "Corners of the visible region, m (default: all bodies)")
-                            ->type_name("X0,Y0,X1,Y1")
-                            ->delimiter(',')
-                            ->check(kDecimal)
-                            ->expected(4);
-  CLI::Option* range = sub->add_option("--range", o.range,
-                                       "Ends of the colour scale, SI units (default: all values)")
-                           ->type_name("LOW,HIGH")
-                           ->delimiter(',')
-                           ->check(kDecimal)
-                           ->expected(2);
+  CLI::Option* window = add_window(sub, o.window);
+  CLI::Option* range = add_range(sub, o.range);
   CLI::Option* plot =
       sub->add_option("--plot", o.plot,
                       "A plot over time instead: energy or momentum, history of bodies and points, "
@@ -340,6 +348,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o) {
   sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)")
       ->type_name("DIR");
   add_threads(sub, o.threads);
+  sub->add_flag("--quick", o.quick, "Make studies with a few runs, in minutes");
   sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
 }
 
@@ -358,6 +367,8 @@ void add_view(CLI::App& app, ViewOptions& o) {
       ->check(CLI::IsMember(quantity_names()))
       ->needs(movie);
   sub->add_flag("--chains", o.chains, "Contact forces as lines in the movie")->needs(movie);
+  add_window(sub, o.window)->needs(movie);
+  add_range(sub, o.range)->needs(movie);
   sub->add_option("--rate", o.rate, "Frames of the run per second of the movie")
       ->type_name("N")
       ->transform(kWhole)

@@ -2,36 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_picture.hpp"
 #include "apothem/output/run_plot.hpp"
 #include "commands.hpp"
+#include "picture_extent.hpp"
 
 namespace apothem {
 namespace {
-
-// Corners of a region in either order make a box.
-std::optional<Box> box_of(const std::vector<double>& numbers) {
-  if (numbers.empty()) return std::nullopt;
-  Box box;
-  box.include(numbers[0], numbers[1]);
-  box.include(numbers[2], numbers[3]);
-  if (!(box.x0 < box.x1 && box.y0 < box.y1 && std::isfinite(box.x1 - box.x0) &&
-        std::isfinite(box.y1 - box.y0))) {
-    throw UsageError("--window", "must be X0,Y0,X1,Y1 in m, of two opposite corners");
-  }
-  return box;
-}
-
-std::optional<Vec2> range_of(const std::vector<double>& numbers) {
-  if (numbers.empty()) return std::nullopt;
-  if (!(numbers[0] < numbers[1] && std::isfinite(numbers[1] - numbers[0]))) {
-    throw UsageError("--range", "must be LOW,HIGH with LOW below HIGH");
-  }
-  return Vec2(numbers[0], numbers[1]);
-}
 
 std::string draw_frames(const PictureOptions& options, PictureFormat format) {
   const RunFolder run(options.folder);

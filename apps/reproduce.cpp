@@ -4,16 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "apothem/output/files.hpp"
 #include "apothem/output/report.hpp"
+#include "apothem/player/player.hpp"
 #include "commands.hpp"
 #include "data_folder.hpp"
 #include "figure.hpp"
+#include "figure_comparison.hpp"
+#include "figure_runs.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -39,17 +40,14 @@ constexpr const char* kAboutReport =
     "<a href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. "
     "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
     "them. The paper shows its results as curves and fields. No number here is read off its "
-    "pictures: each has another reference, which is named beside it. Forces are per thickness of "
-    "1 m.</p>";
+    "pictures: each has another reference, which is named beside it, or rests on what its text "
+    "states. Forces are per thickness of 1 m.</p>";
 
 constexpr const char* kFiguresLeftOut =
     "<h2>Figures of the paper that are not here</h2>\n"
-    "<p>Figs. 1 to 5 define potentials; <code>apothem polygon FILE --picture FILE.png</code> draws "
-    "such pictures for any polygon. Figs. 6 to 12, 16, 18, 22, 23, 25, 29 and 33 are sketches of "
-    "the algorithm, of models and of a load, and show no results. Figs. 34 and 35 show single "
-    "moments of a hopper that empties. The paper does not give the random arrangement of the "
-    "blocks, on which such a moment depends, so the hopper is studied by many runs instead: "
-    "<code>data/studies</code>, with the results in docs/verification.md.</p>\n";
+    "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
+    "of a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) "
+    "hold the models.</p>\n";
 
 std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   const nlohmann::json& name = expectation.at("basis");
@@ -69,7 +67,10 @@ std::string in_words(const nlohmann::json& expectation) {
 class Reproduction {
  public:
   Reproduction(const ReproduceOptions& options, std::string data)
-      : options_(options), data_(std::move(data)) {}
+      : options_(options),
+        data_(std::move(data)),
+        folders_{data_, options.folder + "/runs", options.folder + "/studies"},
+        runs_(data_, folders_.runs, folders_.studies, options.threads) {}
 
   int execute(const std::vector<std::string>& names) {
     std::vector<Figure> figures;
@@ -77,13 +78,16 @@ class Reproduction {
     for (const std::string& name : names) figures.push_back(read_figure(data_, name));
     create_folder(options_.folder);
     for (const Figure& figure : figures) {
-      for (const std::string& scene : figure.scenes) {
-        if (!outcomes_.count(scene) && run_scene(figure.name, scene) == exit_code::interrupted) {
-          return exit_code::interrupted;
-        }
-      }
+      runs_.plan(figure.scenes);
+      for (const FigureStudy& study : figure.studies) runs_.plan(study, options_.quick);
+    }
+    bool interrupted = false;
+    for (const Figure& figure : figures) {
+      interrupted = !make_runs(figure);
+      if (interrupted) break;
       draw(figure);
     }
+    // After an interruption it holds the figures that are complete.
     const std::string report = options_.folder + "/report.html";
     write_report(report,
                  {"Figures of the distance-potential FEM-DEM paper", kAboutReport,
@@ -91,62 +95,70 @@ class Reproduction {
                  reports_);
     fmt::print("{} of {} numbers within their tolerance; {}\n", numbers_ - missed_, numbers_,
                report);
+    if (interrupted) return exit_code::interrupted;
     if (no_gnuplot_) {
       fmt::print("no pictures: install gnuplot-nox; the curves are there as CSV\n");
     }
     if (!broken_.empty()) {
       throw std::runtime_error(broken_ + "/picture.gnuplot: gnuplot failed, see its message");
     }
-    if (unstable_) return exit_code::unstable;
-    return options_.verify && missed_ > 0 ? exit_code::missed : exit_code::done;
+    if (runs_.unstable()) return exit_code::unstable;
+    return study_failed_ || (options_.verify && missed_ > 0) ? exit_code::missed : exit_code::done;
   }
 
  private:
-  [[nodiscard]] std::string runs() const { return options_.folder + "/runs"; }
-
-  int run_scene(const std::string& figure, const std::string& scene) {
-    const auto start = std::chrono::steady_clock::now();
-    RunOptions run;
-    run.scene = data_ + "/scenes/" + scene + ".json";
-    run.folder = runs() + "/" + scene;
-    run.threads = options_.threads;
-    run.overwrite = run.quiet = true;
-    const int code = run_command(run);
-    unstable_ = unstable_ || code == exit_code::unstable;
-    outcomes_[scene] = nlohmann::json::parse(read_text(run.folder + "/run.json"));
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print("{}: {} {} ({:.1f} s)\n", figure, scene,
-               outcomes_[scene].at("status").get<std::string>(), seconds);
-    std::fflush(stdout);
-    return code;
+  // False after an interruption.
+  bool make_runs(const Figure& figure) {
+    for (const std::string& scene : figure.scenes) {
+      if (runs_.run(figure.name, scene) == exit_code::interrupted) return false;
+    }
+    for (const FigureStudy& study : figure.studies) {
+      const int code = runs_.run(figure.name, study, options_.quick);
+      if (code == exit_code::interrupted) return false;
+      study_failed_ = study_failed_ || code != exit_code::done;
+    }
+    return true;
   }
 
   void draw(const Figure& figure) {
     ReportFigure& report = reports_.emplace_back();
     report.name = figure.name;
     report.title = figure.shown.title;
-    report.about = figure.about;
+    report.text = figure.text;
+    for (const FigureStudy& study : figure.studies) {
+      for (const std::vector<std::string>& command : study.of(options_.quick)) {
+        report.commands.push_back(
+            command_line(words_of(command, data_, folders_.studies + "/" + study.name)));
+      }
+    }
     const std::string folder = options_.folder + "/" + figure.name;
     const auto unless_cut_short =
-        [&](void (Reproduction::*part)(const Figure&, const std::string&, ReportFigure&)) {
+        [&](void (Reproduction::*part)(const Figure&, const std::string&, ReportFigure&),
+            const char* lost = "picture") {
           try {
             (this->*part)(figure, folder, report);
           } catch (const SystemFailure&) {
             throw;
           } catch (const std::runtime_error& error) {  // a run ended before the time of a frame
-            report.faults.push_back(fmt::format("No picture: {}.", error.what()));
-            fmt::print("  {}: no picture: {}\n", figure.name, error.what());
+            report.faults.push_back(fmt::format("No {}: {}.", lost, error.what()));
+            fmt::print("  {}: no {}: {}\n", figure.name, lost, error.what());
           }
         };
     if (!figure.sources.empty()) unless_cut_short(&Reproduction::draw_curves);
     for (const std::string& scene : figure.scenes) state_numbers(figure, scene, report);
     if (!figure.field_sources.empty()) unless_cut_short(&Reproduction::draw_fields);
+    if (!figure.comparisons.empty()) unless_cut_short(&Reproduction::compare_tables, "comparison");
+    if (!figure.potentials.empty()) draw_potentials(figure, folder, report);
+    if (!figure.players.empty() || !figure.study_players.empty()) {
+      unless_cut_short(&Reproduction::write_players, "player");
+    }
   }
 
   void draw_curves(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    const CurveFigure drawn = figure.drawn(folders_);
+    for (const ReportNumber& number : curve_numbers(figure, drawn)) state(number, report);
     std::vector<std::string> files;
-    switch (write_curves(folder, figure.drawn(data_, runs()), files)) {
+    switch (write_curves(folder, drawn, files)) {
       case Plotted::yes:
         report.pictures.push_back(folder + "/picture.png");
         files.insert(files.begin(), {"picture.png", "picture.svg"});
@@ -164,13 +176,50 @@ class Reproduction {
   }
 
   void draw_fields(const Figure& figure, const std::string& folder, ReportFigure& report) {
-    const DrawnFields drawn = figure.drawn_fields(data_, runs());
+    const DrawnFields drawn = figure.drawn_fields(folders_);
     write_fields(folder, drawn.figure);
     report.pictures.push_back(folder + "/fields.png");
     for (const char* file : {"fields.png", "fields.svg"}) {
       report.links.push_back(figure.name + "/" + file);
     }
     for (const ReportNumber& number : drawn.numbers) state(number, report);
+  }
+
+  void draw_potentials(const Figure& figure, const std::string& folder, ReportFigure& report) {
+    write_potentials(folder, potential_figure(figure.shown.title, figure.potentials));
+    report.pictures.push_back(folder + "/potentials.png");
+    for (const char* file : {"potentials.png", "potentials.svg"}) {
+      report.links.push_back(figure.name + "/" + file);
+    }
+    for (const ReportNumber& number : potential_numbers(figure.potentials)) state(number, report);
+  }
+
+  void compare_tables(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
+    for (const TableComparison& comparison : figure.comparisons) {
+      for (const ReportNumber& number : numbers_of(comparison, data_, folders_.studies)) {
+        state(number, report);
+      }
+    }
+  }
+
+  void write_players(const Figure& figure, const std::string& /*folder*/, ReportFigure& report) {
+    create_folder(options_.folder + "/players");
+    for (const std::string& scene : figure.players) {
+      write_player(folders_.runs + "/" + scene, scene, scene, report);
+    }
+    for (const std::string& run : figure.study_players) {
+      std::string name = run;
+      std::replace(name.begin(), name.end(), '/', '-');
+      write_player(folders_.studies + "/" + run, run, name, report);
+    }
+  }
+
+  void write_player(const std::string& run, const std::string& title, const std::string& name,
+                    ReportFigure& report) const {
+    const std::string file = "players/" + name + ".html";
+    write_file(options_.folder + "/" + file,
+               player_page(RunFolder(run), title, fmt::format("apothem {}", kVersion)));
+    report.players.push_back({title, file});
   }
 
   void state(const ReportNumber& number, ReportFigure& report) {
@@ -182,7 +231,7 @@ class Reproduction {
   }
 
   void state_numbers(const Figure& figure, const std::string& scene, ReportFigure& report) {
-    const nlohmann::json& outcome = outcomes_.at(scene);
+    const auto outcome = nlohmann::json::parse(runs_.outcome(scene));
     report.links.push_back(fmt::format("runs/{}/run.json", scene));
     if (outcome.contains("message")) {
       report.faults.push_back(scene + ": " + outcome["message"].get<std::string>());
@@ -204,10 +253,11 @@ class Reproduction {
 
   const ReproduceOptions& options_;
   std::string data_;
-  std::map<std::string, nlohmann::json> outcomes_;  // content of run.json of each scene
+  FigureFolders folders_;
+  FigureRuns runs_;
   std::vector<ReportFigure> reports_;
   int numbers_ = 0, missed_ = 0;
-  bool no_gnuplot_ = false, unstable_ = false;
+  bool no_gnuplot_ = false, study_failed_ = false;
   std::string broken_;  // folder in which gnuplot failed
 };
 

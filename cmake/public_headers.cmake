@@ -18,6 +18,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/time_step.hpp
   dynamics/unstable.hpp
   execution/pack.hpp
+  execution/parallel.hpp
   execution/stopwatch.hpp
   fem/kinds.hpp
   fem/stress.hpp

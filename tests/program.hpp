@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -64,6 +65,13 @@ inline Result run(std::vector<std::string> arguments, const Folder& folder,
 
 inline int lines(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+/// A text with the first `what` exchanged.
+inline std::string exchanged(std::string text, const std::string& what, const std::string& by) {
+  const size_t at = text.find(what);
+  if (at == std::string::npos) throw std::logic_error("\"" + what + "\" is not in the text");
+  return text.replace(at, what.size(), by);
 }
 
 }  // namespace apothem::test

@@ -2,6 +2,7 @@
 """Tables of the hopper and of the heap from the folders that `apothem sweep` has written.
 
     tables.py jam FLOWS [--reference quad,0.5]   jam probability, discharge rate, energy, blocks outside
+    tables.py counts RESULTS.csv                 the same from counts, and how likely so large a difference to Box2D is
     tables.py hazard FLOWS                       jams per discharged block, in windows of blocks
     tables.py pairs FLOWS OTHERS                 the same seeds and widths in two studies
     tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
@@ -9,8 +10,10 @@
     tables.py cost PACKS                         time per body and step, and what takes it
     tables.py outlines FILLS FOLDER              resting blocks of hopper-fill.json as drawings for soft-fill.json
     tables.py picture FILE.png LABEL=FLOWS ...   jam probability over the width, and discharge (with gnuplot)
+    tables.py record FLOWS NAME                  NAME.csv and NAME-discharge.csv: what the tables above need of a study
 
-FLOWS are made from hopper-flow.json or soft-flow.json, HEAPS from repose.json, PACKS from pack.json. Intervals are for 95 %.
+FLOWS are made from hopper-flow.json or soft-flow.json, or are a recorded NAME.csv; HEAPS are made from repose.json, PACKS from
+pack.json. Intervals are for 95 %.
 """
 
 import argparse
@@ -53,45 +56,83 @@ def columns(path):
     return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(names)}
 
 
-class Flow:
-    """A run of hopper-flow.json or soft-flow.json."""
+def key_of(row):
+    """Width and seed of a run, as its row has them."""
+    return row.get("D/d") or "", row.get("fill.0.seed") or row["seed"]
 
-    def __init__(self, folder, row):
-        self.width = float(row["D/d"]) if row.get("D/d") else math.nan  # not said
-        self.seed = int(row.get("fill.0.seed") or row["seed"])
+
+class Flow:
+    """A run of hopper-flow.json or soft-flow.json; discharge is its list of times in s and blocks in the bin."""
+
+    def __init__(self, row, discharge):
+        width, seed = key_of(row)
+        self.width = float(width) if width else math.nan  # not said
+        self.seed = int(seed)
         self.jammed = row["jammed"] == "true"
         self.emptied = row["emptied"] == "true"
         self.discharged = int(float(row["discharged"]))
         self.outside = int(float(row.get("outside") or 0))
         self.cpu = float(row["wall_time [s]"])
-        run = folder / "runs" / row["run"]
-        history = columns(run / "history.csv")
-        self.times, self.counts = history["time"], history["bin.count"]
-        energy = columns(run / "energy.csv")
-        self.fallen = max(abs(v) for v in energy["gravity"])  # J, potential energy that was set free
-        self.error = max(abs(v) for v in energy["total_error"])
+        self.fallen = float(row["potential energy"])  # J, what was set free
+        self.error = float(row["energy error"])
+        self.times, self.counts = discharge
+
+    def reached(self, share):
+        """Index of the first row with this share of the blocks out, or nothing."""
+        limit = (1 - share) * self.counts[0]
+        return next((i for i, count in enumerate(self.counts) if count <= limit), None)
 
     def rate(self):
         """Blocks per second from 10 to 60 % discharged, or nothing."""
-        first = self.counts[0]
-
-        def when(share):
-            for time, count in zip(self.times, self.counts):
-                if count <= (1 - share) * first:
-                    return time, count
+        start, end = self.reached(.1), self.reached(.6)
+        if not self.emptied or start is None or end is None:
             return None
-
-        start, end = when(.1), when(.6)
-        if not self.emptied or not start or not end:
-            return None
-        return (start[1] - end[1]) / (end[0] - start[0])
+        return (self.counts[start] - self.counts[end]) / (self.times[end] - self.times[start])
 
 
-def flows(folder):
-    folder = pathlib.Path(folder)
-    with open(folder / "runs.csv", newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
-    return [Flow(folder, row) for row in rows]
+def finished(path):
+    """Rows of a study's table that are done."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return [row for row in csv.DictReader(file) if row["status"] == "done"]
+
+
+def discharge_of(recorded):
+    """File of the discharges that belong to a recorded study."""
+    return recorded.with_name(recorded.stem + "-discharge.csv")
+
+
+def flows(study):
+    """Runs of a study: the folder of a sweep, or a table that `record` has written."""
+    study = pathlib.Path(study)
+    if study.is_dir():
+        rows, discharges = finished(study / "runs.csv"), {}
+        for row in rows:
+            history = columns(study / "runs" / row["run"] / "history.csv")
+            discharges[key_of(row)] = history["time"], history["bin.count"]
+    else:
+        rows, discharges = finished(study), {}
+        with open(discharge_of(study), newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                times, counts = discharges.setdefault(key_of(row), ([], []))
+                times.append(float(row["time [s]"]))
+                counts.append(float(row["blocks"]))
+    return [Flow(row, discharges[key_of(row)]) for row in rows]
+
+
+def record(args):
+    name = pathlib.Path(args.name)
+    table = name.with_name(name.name + ".csv")
+    table.write_bytes((pathlib.Path(args.folder) / "runs.csv").read_bytes())
+    with open(discharge_of(table), "w", newline="", encoding="utf-8") as file:
+        out = csv.writer(file)
+        out.writerow(["D/d", "seed", "time [s]", "blocks"])
+        for row, flow in zip(finished(table), flows(args.folder)):
+            last = len(flow.times) - 1
+            keep = {0, last, flow.reached(.1), flow.reached(.6)}  # those that the rate needs, and ten in a second
+            for i, (time, count) in enumerate(zip(flow.times, flow.counts)):
+                if i in keep or round(time / .1) > round(flow.times[max(0, i - 1)] / .1):
+                    out.writerow([*key_of(row), f"{time:g}", f"{count:g}"])
+    print(f"{table} and {discharge_of(table)}: {len(finished(table))} runs")
 
 
 def by_width(runs):
@@ -133,6 +174,34 @@ def jam(args):
             line += (f"          {o['jammed']}/{o['n']}  {int(o['jammed']) / int(o['n']):.2f}"
                      f" ({float(o['lo']):.2f} to {float(o['hi']):.2f})  {o['rate'] or '-'}")
         print(line)
+
+
+def fisher(a, n, b, m):
+    """Two-sided exact test: probability of a of n and b of m, or a less likely table, if they have one proportion."""
+
+    def ways(x):
+        return math.comb(n, x) * math.comb(m, a + b - x)
+
+    tables = [ways(x) for x in range(max(0, a + b - m), min(n, a + b) + 1)]
+    return sum(w for w in tables if w <= ways(a)) / sum(tables)
+
+
+def counts(args):
+    print("blocks  mu   young  k_n    ratio  D/d  jammed   probability           rate, 1/s"
+          "            Box2D: jammed  rate   p of no difference (exact, Fisher)")
+    with open(args.folder, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            k, n = int(row["jammed"]), int(row["n"])
+            low, high = wilson(k, n)
+            rate = f"{row['rate']} +- {row['rate_half']} ({row['rate_n']})" if row["rate"] else "-"
+            line = (f"{row['shape']:<7} {row['mu']:<4} {row['young'] or '-':<6} {row['normal_stiffness']:<6}"
+                    f" {row['damping_ratio']:<6} {float(row['D_over_d']):<4g} {k:>3}/{n:<3}  {k / n:.2f} ({low:.2f} to {high:.2f})"
+                    f"  {rate:<20}")
+            other = reference(f"{row['shape']},{row['mu']}").get(float(row["D_over_d"]))
+            if other:
+                line += (f" {other['jammed']:>3}/{other['n']:<10} {other['rate'] or '-':<6}"
+                         f" {fisher(k, n, int(other['jammed']), int(other['n'])):.3f}")
+            print(line.rstrip())
 
 
 def hazard(args):
@@ -309,7 +378,7 @@ plot {", ".join(curves) if curves else "NaN notitle"}
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for command in (jam, hazard, pairs, beverloo, repose, cost, outlines, picture):
+    for command in (jam, counts, hazard, pairs, beverloo, repose, cost, outlines, picture, record):
         sub = commands.add_parser(command.__name__)
         if command is picture:
             sub.add_argument("file", metavar="FILE.png")
@@ -317,12 +386,14 @@ def main():
             sub.add_argument("--width", type=float, default=7, help="D/d of the discharge curves (7)")
             sub.add_argument("--reference", metavar="SHAPE,MU", action="append", default=[], help="as for jam; up to four")
         else:
-            sub.add_argument("folder")
+            sub.add_argument("folder", metavar="RESULTS.csv" if command is counts else "FOLDER")
         sub.set_defaults(command=command)
         if command is pairs:
             sub.add_argument("other")
         if command is outlines:
             sub.add_argument("to", metavar="FOLDER")
+        if command is record:
+            sub.add_argument("name", metavar="NAME")
         if command is jam:
             sub.add_argument("--reference", metavar="SHAPE,MU", help="quad,0.5 or cross,0.0: rows of jam_box2d.csv beside ours")
         if command is beverloo:

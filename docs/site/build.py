@@ -86,6 +86,20 @@ def copy_pages(root, stage, mathjax):
     return pages
 
 
+def complete_theme(html, normalize):
+    """Puts into the site what Debian's Furo takes from a server: a style sheet, and a module of JavaScript,
+    which browsers do not load from a disk."""
+    styles, scripts = html / "_static/styles/furo.css", html / "_static/scripts"
+    text = styles.read_text()
+    styles.write_text(text.replace("@import url(/javascript/normalize.css/normalize.css);", normalize.read_text()))
+    script = (scripts / "furo.js").read_text()
+    line = 'import Gumshoe from "./gumshoe-patched.js";'
+    if line in script:
+        (scripts / "furo.js").write_text((scripts / "gumshoe-patched.js").read_text() + script.replace(line, ""))
+    if re.search(r"url\(/|^import ", styles.read_text() + (scripts / "furo.js").read_text(), re.M):
+        sys.exit("the site needs a server: Furo takes more from one than complete_theme knows")
+
+
 def headers_of(root):
     listed = (root / "cmake/public_headers.cmake").read_text()
     return re.findall(r"^  ([\w/]+\.hpp)$", listed, re.M)
@@ -114,6 +128,8 @@ def main():
     parser.add_argument("--module", type=pathlib.Path, help="folder with the built Python module, for its docstrings")
     parser.add_argument("--sphinx", default="sphinx-build", help="the program of Sphinx")
     parser.add_argument("--mathjax", default="/usr/share/javascript/mathjax", type=pathlib.Path, help="MathJax 2")
+    parser.add_argument("--normalize", default="/usr/share/javascript/normalize.css/normalize.css", type=pathlib.Path,
+                        help="normalize.css, on which Furo depends")
     parser.add_argument("--root", default=pathlib.Path(__file__).resolve().parents[2], type=pathlib.Path)
     options = parser.parse_args()
     root, out = options.root.resolve(), options.out.resolve()
@@ -128,7 +144,11 @@ def main():
     html = out / "html"
     shutil.rmtree(html, ignore_errors=True)
     command = [options.sphinx, "-q", "-W", "--keep-going", "-b", "html", pages, html]
-    return subprocess.run(command, env=environment, check=False).returncode or describe_headers(root, html, out / "doxygen")
+    failed = subprocess.run(command, env=environment, check=False).returncode
+    if failed:
+        return failed
+    complete_theme(html, options.normalize)
+    return describe_headers(root, html, out / "doxygen")
 
 
 if __name__ == "__main__":

@@ -54,6 +54,8 @@ class PlacedShapes {
   [[nodiscard]] bool top_inside(int i, int j, const Vec2& offset) const;
   [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
+  /// True if shape i has a potential without a roof or a distance field.
+  [[nodiscard]] bool convex(int i) const { return !shapes_[i].roof && !shapes_[i].distance; }
   /// Largest distance of a vertex from the reference point, m.
   [[nodiscard]] double radius(int i) const { return shapes_[i].radius; }
   /// Steepest slope of its potential, 1/m.

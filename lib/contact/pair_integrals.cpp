@@ -46,6 +46,8 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   Near& near = near_[p];
+  const bool convex = shapes.convex(a) && shapes.convex(b);
+  if (convex && near.edges.margin == 0) return;  // pair_integral tells their distance
   const double turn_a = surfaces_.pose(a)[2];
   const double turn_b = surfaces_.pose(b)[2];
   const Vec2 shift = between - near.between;
@@ -62,10 +64,9 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
     near.share = std::min(2 * near.share, kLargestMargin);
   }
   near = {{}, between, turn_a, turn_b, near.share, 0};
-  if (!surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
+  if (convex || !surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
-  if (view_a.convex() && view_b.convex()) return;  // pair_integral tells their distance
   const double margin = near.share * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
@@ -100,9 +101,17 @@ PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, Parts& parts) {
   const PlacedPotential view_b = shapes.view(b);
   const bool split = split_ == Split::all ||
                      (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
-  if (!split) return pair_integral(view_a, view_b, between, worker.workspace.edge, near);
-  const PairIntegral integral = contact_patches(view_a, view_b, between, worker.workspace,
-                                                worker.pair_runs, worker.pair_patches, near);
+  const double margin = near.margin;
+  const PairIntegral integral =
+      split ? contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
+                              worker.pair_patches, near)
+            : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+  if (near.margin > margin) {  // they are apart by it where they are now
+    near_[p].between = between;
+    near_[p].angle_a = surfaces_.pose(a)[2];
+    near_[p].angle_b = surfaces_.pose(b)[2];
+  }
+  if (!split) return integral;
   parts = {static_cast<int>(worker.patches.size()), static_cast<int>(worker.pair_patches.size()),
            static_cast<int>(worker.runs.size()), static_cast<int>(worker.pair_runs.size())};
   worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),

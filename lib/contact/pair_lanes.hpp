@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
 #include "apothem/contact/pair_vector.hpp"
 #include "apothem/contact/stiffness.hpp"
@@ -18,10 +17,7 @@ APOTHEM_INLINE void read_lanes(double& number, const F& of) {
 }
 template <int lanes, class F>
 APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
-  pack = [&]<int... k>(std::integer_sequence<int, k...>) APOTHEM_LAMBDA {
-    return PackOf<lanes>(typename PackOf<lanes>::Vector{of(k)...});
-  }
-  (std::make_integer_sequence<int, lanes>());
+  pack = pack_of<lanes>(of);
 }
 // A truth value of each lane, from 1 or 0.
 template <class F>

@@ -8,7 +8,7 @@
 namespace apothem {
 namespace {
 
-constexpr int kAtOnce = 4;
+constexpr int kAtOnce = kComparedLanes;
 
 using Four = PackOf<kAtOnce>;
 

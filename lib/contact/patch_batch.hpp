@@ -86,7 +86,7 @@ class PatchBatch {
   void flush(const PatchScene& scene);
 
  private:
-  static constexpr int kAtOnce = 4;
+  static constexpr int kAtOnce = kComparedLanes;
 
   void step(const PatchScene& scene);
 

@@ -196,14 +196,14 @@ void Simulation::find_forces(std::span<const double> velocity, double dt, double
     term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit});
 }
 
-// Contacts that begin or end within the step push in its second half as if they had pushed when
-// they did. True if there are any: state.f holds their forces as well, and forces_ the others
-// alone.
 bool Simulation::watches_onsets() const {
   return onsets_ &&
          std::ranges::any_of(terms_, [](const auto& term) { return term->has_onsets(); });
 }
 
+// Contacts that begin or end within the step push in its second half as if they had pushed when
+// they did. True if there are any: state.f holds their forces as well, and forces_ the others
+// alone.
 bool Simulation::add_onsets(double dt) {
   if (!watches_onsets()) return false;
   bool found = false;

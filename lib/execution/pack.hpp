@@ -22,8 +22,7 @@
 
 namespace apothem {
 
-/// One truth value for each lane of a pack. GCC takes those of eight lanes apart: kernels that
-/// choose have packs of four.
+/// One truth value for each lane of a pack.
 template <int lanes>
 struct MaskOf {
   // GCC forgets the attribute of an alias that depends on a parameter.

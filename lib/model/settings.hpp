@@ -75,11 +75,11 @@ struct Measure {
 };
 
 /// What the value of an expectation rests on, by the names in scenes; in the order of Basis.
-inline constexpr std::array kBases{"theory", "code", "law", "this_program"};
+inline constexpr std::array kBases{"theory", "code", "law", "this_program", "paper"};
 
 /// A closed form; an independent code; a law that every run obeys (conservation, balance of forces,
-/// symmetry); or a run of this program, kept to notice changes.
-enum class Basis { theory, code, law, this_program };
+/// symmetry); a run of this program, kept to notice changes; or what the paper states.
+enum class Basis { theory, code, law, this_program, paper };
 
 /// A result the scene promises.
 struct Expectation : Reduction {

@@ -51,10 +51,14 @@ Spread spread(const Field& field, const Box& window) {
   return result;
 }
 
+// Of all bodies, and of the roses, which may be longer than what they are about.
 Box box_around(const std::vector<ShownField>& fields) {
   Box box;
   for (const ShownField& shown : fields) {
     for (const Vec2& p : shown.field.mesh.nodes) box.include(p.x(), p.y());
+    for (const Rose& rose : shown.roses) {
+      for (const Vec2& p : rose.line) box.include(p.x(), p.y());
+    }
   }
   return box.grown(kMarginOfBodies * std::min(box.x1 - box.x0, box.y1 - box.y0));
 }

@@ -41,6 +41,14 @@ const char* remedy(int error_number) {
   }
 }
 
+// Whether the name is that of a device or a pipe, as /dev/null. A new file would take its place.
+bool is_device(const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+         !std::filesystem::is_directory(status);
+}
+
 }  // namespace
 
 SystemFailure::SystemFailure(const std::string& file, int error_number)
@@ -69,7 +77,8 @@ void write_file(const std::string& file, std::string_view content) {
 }
 
 void write_file(const std::string& file, const std::function<void(const FileSink&)>& write) {
-  const std::string partial = file + ".partial";
+  const bool in_place = is_device(file);
+  const std::string partial = in_place ? file : file + ".partial";
   const int descriptor = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) throw SystemFailure(file, errno);
   try {
@@ -80,14 +89,14 @@ void write_file(const std::string& file, const std::function<void(const FileSink
     });
   } catch (...) {
     ::close(descriptor);
-    ::unlink(partial.c_str());
+    if (!in_place) ::unlink(partial.c_str());
     throw;
   }
   int error = 0;
   if (::close(descriptor) != 0) error = errno;
-  if (error == 0 && std::rename(partial.c_str(), file.c_str()) != 0) error = errno;
+  if (error == 0 && !in_place && std::rename(partial.c_str(), file.c_str()) != 0) error = errno;
   if (error != 0) {
-    ::unlink(partial.c_str());
+    if (!in_place) ::unlink(partial.c_str());
     throw SystemFailure(file, error);
   }
 }

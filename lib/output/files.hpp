@@ -36,7 +36,8 @@ class TemporaryFolder {
 };
 
 /// Writes a temporary file beside `file` and then renames it, so that an older file is replaced at
-/// once. Throws SystemFailure; the older file is then intact.
+/// once. Throws SystemFailure; the older file is then intact. A device or a pipe is written to
+/// directly.
 void write_file(const std::string& file, std::string_view content);
 
 /// Takes a part of a file.

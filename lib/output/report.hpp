@@ -1,9 +1,11 @@
 // Writes a report as one HTML file with its pictures inside: figures, and numbers beside their
-// references. It can be read without a network.
+// references. It can be read without a network, on a telephone, and on paper.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apothem/model/settings.hpp"
@@ -22,12 +24,40 @@ struct ReportNumber {
   std::string source = {};          ///< where the reference comes from; may be empty
 };
 
+/// Whether a figure of the paper comes out. `own`: the paper has no such figure.
+enum class Verdict { reproduced, explained, contradicted, own };
+/// The verdicts by name, in the order of Verdict.
+inline constexpr std::array<std::string_view, 4> kVerdicts{"reproduced", "explained",
+                                                           "contradicted", "own"};
+
+/// Something that the paper does not say, and what was done.
+struct OpenQuestion {
+  std::string question, choice;
+};
+
+/// What a figure says in words; all of it may be empty.
+struct FigureText {
+  std::string about;  ///< what is shown here
+  std::string paper;  ///< what the paper shows
+  std::vector<OpenQuestion> open;
+  std::optional<Verdict> verdict = {};  ///< holds as long as no number is missed
+  std::string because = {};             ///< why
+};
+
+/// A run that can be played in a browser.
+struct ReportPlayer {
+  std::string scene;
+  std::string file;  ///< path of the page, relative to the report
+};
+
 /// A figure with its numbers.
 struct ReportFigure {
   std::string name;  ///< also the anchor of its heading
   std::string title;
-  std::string about;                  ///< description; may be empty
+  FigureText text;
   std::vector<std::string> pictures;  ///< paths of PNG files
+  std::vector<ReportPlayer> players;
+  std::vector<std::string> commands;  ///< that have made its studies
   std::vector<std::string> links;     ///< paths of further files, relative to the report
   std::vector<std::string> faults;    ///< one sentence for each failure
   std::vector<ReportNumber> numbers;
@@ -41,8 +71,9 @@ struct ReportHead {
   std::string left_out;  ///< HTML about figures that are not in the report; may be empty
 };
 
-/// Writes the report to `file`. The numbers of a figure stand in one table for each basis. Throws
-/// SystemFailure.
+/// Writes the report to `file`: a table with a line for each figure, then the figures, each with
+/// its numbers in three groups: against the paper, against theory or an independent code, internal
+/// checks. Throws SystemFailure.
 void write_report(const std::string& file, const ReportHead& head,
                   const std::vector<ReportFigure>& figures);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apothem/model/rotation.hpp"
+#include "apothem/output/axes.hpp"
 #include "apothem/output/canvas.hpp"
 #include "apothem/player/data_block.hpp"
 
@@ -263,6 +264,10 @@ class Builder {
     std::sort(sorted.begin(), sorted.end());
     const double scale = sorted.empty() ? 0 : sorted[sorted.size() - 1 - sorted.size() / 40];
     description["force_scale"] = scale > 0 ? scale : 1;
+    description["force_most"] = largest;
+    const auto [unit, factor] = prefixed("N", largest);
+    description["force_unit"] = unit;
+    description["force_factor"] = factor;
   }
 
   void add_plots(const Plots& plots) {

@@ -79,9 +79,16 @@ class Fill {
       shapes(object);
     }
     object.finish();
-    for (int batch = 0; batch < filled.batches; ++batch) {
-      arranged_ == Arranged::voronoi ? add_cells(obstacles, filled)
-                                     : add_blocks(obstacles, random, filled, batch == 0);
+    if (arranged_ == Arranged::voronoi) {
+      add_cells(obstacles, filled);
+    } else {
+      // Batches do not keep clear of each other: a later one waits until nothing is in its way.
+      std::vector<std::vector<Vec2>> first;
+      for (int batch = 0; batch < filled.batches; ++batch) {
+        std::vector<std::vector<Vec2>> rings = add_blocks(obstacles, random, filled);
+        if (batch == 0) first = std::move(rings);
+      }
+      obstacles.insert(obstacles.end(), first.begin(), first.end());
     }
     filled.batch = filled.count / filled.batches;
     if (!element_) {
@@ -388,8 +395,8 @@ class Fill {
     return space;
   }
 
-  void add_blocks(std::vector<std::vector<Vec2>>& obstacles, RandomNumbers& random, Filled& filled,
-                  bool stays) {
+  std::vector<std::vector<Vec2>> add_blocks(const std::vector<std::vector<Vec2>>& obstacles,
+                                            RandomNumbers& random, Filled& filled) {
     double area = area_moments(*outline_).area;
     for (const Polygon& hole : holes_) area -= area_moments(hole).area;
     const std::vector<Block> blocks = draw_all(random, area);
@@ -402,10 +409,13 @@ class Fill {
                               : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
                                                                : grow(space, random, blocks, turns);
     refuse_shortfall(blocks, found, space.area());
+    std::vector<std::vector<Vec2>> rings;
+    rings.reserve(found.rings.size());
     for (const int i : along_curve(found.rings)) {
       add_body(filled, found.rings[i]);
-      if (stays) obstacles.push_back(found.rings[i]);
+      rings.push_back(found.rings[i]);
     }
+    return rings;
   }
 
   // The numbers of blocks are such that neighbours in space are near each other in memory.
@@ -421,8 +431,8 @@ class Fill {
 
   void refuse_shortfall(const std::vector<Block>& blocks, const Arrangement& found,
                         double area) const {
-    const auto share = [&](double part) {
-      return fmt::format("solid fraction {:.3g}", part / area);
+    const auto solid = [&](double part, double whole) {
+      return fmt::format("solid fraction {:.3g} instead of {:.3g}", part / area, whole / area);
     };
     double all = 0, placed = 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
@@ -431,19 +441,18 @@ class Fill {
       if (!found.rings[i].empty()) placed += own;
     }
     if (found.placed < static_cast<int>(blocks.size())) {
-      in_.fail(value_, fmt::format("{} of {} blocks could be placed ({} of {}): give fewer or "
+      in_.fail(value_, fmt::format("{} of {} blocks could be placed ({}): give fewer or "
                                    "smaller blocks, a larger region, or another arrangement; "
                                    "\"dense\" packs most",
-                                   found.placed, blocks.size(), share(placed), share(all)));
+                                   found.placed, blocks.size(), solid(placed, all)));
     }
     if (found.scale < 1) {
       const double part = found.scale * found.scale;
-      in_.fail(
-          value_,
-          fmt::format("{} of {} blocks could be placed: all {} fit at {:.4g} of their size "
-                      "only ({} of {}); give fewer or smaller blocks, or a larger region",
-                      static_cast<int>(part * static_cast<double>(blocks.size())), blocks.size(),
-                      blocks.size(), found.scale, share(part * all), share(all)));
+      in_.fail(value_,
+               fmt::format("{} of {} blocks could be placed: all {} fit at {:.4g} of their size "
+                           "only ({}); give fewer or smaller blocks, or a larger region",
+                           static_cast<int>(part * static_cast<double>(blocks.size())),
+                           blocks.size(), blocks.size(), found.scale, solid(part * all, all)));
     }
   }
 

@@ -52,5 +52,6 @@ TEST_CASE("a strip has the stiffness of a landing on its whole side", "[contact]
   BodyStiffness strip;
   strip.add(1, 0, -1, .4);
   strip.tt += .6 * .6 / 12;
-  CHECK(rate_of(strip, inverse_mass) == Approx(strip_mobility(inverse_mass, .4, .6)).epsilon(1e-12));
+  CHECK(rate_of(strip, inverse_mass) ==
+        Approx(strip_mobility(inverse_mass, .4, .6)).epsilon(1e-12));
 }

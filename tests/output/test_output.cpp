@@ -1,4 +1,7 @@
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
@@ -293,6 +296,20 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   const double mean = top - (std::pow(1.03, 3) + std::pow(.97, 3)) / 6 - .01 / 6;
   CHECK(reduced(Take::mean) == Approx(mean).epsilon(1e-12));
   CHECK(reduce({"time", Take::last, {}, {}}, folder.path()) == Approx(2));
+}
+
+TEST_CASE("a pipe is written to and stays", "[output]") {
+  const Folder folder;
+  const std::string pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  REQUIRE(reader >= 0);
+  write_file(pipe, "content");
+  char read[16] = {};
+  CHECK(::read(reader, read, sizeof(read)) == 7);
+  ::close(reader);
+  CHECK(std::string(read) == "content");
+  CHECK(std::filesystem::is_fifo(pipe));
 }
 
 TEST_CASE("a full disk costs the block, not the file", "[output]") {

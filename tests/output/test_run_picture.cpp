@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "apothem/output/canvas.hpp"
+#include "apothem/output/field_layout.hpp"
 #include "apothem/output/run_plot.hpp"
 #include "folder.hpp"
 #include "output/run_results.hpp"
@@ -145,6 +147,12 @@ TEST_CASE("chains and roses lie over the bodies", "[results]") {
   choice.chains = false;
   choice.roses = true;
   CHECK(drawn(run, choice).colours != drawn(run, {{1}, field_quantity("material")}).colours);
+  // All of a rose is in the picture, also what is longer than the bodies reach.
+  const FieldPanel panel = picture_of(run, choice).panels[0];
+  REQUIRE_FALSE(panel.fields[0].roses.empty());
+  const Box window = lay_out(panel, 1, Canvas(PictureFormat::png, 1, 1)).window;
+  for (const Vec2& p : panel.fields[0].roses[0].line)
+    CHECK_FALSE(apart(window, {p.x(), p.y(), p.x(), p.y()}));
   Model no_regions = model_of_results(false);
   no_regions.regions.clear();
   write_results(folder / "none", no_regions, 1);

@@ -50,7 +50,9 @@ def check(build, scratch):
         unpacked[name] = scratch / name
         output("dpkg-deb", "-x", path, unpacked[name])
     output("cmake", "--install", build, "--prefix", scratch / "installed/usr")
-    assert set().union(*map(files, unpacked.values())) == files(scratch / "installed"), "not what is installed"
+    # The Python module, where it was built, is installed by CMake alone.
+    installed = {path for path in files(scratch / "installed") if not re.search(r"/python3[.\d]*/", path)}
+    assert set().union(*map(files, unpacked.values())) == installed, "not what is installed"
     assert not [path for path in files(unpacked["apothem"]) if re.search(r"\.(a|hpp|cmake)$", path)]
     assert not [path for path in files(unpacked["libapothem-dev"]) if not re.search(r"\.(a|cpp|hpp|cmake)$", path)]
 

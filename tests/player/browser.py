@@ -38,6 +38,21 @@ SCENE = {
 }
 
 
+# A block of 40 kN at rest on a floor.
+LOADED = {
+    "name": "loaded",
+    "gravity": [0, -10],
+    "materials": {"rock": {"density": 2000}},
+    "contact": {"normal_stiffness": 1e8},
+    "bodies": [
+        {"name": "floor", "material": "rock", "motion": "fixed", "polygon": [[0, 0], [4, 0], [4, 1], [0, 1]]},
+        {"name": "block", "material": "rock", "polygon": [[1, 1], [3, 1], [3, 2], [1, 2]]},
+    ],
+    "time": {"end": 0.1, "start": "settled"},
+    "output": {"frames": 2},
+}
+
+
 class Checks:
     def __init__(self, browser, folder):
         self.browser, self.folder, self.number = browser, folder, 0
@@ -110,6 +125,9 @@ def controls(check, page):
     check.equal(frame(), 1, "frame after the arrows")
     check.equal(browser.evaluate("location.hash.startsWith('#t=0.1&')"), True, "address after the arrows")
     before = browser.evaluate("player.drawn.count")
+    # So slow that a busy machine has the time to draw some of the frames.
+    browser.evaluate("(() => { const speed = document.getElementById('speed'); speed.value = 2;"
+                     " speed.dispatchEvent(new Event('change')); })()")
     browser.keys(" ")
     browser.wait("!player.playing && player.frame === 10")
     check.that(browser.evaluate("player.drawn.count") >= before + 3, "it jumped to the end")
@@ -135,6 +153,24 @@ def controls(check, page):
     check.that(browser.evaluate("player.view.scale") > 1.4 * before, "the key + does not zoom")
     browser.keys("0")
     check.equal(browser.evaluate("player.view.scale"), before, "scale of the whole")
+
+
+def chains(check, page):
+    browser = check.browser
+    browser.open(page)
+    wait_for_run(browser)
+    scale = "document.getElementById('chain-scale')"
+    check.equal(browser.evaluate(scale + ".hidden"), True, "scale of chains that are not shown")
+    browser.keys("k")
+    text = browser.evaluate(scale + ".textContent")
+    check.that("normal force of a contact: 40 kN" in text, f"the scale of the weight of the block says {text!r}")
+    # From the middle of the block to that of its lower side; 4 pixels wide, as the sample.
+    picture, line = check.picture("desktop-chains"), (166, 13, 26)
+    check.equal(browser.evaluate(scale + ".querySelector('i').getBoundingClientRect().height"), 4, "width of the sample")
+    check.colour(picture, 2, 1.3, line)
+    x, y = check.place(2, 1.3)
+    width = sum(picture.at(x + i, y) == picture.at(x, y) for i in range(-20, 21))
+    check.that(3 <= width <= 5, f"the line is {width} pixels wide")
 
 
 def phone(check, page):
@@ -169,7 +205,12 @@ def main():
         subprocess.run([program, "run", scene, "-o", folder + "/run", "--quiet"], check=True)
         subprocess.run([program, "view", folder + "/run", "-o", folder + "/page.html"], check=True)
         page = pathlib.Path(folder, "page.html").as_uri()
-        for width, height, parts in [(1280, 800, [at_two_times, controls]), (390, 844, [phone])]:
+        scene.write_text(json.dumps(LOADED))
+        subprocess.run([program, "run", scene, "-o", folder + "/loaded", "--quiet"], check=True)
+        subprocess.run([program, "view", folder + "/loaded", "-o", folder + "/loaded.html"], check=True)
+        loaded = pathlib.Path(folder, "loaded.html").as_uri()
+        for width, height, parts in [(1280, 800, [at_two_times, controls, lambda check, _: chains(check, loaded)]),
+                                     (390, 844, [phone])]:
             with Browser(width, height, phone=width < 500) as browser:
                 check = Checks(browser, screenshots)
                 for part in parts:

@@ -366,6 +366,7 @@ TEST_CASE("what cannot be viewed is refused", "[player]") {
   CHECK(!std::filesystem::exists(folder / "empty/view.html"));
   refused({"view", folder / "empty", "--movie", folder / "movie.avi"}, "must end in .mp4 or .gif");
   refused({"view", folder / "empty", "--chains"}, "--movie");
+  refused({"view", folder / "empty", "--range", "0,1"}, "--movie");
 }
 
 namespace {
@@ -398,7 +399,8 @@ TEST_CASE("a movie has all frames of its run", "[player]") {
   const std::string scene = folder.write("scene.json", kScene);
   REQUIRE(test::run({"run", scene, "-o", folder / "out", "--quiet"}, folder).code == 0);
   const auto movie = [&](const std::string& name) {
-    return test::run({"view", folder / "out", "--movie", folder / name, "--chains", "--rate", "5"},
+    return test::run({"view", folder / "out", "--movie", folder / name, "--chains", "--rate", "5",
+                      "--range", "0,1"},
                      folder);
   };
   {

@@ -84,6 +84,25 @@ class Running(FolderCase):
         self.assertTrue(sim.ended)
         self.assertEqual(sim.step(), 0)
 
+    def test_a_loop_in_python_takes_less_than_two_microseconds_more_per_step(self):
+        document = flying_block()
+        document["time"]["end"] = 1e4
+        sim, count = simulation(document), 50000
+
+        def seconds(work):
+            start = time.process_time()
+            work()
+            return time.process_time() - start
+
+        def loop():
+            for _ in range(count):
+                sim.step()
+
+        within = min(seconds(lambda: sim.step(count)) for _ in range(3))
+        calls = min(seconds(loop) for _ in range(3))
+        self.assertEqual(sim.steps, 6 * count)
+        self.assertLess((calls - within) / count, 2e-6)
+
     def test_numbers_that_are_no_times_and_no_counts(self):
         sim = simulation(flying_block())
         with self.assertRaises(ValueError):

@@ -169,6 +169,35 @@ TEST_CASE("a repeated fill makes the bodies of all batches", "[fill]") {
   CHECK(model.bodies[0].position != model.bodies[10].position);
 }
 
+TEST_CASE("batches of a repeated fill share the region, later fills keep clear of the first",
+          "[fill]") {
+  // Each batch alone fills 0.45 of the region: two do not fit side by side.
+  const std::string quads = R"("shapes": [ { "quadrilateral": {} } ], "diameter": 0.3, )";
+  const Model full =
+      model_of(quads + R"("solid_fraction": 0.45, "repeat": { "times": 3, "every": 0.5 })");
+  REQUIRE(full.inflows.size() == 1);
+  CHECK(full.inflows[0].batches.size() == 2);
+  CHECK(full.bodies.size() > 3 * 100);
+  for (size_t b = 0; b < 3; ++b) {
+    const size_t n = full.bodies.size() / 3;
+    for (size_t i = b * n; i < (b + 1) * n; ++i) {
+      for (size_t j = b * n; j < i; ++j) {
+        REQUIRE(exactly_apart(ring_of(full.bodies[i]), ring_of(full.bodies[j])));
+      }
+    }
+  }
+  // The second fill must miss the first batch of the first one, which is there at time 0.
+  const Model two = model_of(quads + R"("count": 40, "repeat": { "times": 2 } }, {
+    "name": "pebble", "material": "rock", "region": [[0, 0], [4, 0], [4, 4], [0, 4]], )" +
+                             quads + R"("count": 40)");
+  REQUIRE(two.bodies.size() == 120);
+  for (size_t i = 80; i < 120; ++i) {
+    for (size_t j = 0; j < 40; ++j) {
+      REQUIRE(exactly_apart(ring_of(two.bodies[i]), ring_of(two.bodies[j])));
+    }
+  }
+}
+
 TEST_CASE("what a fill cannot do is one error with its place and a remedy", "[fill]") {
   using Catch::Matchers::Contains;
   const std::string quads = R"("shapes": [ { "quadrilateral": {} } ], )";

@@ -26,6 +26,15 @@ diff expected.txt found.txt || fail "the jams are not those of the summary"
 tables pairs flow flow | tee pairs.txt
 awk 'NR > 1 && ($3 != 0 || $4 != 0 || $6 != 1) { exit 1 }' pairs.txt || fail "a study differs from itself"
 
+# What is recorded of a study says the same as its folder.
+tables record flow recorded
+tables jam recorded.csv --reference quad,0.5 | diff jam.txt - || fail "the recorded study has other jams"
+tables hazard recorded.csv | diff <(tables hazard flow) - || fail "the recorded study has other hazards"
+
+# The shipped counts: Wilson's intervals, and an exact test whose value is known (6 of 20 against 41 of 60).
+tables counts "$studies/results/hopper.csv" | tee counts.txt
+grep -Eq '^quad +0.5 +- +2e8 +0.2 +7 +6/20 .*0.30 \(0.15 to 0.52\).* 41/60 .* 0.004$' counts.txt || fail "the counts have another interval or test"
+
 # All jams are in one window of blocks.
 tables hazard flow | tee hazard.txt
 jams=$(awk -F, 'NR > 1 { n += $6 } END { print n }' flow/summary.csv)

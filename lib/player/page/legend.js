@@ -34,6 +34,18 @@ function showScale(parent, quantity, rgb) {
   parent.replaceChildren(caption, bar, element('div', {className: 'ticks'}, ...marks));
 }
 
+// The width of the line of a force, and up to which force the width grows.
+function showChainScale(parent, view, run) {
+  const shown = view.shown.chains && run.array.chain_a.length > 0;
+  parent.hidden = !shown;
+  if (!shown) return;
+  const sample = element('i');
+  sample.style.height = `${view.chainWidth()}px`;
+  const words = force => `${shortNumber(force * run.force_factor, 3)} ${run.force_unit}`;
+  const limit = run.force_most > 3 * run.force_scale ? ` up to ${words(3 * run.force_scale)}` : '';
+  parent.replaceChildren(sample, `normal force of a contact: ${words(run.force_scale)}; widths are proportional${limit}`);
+}
+
 // A round length that is about a sixth of the width, and the chosen body.
 function drawMarks(canvas, view, places, frame, chosen) {
   const {width, height, pixels} = view, pen = canvas.getContext('2d');

@@ -122,6 +122,7 @@ class Player {
   redraw() {
     const start = performance.now();
     this.view.draw();
+    showChainScale(page('chain-scale'), this.view, this.run);
     drawMarks(page('marks'), this.view, this.places, this.frame, this.chosen);
     this.drawn.milliseconds = performance.now() - start;
     ++this.drawn.count;

@@ -75,7 +75,7 @@ void main() {
 }`;
 
 const kChainVertex = kPlace + kCorner + `
-uniform float width;  // pixels of the force 1; lines do not get wider than thrice that
+uniform float width;  // pixels of the force 1; lines do not get wider than thrice that (showChainScale says so)
 void main() {
   vec4 both = texel(ends, gl_VertexID / 6);
   float force = texel(owners, gl_VertexID / 6).x;

@@ -186,6 +186,11 @@ class View {
       if (part.inner && strength === 1) this.drawLines(this.edges, part.inner, true, 0.5, [0, 0, 0, 0.25]);
       this.drawLines(this.edges, part.outline, part.meshed, 0.4 + 0.6 * strength, [0.1, 0.1, 0.1, 0.9 * strength]);
     }
-    if (this.shown.chains) this.drawLines(this.lines, this.chains, false, 0.35 * size, [0.65, 0.05, 0.1, 1]);
+    if (this.shown.chains) this.drawLines(this.lines, this.chains, false, this.chainWidth(), [0.65, 0.05, 0.1, 1]);
+  }
+
+  // Of a line of the force 1, CSS pixels: small beside the bodies, and beside the picture where they are large.
+  chainWidth() {
+    return Math.min(0.35 * this.run.body_size * this.scale, 4 * Math.max(1, Math.sqrt(this.scale / this.fitted)));
   }
 }

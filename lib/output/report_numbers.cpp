@@ -1,0 +1,91 @@
+#include "apothem/output/report_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apothem/output/html.hpp"
+
+namespace apothem {
+namespace {
+
+// What a reference rests on, in which group it belongs, and how it is called there.
+struct BasisText {
+  std::optional<Basis> basis;
+  size_t group;
+  const char* words;
+};
+constexpr std::array kBasisTexts{
+    BasisText{Basis::paper, 0, "the paper"},
+    BasisText{Basis::theory, 1, "closed form"},
+    BasisText{Basis::code, 1, "independent code"},
+    BasisText{Basis::law, 2, "law that every run obeys"},
+    BasisText{Basis::this_program, 2, "this program, to notice changes"},
+    BasisText{std::nullopt, 2, "not stated"}};
+
+struct GroupText {
+  const char* heading;
+  const char* column;  // of the summary
+};
+constexpr std::array kGroups{GroupText{"Against the paper", "paper"},
+                             GroupText{"Against theory or an independent code", "theory or code"},
+                             GroupText{"Internal checks", "internal checks"}};
+
+const BasisText& text_of(const ReportNumber& number) {
+  return *std::find_if(kBasisTexts.begin(), kBasisTexts.end(),
+                       [&](const BasisText& t) { return t.basis == number.basis; });
+}
+
+std::string row(const ReportNumber& n) {
+  const double error = n.value - n.reference;
+  const std::string cells =
+      table_cell("scene", n.scene, "text") + table_cell("quantity", n.what, "text") +
+      table_cell("unit", n.unit, "text") +
+      table_cell("reference", fmt::format("{:.10g}", n.reference)) +
+      table_cell("result", fmt::format("{:.10g}", n.value)) +
+      table_cell("error", fmt::format("{:.1e}", error)) +
+      table_cell("relative",
+                 n.reference != 0 ? fmt::format("{:.1e}", error / std::abs(n.reference)) : "-") +
+      table_cell("tolerance", fmt::format("{:.1e}", n.tolerance)) +
+      table_cell("verdict", n.met ? "ok" : "MISSED", "verdict") +
+      table_cell("rests on", text_of(n).words, "text") + table_cell("source", n.source, "text");
+  return fmt::format("<tr{}>{}</tr>\n", n.met ? "" : " class=\"missed\"", cells);
+}
+
+}  // namespace
+
+std::vector<GroupCount> count_groups(const std::vector<ReportNumber>& numbers) {
+  std::vector<GroupCount> counts;
+  for (const GroupText& group : kGroups) counts.push_back({group.column});
+  for (const ReportNumber& n : numbers) {
+    GroupCount& count = counts[text_of(n).group];
+    ++count.numbers;
+    count.met += n.met;
+  }
+  return counts;
+}
+
+std::string table_cell(const char* head, const std::string& text, const char* kind) {
+  return fmt::format("<td class=\"{}\" data-head=\"{}\">{}</td>", kind, head, escaped(text));
+}
+
+std::string number_tables(const std::vector<ReportNumber>& numbers) {
+  std::string text;
+  for (size_t group = 0; group < kGroups.size(); ++group) {
+    std::string rows;
+    for (const ReportNumber& n : numbers) {
+      if (text_of(n).group == group) rows += row(n);
+    }
+    if (rows.empty()) continue;
+    text += fmt::format(
+        "<h3>{}</h3>\n<table>\n<tr><th>scene</th><th>quantity</th><th>unit</th>"
+        "<th>reference</th><th>result</th><th>error</th><th>relative</th><th>tolerance</th>"
+        "<th></th><th>rests on</th><th>source</th></tr>\n{}</table>\n",
+        kGroups[group].heading, rows);
+  }
+  return text;
+}
+
+}  // namespace apothem
