@@ -191,15 +191,18 @@ State DegreesOfFreedom::start() const {
 }
 
 void DegreesOfFreedom::kick(State& state, double h) const {
+  // What a loop reads is local, so that it does not look again after each number that it writes.
   threads_.chunks(static_cast<int>(inverse_mass_.size()), kKickTime, [&](int first, int end, int) {
-    double* __restrict v = state.v.data();
-    const double* __restrict f = state.f.data();
-    const double* const w = inverse_mass_.data();
+    const auto n = static_cast<size_t>(end - first);
+    const double time = h;
+    double* __restrict v = state.v.data() + first;
+    const double* __restrict f = state.f.data() + first;
+    const double* __restrict w = inverse_mass_.data() + first;
     if (acceleration_.empty()) {
-      for (int c = first; c < end; ++c) v[c] += h * (w[c] * f[c]);
+      for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c]);
     } else {
-      const double* const g = acceleration_.data();
-      for (int c = first; c < end; ++c) v[c] += h * (w[c] * f[c] + g[c]);
+      const double* __restrict g = acceleration_.data() + first;
+      for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c] + g[c]);
     }
   });
 }
@@ -233,9 +236,11 @@ void DegreesOfFreedom::drift(State& state, double dt) const {
     double* __restrict x = state.x.data();
     const double* __restrict v = state.v.data();
     double* __restrict r = state.remainder.data();
+    const double* __restrict w = inverse_mass_.data();
+    const double time = dt;
     for (int c = first; c < end; ++c) {
-      if (!(inverse_mass_[c] > 0)) continue;
-      const double dx = dt * v[c] + r[c];
+      if (!(w[c] > 0)) continue;
+      const double dx = time * v[c] + r[c];
       const double sum = x[c] + dx;
       r[c] = dx - (sum - x[c]);
       x[c] = sum;
@@ -245,7 +250,9 @@ void DegreesOfFreedom::drift(State& state, double dt) const {
   threads_.chunks(nodes, kDriftTime, [&](int first, int end, int) {
     double* __restrict x = state.x.data();
     const double* __restrict v = state.v.data();
-    for (int c = rigid + first; c < rigid + end; ++c) x[c] += dt * v[c];
+    const double time = dt;
+    const auto last = static_cast<size_t>(rigid + end);
+    for (auto c = static_cast<size_t>(rigid + first); c < last; ++c) x[c] += time * v[c];
   });
   for (const Driven& d : driven_) {
     if (d.coordinate < layout_.node(0)) state.x[d.coordinate] += d.move;
