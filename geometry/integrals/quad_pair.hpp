@@ -68,7 +68,6 @@ APOTHEM_INLINE Twice square_root(const Twice& p) { return {square_root(p.a), squ
 APOTHEM_INLINE Four next(const Four& p) {
   return Four(__builtin_shufflevector(p.v, p.v, 1, 2, 3, 0));
 }
-APOTHEM_INLINE Twice next(const Twice& p) { return {next(p.a), next(p.b)}; }
 
 // The same lanes of four packs, as a matrix that is turned round its diagonal.
 APOTHEM_INLINE void transpose(const Four& p, const Four& q, const Four& r, const Four& s,
