@@ -42,21 +42,20 @@ bool ElementKernel::convex(SurfaceIndex i) const {
 }
 
 void ElementKernel::evaluate(std::vector<Contact>& contacts) {
-  pairs_.evaluate();
+  pairs_.evaluate([](const PairInTouch&, int) {});
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   touches_.clear();
-  for (size_t p = 0; p < pairs_.pairs().size(); ++p) {
-    if (!pairs_[p].touching()) continue;
-    const auto [a, b] = pairs_.pairs()[p];
-    contacts.push_back(pairs_.contact(KernelKind::element_kernel, p, stiffness(a, b)));
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const SurfaceIndex a = pair.a, b = pair.b;
+    contacts.push_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
     // The potential measures the depth below borders that are not part of the body's boundary.
     contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
-    if (!convex(a) || !convex(b) || pairs_.too_deep(p)) {
+    if (!convex(a) || !convex(b) || pairs_.too_deep(pair)) {
       contacts.back().share = 1;  // nothing beyond is to be trusted
       return;
     }
     const double contact_stiffness = contacts.back().stiffness;
-    add_touch(p);
+    add_touch(pair);
     touches_.back().stiffness = contact_stiffness;
   }
 }
@@ -121,9 +120,9 @@ ContactFault ElementKernel::fault(const Contact& c) const {
           surfaces_.body(c.b), surfaces_.reference(at)};
 }
 
-void ElementKernel::add_touch(size_t p) {
-  const PairIntegral& pair = pairs_[p];
-  const auto [a, b] = pairs_.pairs()[p];
+void ElementKernel::add_touch(const PairInTouch& result) {
+  const PairIntegral& pair = *result.integral;
+  const SurfaceIndex a = result.a, b = result.b;
   const double k = stiffness(a, b);
   const Vec2 force = k * pair.force;
   Resultant& on_a = normal_.sums[surfaces_.body(a)];
@@ -134,7 +133,7 @@ void ElementKernel::add_touch(size_t p) {
   if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back({a, b, static_cast<int>(p), force, point, offset, k * pair.weight, 0});
+  touches_.push_back({a, b, force, point, offset, k * pair.weight, 0});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
     find_corners(i, at, of_a_);
     distribute(of_a_, f, normal_);
@@ -383,7 +382,7 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
   Depths depths;
   for (size_t i = 0; i < touches_.size(); ++i) {
     const Touch& t = touches_[i];
-    const PairIntegral& pair = pairs_[static_cast<size_t>(t.pair)];
+    const PairIntegral& pair = *pairs_.touching()[i].integral;
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
     sum.normal += t.force;

@@ -42,7 +42,7 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
-  [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
+  [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
     return normal_.sums[body].force + tangential_.sums[body].force + damping_.sums[body].force;
   }
@@ -54,7 +54,6 @@ class ElementKernel final : public Kernel {
   /// Two polygons that touch.
   struct Touch {
     SurfaceIndex a, b;
-    int pair;
     Vec2 force;                    ///< on a, N
     Vec2 point;                    ///< where it acts, relative to a's reference point, m
     Vec2 offset;                   ///< a's reference point minus b's, m
@@ -92,7 +91,7 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] double stiffness(SurfaceIndex a, SurfaceIndex b) const {
     return table_.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness * thickness_;
   }
-  void add_touch(size_t pair);
+  void add_touch(const PairInTouch& result);
   /// What looking for a penetration works in.
   struct Depths {
     PatchWorkspace workspace;

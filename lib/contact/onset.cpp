@@ -26,15 +26,14 @@ struct Onset::Path {
   }
 };
 
-bool Onset::find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
-                 const Dynamics& dynamics, double dt) {
+bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynamics& dynamics,
+                 double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
-  for (const int p : touching) {
-    const auto [a, b] = pairs.pairs()[static_cast<size_t>(p)];
-    const PairIntegral& pair = pairs[static_cast<size_t>(p)];
+  for (const PairInTouch& result : pairs.touching()) {
+    const PairIntegral& pair = *result.integral;
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
     now_touching.push_back(
-        {a, b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
+        {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
   }
   impulses_.clear();
   if (!(dt > 0)) return false;

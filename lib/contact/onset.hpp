@@ -21,11 +21,9 @@ class Onset {
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs whose vertices inside each other are not those of the step before, or of which much more
-  /// or less boundary is inside. `touching` are the pairs that touch now, ascending. True if
-  /// there is a J. With dt = 0, at the start, there is none, and what only just touches then is
-  /// new in the first step.
-  bool find(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
-            const Dynamics& dynamics, double dt);
+  /// or less boundary is inside. True if there is a J. With dt = 0, at the start, there is none,
+  /// and what only just touches then is new in the first step.
+  bool find(const PairIntegrals& pairs, const Kinematics& now, const Dynamics& dynamics, double dt);
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 

@@ -32,10 +32,10 @@ void PairIntegrals::take(std::span<const BoxPair> pairs) {
 }
 
 void PairIntegrals::begin() {
-  slots_.resize(pairs_.size());
+  touching_.clear();
   for (Worker& worker : workers_) {
     worker.integrals.clear();
-    worker.parts.clear();
+    worker.results.clear();
     worker.runs.clear();
     worker.patches.clear();
   }
@@ -71,23 +71,34 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
-void PairIntegrals::evaluate_pair(size_t p, int index) {
+// True if the pair touches.
+bool PairIntegrals::evaluate_pair(size_t p, int index) {
   Worker& worker = workers_[static_cast<size_t>(index)];
-  Parts parts;
-  const PairIntegral integral = integrate(p, worker, parts);
-  if (!integral.touching()) {
-    slots_[p].worker = -1;
-    return;
-  }
-  slots_[p] = {index, static_cast<int>(worker.integrals.size())};
-  if (worker.integrals.size() == worker.integrals.capacity()) {
-    worker.integrals.reserve(worker.integrals.size() * 9 / 8 + 16);  // large scenes need the memory
-  }
-  worker.integrals.push_back(integral);
-  if (split_ != Split::none) worker.parts.push_back(parts);
+  const auto [a, b] = pairs_[p];
+  PairInTouch result{.a = a, .b = b, .integral = nullptr, .worker = index};
+  const PairIntegral integral = integrate(p, worker, result);
+  if (!integral.touching()) return false;
+  const auto push = [](auto& list, const auto& item) {
+    // Large scenes need the memory.
+    if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
+    list.push_back(item);
+  };
+  push(worker.integrals, integral);
+  result.integral = &worker.integrals.back();
+  push(results_of(index), result);
+  return true;
 }
 
-PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, Parts& parts) {
+// Puts the lists together. Those of the integrals may have moved while they grew.
+void PairIntegrals::collect() {
+  size_t done = 0;
+  for (const Worker& worker : workers_) {
+    touching_.insert(touching_.end(), worker.results.begin(), worker.results.end());
+    for (const PairIntegral& integral : worker.integrals) touching_[done++].integral = &integral;
+  }
+}
+
+PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, PairInTouch& result) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   if (apart(shapes.boxes()[static_cast<size_t>(a)], shapes.boxes()[static_cast<size_t>(b)])) {
@@ -112,51 +123,30 @@ PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, Parts& parts) {
     near_[p].angle_b = surfaces_.pose(b)[2];
   }
   if (!split) return integral;
-  parts = {static_cast<int>(worker.patches.size()), static_cast<int>(worker.pair_patches.size()),
-           static_cast<int>(worker.runs.size()), static_cast<int>(worker.pair_runs.size())};
+  result.first_patch = static_cast<int>(worker.patches.size());
+  result.patches = static_cast<int>(worker.pair_patches.size());
+  result.first_run = static_cast<int>(worker.runs.size());
+  result.runs = static_cast<int>(worker.pair_runs.size());
   worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
                         worker.pair_patches.end());
   worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
   return integral;
 }
 
-const PairIntegrals::Parts* PairIntegrals::parts_of(const Slot& slot) const {
-  if (split_ == Split::none || slot.worker < 0) return nullptr;
-  const Parts& parts = worker_of(slot).parts[static_cast<size_t>(slot.index)];
-  return parts.first_patch < 0 ? nullptr : &parts;
-}
-
-std::span<const PairIntegral> PairIntegrals::patches(size_t pair) const {
-  const Slot& slot = slots_[pair];
-  const Parts* const parts = parts_of(slot);
-  if (!parts) return {&(*this)[pair], 1};
-  return std::span(worker_of(slot).patches)
-      .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
-}
-
-std::span<const BoundaryRun> PairIntegrals::runs(size_t pair) const {
-  const Slot& slot = slots_[pair];
-  const Parts* const parts = parts_of(slot);
-  if (!parts) return {};
-  return std::span(worker_of(slot).runs)
-      .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
-}
-
 double PairIntegrals::energy(const PairTable& table) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   double energy = 0;
-  for (size_t p = 0; p < pairs_.size(); ++p) {
-    if (slots_[p].worker < 0) continue;
-    const auto [a, b] = pairs_[p];
+  for (const PairInTouch& pair : touching_) {
+    const SurfaceIndex a = pair.a, b = pair.b;
     const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
     energy += k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
   }
   return energy;
 }
 
-Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
-  const auto [a, b] = pairs_[p];
-  const PairIntegral& pair = (*this)[p];
+Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, double k) const {
+  const SurfaceIndex a = result.a, b = result.b;
+  const PairIntegral& pair = *result.integral;
   const PlacedShapes& shapes = surfaces_.shapes();
   const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
   return {kernel,
@@ -168,9 +158,9 @@ Contact PairIntegrals::contact(KernelKind kernel, size_t p, double k) const {
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }
 
-bool PairIntegrals::too_deep(size_t p) const {
-  const auto [a, b] = pairs_[p];
-  const PairIntegral& pair = (*this)[p];
+bool PairIntegrals::too_deep(const PairInTouch& result) const {
+  const SurfaceIndex a = result.a, b = result.b;
+  const PairIntegral& pair = *result.integral;
   if (!(pair.largest_phi <= kDeepestPhi)) return true;
   if (pair.own_length_a + pair.own_length_b <
       std::min(surfaces_.inradius(a), surfaces_.inradius(b))) {

@@ -16,6 +16,17 @@ namespace apothem {
 /// potential falls again.
 inline constexpr double kDeepestPhi = 0.95;
 
+/// A pair that touches, and what has been found of it.
+struct PairInTouch {
+  SurfaceIndex a, b;
+  const PairIntegral* integral;  ///< of the whole pair, for unit stiffness; force on a, moments
+                                 ///< about the reference points
+  int patches = 1;               ///< contact patches: one if it is not split
+  int runs = 0;                  ///< runs of the boundaries; none if it is not split
+  // Where these are, among those that a thread has found.
+  int worker = 0, first_patch = -1, first_run = 0;
+};
+
 class PairIntegrals {
  public:
   /// Which touching pairs are split into contact patches.
@@ -25,42 +36,45 @@ class PairIntegrals {
       : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
 
   void take(std::span<const BoxPair> pairs);
-  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls done(pair,
-  /// worker) for each, in ascending order within each thread; the lower worker has the lower pairs.
+  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls found(result,
+  /// worker) for each that touches, in ascending order within each thread; the lower worker has the
+  /// lower pairs.
   template <class F>
-  void evaluate(const F& done) {
+  void evaluate(const F& found) {
     begin();
     threads_.chunks(static_cast<int>(pairs_.size()), kPairTime,
                     [&](int first, int end, int worker) {
                       for (int p = first; p < end; ++p) {
-                        evaluate_pair(static_cast<size_t>(p), worker);
-                        done(static_cast<size_t>(p), worker);
+                        if (evaluate_pair(static_cast<size_t>(p), worker)) {
+                          found(results_of(worker).back(), worker);
+                        }
                       }
                     });
-  }
-  void evaluate() {
-    evaluate([](size_t, int) {});
+    collect();
   }
 
-  [[nodiscard]] const std::vector<BoxPair>& pairs() const { return pairs_; }
-  /// One for each pair, for unit stiffness; force on the first one, moments about the reference
-  /// points. Zero for a pair that does not touch.
-  [[nodiscard]] const PairIntegral& operator[](size_t pair) const {
-    static const PairIntegral kApart;
-    const Slot& slot = slots_[pair];
-    return slot.worker < 0 ? kApart : worker_of(slot).integrals[static_cast<size_t>(slot.index)];
+  /// The pairs in reach.
+  [[nodiscard]] size_t candidates() const { return pairs_.size(); }
+  /// The pairs that touch, ascending.
+  [[nodiscard]] const std::vector<PairInTouch>& touching() const { return touching_; }
+  /// The patches of a pair: the whole pair if it is not split.
+  [[nodiscard]] std::span<const PairIntegral> patches(const PairInTouch& pair) const {
+    if (pair.first_patch < 0) return {pair.integral, 1};
+    return std::span(workers_[static_cast<size_t>(pair.worker)].patches)
+        .subspan(static_cast<size_t>(pair.first_patch), static_cast<size_t>(pair.patches));
   }
-  /// The patches of a touching pair: the whole pair if it is not split.
-  [[nodiscard]] std::span<const PairIntegral> patches(size_t pair) const;
-  /// The runs of a touching pair; none if it is not split.
-  [[nodiscard]] std::span<const BoundaryRun> runs(size_t pair) const;
+  /// The runs of a pair; none if it is not split.
+  [[nodiscard]] std::span<const BoundaryRun> runs(const PairInTouch& pair) const {
+    return std::span(workers_[static_cast<size_t>(pair.worker)].runs)
+        .subspan(static_cast<size_t>(pair.first_run), static_cast<size_t>(pair.runs));
+  }
   /// Energy of all pairs for unit thickness, N. Not for every step.
   [[nodiscard]] double energy(const PairTable& table) const;
 
   /// The record of a pair; k is the normal stiffness times the thickness, N/m.
-  [[nodiscard]] Contact contact(KernelKind kernel, size_t pair, double k) const;
+  [[nodiscard]] Contact contact(KernelKind kernel, const PairInTouch& pair, double k) const;
   /// If the pair is so deep that its potentials are about to fall again.
-  [[nodiscard]] bool too_deep(size_t pair) const;
+  [[nodiscard]] bool too_deep(const PairInTouch& pair) const;
 
  private:
   static constexpr double kFirstMargin = 1. / 64;
@@ -74,22 +88,13 @@ class PairIntegrals {
     double share = kFirstMargin;  // the margin asked for, of the smaller inradius
     int age = 0;                  // evaluations since then
   };
-  // The patches and runs of a touching pair, of those that its worker has found.
-  struct Parts {
-    int first_patch = -1;  // -1: not split
-    int patches = 0, first_run = 0, runs = 0;
-  };
-  // Where the integral of a pair is. Worker -1: it does not touch. Most pairs do not, and large
-  // scenes need the memory.
-  struct Slot {
-    int worker = -1, index = 0;
-  };
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
-    std::vector<PairIntegral> integrals;  // of the touching pairs that it has found
-    // Of those that it has split; `parts` has an entry for each touching pair if any may be split.
-    std::vector<Parts> parts;
+    // Of the touching pairs that it has found. The first worker's results begin the list of all.
+    std::vector<PairIntegral> integrals;
+    std::vector<PairInTouch> results;
+    // Of those that it has split.
     std::vector<BoundaryRun> runs;
     std::vector<PairIntegral> patches;
     // Of the pair at hand.
@@ -97,20 +102,20 @@ class PairIntegrals {
     std::vector<PairIntegral> pair_patches;
   };
   void begin();
-  void evaluate_pair(size_t pair, int worker);
-  [[nodiscard]] PairIntegral integrate(size_t pair, Worker& worker, Parts& parts);
-  [[nodiscard]] const Worker& worker_of(const Slot& slot) const {
-    return workers_[static_cast<size_t>(slot.worker)];
+  bool evaluate_pair(size_t pair, int worker);
+  void collect();
+  [[nodiscard]] PairIntegral integrate(size_t pair, Worker& worker, PairInTouch& result);
+  [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
+    return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
   }
-  [[nodiscard]] const Parts* parts_of(const Slot& slot) const;
   void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
   const Surfaces& surfaces_;
   Threads threads_;
   Split split_;
   std::vector<BoxPair> pairs_;
-  std::vector<Near> near_;   // of each pair
-  std::vector<Slot> slots_;  // of each pair
+  std::vector<Near> near_;  // of each pair
+  std::vector<PairInTouch> touching_;
   std::vector<Worker> workers_;
 };
 

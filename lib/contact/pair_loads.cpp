@@ -49,9 +49,10 @@ struct Strip {
   }
 };
 
-APOTHEM_INLINE void load_lanes(const TouchingPairs& all, const Lane* lanes, bool springs,
+APOTHEM_INLINE void load_lanes(const TouchingPairs& all, const Lane* lanes,
                                std::span<PairLoad> loads, std::span<PairStiffness> held,
                                Four& sizes) {
+  const bool springs = !all.tangential.empty();
   const Surfaces& surfaces = all.surfaces;
   FourOf<Four> four;
   const auto integral = [&](int first) APOTHEM_LAMBDA {
@@ -65,11 +66,16 @@ APOTHEM_INLINE void load_lanes(const TouchingPairs& all, const Lane* lanes, bool
   const VectorOf<Four> centre{four[2], four[3]};
   integral(kBreadthNumbers);
   const Four breadth = four[0], middle_along = four[1];
-  Four k;
+  integral(kLengthNumbers);
+  const Four length_a = four[0], length_b = four[1];
+  Four k, slope_a, slope_b;
+  read_lanes(k, [&](int i) APOTHEM_LAMBDA {
+    return all.table.between(lanes[i].a, lanes[i].b).normal_stiffness * all.thickness;
+  });
+  read_lanes(slope_a, [&](int i) APOTHEM_LAMBDA { return surfaces.shapes().slope(lanes[i].a); });
+  read_lanes(slope_b, [&](int i) APOTHEM_LAMBDA { return surfaces.shapes().slope(lanes[i].b); });
   Strip strip;
-  read_lanes(k, [&](int i) APOTHEM_LAMBDA { return all.stiffness[lanes[i].touching]; });
-  read_lanes(strip.stiffness,
-             [&](int i) APOTHEM_LAMBDA { return all.contact_stiffness[lanes[i].touching]; });
+  strip.stiffness = k * (length_a * slope_b + length_b * slope_a);  // as Contact::stiffness
   read_lanes(strip.times, [&](int i) APOTHEM_LAMBDA {
     return surfaces.responsive(lanes[i].a) && surfaces.responsive(lanes[i].b) ? 2. : 1.;
   });
@@ -94,39 +100,43 @@ APOTHEM_INLINE void load_lanes(const TouchingPairs& all, const Lane* lanes, bool
   strip.hold(middle, centre, springs, of_a);
   strip.hold(middle + between, centre + between, springs, of_b);
   sizes = k * size;
-  write_rows({k * force.x, k * force.y, k * moment_a, k * moment_b},
-             [&](int i) APOTHEM_LAMBDA { return &loads[lanes[i].touching].force.x; });
+  PairVectorOf<Four> load{k * force.x, k * force.y, k * moment_a, k * moment_b};
+  if (springs) {
+    PairVectorOf<Four> beside;
+    read_lanes(beside, [&](int i) APOTHEM_LAMBDA -> const PairForce& {
+      return all.tangential[lanes[i].touching].all;
+    });
+    load = load + beside;
+  }
+  write_lanes(load,
+              [&](int i) APOTHEM_LAMBDA -> PairForce& { return loads[lanes[i].touching].force; });
 }
 
 }  // namespace
 
-int find_loads(const TouchingPairs& all, int first, int end, bool springs,
-               std::span<PairLoad> loads, std::span<PairStiffness> held) {
-  double largest = -1;
-  int of_largest = first;
+PairPeak find_loads(const TouchingPairs& all, int first, int end, std::span<PairLoad> loads,
+                    std::span<PairStiffness> held) {
+  PairPeak largest;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     for (int i = first; i < end; i += kAtOnce) {
       Lane lanes[kAtOnce];
       for (int k = 0; k < kAtOnce; ++k) {
         const auto t = static_cast<size_t>(std::min(i + k, end - 1));  // the last one again
-        const auto p = static_cast<size_t>(all.touching[t]);
-        const auto [a, b] = all.pairs.pairs()[p];
-        lanes[k] = {&all.pairs[p], a, b, t};
-        loads[t].a = a;
-        loads[t].b = b;
+        const PairInTouch& pair = all.pairs[t];
+        lanes[k] = {pair.integral, pair.a, pair.b, t};
+        loads[t].a = pair.a;
+        loads[t].b = pair.b;
       }
       Four sizes;
       // The sums of a lane are written once more with what has been read before.
-      load_lanes(all, lanes, springs, loads, held, sizes);
+      load_lanes(all, lanes, loads, held, sizes);
       for (int k = 0; k < kAtOnce && i + k < end; ++k) {
-        if (!(sizes.v[k] > largest)) continue;
-        largest = sizes.v[k];
-        of_largest = i + k;
+        if (sizes.v[k] > largest.value) largest = {sizes.v[k], lanes[k].a, lanes[k].b};
       }
     }
     return 0.;
   });
-  return of_largest;
+  return largest;
 }
 
 }  // namespace apothem

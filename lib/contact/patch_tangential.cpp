@@ -35,13 +35,13 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
       threads_(threads),
       ranges_(static_cast<size_t>(threads_.count()), Range(*this)) {}
 
-void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> touching,
-                            const Kinematics& now, double dt, FrictionMemory& memory,
-                            std::span<PairStiffness> stiffness) {
+void PatchTangential::slide(const PairIntegrals& pairs, const Kinematics& now, double dt,
+                            FrictionMemory& memory, std::span<PairStiffness> stiffness) {
+  const std::vector<PairInTouch>& touching = pairs.touching();
   stiffness_ = stiffness;
   std::swap(now_, before_);
   std::swap(forces_, forces_before_);
-  make_room(pairs, touching);
+  make_room(touching);
   springs_ = memory.make_room(places_.back().spring);
   for (Range& range : ranges_) memory.begin(range.springs, {-1, 0});
   const int count = static_cast<int>(touching.size());
@@ -51,12 +51,12 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
     Range& range = ranges_[static_cast<size_t>(worker)];
     range.begin({}, 0);
     if (first > 0) {
-      const auto [a, b] = pairs.pairs()[static_cast<size_t>(touching[first - 1])];
-      memory.begin(range.springs, {a, b});
-      range.begin(place_behind({a, b}), forces_behind({a, b}));
+      const PairInTouch& last = touching[static_cast<size_t>(first - 1)];
+      memory.begin(range.springs, {last.a, last.b});
+      range.begin(place_behind({last.a, last.b}), forces_behind({last.a, last.b}));
     }
     for (int i = first; i < end; ++i) {
-      range.step_pair(pairs, static_cast<size_t>(touching[i]), static_cast<size_t>(i), scene);
+      range.step_pair(pairs, static_cast<size_t>(i), scene);
     }
     range.finish(scene);
     if (end == count) range.release_until(std::numeric_limits<RigidIndex>::max(), 0, scene);
@@ -66,17 +66,16 @@ void PatchTangential::slide(const PairIntegrals& pairs, std::span<const int> tou
 }
 
 // Every pair has its place in the lists, so that threads do not wait for each other.
-void PatchTangential::make_room(const PairIntegrals& pairs, std::span<const int> touching) {
-  places_.resize(touching.size() + 1);
+void PatchTangential::make_room(std::span<const PairInTouch> pairs) {
+  places_.resize(pairs.size() + 1);
   Place place;
-  for (size_t i = 0; i < touching.size(); ++i) {
+  for (size_t i = 0; i < pairs.size(); ++i) {
     places_[i] = place;
-    const auto pair = static_cast<size_t>(touching[i]);
-    const auto [a, b] = pairs.pairs()[pair];
-    const PairLaw& law = table_.between(a, b);
+    const PairInTouch& pair = pairs[i];
+    const PairLaw& law = table_.between(pair.a, pair.b);
     ++place.pair;
     if (!is_rough(law) && !is_damped(law)) continue;
-    const size_t patches = pairs.patches(pair).size(), runs = pairs.runs(pair).size();
+    const auto patches = static_cast<size_t>(pair.patches), runs = static_cast<size_t>(pair.runs);
     place.run += runs;
     if (table_.damped()) place.damper += patches;
     if (is_rough(law)) place.spring += edgewise() ? runs : patches;
@@ -144,9 +143,10 @@ const PatchTangential::PairHistory* PatchTangential::Range::find_before(RigidInd
   return nullptr;
 }
 
-void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t index, size_t i,
+void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t i,
                                        const PatchScene& scene) {
-  const auto [a, b] = pairs.pairs()[index];
+  const PairInTouch& result = pairs.touching()[i];
+  const RigidIndex a = result.a, b = result.b;
   release_until(a, b, scene);
   const TangentialForce* last = nullptr;
   if (last_ < all_.forces_before_.size()) {
@@ -173,8 +173,8 @@ void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t index,
     pair.clear();
     return;
   }
-  runs_ = pairs.runs(index);
-  patches_ = pairs.patches(index);
+  runs_ = pairs.runs(result);
+  patches_ = pairs.patches(result);
   history.patches = static_cast<int>(patches_.size());
   history.runs = static_cast<int>(runs_.size());
   std::copy(runs_.begin(), runs_.end(),

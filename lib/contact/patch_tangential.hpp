@@ -24,10 +24,10 @@ class PatchTangential {
   PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                   double thickness, int threads);
 
-  /// One step further: see Kernel::slide. `touching`: the pairs in contact. Books what friction
-  /// loses, and finds how stiff the friction springs of each of these pairs hold its bodies.
-  void slide(const PairIntegrals& pairs, std::span<const int> touching, const Kinematics& now,
-             double dt, FrictionMemory& memory, std::span<PairStiffness> stiffness);
+  /// One step further: see Kernel::slide. Books what friction loses, and finds how stiff the
+  /// friction springs of each touching pair hold its bodies.
+  void slide(const PairIntegrals& pairs, const Kinematics& now, double dt, FrictionMemory& memory,
+             std::span<PairStiffness> stiffness);
 
   /// Takes back the last slide.
   void undo_slide() {
@@ -87,7 +87,7 @@ class PatchTangential {
     // Begins a step behind a pair of the last step, or with the first one.
     void begin(const Place& place, size_t force);
     // Takes the touching pair number i a step further, or adds it to those that wait for others.
-    void step_pair(const PairIntegrals& pairs, size_t pair, size_t i, const PatchScene& scene);
+    void step_pair(const PairIntegrals& pairs, size_t i, const PatchScene& scene);
     void finish(const PatchScene& scene) { batch_.flush(scene); }
     // Pairs that touch no more and come before this one.
     void release_until(RigidIndex a, RigidIndex b, const PatchScene& scene);
@@ -144,7 +144,7 @@ class PatchTangential {
   [[nodiscard]] bool is_damped(const PairLaw& law) const {
     return law.damping.normal > 0 || law.damping.tangential > 0;
   }
-  void make_room(const PairIntegrals& pairs, std::span<const int> touching);
+  void make_room(std::span<const PairInTouch> pairs);
   // In the step before, behind a pair.
   [[nodiscard]] Place place_behind(const BoxPair& pair) const;
   [[nodiscard]] size_t forces_behind(const BoxPair& pair) const;

@@ -11,7 +11,7 @@ namespace apothem {
 namespace {
 
 // Of a touching pair, ns.
-constexpr double kContactTime = 20, kLoadTime = 30, kGatherTime = 20;
+constexpr double kLoadTime = 40, kGatherTime = 20;
 
 // What friction and damping need.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
@@ -39,36 +39,21 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
 }
 
 void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
-  for (Found& found : found_) found.touching.clear();
-  pairs_.evaluate([&](size_t p, int worker) {
-    if (pairs_[p].touching()) {
-      found_[static_cast<size_t>(worker)].touching.push_back(static_cast<int>(p));
-    }
+  for (Found& found : found_) found.contacts.clear();
+  // The first thread has the first pairs.
+  pairs_.evaluate([&](const PairInTouch& pair, int worker) {
+    (worker == 0 ? contacts : found_[static_cast<size_t>(worker)].contacts)
+        .push_back(contact_of(pair));
   });
-  touching_.clear();
   for (const Found& found : found_) {
-    touching_.insert(touching_.end(), found.touching.begin(), found.touching.end());
+    contacts.insert(contacts.end(), found.contacts.begin(), found.contacts.end());
   }
-  find_contacts(contacts);
 }
 
-void PolygonKernel::find_contacts(std::vector<Contact>& contacts) {
-  stiffness_.resize(touching_.size());
-  contact_stiffness_.resize(touching_.size());
-  const size_t before = contacts.size();
-  contacts.resize(before + touching_.size());
-  threads_.chunks(static_cast<int>(touching_.size()), kContactTime, [&](int first, int end, int) {
-    for (int touching = first; touching < end; ++touching) {
-      const auto i = static_cast<size_t>(touching);
-      const auto p = static_cast<size_t>(touching_[i]);
-      const auto [a, b] = pairs_.pairs()[p];
-      stiffness_[i] = stiffness(a, b);
-      Contact& contact = contacts[before + i];
-      contact = pairs_.contact(KernelKind::polygon_kernel, p, stiffness_[i]);
-      if (pairs_.too_deep(p)) contact.share = 1;
-      contact_stiffness_[i] = contact.stiffness;
-    }
-  });
+Contact PolygonKernel::contact_of(const PairInTouch& pair) const {
+  Contact contact = pairs_.contact(KernelKind::polygon_kernel, pair, stiffness(pair.a, pair.b));
+  if (pairs_.too_deep(pair)) contact.share = 1;
+  return contact;
 }
 
 double PolygonKernel::penetration(const Contact& c, double floor) {
@@ -82,10 +67,9 @@ double PolygonKernel::penetration(const Contact& c, double floor) {
 }
 
 ContactFault PolygonKernel::fault(const Contact& c) const {
-  const auto touching = std::find_if(touching_.begin(), touching_.end(), [&](int p) {
-    return pairs_.pairs()[static_cast<size_t>(p)] == BoxPair{c.a, c.b};
-  });
-  const PairIntegral& pair = pairs_[static_cast<size_t>(*touching)];
+  const auto found = std::ranges::find_if(
+      pairs_.touching(), [&](const PairInTouch& p) { return p.a == c.a && p.b == c.b; });
+  const PairIntegral& pair = *found->integral;
   return {pair.largest_phi > kDeepestPhi ? ContactFault::Kind::singular_area
                                          : ContactFault::Kind::centre,
           c.a, c.b, surfaces_.reference(c.a) + loading_point(pair)};
@@ -93,15 +77,15 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
 
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!tangential_) return 0;
-  pair_stiffness_.resize(touching_.size());
-  tangential_->slide(pairs_, touching_, now, dt, memory, pair_stiffness_);
+  pair_stiffness_.resize(pairs_.touching().size());
+  tangential_->slide(pairs_, now, dt, memory, pair_stiffness_);
   return 0;  // its springs are accounted
 }
 
 // Each thread adds what acts on a range of bodies, for every body in the order of its pairs.
 void PolygonKernel::add_forces(const ForceViews& forces) {
   find_loads();
-  const int pairs = static_cast<int>(touching_.size());
+  const int pairs = static_cast<int>(loads_.size());
   const int bodies = surfaces_.rigid_count();
   threads_.chunks(bodies, kGatherTime * pairs / std::max(bodies, 1),
                   [&](int first, int end, int) { add_loads(forces, first, end); });
@@ -109,18 +93,18 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
 }
 
 void PolygonKernel::find_loads() {
-  const auto count = static_cast<int>(touching_.size());
-  loads_.resize(touching_.size());
-  if (!tangential_) pair_stiffness_.resize(touching_.size());
+  const std::vector<PairInTouch>& touching = pairs_.touching();
+  loads_.resize(touching.size());
+  if (!tangential_) pair_stiffness_.resize(touching.size());
   for (Found& found : found_) found.largest_force = {};
-  const TouchingPairs all{surfaces_, pairs_, touching_, stiffness_, contact_stiffness_};
-  threads_.chunks(count, kLoadTime, [&](int first, int end, int worker) {
-    if (first == end) return;
-    const int i =
-        apothem::find_loads(all, first, end, tangential_.has_value(), loads_, pair_stiffness_);
-    const PairLoad& load = loads_[static_cast<size_t>(i)];
-    found_[static_cast<size_t>(worker)].largest_force = {load.force.plane().size(), load.a, load.b};
-  });
+  const TouchingPairs all{
+      surfaces_, table_, thickness_, touching,
+      tangential_ ? std::span(tangential_->forces()) : std::span<const TangentialForce>()};
+  threads_.chunks(static_cast<int>(touching.size()), kLoadTime,
+                  [&](int first, int end, int worker) {
+                    found_[static_cast<size_t>(worker)].largest_force =
+                        apothem::find_loads(all, first, end, loads_, pair_stiffness_);
+                  });
   largest_force_ = {};
   for (const Found& found : found_) {
     if (found.largest_force.value > largest_force_.value) largest_force_ = found.largest_force;
@@ -148,13 +132,6 @@ void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidI
       body_stiffness_[static_cast<size_t>(load.b)].add(pair_stiffness_[i].b, 1);
     }
   }
-  if (tangential_) {
-    for (const TangentialForce& t : tangential_->forces()) {
-      const PairForce& f = t.all;
-      if (here(t.a)) add(t.a, f.x, f.y, f.a);
-      if (here(t.b)) add(t.b, -f.x, -f.y, f.b);
-    }
-  }
   for (RigidIndex i = first; i < end; ++i) {
     rate_bounds_[static_cast<size_t>(i)] =
         rate_bound_of(body_stiffness_[static_cast<size_t>(i)], surfaces_.rigid(i).inverse_mass);
@@ -178,11 +155,10 @@ void PolygonKernel::add_rates(std::span<double> rates, double limit) {
 }
 
 void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
-  for (size_t i = 0; i < touching_.size(); ++i) {
-    const auto p = static_cast<size_t>(touching_[i]);
-    const double size = stiffness_[i] * pairs_[p].force.norm();
-    of_bodies[static_cast<size_t>(pairs_.pairs()[p].first)] += size;
-    of_bodies[static_cast<size_t>(pairs_.pairs()[p].second)] += size;
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const double size = stiffness(pair.a, pair.b) * pair.integral->force.norm();
+    of_bodies[static_cast<size_t>(pair.a)] += size;
+    of_bodies[static_cast<size_t>(pair.b)] += size;
   }
 }
 
@@ -194,9 +170,8 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
   std::vector<BoundaryRun> runs;
   std::vector<PairIntegral> patches;
   std::vector<double> deepest;
-  for (const int touching : touching_) {
-    const auto p = static_cast<size_t>(touching);
-    const auto [a, b] = pairs_.pairs()[p];
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const RigidIndex a = pair.a, b = pair.b;
     const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
     const PlacedPotential view_a = surfaces_.shapes().view(a);
     const PlacedPotential view_b = surfaces_.shapes().view(b);

@@ -32,7 +32,7 @@ class PolygonKernel final : public Kernel {
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
-    return onset_.find(pairs_, touching_, now, dynamics, dt);
+    return onset_.find(pairs_, now, dynamics, dt);
   }
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces.rigid);
@@ -40,7 +40,7 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
 
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
-  [[nodiscard]] size_t candidates() const override { return pairs_.pairs().size(); }
+  [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
   void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(const FrictionMemory& memory,
                    std::vector<ContactRecord>& records) const override;
@@ -58,12 +58,12 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
     return table_.between(a, b).normal_stiffness * thickness_;
   }
-  // The touching pairs that one thread has found.
+  // What one thread has found.
   struct Found {
-    std::vector<int> touching;
+    std::vector<Contact> contacts;
     PairPeak largest_force;
   };
-  void find_contacts(std::vector<Contact>& contacts);
+  [[nodiscard]] Contact contact_of(const PairInTouch& pair) const;
   void find_loads();
   void add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end);
   void add_rates(std::span<double> rates, double limit);
@@ -76,10 +76,7 @@ class PolygonKernel final : public Kernel {
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   Threads threads_;
   std::vector<Found> found_;                   // by each thread
-  std::vector<int> touching_;                  // pairs
-  std::vector<double> stiffness_;              // k_n times the thickness of these, N/m
-  std::vector<double> contact_stiffness_;      // of their contacts, N/m
-  std::vector<PairLoad> loads_;                // of these
+  std::vector<PairLoad> loads_;                // of the touching pairs
   std::vector<PairStiffness> pair_stiffness_;  // of these: of springs, then also of the contacts
   std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
   std::vector<double> rate_bounds_;            // of each rigid body, 1/s^2

@@ -46,12 +46,6 @@ void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {
   }
 }
 
-bool Surfaces::responsive(SurfaceIndex i) const {
-  if (!is_rigid(i)) return true;
-  const std::array<double, 3>& w = rigid_[i].inverse_mass;
-  return w[0] + w[1] + w[2] > 0;
-}
-
 double Surfaces::inradius(SurfaceIndex i) const {
   return is_rigid(i) ? rigid_[i].inradius : 1 / shapes_.slope(i);
 }

@@ -71,7 +71,11 @@ class Surfaces {
   [[nodiscard]] bool is_rigid(SurfaceIndex i) const { return kinds_[i] == SurfaceKind::polygon; }
   [[nodiscard]] const Rigid& rigid(RigidIndex i) const { return rigid_[i]; }
   /// True if forces can move the body of a surface.
-  [[nodiscard]] bool responsive(SurfaceIndex i) const;
+  [[nodiscard]] bool responsive(SurfaceIndex i) const {
+    if (!is_rigid(i)) return true;
+    const std::array<double, 3>& w = rigid_[i].inverse_mass;
+    return w[0] + w[1] + w[2] > 0;
+  }
   /// Of each body against a force through its mass centre, 1/kg; 0 where forces cannot move it.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   /// Largest inscribed circle of a polygon, or smallest length r of an element's potential, m.
