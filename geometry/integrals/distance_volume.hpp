@@ -19,6 +19,7 @@
 #include <limits>
 #include <vector>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/distance_outline.hpp"
 #include "apothem/geometry/potential/piecewise_minimum.hpp"
 #include "apothem/geometry/potential/quadratic.hpp"
@@ -309,9 +310,8 @@ class DistanceVolume {
   // The volume between the directions t1 and t2 up to the border: the integral of min(r, rho) rho
   // over rho and theta, or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
-    using std::atan2;
     using std::sqrt;
-    const Real half_angle = atan2(Real(t2 - t1), Real(1 + t1 * t2));
+    const Real half_angle = arc_tangent(Real(t2 - t1), Real(1 + t1 * t2));
     const Real cone = top_ * top_ * top_ / 3;
     const Real& d = reach.d;
     if (reach.parabola) {

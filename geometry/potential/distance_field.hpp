@@ -15,6 +15,7 @@
 #include <limits>
 #include <vector>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/line_crossings.hpp"
 #include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
@@ -50,7 +51,6 @@ struct PlacedDistance {
 /// of the first integral are positive.
 template <class Real>
 std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) {
-  using std::asinh;
   using std::sqrt;
   const Real w2 = w1 + h;
   const Real m = w1 + h / 2;
@@ -64,7 +64,7 @@ std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) 
     const Real product = w1 * w2;
     const Real ratio = product > 0 ? Real((1 + (w1 * w1 + w2 * w2 + d2) / (r1 * r2 + product)) / 2)
                                    : Real((1 + (r1 * r2 - product) / d2) / 2);
-    sum += d2 * asinh(Real(h * ratio / r));
+    sum += d2 * inverse_hyperbolic_sine(Real(h * ratio / r));
   }
   sum /= 2;
   const Real rise = h * m / r;  // r2 - r1

@@ -16,4 +16,11 @@ double natural_logarithm(double x) { return Sleef_cinz_logd1_u10purec(x); }
 double power(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
 double cube_root(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
 
+double inverse_hyperbolic_sine(double x) {
+  constexpr double kSquareLost = 1e8;  // from here on sqrt(x^2 + 1) is x
+  constexpr double kLogarithmOfTwo = 0.69314718055994530942;
+  if (!(std::abs(x) > kSquareLost)) return Sleef_cinz_asinhd1_u10purec(x);
+  return std::copysign(natural_logarithm(std::abs(x)) + kLogarithmOfTwo, x);
+}
+
 }  // namespace apothem

@@ -1,7 +1,11 @@
 // Elementary functions with the same bits on every processor. Those of the C library differ in the
 // last digit between processors with and without fused multiplication and addition. Errors are at
 // most one unit in the last place.
+//
+// Templates are for other number types, which take the functions of their own library.
 #pragma once
+
+#include <cmath>
 
 namespace apothem {
 
@@ -13,11 +17,22 @@ struct SineCosine {
 [[nodiscard]] double tangent(double angle);
 /// Angle of the direction (x, y), from -pi to pi.
 [[nodiscard]] double arc_tangent(double y, double x);
+template <class N>
+[[nodiscard]] N arc_tangent(const N& y, const N& x) {
+  using std::atan2;
+  return atan2(y, x);
+}
 [[nodiscard]] double exponential(double x);
 /// Natural logarithm.
 [[nodiscard]] double natural_logarithm(double x);
 /// x to the power y.
 [[nodiscard]] double power(double x, double y);
 [[nodiscard]] double cube_root(double x);
+[[nodiscard]] double inverse_hyperbolic_sine(double x);
+template <class N>
+[[nodiscard]] N inverse_hyperbolic_sine(const N& x) {
+  using std::asinh;
+  return asinh(x);
+}
 
 }  // namespace apothem

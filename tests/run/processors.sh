@@ -16,7 +16,9 @@ hopper=(--set fill.0.count=24 --set 'fill.0.shapes=[{"quadrilateral":{}},{"cross
 # Meshes: the same as finite elements that stiffen as a logarithm.
 soft=("${hopper[@]}" --set 'materials.rock={"density":2000,"young":1e8,"poisson":0.2,"law":"neo_hookean"}'
       --set 'fill.0.mesh={"size":0.1,"element":"T3"}')
-declare -A until=([hopper]=0.4 [soft]=0.16)
+# Crosses by the distance from their boundaries in place of their roofs.
+distance=("${hopper[@]}" --set contact.field=distance)
+declare -A until=([hopper]=0.4 [soft]=0.16 [distance]=0.2)
 
 hash_of() { # NAME ARGUMENTS: with the processor in $on
   local name=$1
@@ -24,7 +26,7 @@ hash_of() { # NAME ARGUMENTS: with the processor in $on
   $on "$program" run "$data/studies/hopper-fill.json" "$@" -o "$name" --quiet --overwrite
   grep -o '"final_state_hash": *"[^"]*"' "$name/run.json"
 }
-for scene in hopper soft; do
+for scene in hopper soft distance; do
   declare -n arguments=$scene
   on=
   arguments+=(--until "${until[$scene]}")

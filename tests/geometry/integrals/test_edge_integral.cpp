@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "apothem/geometry/integrals/placed_shapes.hpp"
 #include "support.hpp"
 
 using namespace apothem;
