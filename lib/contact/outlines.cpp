@@ -339,6 +339,22 @@ void Outlines::prepare_search() {
   }
 }
 
+std::optional<Outlines::Notch> Outlines::closed_notch() const {
+  constexpr double kSharp = 3;  // length of the bisector, over the height: an angle of 39 degrees
+  std::optional<Notch> found;
+  double longest = kSharp * kSharp;
+  each_active_vertex([&](int i) {
+    const double square = mx[i] * mx[i] + my[i] * my[i];
+    if (node[i] < 0 || !(square > longest)) return;
+    const int before = previous[i];
+    const bool reflex = tx[before] * ty[i] - ty[before] * tx[i] < 0;
+    if (!reflex || winding(top(i), body[i]) > 0) return;
+    longest = square;
+    found = {i, 2 * std::asin(1 / std::sqrt(square))};
+  });
+  return found;
+}
+
 int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
   int sum = 0;
   for (int i = bodies[b].first; i < bodies[b].end; ++i) {

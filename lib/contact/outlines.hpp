@@ -102,6 +102,16 @@ class Outlines {
   [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
                             bool* clear = nullptr) const;
 
+  /// A reflex corner of an active body with a mesh, so sharp that the collar reaches out of the
+  /// body on the other side: self-contact is wrong there (docs/theory.md, Contact of a body with
+  /// itself).
+  struct Notch {
+    int vertex;
+    double angle;  ///< between its edges, outside the body, rad
+  };
+  /// The sharpest one.
+  [[nodiscard]] std::optional<Notch> closed_notch() const;
+
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
   /// Half the length of the two edges at a vertex, m.
   [[nodiscard]] double share(int vertex) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "apothem/dynamics/unstable.hpp"
@@ -181,6 +182,22 @@ void ContactTerm::check_drift(const State& state, double dt) {
                   "time.safety",
                   name(farthest), stride * dt, at_time(state)),
       farthest);
+}
+
+void ContactTerm::watch(const State& state) {
+  if (!touches_itself(model_)) return;
+  closed_notch_.clear();
+  const Outlines& outlines = contacts_.surfaces().outlines();
+  const std::optional<Outlines::Notch> notch = outlines.closed_notch();
+  if (!notch) return;
+  const Vec2 world = outlines.point(notch->vertex) + model_.origin;
+  closed_notch_ = fmt::format(
+      "the inner corner at ({:.6g}, {:.6g}) m of \"{}\" had closed to {:.2g} degrees {}, and "
+      "contact "
+      "of a body with itself is not right below that; give the corner two vertices, reduce the "
+      "load, or take a stiffer material",
+      world.x(), world.y(), name(outlines.body[notch->vertex]),
+      notch->angle * 180 / std::numbers::pi, at_time(state));
 }
 
 void ContactTerm::add_forces(const Evaluation& now) {

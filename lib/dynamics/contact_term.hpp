@@ -36,6 +36,7 @@ class ContactTerm final : public Term {
   }
   /// Throws Unstable if a body has moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt) override;
+  void watch(const State& state) override;
   void add_energies(const State& state, double dt, Energies& energies) override;
   void start_ledger() override;
   void bound_step(StepBounds& bounds) override;
@@ -62,6 +63,9 @@ class ContactTerm final : public Term {
 
   /// See Simulation::inherit.
   void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
+
+  /// What was wrong with the contact of a body with itself when it was last looked at, in words.
+  [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// The largest slope of the potential of each body, rigid ones first, 1/m.
@@ -94,6 +98,7 @@ class ContactTerm final : public Term {
   double shortest_inradius_ = 0;  // of these, m
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
+  std::string closed_notch_;
 };
 
 /// The smallest inradius of elements at the boundaries of all meshes, m.

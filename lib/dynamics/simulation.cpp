@@ -106,11 +106,14 @@ void Simulation::step() {
   }
 }
 
-// Where elements have collapsed, all that follows from it is misleading.
+// Where elements have collapsed, or a body cannot feel itself any more, all that follows from it is
+// misleading.
 void Simulation::explain(const Unstable& error) const {
   const std::string collapse = elements_ ? elements_->collapse(state_) : "";
-  if (collapse.empty()) throw error;
-  throw Unstable(collapse, error.body());
+  if (!collapse.empty()) throw Unstable(collapse, error.body());
+  const std::string notch = contact_ ? contact_->closed_notch() : "";
+  if (notch.empty()) throw error;
+  throw Unstable(fmt::format("{}. The cause may be that {}", error.what(), notch), error.body());
 }
 
 void Simulation::take_step() {

@@ -570,6 +570,25 @@ TEST_CASE("a body that folds onto itself stops with the place", "[program]") {
   CHECK(content(folder / "tongs/frames.pvd").find("bodies_000001.vtu") != std::string::npos);
 }
 
+TEST_CASE("a run that fails where an inner corner has closed names the corner", "[program]") {
+  const Folder folder;
+  const std::string file = folder.write("slit.json", R"({
+    "materials": { "rubber": { "density": 1000, "young": 1e5, "poisson": 0.2, "law": "neo_hookean" }, "steel": { "density": 8000 } },
+    "contact": { "normal_stiffness": 1e6, "self_contact": "compute" },
+    "bodies": [
+      { "name": "block", "material": "rubber",
+        "mesh": { "fill": { "polygon": [[0,0],[1,0],[1,0.6],[0.7,0.6],[0.5,0.2],[0.3,0.6],[0,0.6]], "size": 0.1 }, "element": "T3" } },
+      { "name": "left", "material": "steel", "motion": { "velocity": [[0, 1, 0]] }, "polygon": [[-0.2,-0.2],[-0.01,-0.2],[-0.01,0.8],[-0.2,0.8]] },
+      { "name": "right", "material": "steel", "motion": { "velocity": [[0, -1, 0]] }, "polygon": [[1.01,-0.2],[1.2,-0.2],[1.2,0.8],[1.01,0.8]] } ],
+    "time": { "end": 0.5 }, "output": { "frames": 10 } })");
+  const Result r = run({"run", file, "-o", folder / "slit"}, folder);
+  INFO(r.err);
+  CHECK(r.code == 3);
+  CHECK(r.err.find("turned inside out") != std::string::npos);
+  CHECK(r.err.find("the inner corner at (") != std::string::npos);
+  CHECK(r.err.find("give the corner two vertices") != std::string::npos);
+}
+
 TEST_CASE("a load too heavy for the material stops with the place", "[program]") {
   const Folder folder;
   const std::string file = folder.write("crushed.json", R"({

@@ -214,3 +214,27 @@ TEST_CASE("the normal stiffness of a pair of materials is that of outlines as we
           Approx(3 * same.contacts->records()[0].normal.y()));
   }
 }
+
+TEST_CASE("an inner corner whose collar leaves the body is named", "[self_contact][contact]") {
+  const auto slit = [](double half_breadth, double thickness) {
+    return std::vector<Vec2>{{0, 0},
+                             {2, 0},
+                             {2, thickness + .7},
+                             {1 + half_breadth, thickness + .7},
+                             {1, thickness},
+                             {1 - half_breadth, thickness + .7},
+                             {0, thickness + .7}};
+  };
+  const auto notch = [&](double half_breadth, double thickness) {
+    const Folded body(slit(.4, thickness), slit(half_breadth, thickness), .1);
+    return body.contacts->surfaces().outlines().closed_notch();
+  };
+  // The collar is .1 deep and reaches .1 / sin of half the angle.
+  CHECK_FALSE(notch(.4, .3));
+  CHECK_FALSE(notch(.3, .3));
+  CHECK_FALSE(notch(.05, 3));
+  const std::optional<Outlines::Notch> closed = notch(.05, .3);
+  REQUIRE(closed);
+  CHECK(closed->vertex == 4);
+  CHECK(closed->angle == Approx(2 * std::atan(.05 / .7)));
+}
