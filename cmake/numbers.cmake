@@ -1,5 +1,5 @@
 # The target apothem_numbers: runs the commands that docs/numbers.json lists and says which numbers of
-# the documents are stale.
+# the documents are stale. The target apothem_numbers_write replaces these.
 find_package(Python3 COMPONENTS Interpreter)
 if(NOT Python3_FOUND)
   return()
@@ -9,10 +9,12 @@ set(programs apothem_program)
 if(TARGET apothem_tests)
   list(APPEND programs apothem_tests)
 endif()
-add_custom_target(apothem_numbers
-  COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
-          --tests ${PROJECT_BINARY_DIR} $<$<BOOL:${APOTHEM_NUMBERS_QUICK}>:--quick>
-  DEPENDS ${programs} USES_TERMINAL COMMAND_EXPAND_LISTS)
+foreach(ending IN ITEMS "" _write)
+  add_custom_target(apothem_numbers${ending}
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
+            --tests ${PROJECT_BINARY_DIR} $<$<BOOL:${APOTHEM_NUMBERS_QUICK}>:--quick> $<$<BOOL:${ending}>:--write>
+    DEPENDS ${programs} USES_TERMINAL COMMAND_EXPAND_LISTS)
+endforeach()
 if(APOTHEM_TESTS)
   add_test(NAME docs.numbers COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --texts)
   add_test(NAME docs.check_numbers

@@ -21,7 +21,9 @@ unit of the text), "below" (a bound); without it by one unit of the last digit t
 are in `commands`, and the document names them by `named`; scenes need none, `apothem run` makes them. A
 command is run once, when a number needs it.
 
-Exit code 1: a number is stale, a passage is gone, or a test does not exist.
+With --write, stale numbers are replaced by fresh ones, with as many digits, here and in docs/numbers.json.
+
+Exit code 1: a number is stale and not replaced, a passage is gone, or a test does not exist.
 """
 import argparse
 import csv as csv_module
@@ -86,6 +88,40 @@ def agrees(stated, now, within):
     else:
         slack = float(within)
     return low <= largest + slack and high >= least - slack
+
+
+def written(value, like):
+    """A number in the form of another one: as many significant digits, the same unit, blanks and exponent."""
+    match = NUMBER.search(like)
+    digits, suffix = match.group(1), match.group(2) or ""
+    mantissa, _, exponent = digits.replace(" ", "").lstrip("+-").partition("e")
+    value /= {"": 1.0, "k": 1e3, "M": 1e6}[suffix]
+    places = max(1, len(mantissa.replace(".", "").lstrip("0")))
+    if exponent:
+        shown, power = f"{value:.{places - 1}e}".split("e")
+        return f"{shown}e{int(power)}{suffix}"
+    if value == 0:
+        return "0" + suffix
+    exact = float(f"{value:.{places - 1}e}")
+    decimals = max(0, places - 1 - math.floor(math.log10(abs(exact))))
+    blank = "" if 4 <= len(mantissa) < 5 and " " not in digits else " "
+    shown = f"{exact:,.{decimals}f}".replace(",", blank)
+    if digits.lstrip("+-").startswith("."):
+        shown = shown.replace("0.", ".", 1)
+    return shown + suffix
+
+
+def restated(stated, now):
+    """What a document should state in place of `stated`: a number, a range or a bound."""
+    low, high = now if isinstance(now, (tuple, list)) else (now, now)
+    if stated.strip().startswith("<"):
+        power = math.floor(math.log10(high)) if high > 0 else -300
+        bound = math.ceil(high / 10.0 ** power) * 10.0 ** power
+        return f"< {written(bound, stated)}"
+    ends = stated.split(" to ")
+    if len(ends) == 1:
+        return written((low + high) / 2, stated)
+    return f"{written(low, ends[0])} to {written(high, ends[1])}"
 
 
 class Fresh:
@@ -243,19 +279,38 @@ class Fresh:
             raise Problem(f"{expression}: {type(error).__name__} {error}") from error
 
 
+def loose(text):
+    """A pattern of a text in which any white space stands for any other."""
+    return re.sub(r"(?:\\?\s)+", lambda _: r"\s+", re.escape(text))
+
+
 class Document:
     def __init__(self, root, name):
         self.name = name
         self.text = (root / name).read_text()
         self.lines = self.text.split("\n")
         self.covered = []
+        self.replacements = []  # (start, end, text)
 
     def line(self, position):
         return self.text.count("\n", 0, position) + 1
 
+    def write(self, path):
+        """Replaces numbers, the last ones first."""
+        for start, end, text in sorted(self.replacements, reverse=True):
+            self.text = self.text[:start] + text + self.text[end:]
+        path.write_text(self.text)
+
+    def places(self, passage):
+        """Where the numbers in braces of a passage stand."""
+        pattern = "".join(f"({loose(piece)})" if k % 2 else loose(piece)
+                          for k, piece in enumerate(re.split(r"[{}]", passage)))
+        match = re.search(pattern, self.text)
+        return [match.span(k + 1) for k in range(match.re.groups)]
+
     def find(self, passage):
         """Start and end of a passage; any white space stands for any other."""
-        pattern = r"\s+".join(re.escape(word) for word in passage.split())
+        pattern = loose(passage.strip())
         found = list(re.finditer(pattern, self.text))
         if len(found) != 1:
             raise Problem(f"{'not' if not found else 'more than once'} in {self.name}: {passage}")
@@ -316,19 +371,25 @@ class Checker:
             self.documents[name] = Document(self.root, name)
         return self.documents[name]
 
-    def compare(self, document, line, stated, expression, within, **more):
+    def compare(self, document, line, stated, expression, within, place=None, **more):
+        """Returns what to state instead, or None. `place`: start and end of the number in the document."""
         if self.options.texts:
             compile(expression, expression, "eval")
             number(stated)
-            return
+            return None
         try:
             now = self.fresh.evaluate(expression, **more)
         except NotRun as why:
             self.table.append((document.name, line, stated, "-", f"not run: {why}"))
-            return
+            return None
         shown = " to ".join(f"{x:.7g}" for x in now) if isinstance(now, (tuple, list)) else f"{now:.7g}"
-        verdict = "ok" if agrees(stated, now, within) else "STALE"
-        self.table.append((document.name, line, stated, shown, verdict))
+        right = agrees(stated, now, within)
+        finite = all(map(math.isfinite, now if isinstance(now, (tuple, list)) else (now,)))
+        new = restated(stated, now) if self.options.write and not right and place and finite else None
+        self.table.append((document.name, line, stated, shown, "ok" if right else "written" if new else "STALE"))
+        if new:
+            document.replacements.append((*place, new))
+        return new
 
     def commands_are_named(self, document, expressions):
         """The document names every command that the expressions use."""
@@ -348,6 +409,8 @@ class Checker:
         self.commands_are_named(document, entry["values"])
         start, end = document.find(re.sub(r"[{}]", "", text))
         document.covered.append((start, end))
+        places = document.places(text)
+        pieces = re.split(r"[{}]", text)
         words_before = 0
         for k, piece in enumerate(re.split(r"\{[^}]*\}", text)[:-1]):
             words_before += len(piece.split())
@@ -355,8 +418,10 @@ class Checker:
             line = document.line(start + position[min(words_before, len(position) - 1)])
             within = entry.get("within")
             within = within[k] if isinstance(within, list) else within
-            self.compare(document, line, stated[k], entry["values"][k], within)
+            new = self.compare(document, line, stated[k], entry["values"][k], within, places[k])
+            pieces[2 * k + 1] = new or stated[k]
             words_before += len(stated[k].split())
+        entry["text"] = "".join("{" + piece + "}" if k % 2 else piece for k, piece in enumerate(pieces))
 
     def whole_table(self, entry):
         document = self.document(entry["in"])
@@ -378,13 +443,19 @@ class Checker:
                 continue
             rows += 1
             for title, values in entry["cells"].items():
-                stated = [m.group() for m in RANGE.finditer(cells[titles.index(title)])]
+                column = titles.index(title)
+                bars = [m.start() for m in re.finditer(r"\|", document.lines[i])]
+                start = sum(len(line) + 1 for line in document.lines[:i]) + bars[column] + 1
+                found = list(RANGE.finditer(document.text[start:start + bars[column + 1] - bars[column] - 1]))
+                stated = [m.group() for m in found]
+                spans = [(start + m.start(), start + m.end()) for m in found]
                 if len(stated) > len(values):
                     raise Problem(f"{document.name}:{i + 1}: more numbers than values in column {title}")
                 for k, value in enumerate(values):
                     within = entry.get("within")
                     within = within[k] if isinstance(within, list) else within
-                    self.compare(document, i + 1, stated[k] if k < len(stated) else "0", value, within, **more)
+                    self.compare(document, i + 1, stated[k] if k < len(stated) else "0", value, within,
+                                 spans[k] if k < len(spans) else None, **more)
             start = sum(len(line) + 1 for line in document.lines[:i])
             document.covered.append((start, start + len(document.lines[i])))
         if rows == 0:
@@ -437,7 +508,24 @@ class Checker:
                 except Problem as problem:
                     self.problems.append(str(problem))
         self.report()
+        if self.options.write:
+            self.write()
         return 1 if self.problems or any(row[4] == "STALE" for row in self.table) else 0
+
+    def write(self):
+        for name, document in self.documents.items():
+            if document.replacements:
+                document.write(self.root / name)
+        if not any(row[4] == "written" for row in self.table):
+            return
+        path = self.root / "docs/numbers.json"
+        text = path.read_text()
+        before = json.loads(text)["entries"]
+        for old, new in zip(before, self.entries):
+            if old.get("text") != new.get("text"):
+                text = text.replace(json.dumps(old["text"], ensure_ascii=False),
+                                    json.dumps(new["text"], ensure_ascii=False))
+        path.write_text(text)
 
     def report(self):
         for name, line, stated, now, verdict in sorted(self.table):
@@ -458,7 +546,7 @@ class Checker:
         for problem in self.problems:
             print(f"WRONG {problem}")
         verdicts = [row[4].split(":")[0] for row in self.table]
-        print(f"{verdicts.count('ok')} numbers ok, {verdicts.count('STALE')} stale, "
+        print(f"{verdicts.count('ok')} numbers ok, {verdicts.count('STALE')} stale, {verdicts.count('written')} written, "
               f"{verdicts.count('not run')} not run; {len(self.asserted)} assertions by tests; "
               f"{len(self.problems)} entries wrong")
 
@@ -470,6 +558,7 @@ def main():
     parser.add_argument("--tests", default="build/release", help="folder of apothem_tests")
     parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
     parser.add_argument("--texts", action="store_true", help="run nothing: do passages and tests exist?")
+    parser.add_argument("--write", action="store_true", help="replace stale numbers by fresh ones")
     parser.add_argument("--only", nargs="*", default=[], help="only these commands and scenes")
     parser.add_argument("--keep", help="folder for the results; what is there already is not run again")
     parser.add_argument("--uncovered", nargs="*", default=[], help="list numbers without entry of these too")

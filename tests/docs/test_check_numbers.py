@@ -61,6 +61,28 @@ class Numbers(unittest.TestCase):
         self.assertRegex(text, r"README.md:6 +stated 12.5 +now 12.7 +STALE")
         self.assertRegex(text, r"README.md:2 +stated 3e-9 +now 3e-09 +ok")
 
+    def test_stale_numbers_are_replaced_in_their_form(self):
+        self.write("build/apothem", "#!/bin/sh\necho force 1987.6 N, error 4.2e-8, 7 failures\n")
+        code, text = self.check("--write")
+        self.assertEqual(code, 0, text)
+        self.assertIn("1 numbers ok, 0 stale, 3 written", text)
+        page = (self.root / "README.md").read_text()
+        self.assertIn("force 1990\nN, error 4e-8, 7 failures", page)
+        self.assertIn("| lever (2) | 1990 |", page)
+        self.entries = json.loads((self.root / "docs/numbers.json").read_text())["entries"]
+        self.assertEqual(self.entries[0]["text"], "force {1990} N, error {4e-8}, {7} failures.")
+        code, text = self.check()
+        self.assertEqual(code, 0, text)
+        self.assertIn("4 numbers ok, 0 stale", text)
+
+    def test_ranges_and_bounds_are_replaced(self):
+        self.write("README.md", "Printed by `apothem lever`: from 0.31 to 0.52 of 10 250 and < 1e-9 of 45k\n")
+        self.entries = [{"in": "README.md", "text": "from {0.31 to 0.52} of {10 250} and {< 1e-9} of {45k}",
+                         "values": ["(0.617, 1.04)", "23456.7", "3.2e-9 + 0 * out('lever', r'force (\\S+)')", "61234"]}]
+        self.check("--write")
+        self.assertEqual((self.root / "README.md").read_text(),
+                         "Printed by `apothem lever`: from 0.62 to 1.0 of 23 457 and < 4e-9 of 61k\n")
+
     def test_a_fresh_number_may_differ_by_what_the_entry_says(self):
         self.replace("force 12.5 N", "force 12.7 N", "build/apothem")
         self.entries = self.entries[:1]
