@@ -92,6 +92,15 @@ bool Population::is_outside(const State& state, BodyIndex body) const {
   return apart(box_of(state, body), world);
 }
 
+int Population::count_outside(const State& state) const {
+  if (model_.world.outside == World::Outside::keep) return 0;
+  int count = 0;
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(state.absent.size()); ++b) {
+    if (!state.is_absent(b) && is_free(b) && is_outside(state, b)) ++count;
+  }
+  return count;
+}
+
 // What cannot move has been kept out of the way when the blocks were arranged.
 bool Population::has_room(const State& state, const std::vector<BodyIndex>& batch) const {
   std::vector<Box> boxes;

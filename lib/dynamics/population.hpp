@@ -32,6 +32,8 @@ class Population {
 
   /// A body that has left a world that stops the run, or -1.
   [[nodiscard]] BodyIndex outside() const { return outside_; }
+  /// How many bodies are outside of a world that they leave.
+  [[nodiscard]] int count_outside(const State& state) const;
   [[nodiscard]] std::int64_t left() const { return left_; }
   [[nodiscard]] std::int64_t come() const { return come_; }
 

@@ -77,6 +77,12 @@ void Run::start() {
   if (!other && !overlaps.empty() && overlaps.front().share > kSmallOverlap) {
     warn("bodies overlap at the start: " + describe_overlaps(*simulation_));
   }
+  const Population* const population = simulation_->population();
+  const int outside = population ? population->count_outside(state()) : 0;
+  if (outside > 0) {
+    warn(fmt::format("{} {} outside of the world: check \"box\" in \"world\"", outside,
+                     outside == 1 ? "body begins" : "bodies begin"));
+  }
   if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
 }
 

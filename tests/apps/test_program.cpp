@@ -570,6 +570,27 @@ TEST_CASE("a body that folds onto itself stops with the place", "[program]") {
   CHECK(content(folder / "tongs/frames.pvd").find("bodies_000001.vtu") != std::string::npos);
 }
 
+TEST_CASE("bodies that begin outside of the world are counted", "[program]") {
+  const Folder folder;
+  const auto run_with = [&](const std::string& box) {
+    const std::string file = folder.write("world.json", R"({
+      "materials": { "rock": { "density": 2000 } },
+      "bodies": [ { "name": "a", "material": "rock", "polygon": [[0,0],[1,0],[0,1]] },
+                  { "name": "b", "material": "rock", "polygon": [[4,0],[5,0],[4,1]] },
+                  { "name": "wall", "material": "rock", "motion": "fixed", "polygon": [[8,0],[9,0],[8,1]] } ],
+      "contact": { "normal_stiffness": 1e6 },
+      "world": { "box": )" + box + R"(, "outside": "remove" },
+      "time": { "end": 0.01, "step": 1e-4 } })");
+    const Result r = run({"run", file, "-o", folder / "world", "--overwrite"}, folder);
+    CHECK(r.code == 0);
+    return r.err;
+  };
+  CHECK(run_with("[[-1,-1],[6,6]]").find("outside of the world") == std::string::npos);
+  CHECK(run_with("[[-1,-1],[3,3]]").find("1 body begins outside of the world") !=
+        std::string::npos);
+  CHECK(run_with("[[6,6],[7,7]]").find("2 bodies begin outside of the world") != std::string::npos);
+}
+
 TEST_CASE("a run that fails where an inner corner has closed names the corner", "[program]") {
   const Folder folder;
   const std::string file = folder.write("slit.json", R"({
