@@ -17,6 +17,7 @@ set(APOTHEM_PUBLIC_HEADERS
   dynamics/term.hpp
   dynamics/time_step.hpp
   dynamics/unstable.hpp
+  execution/elementary.hpp
   execution/pack.hpp
   execution/parallel.hpp
   execution/stopwatch.hpp
