@@ -240,15 +240,10 @@ std::vector<ReportNumber> numbers_of(const TableComparison& c, const std::string
     const std::string where = fmt::format("{}, {} = {:g}", c.label, c.name_of_x, a.x);
     if (c.kind == TableComparison::Kind::ratio) state(where, a.y / b.y);
     if (c.kind != TableComparison::Kind::difference) continue;
-    // With one event and one miss added to each side the error is never zero (Agresti, Caffo, Am.
-    // Stat. 54, 2000, 280-288).
-    const auto share = [](const TablePoint& p) { return (p.events + 1) / (p.trials + 2); };
-    const auto variance = [&](const TablePoint& p) {
-      return share(p) * (1 - share(p)) / (p.trials + 2);
-    };
-    state(fmt::format("{}: {} of {} and {} of {}, difference over its standard error", where,
+    const auto count = [](double number) { return static_cast<size_t>(std::lround(number)); };
+    state(fmt::format("{}: {} of {} and {} of {}, probability if both are the same (Fisher)", where,
                       a.events, a.trials, b.events, b.trials),
-          (share(a) - share(b)) / std::sqrt(variance(a) + variance(b)));
+          same_proportion(count(a.events), count(a.trials), count(b.events), count(b.trials)));
   }
   if (c.kind == TableComparison::Kind::order && common > 0) {
     state(fmt::format("{}, part of {} common {}", c.label, common, c.name_of_x),

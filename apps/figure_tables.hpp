@@ -54,8 +54,8 @@ std::vector<TablePoint> points_of(const TableSource& source, const std::string& 
 
 /// A comparison of two tables at the x that both have.
 struct TableComparison {
-  /// difference: of shares, over its standard error; ratio: of the values; order: the part of the x
-  /// at which the first is at least as large as the second.
+  /// difference: of shares, the probability of it if they are the same; ratio: of the values;
+  /// order: the part of the x at which the first is at least as large as the second.
   enum class Kind { difference, ratio, order };
   Kind kind = Kind::ratio;
   TableSource first, second;

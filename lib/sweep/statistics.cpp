@@ -1,6 +1,8 @@
 #include "apothem/sweep/statistics.hpp"
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -49,6 +51,21 @@ ProportionEstimate estimate_proportion(size_t count, size_t trials) {
   result.interval = {count == 0 ? 0 : (middle - half) / scale,
                      count == trials ? 1 : (middle + half) / scale};
   return result;
+}
+
+double same_proportion(size_t count, size_t n, size_t other_count, size_t other_n) {
+  constexpr double kEqual = 1 + 1e-7;  // probabilities that only round-off tells apart
+  const size_t events = count + other_count;
+  if (n == 0 || other_n == 0) return 1;
+  const boost::math::hypergeometric table(static_cast<unsigned>(events), static_cast<unsigned>(n),
+                                          static_cast<unsigned>(n + other_n));
+  const auto likely = [&](size_t k) { return boost::math::pdf(table, static_cast<unsigned>(k)); };
+  const double here = likely(count);
+  double sum = 0;
+  for (size_t k = events > other_n ? events - other_n : 0; k <= std::min(n, events); ++k) {
+    if (const double p = likely(k); p <= kEqual * here) sum += p;
+  }
+  return std::min(sum, 1.);
 }
 
 RateEstimate estimate_rate(const std::vector<Survival>& values) {

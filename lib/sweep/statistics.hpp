@@ -33,6 +33,11 @@ struct ProportionEstimate {
 };
 ProportionEstimate estimate_proportion(size_t count, size_t n);
 
+/// The probability, if both proportions are the same, of these counts or of less likely ones with
+/// the same sums: the two-sided exact test of Fisher (J. R. Stat. Soc. 85, 1922, 87-94). 1 without
+/// trials.
+double same_proportion(size_t count, size_t n, size_t other_count, size_t other_n);
+
 /// The rate of an exponential distribution of survival, exp(-rate x). With d events in a total
 /// exposure T = sum x, of the censored ones too, the rate of maximum likelihood is d / T, and
 ///   interval = chi2(0.025; 2 d) / 2T  to  chi2(0.975; 2 d + 2) / 2T.

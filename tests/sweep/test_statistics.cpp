@@ -122,3 +122,16 @@ TEST_CASE("intervals hold the true value as often as they say", "[sweep]") {
   // Wilson's interval is close to 95 % without being exact: counts are whole numbers.
   CHECK(proportion / double(kTrials) == Approx(0.95).margin(0.02));
 }
+
+TEST_CASE("whether two proportions are the same, by Fisher's exact test") {
+  // Tea tasting (R. A. Fisher, The Design of Experiments, 1935): 34 of 70 arrangements.
+  CHECK(same_proportion(3, 4, 1, 4) == Approx(34. / 70));
+  CHECK(same_proportion(4, 4, 0, 4) == Approx(2. / 70));
+  // C(16, 2) / C(62, 2): all other tables are likelier.
+  CHECK(same_proportion(0, 2, 46, 60) == Approx(120. / 1891));
+  CHECK(same_proportion(46, 60, 0, 2) == Approx(120. / 1891));
+  CHECK(same_proportion(5, 10, 10, 20) == Approx(1));
+  CHECK(same_proportion(0, 10, 0, 20) == 1);
+  CHECK(same_proportion(10, 10, 20, 20) == 1);
+  CHECK(same_proportion(0, 0, 3, 5) == 1);
+}
