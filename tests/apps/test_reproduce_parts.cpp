@@ -156,7 +156,7 @@ TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
     { "label": "same", "state": "ratio", "at": "width", "value": 2.5, "tolerance": 0.1, "basis": "code", "source": "s",
       "first": { "table": "reference/trials.csv", "where": { "kind": ["a"] }, "x": "width", "y": "events", "y_scale": 0.125 },
       "second": { "table": "reference/trials.csv", "where": { "kind": "b" }, "x": "width", "y": "events", "y_scale": 0.1 } },
-    { "label": "shares", "state": "difference", "at": "width", "value": 0.525, "tolerance": 0.475, "basis": "code", "source": "s",
+    { "label": "shares", "state": "difference", "at": "width", "value": 1, "tolerance": 0.95, "basis": "code", "source": "s",
       "first": { "table": "reference/trials.csv", "where": { "kind": "a" }, "take": "counts", "x": "width", "y": "events", "of": "n" },
       "second": { "table": "reference/trials.csv", "where": { "kind": "b" }, "take": "counts", "x": "width", "y": "events", "of": "n" } } ] })";
   folder_of(folder, figure);
