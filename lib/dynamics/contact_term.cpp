@@ -192,10 +192,9 @@ void ContactTerm::watch(const State& state) {
   if (!notch) return;
   const Vec2 world = outlines.point(notch->vertex) + model_.origin;
   closed_notch_ = fmt::format(
-      "the inner corner at ({:.6g}, {:.6g}) m of \"{}\" had closed to {:.2g} degrees {}, and "
-      "contact "
-      "of a body with itself is not right below that; give the corner two vertices, reduce the "
-      "load, or take a stiffer material",
+      "the inner corner at ({:.6g}, {:.6g}) m of \"{}\" had closed to {:.2g} degrees {}, where "
+      "contact of a body with itself is wrong; give the corner two vertices, reduce the load, or "
+      "take a stiffer material",
       world.x(), world.y(), name(outlines.body[notch->vertex]),
       notch->angle * 180 / std::numbers::pi, at_time(state));
 }
