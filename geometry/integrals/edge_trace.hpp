@@ -342,14 +342,14 @@ inline void add_piece(const PlacedPotential& y, double u1, double v1, double u2,
 }
 
 /// The reference point of a relative to that of b, m.
-inline Vec2 arm(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+APOTHEM_INLINE Vec2 arm(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
   return {(a.reference.x() - b.reference.x()) + offset.x(),
           (a.reference.y() - b.reference.y()) + offset.y()};
 }
 
 /// Combines the integrals along the edges of a and of b to those of the pair, except for depth and
 /// breadth. `arm` is a's reference point relative to b's.
-inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
+APOTHEM_INLINE PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm) {
   PairIntegral pair;
   pair.force = {of_b.fx - of_a.fx, of_b.fy - of_a.fy};
   // Each moment is about the reference point of the polygon that owns phi. The arm moves it to the
@@ -372,8 +372,8 @@ inline PairIntegral combine(const Half& of_a, const Half& of_b, const Vec2& arm)
 }
 
 /// PairIntegral::depth.
-inline double depth(const PlacedPotential& a, const PlacedPotential& b, const Half& of_a,
-                    const Half& of_b) {
+APOTHEM_INLINE double depth(const PlacedPotential& a, const PlacedPotential& b, const Half& of_a,
+                            const Half& of_b) {
   if (!(a.steepest > 0 && b.steepest > 0)) return 0;
   return std::max(of_a.largest / b.steepest, of_b.largest / a.steepest);
 }
@@ -493,8 +493,8 @@ inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, con
 }
 
 /// True if both polygons are convex and apart; then `near` gets the margin, if it is not known.
-inline bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
-                      double steepest, NearEdges& near) {
+APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
+                              double steepest, NearEdges& near) {
   if (!(gap > 0)) return false;
   if (near.margin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 &&
       b.radius > 0) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
@@ -25,6 +24,7 @@ int PlacedShapes::add(const Potential& potential) {
               0,
               potential.steepest,
               apothem::depth_ratio(potential),
+              potential.top_points.front().norm(),
               by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
               potential.roof ? &*potential.roof : nullptr,
               node_x_.size(),
@@ -46,8 +46,8 @@ int PlacedShapes::add(const Potential& potential) {
   return size() - 1;
 }
 
-Box PlacedShapes::rotate(const Shape& shape, double angle, const Coordinates& to) const {
-  const auto [s, c] = sine_cosine(angle);
+Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const {
+  const auto [s, c] = angle;
   const Vec2* const v = body_vertices_.data() + shape.edges;
   const Vec2* const g = body_gradients_.data() + shape.edges;
   Box box;
@@ -70,7 +70,7 @@ Box PlacedShapes::rotate(const Shape& shape, double angle, const Coordinates& to
   return box;
 }
 
-void PlacedShapes::place(int i, double x, double y, double angle) {
+void PlacedShapes::place(int i, double x, double y, const SineCosine& angle) {
   const Shape& shape = shapes_[i];
   const Box box = rotate(
       shape, angle,
@@ -88,7 +88,7 @@ PlacedPotential PlacedShapes::turn(int i, double angle, Turned& t) const {
   };
   for (std::vector<double>* v : {&t.x, &t.y, &t.gx, &t.gy}) grow(*v, n + 1);
   for (std::vector<double>* v : {&t.node_x, &t.node_y}) grow(*v, nodes);
-  rotate(shape, angle,
+  rotate(shape, sine_cosine(angle),
          {t.x.data(), t.y.data(), t.gx.data(), t.gy.data(), t.node_x.data(), t.node_y.data()});
   PlacedPotential result = view(i);
   result.x = t.x.data(), result.y = t.y.data();

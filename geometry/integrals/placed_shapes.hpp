@@ -1,9 +1,11 @@
 // The shapes of all bodies where they are now: contiguous arrays for the contact kernel.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
 
 namespace apothem {
@@ -15,7 +17,8 @@ class PlacedShapes {
   int add(const Potential& potential);
 
   /// Moves shape i: reference point to (x, y), rotated by `angle`.
-  void place(int i, double x, double y, double angle);
+  void place(int i, double x, double y, double angle) { place(i, x, y, sine_cosine(angle)); }
+  void place(int i, double x, double y, const SineCosine& angle);
 
   /// Coordinates of one shape at another angle.
   struct Turned {
@@ -52,6 +55,13 @@ class PlacedShapes {
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's.
   [[nodiscard]] bool top_inside(int i, int j, const Vec2& offset) const;
+  /// It does not if the reference points are farther apart than this, m; it is HUGE_VAL where
+  /// shapes deform.
+  [[nodiscard]] double top_reach(int i, int j) const {
+    const Shape &own = shapes_[i], &other = shapes_[j];
+    constexpr double kAmply = 1 + 1e-9;
+    return own.radius > 0 && other.radius > 0 ? kAmply * (own.top_radius + other.radius) : HUGE_VAL;
+  }
   [[nodiscard]] int size() const { return static_cast<int>(shapes_.size()); }
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   /// True if shape i has a potential without a roof or a distance field.
@@ -72,16 +82,17 @@ class PlacedShapes {
     double radius;
     double slope;
     double depth_ratio;
-    Vec2 top;          // of the potential (see by_edge); of a deforming shape the mean vertex
-    const Roof* roof;  // if not convex, or
-    size_t nodes;      // (first of its placed nodes)
+    double top_radius;  // distance of the top from the reference point
+    Vec2 top;           // of the potential (see by_edge); of a deforming shape the mean vertex
+    const Roof* roof;   // if not convex, or
+    size_t nodes;       // (first of its placed nodes)
     const DistanceField* distance;
   };
   struct Coordinates {
     double *x, *y, *gx, *gy, *node_x, *node_y;
   };
   // Writes the coordinates of a shape at an angle and returns their box.
-  Box rotate(const Shape& shape, double angle, const Coordinates& to) const;
+  Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const;
 
   std::vector<Shape> shapes_;
   std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`

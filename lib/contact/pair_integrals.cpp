@@ -73,19 +73,27 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
 
 // True if the pair touches.
 bool PairIntegrals::evaluate_pair(size_t p, int index) {
-  Worker& worker = workers_[static_cast<size_t>(index)];
   const auto [a, b] = pairs_[p];
-  PairInTouch result{.a = a, .b = b, .integral = nullptr, .worker = index};
-  const PairIntegral integral = integrate(p, worker, result);
-  if (!integral.touching()) return false;
-  const auto push = [](auto& list, const auto& item) {
+  const std::vector<Box>& boxes = surfaces_.shapes().boxes();
+  if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) return false;
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  const Vec2 between = surfaces_.between(a, b);
+  find_near(p, between, worker.near_edges);
+  if (near_[p].edges.none()) return false;
+  const auto make_room = [](auto& list) {
     // Large scenes need the memory.
     if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
-    list.push_back(item);
   };
-  push(worker.integrals, integral);
-  result.integral = &worker.integrals.back();
-  push(results_of(index), result);
+  PairInTouch result{.a = a, .b = b, .integral = nullptr, .worker = index};
+  make_room(worker.integrals);
+  PairIntegral& integral = worker.integrals.emplace_back(integrate(p, between, worker, result));
+  if (!integral.touching()) {
+    worker.integrals.pop_back();
+    return false;
+  }
+  result.integral = &integral;
+  make_room(results_of(index));
+  results_of(index).push_back(result);
   return true;
 }
 
@@ -98,16 +106,11 @@ void PairIntegrals::collect() {
   }
 }
 
-PairIntegral PairIntegrals::integrate(size_t p, Worker& worker, PairInTouch& result) {
+PairIntegral PairIntegrals::integrate(size_t p, const Vec2& between, Worker& worker,
+                                      PairInTouch& result) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
-  if (apart(shapes.boxes()[static_cast<size_t>(a)], shapes.boxes()[static_cast<size_t>(b)])) {
-    return {};
-  }
-  const Vec2 between = surfaces_.between(a, b);
-  find_near(p, between, worker.near_edges);
   NearEdges& near = near_[p].edges;
-  if (near.none()) return {};
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
   const bool split = split_ == Split::all ||
@@ -144,16 +147,22 @@ double PairIntegrals::energy(const PairTable& table) const {
   return energy;
 }
 
+// phi may be limited to 1.
+double PairIntegrals::deepest(const PairInTouch& result) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const double ratio = std::max(shapes.depth_ratio(result.a), shapes.depth_ratio(result.b));
+  return result.integral->largest_phi < 1 ? ratio * result.integral->depth : HUGE_VAL;
+}
+
 Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, double k) const {
   const SurfaceIndex a = result.a, b = result.b;
   const PairIntegral& pair = *result.integral;
   const PlacedShapes& shapes = surfaces_.shapes();
-  const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
   return {kernel,
           a,
           b,
           pair.depth,
-          pair.largest_phi < 1 ? ratio * pair.depth : HUGE_VAL,  // phi may be limited to 1
+          deepest(result),
           pair.largest_phi,
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }
@@ -168,7 +177,12 @@ bool PairIntegrals::too_deep(const PairInTouch& result) const {
   }
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 offset = surfaces_.between(a, b);
-  return shapes.top_inside(a, b, offset) || shapes.top_inside(b, a, -offset);
+  const double away2 = offset.squaredNorm();
+  const auto inside = [&](SurfaceIndex i, SurfaceIndex j, const Vec2& from) {
+    const double reach = shapes.top_reach(i, j);
+    return !(away2 > reach * reach) && shapes.top_inside(i, j, from);
+  };
+  return inside(a, b, offset) || inside(b, a, -offset);
 }
 
 }  // namespace apothem

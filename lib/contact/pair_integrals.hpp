@@ -73,6 +73,8 @@ class PairIntegrals {
 
   /// The record of a pair; k is the normal stiffness times the thickness, N/m.
   [[nodiscard]] Contact contact(KernelKind kernel, const PairInTouch& pair, double k) const;
+  /// A bound of its penetration, m.
+  [[nodiscard]] double deepest(const PairInTouch& pair) const;
   /// If the pair is so deep that its potentials are about to fall again.
   [[nodiscard]] bool too_deep(const PairInTouch& pair) const;
 
@@ -104,7 +106,8 @@ class PairIntegrals {
   void begin();
   bool evaluate_pair(size_t pair, int worker);
   void collect();
-  [[nodiscard]] PairIntegral integrate(size_t pair, Worker& worker, PairInTouch& result);
+  [[nodiscard]] PairIntegral integrate(size_t pair, const Vec2& between, Worker& worker,
+                                       PairInTouch& result);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
     return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
   }

@@ -64,7 +64,7 @@ class PatchTangential {
 
   /// Takes over what the patches of another simulation remember.
   void inherit(History history);
-  void fields(Archive& archive) { archive("history", now_); }
+  void fields(Archive& archive) { now_.fields(archive); }
 
   /// Pairs whose sums are booked together, so that they do not depend on the number of threads.
   static constexpr int kBlock = 32;

@@ -34,16 +34,18 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
   }
 }
 
-void PolygonKernel::evaluate(std::vector<Contact>& contacts) {
-  for (Found& found : found_) found.contacts.clear();
-  // The first thread has the first pairs.
+void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
+  for (Found& found : found_) found.summary = {};
   pairs_.evaluate([&](const PairInTouch& pair, int worker) {
-    (worker == 0 ? contacts : found_[static_cast<size_t>(worker)].contacts)
-        .push_back(contact_of(pair));
+    found_[static_cast<size_t>(worker)].summary.include(
+        pairs_.deepest(pair), pairs_.too_deep(pair) ? 1 : pair.integral->largest_phi);
   });
-  for (const Found& found : found_) {
-    contacts.insert(contacts.end(), found.contacts.begin(), found.contacts.end());
-  }
+  summary_ = {};
+  for (const Found& found : found_) summary_.include(found.summary);
+}
+
+void PolygonKernel::add_contacts(std::vector<Contact>& contacts) const {
+  for (const PairInTouch& pair : pairs_.touching()) contacts.push_back(contact_of(pair));
 }
 
 Contact PolygonKernel::contact_of(const PairInTouch& pair) const {

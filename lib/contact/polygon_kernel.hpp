@@ -23,6 +23,8 @@ class PolygonKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] ContactSummary summary() const override { return summary_; }
+  void add_contacts(std::vector<Contact>& contacts) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
@@ -60,7 +62,7 @@ class PolygonKernel final : public Kernel {
   }
   // What one thread has found.
   struct Found {
-    std::vector<Contact> contacts;
+    ContactSummary summary;
     PairPeak largest_force;
     PairBatch batch;
     std::vector<PairLoad> loads;
@@ -80,6 +82,7 @@ class PolygonKernel final : public Kernel {
   Threads threads_;
   std::vector<Found> found_;  // by each thread
   BodyLoads loads_;
+  ContactSummary summary_;
   PairPeak largest_force_;
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;

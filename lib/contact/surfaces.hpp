@@ -105,7 +105,7 @@ class Surfaces {
 
  private:
   /// False, and it stays where it is, if it would not be at a finite place.
-  bool place_polygon(RigidIndex i, const Kinematics& now);
+  bool place_polygon(RigidIndex i, const Kinematics& now, const SineCosine& angle);
   void place_meshes(const Kinematics& now, const Threads& threads);
 
   double polygon_skin_, mesh_skin_;

@@ -9,6 +9,15 @@ SineCosine sine_cosine(double angle) {
   return {both.x, both.y};
 }
 
+std::array<SineCosine, 2> sine_cosine(const std::array<double, 2>& angles) {
+#if defined(__x86_64__)
+  const Sleef___m128d_2 both = Sleef_cinz_sincosd2_u10sse2(_mm_loadu_pd(angles.data()));
+  return {{{both.x[0], both.y[0]}, {both.x[1], both.y[1]}}};
+#else
+  return {sine_cosine(angles[0]), sine_cosine(angles[1])};
+#endif
+}
+
 double tangent(double angle) { return Sleef_cinz_tand1_u10purec(angle); }
 double arc_tangent(double y, double x) { return Sleef_cinz_atan2d1_u10purec(y, x); }
 double exponential(double x) { return Sleef_cinz_expd1_u10purec(x); }

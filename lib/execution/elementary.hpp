@@ -5,6 +5,7 @@
 // Templates are for other number types, which take the functions of their own library.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 namespace apothem {
@@ -14,6 +15,8 @@ struct SineCosine {
 };
 /// Of an angle in rad.
 [[nodiscard]] SineCosine sine_cosine(double angle);
+/// The same of two angles at once, with the same bits.
+[[nodiscard]] std::array<SineCosine, 2> sine_cosine(const std::array<double, 2>& angles);
 [[nodiscard]] double tangent(double angle);
 /// Angle of the direction (x, y), from -pi to pi.
 [[nodiscard]] double arc_tangent(double y, double x);
