@@ -37,10 +37,10 @@ class Splitter {
       return {};
     }
     RunEnds ends(work_.edge.ends);
-    const Half half_a = trace(true, near.of_a, height.of_a, height.spare, ends);
+    const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
     of_a_ = size();
     const size_t middle = ends.used();
-    const Half half_b = trace(false, near.of_b, height.of_b, height.spare, ends);
+    const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
     return edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle);
   }
 
@@ -85,13 +85,14 @@ class Splitter {
  private:
   // Finds the runs on the edges of a inside b if `of_a`, otherwise those on the edges of b inside
   // a. Returns their sum, with a weight that is NaN if a coordinate is not finite.
-  Half trace(bool of_a, std::uint64_t near, const double* rows, double* spare, RunEnds& ends) {
+  Half trace(bool of_a, std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
+             RunEnds& ends) {
     const PlacedPotential& x = of_a ? a_ : b_;
     const PlacedPotential& y = of_a ? b_ : a_;
     const double dx = of_a ? offset_.x() : -offset_.x();
     const double dy = of_a ? offset_.y() : -offset_.y();
     Half sum;
-    sum.weight += walk_runs<true>(x, y, dx, dy, near, rows, spare, work_.edge,
+    sum.weight += walk_runs<true>(x, y, dx, dy, near, near_y, rows, spare, work_.edge,
                                   [&](int e, const PlacedEdge& edge, double s0, int edge0,
                                       double s1, int edge1, const SegmentMoments<double>& moments) {
                                     Half& half = work_.halves.emplace_back();

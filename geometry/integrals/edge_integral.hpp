@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "apothem/geometry/integrals/collar_trace.hpp"
 #include "apothem/geometry/integrals/near_edges.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
 #include "apothem/geometry/potential/potential.hpp"
@@ -40,8 +41,9 @@ struct PlacedPotential {
   const double* node_y = nullptr;           ///< y coordinates of the roof's nodes, m
   const DistanceField* distance = nullptr;  ///< distance field, or null
   Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
-  double radius = 0;    ///< largest distance of a vertex from `reference`, m, or 0
-  double steepest = 0;  ///< largest |g_i|, 1/m, or 0 if it is not known
+  double radius = 0;                  ///< largest distance of a vertex from `reference`, m, or 0
+  double steepest = 0;                ///< largest |g_i|, 1/m, or 0 if it is not known
+  const CollarCell* cells = nullptr;  ///< of its edges, if it is not convex
 
   /// True if phi is the lower envelope of the linear functions of the edges.
   [[nodiscard]] bool convex() const { return !roof && !distance; }
@@ -87,6 +89,7 @@ struct EdgeWorkspace {
   std::vector<double> ends;    ///< ends of the parts of edges inside the other polygon
   RoofTrace<double> roof;      ///< memory for polygons with a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
+  CollarTrace collar;              ///< memory for both
 };
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if

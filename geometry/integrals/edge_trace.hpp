@@ -261,6 +261,17 @@ inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, 
   half.largest = std::max(half.largest, m.largest);
 }
 
+/// 0, or NaN if a coordinate of two polygons is not finite. If edges are known to be near each
+/// other, all are finite.
+inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                         std::uint64_t near_x, std::uint64_t near_y) {
+  double finite = 0;  // sum of 0 * coordinate
+  if (near_x != NearEdges::kAll && near_y != NearEdges::kAll) return finite;
+  for (int i = 0; i < y.size; ++i) finite += 0 * y.x[i] + 0 * y.y[i];
+  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
+  return finite;
+}
+
 /// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. `near` are the
 /// edges that are not known to keep away, as in NearEdges. Returns 0, or NaN without any call if a
 /// coordinate is not finite. Edges that are left out are so far away that no rounding could let
@@ -391,12 +402,22 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
 /// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
 /// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
 /// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
-/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y. Returns 0, or
-/// NaN without any call if y is not convex and a coordinate is not finite.
+/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and `near_y`
+/// those of y that may enter x. Returns 0, or NaN without any call if y is not convex and a
+/// coordinate is not finite.
 template <bool crossings, class Run>
 double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                 std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
-                 const Run& run) {
+                 std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
+                 EdgeWorkspace& workspace, const Run& run) {
+  if (y.cells) {
+    if (const double finite = all_finite(x, y, dx, dy, near, near_y); !(finite == 0)) return finite;
+    if (workspace.collar.find(x, y, dx, dy, near, near_y)) {
+      for (const CollarTrace::Run& r : workspace.collar.runs()) {
+        run(r.edge, PlacedEdge(x, y, r.edge, dx, dy), r.s0, r.edge0, r.s1, r.edge1, r.moments);
+      }
+      return 0;
+    }
+  }
   if (y.roof) {
     const PlacedRoof<double> roof = placed_roof(y);
     return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {

@@ -28,7 +28,8 @@ int PlacedShapes::add(const Potential& potential) {
               by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
               potential.roof ? &*potential.roof : nullptr,
               node_x_.size(),
-              potential.distance ? &*potential.distance : nullptr};
+              potential.distance ? &*potential.distance : nullptr,
+              potential.cells.empty() ? nullptr : potential.cells.data()};
   if (shape.roof) {
     node_x_.resize(node_x_.size() + shape.roof->points.size());
     node_y_.resize(node_x_.size());

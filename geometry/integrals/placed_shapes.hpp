@@ -47,7 +47,8 @@ class PlacedShapes {
             s.distance,
             Vec2::Zero(),
             s.radius,
-            s.slope};
+            s.slope,
+            s.cells};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's.
@@ -76,6 +77,7 @@ class PlacedShapes {
     const Roof* roof;  // if not convex, or
     size_t nodes;      // (first of its placed nodes)
     const DistanceField* distance;
+    const CollarCell* cells;
   };
   struct Coordinates {
     double *x, *y, *gx, *gy, *node_x, *node_y;

@@ -50,7 +50,8 @@ struct Placement {
             potential.distance ? &*potential.distance : nullptr,
             Vec2(x[0], y[0]),
             radius,
-            potential.steepest};
+            potential.steepest,
+            potential.cells.empty() ? nullptr : potential.cells.data()};
   }
   std::vector<double> x, y, gx, gy, node_x, node_y;
   PlacedPotential view;
