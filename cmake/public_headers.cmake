@@ -30,6 +30,8 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp
+  geometry/integrals/placed_edge.hpp
+  geometry/integrals/placed_potential.hpp
   geometry/integrals/edge_trace.hpp
   geometry/integrals/penetration.hpp
   geometry/meshing/delaunay_mesh.hpp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/dispatch.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
 
 namespace apothem {
@@ -11,27 +12,17 @@ using namespace edge_detail;
 
 namespace {
 
-// The edges of p that a set stands for; if nothing is known, those whose boxes touch the other
-// polygon's, which is given by its box.
-void list_edges(const PlacedPotential& p, double dx, double dy, std::uint64_t near,
-                const Box& other, std::vector<int>& list) {
-  list.clear();
-  if (near != NearEdges::kAll) {
-    for_each_edge(near, p.size, [&](int e) { list.push_back(e); });
-    return;
-  }
-  const Box reach = other.grown(kFarAway * other.extent());
-  for (int e = 0; e < p.size; ++e) {
-    Box box;
-    box.include(p.x[e] + dx, p.y[e] + dy);
-    box.include(p.x[e + 1] + dx, p.y[e + 1] + dy);
-    if (!apart(box, reach)) list.push_back(e);
-  }
-}
-
-Box box_of(const PlacedPotential& p, double dx, double dy) {
+// The box of a polygon, so much larger that rounding lets nothing outside reach into it.
+Box reach_of(const PlacedPotential& p, double dx, double dy) {
   Box box;
   for (int i = 0; i < p.size; ++i) box.include(p.x[i] + dx, p.y[i] + dy);
+  return box.grown(kFarAway * box.extent());
+}
+
+Box edge_box(const PlacedPotential& p, int e, double dx, double dy) {
+  Box box;
+  box.include(p.x[e] + dx, p.y[e] + dy);
+  box.include(p.x[e + 1] + dx, p.y[e + 1] + dy);
   return box;
 }
 
@@ -47,33 +38,19 @@ bool encloses(const PlacedPotential& y, double px, double py) {
   return inside;
 }
 
+constexpr double kListed[16][4] = {
+    {-1, -1, -1, -1}, {1, -1, -1, -1}, {-1, 1, -1, -1}, {1, 1, -1, -1},
+    {-1, -1, 1, -1},  {1, -1, 1, -1},  {-1, 1, 1, -1},  {1, 1, 1, -1},
+    {-1, -1, -1, 1},  {1, -1, -1, 1},  {-1, 1, -1, 1},  {1, 1, -1, 1},
+    {-1, -1, 1, 1},   {1, -1, 1, 1},   {-1, 1, 1, 1},   {1, 1, 1, 1}};
+
 }  // namespace
-
-// Whether a sector of points that are nearest to the vertex is between the cells of its edges.
-inline bool CollarTrace::sector_before(const PlacedPotential& y, int vertex) const {
-  return distance_ && y.cells[vertex].reflex;
-}
-
-inline bool CollarTrace::Part::cut(double a, double b, bool a_inside, bool b_inside, int by) {
-  if (a_inside && b_inside) return true;
-  if (!a_inside && !b_inside) return false;
-  const double s = a / (a - b);
-  if (a_inside) {
-    if (s < s1) s1 = s, end1 = by;
-  } else {
-    if (s > s0) s0 = s, end0 = by;
-  }
-  return s0 < s1;
-}
 
 bool CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                        std::uint64_t near_x, std::uint64_t near_y) {
   distance_ = y.distance != nullptr;
-  Box box_x, box_y;
-  if (near_x == NearEdges::kAll) box_y = box_of(y, 0, 0);
-  if (near_y == NearEdges::kAll) box_x = box_of(x, dx, dy);
-  list_edges(x, dx, dy, near_x, box_y, edges_);
-  list_edges(y, 0, 0, near_y, box_x, cells_);
+  list_edges(x, y, dx, dy, near_x);
+  list_windows(x, y, dx, dy, near_y);
   Found found = Found::neighbour;
   while (found == Found::neighbour) found = trace(x, y, dx, dy);
   if (found == Found::deep) return false;
@@ -83,202 +60,326 @@ bool CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, doubl
          !encloses(y, x.x[0] + dx, x.y[0] + dy);
 }
 
-// The line of a cell stands between those of its neighbours.
-void CollarTrace::place_lines(const PlacedPotential& y) {
-  const int n = y.size;
-  stride_ = (3 * cells_.size() + kPack - 1) / kPack * kPack;
-  if (lines_.size() < kLineNumbers * stride_) lines_.resize(kLineNumbers * stride_);
-  slots_.resize(cells_.size());
-  double* const to = lines_.data();
-  size_t count = 0;
-  int last = -2;
-  const auto add = [&](int line) {
-    const int i = line < 0 ? n - 1 : line < n ? line : 0;
-    to[count] = y.gx[i], to[count + stride_] = y.gy[i];
-    to[count + 2 * stride_] = y.x[i], to[count + 3 * stride_] = y.y[i];
-    if (distance_) {
-      to[count + 4 * stride_] = y.x[i + 1], to[count + 5 * stride_] = y.y[i + 1];
+// If nothing is known, edges are left out whose boxes are apart from the other polygon's.
+void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                             double dy, std::uint64_t near) {
+  edges_.clear();
+  if (near != NearEdges::kAll) {
+    for_each_edge(near, x.size, [&](int e) { edges_.push_back(e); });
+  } else {
+    const Box reach = reach_of(y, 0, 0);
+    for (int e = 0; e < x.size; ++e) {
+      if (!apart(edge_box(x, e, dx, dy), reach)) edges_.push_back(e);
     }
-    ++count;
-    last = line;
+  }
+  placed_.clear();
+  for (const int e : edges_) placed_.emplace_back(x, y, e, dx, dy);
+}
+
+void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                               double dy, std::uint64_t near) {
+  windows_.clear();
+  const auto add = [&](int c) {
+    if (windows_.empty() || c >= windows_.back().first + kPack) windows_.push_back({c, 0});
+    windows_.back().cells |= 1u << (c - windows_.back().first);
   };
-  for (size_t k = 0; k < cells_.size(); ++k) {
-    const int c = cells_[k];
-    if (last < c - 1) add(c - 1);
-    if (last < c) add(c);
-    slots_[k] = count - 1;
-    add(c + 1);
+  if (near != NearEdges::kAll) {
+    for_each_edge(near, y.size, add);
+    return;
   }
-  packs_ = (count + kPack - 1) / kPack;
-  const size_t all = packs_ * kPack;
-  for (; count < all; ++count) {
-    for (size_t k = 0; k < kLineNumbers; ++k) to[count + k * stride_] = 0;
+  const Box reach = reach_of(x, dx, dy);
+  for (int c = 0; c < y.size; ++c) {
+    if (!apart(edge_box(y, c, 0, 0), reach)) add(c);
   }
 }
 
-// Writes the heights of a point over the lines and, of a distance field, where its foot on a line
-// is: behind the first vertex, and behind the second one.
-inline void CollarTrace::place_point(double px, double py, double* row) const {
-  using Pack = PackOf<kPack>;
-  for (size_t i = 0; i < packs_ * kPack; i += kPack) {
-    const double* const line = lines_.data() + i;
-    const Pack gx = Pack::load(line), gy = Pack::load(line + stride_);
-    const Pack rx = Pack(px) - Pack::load(line + 2 * stride_);
-    const Pack ry = Pack(py) - Pack::load(line + 3 * stride_);
-    (gx * rx + gy * ry).store(row + i);
-    if (!distance_) continue;
-    const Pack tx = Pack(px) - Pack::load(line + 4 * stride_);
-    const Pack ty = Pack(py) - Pack::load(line + 5 * stride_);
-    (gy * rx - gx * ry).store(row + stride_ + i);
-    (gy * tx - gx * ty).store(row + 2 * stride_ + i);
-  }
+// The last window that begins with the cell or before it, or null.
+CollarTrace::Window* CollarTrace::window_of(int cell) {
+  const auto behind = std::upper_bound(windows_.begin(), windows_.end(), cell,
+                                       [](int c, const Window& w) { return c < w.first; });
+  return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
-CollarTrace::Found CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx,
-                                      double dy) {
-  place_lines(y);
-  runs_.clear();
-  const size_t row = (distance_ ? 3 : 1) * stride_;
-  if (rows_.size() < 2 * row) rows_.resize(2 * row);
-  double* from = rows_.data();
-  double* to = from + row;
-  int placed = -1;  // the vertex of x in `to`
-  for (const int e : edges_) {
-    const PlacedEdge edge(x, y, e, dx, dy);
-    px_ = edge.px, py_ = edge.py, ex_ = edge.ex, ey_ = edge.ey;
-    std::swap(from, to);
-    if (placed != e || edge.shortened) place_point(px_, py_, from);
-    if (edge.shortened) {
-      place_point(px_ + ex_, py_ + ey_, to);
-      placed = -1;
-    } else {
-      place_point(x.x[e + 1] + dx, x.y[e + 1] + dy, to);
-      placed = e + 1;
-    }
-    pieces_.clear();
-    for (size_t k = 0; k < cells_.size(); ++k) {
-      Found found = trace_cell(y, from, to, k);
-      const int c = cells_[k], next = c + 1 == y.size ? 0 : c + 1;
-      if (found == Found::all && sector_before(y, c)) {
-        found = trace_sector(y, from, to, c, slots_[k]);
-      }
-      const bool next_follows = k + 1 < cells_.size() ? cells_[k + 1] == next : cells_[0] == next;
-      if (found == Found::all && !next_follows && sector_before(y, next)) {
-        found = trace_sector(y, from, to, next, slots_[k] + 1);
-      }
-      if (found != Found::all) return found;
-    }
-    if (!pieces_.empty()) close_pieces(e, distance_ ? y.distance->slope : 0);
+void CollarTrace::add_cell(int cell) {
+  Window* const window = window_of(cell);
+  if (window && cell < window->first + kPack) {
+    window->cells |= 1u << (cell - window->first);
+    return;
+  }
+  const auto at = window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
+  windows_.insert(at, {cell, 1});
+}
+
+APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, double px, double py,
+                                       double* row) const {
+  const auto over = [&](int i) APOTHEM_LAMBDA {
+    return Pack::load(y.gx + i) * (Pack(px) - Pack::load(y.x + i)) +
+           Pack::load(y.gy + i) * (Pack(py) - Pack::load(y.y + i));
+  };
+  over(first).store(row + kHeight * kPack);
+  over(first - 1).store(row + kHeightBefore * kPack);
+  over(first + 1).store(row + kHeightAfter * kPack);
+  if (!distance_) return;
+  const auto foot = [&](int vertex) APOTHEM_LAMBDA {
+    return Pack::load(y.gy + first) * (Pack(px) - Pack::load(y.x + vertex)) -
+           Pack::load(y.gx + first) * (Pack(py) - Pack::load(y.y + vertex));
+  };
+  foot(first).store(row + kFoot * kPack);
+  foot(first + 1).store(row + kFootFromEnd * kPack);
+}
+
+// The part of an edge that is left, in several cells at once.
+struct CollarTrace::Parts {
+  Pack::Mask there;
+  Pack s0{0.}, s1{1.}, end0{double(kEdge)}, end1{double(kEdge)};
+  // Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
+  APOTHEM_INLINE void cut(const Pack& a, const Pack& b, const Pack::Mask& a_inside,
+                          const Pack::Mask& b_inside, End by) {
+    there = there & (a_inside | b_inside);
+    const Pack s = a / (a - b);
+    const Pack::Mask ends = a_inside & (!b_inside) & (s < s1);
+    const Pack::Mask begins = (!a_inside) & b_inside & (s > s0);
+    s1 = select(ends, s, s1);
+    end1 = select(ends, Pack(double(by)), end1);
+    s0 = select(begins, s, s0);
+    end0 = select(begins, Pack(double(by)), end0);
+  }
+};
+
+// The pieces of an edge in the cells of a window.
+APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
+                                                           const Window& window, const double* from,
+                                                           const double* to) {
+  const auto row = [](const double* of, Row k)
+                       APOTHEM_LAMBDA { return Pack::load(of + k * kPack); };
+  const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
+  Parts parts;
+  const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
+  parts.there = (a_inside | b_inside) & (Pack::load(kListed[window.cells]) > zero);
+  if (!any(parts.there)) return Found::all;
+  parts.cut(a, b, a_inside, b_inside, kOwn);
+  const Pack side_before = Pack::load(y.cells->side.data() + window.first);
+  const Pack side_after = Pack::load(y.cells->side.data() + window.first + 1);
+  Pack fa = side_before * (row(from, kHeightBefore) - a),
+       fb = side_before * (row(to, kHeightBefore) - b);
+  if (distance_) {
+    fa = select(side_before < zero, row(from, kFoot), fa);
+    fb = select(side_before < zero, row(to, kFoot), fb);
+  }
+  parts.cut(fa, fb, fa >= zero, fb >= zero, kBorderBefore);
+  fa = side_after * (row(from, kHeightAfter) - a), fb = side_after * (row(to, kHeightAfter) - b);
+  if (distance_) {
+    fa = select(side_after < zero, -row(from, kFootFromEnd), fa);
+    fb = select(side_after < zero, -row(to, kFootFromEnd), fb);
+  }
+  parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
+  parts.there = parts.there & (parts.s0 < parts.s1);
+  if (!any(parts.there)) return Found::all;
+  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
+  // A cell without depth must not be entered.
+  const Pack::Mask crossed = (parts.end0 == zero) | (parts.end1 == zero);
+  if (any(parts.there & (depth == zero) & crossed)) return Found::deep;
+  parts.cut(depth - a, depth - b, a < depth, b < depth, kTop);
+  parts.there = parts.there & (parts.s0 < parts.s1);
+  if (!any(parts.there)) return Found::all;
+  const Pack v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
+  const Pack at_end = select(parts.s1 == Pack(1.), b, a + parts.s1 * (b - a));
+  const Pack v1 = select(parts.end1 == zero, zero, at_end);
+  const Pack inner = double(kEdge);  // borders and depths are behind it
+  const bool bounded = any(parts.there & ((parts.end0 > inner) | (parts.end1 > inner)));
+  for (int k = 0; k < kPack; ++k) {
+    if (parts.there.m[k] == 0) continue;
+    const int c = window.first + k;
+    Piece& piece = pieces_[count_++];
+    piece.s0 = parts.s0.v[k], piece.s1 = parts.s1.v[k];
+    piece.v0 = v0.v[k], piece.v1 = v1.v[k];
+    piece.end0 = static_cast<End>(parts.end0.v[k]);
+    piece.end1 = static_cast<End>(parts.end1.v[k]);
+    piece.cell = c;
+    piece.arc = false;
+    if (!bounded) continue;
+    const Found found =
+        check_borders(y, piece, c == 0 ? y.size - 1 : c - 1, c + 1 == y.size ? 0 : c + 1);
+    if (found != Found::all) return found;
   }
   return Found::all;
 }
 
-// The piece is part of the result unless it leaves the collar; the cells next to it, or -1, have to
-// be looked at as well.
-inline CollarTrace::Found CollarTrace::add_piece(const PlacedPotential& y, const Piece& piece,
-                                                 int before, int after) {
-  const Part& part = piece.part;
-  if (part.end0 == kTop || part.end1 == kTop) return Found::deep;
-  pieces_.push_back(piece);
+APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_edges(const PlacedPotential& x,
+                                                           const PlacedPotential& y, double dx,
+                                                           double dy) {
+  const size_t windows = windows_.size();
+  double* from = rows_.data();
+  double* to = from + windows * kRows * kPack;
+  const auto place_all = [&](double px, double py, double* rows) APOTHEM_LAMBDA {
+    for (size_t i = 0; i < windows; ++i) {
+      place(y, windows_[i].first, px, py, rows + i * kRows * kPack);
+    }
+  };
+  int placed = -1;  // the vertex of x in `to`
+  for (size_t k = 0; k < edges_.size(); ++k) {
+    const int e = edges_[k];
+    const PlacedEdge& edge = placed_[k];
+    edge_ = &edge;
+    std::swap(from, to);
+    if (placed != e || edge.shortened) place_all(edge.px, edge.py, from);
+    placed = edge.shortened ? -1 : e + 1;
+    end_x_ = edge.shortened ? edge.px + edge.ex : x.x[e + 1] + dx;
+    end_y_ = edge.shortened ? edge.py + edge.ey : x.y[e + 1] + dy;
+    place_all(end_x_, end_y_, to);
+    count_ = 0;
+    for (size_t i = 0; i < windows; ++i) {
+      const Found found =
+          trace_cells(y, windows_[i], from + i * kRows * kPack, to + i * kRows * kPack);
+      if (found != Found::all) return found;
+    }
+    if (distance_) {
+      const Found found = trace_sectors(y);
+      if (found != Found::all) return found;
+    }
+    if (count_ > 0) close_pieces(y, e);
+  }
+  return Found::all;
+}
+
+CollarTrace::Found CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                                      double dy) {
+  runs_.clear();
+  // A cell has one piece, and so has the sector of each of its two vertices.
+  if (const size_t most = 3 * kPack * windows_.size(); pieces_.size() < most) pieces_.resize(most);
+  if (const size_t all = 2 * kRows * kPack * windows_.size(); rows_.size() < all) rows_.resize(all);
   Found found = Found::all;
-  const auto enter = [&](double v, int cell, bool looked_at) {
-    if (!(v < y.cells[cell].depth)) {
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    found = trace_edges(x, y, dx, dy);
+    return 0.;
+  });
+  return found;
+}
+
+// Whether the piece stays in the collar, and the cells next to it are looked at as well.
+CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Piece& piece,
+                                              int before, int after) {
+  if (piece.end0 == kTop || piece.end1 == kTop) return Found::deep;
+  Found found = Found::all;
+  const auto enter = [&](double v, int cell, bool by_sector) {
+    if (!(v < y.cells->depth[cell])) {
       found = Found::deep;
-    } else if (!looked_at && !std::binary_search(cells_.begin(), cells_.end(), cell)) {
-      cells_.insert(std::lower_bound(cells_.begin(), cells_.end(), cell), cell);
+    } else if (!by_sector) {
+      const Window* const window = window_of(cell);
+      if (window && cell < window->first + kPack &&
+          (window->cells >> (cell - window->first) & 1) != 0) {
+        return;
+      }
+      add_cell(cell);
       if (found == Found::all) found = Found::neighbour;
     }
   };
-  for (const auto& [end, v] : {std::pair(part.end0, piece.v0), std::pair(part.end1, piece.v1)}) {
-    if (end == kBefore) enter(v, before, !piece.arc && sector_before(y, piece.cell));
-    if (end == kAfter) enter(v, after, !piece.arc && sector_before(y, after));
+  for (const auto& [end, v] : {std::pair(piece.end0, piece.v0), std::pair(piece.end1, piece.v1)}) {
+    if (end == kBorderBefore) enter(v, before, !piece.arc && sector_at(y, piece.cell));
+    if (end == kBorderAfter) enter(v, after, !piece.arc && sector_at(y, after));
   }
   return found;
 }
 
-// The piece of an edge in a cell; its ends have the rows `from` and `to`.
-inline CollarTrace::Found CollarTrace::trace_cell(const PlacedPotential& y, const double* from,
-                                                  const double* to, size_t k) {
-  const int c = cells_[k];
-  const size_t own = slots_[k];
-  const double a = from[own], b = to[own];
-  if (a < 0 && b < 0) return Found::all;
-  const int next = c + 1 == y.size ? 0 : c + 1;
-  const double depth = y.cells[c].depth;
-  Part part;
-  if (!part.cut(a, b, a >= 0, b >= 0, c)) return Found::all;
-  if (sector_before(y, c)) {
-    const double fa = from[own + stride_], fb = to[own + stride_];
-    if (!part.cut(fa, fb, fa >= 0, fb >= 0, kBefore)) return Found::all;
-  } else {
-    const double sign = y.cells[c].reflex ? -1 : 1;
-    const double fa = sign * (from[own - 1] - a), fb = sign * (to[own - 1] - b);
-    if (!part.cut(fa, fb, fa >= 0, fb >= 0, kBefore)) return Found::all;
+// The pieces in the sectors of the vertices of all cells.
+CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
+  int last = -1;  // vertex
+  const bool begins_at_zero = !windows_.empty() && windows_[0].first == 0;
+  for (const Window& window : windows_) {
+    for (int k = 0; k < kPack; ++k) {
+      if ((window.cells >> k & 1) == 0) continue;
+      const int c = window.first + k, next = c + 1 == y.size ? 0 : c + 1;
+      if (c != last && sector_at(y, c)) {
+        if (const Found found = trace_sector(y, c); found != Found::all) return found;
+      }
+      if (!(next == 0 && begins_at_zero) && sector_at(y, next)) {
+        if (const Found found = trace_sector(y, next); found != Found::all) return found;
+      }
+      last = next;
+    }
   }
-  if (sector_before(y, next)) {
-    const double fa = -from[own + 2 * stride_], fb = -to[own + 2 * stride_];
-    if (!part.cut(fa, fb, fa > 0, fb > 0, kAfter)) return Found::all;
-  } else {
-    const double sign = y.cells[next].reflex ? -1 : 1;
-    const double fa = sign * (from[own + 1] - a), fb = sign * (to[own + 1] - b);
-    if (!part.cut(fa, fb, fa > 0, fb > 0, kAfter)) return Found::all;
-  }
-  if (depth == 0) return part.end0 == c || part.end1 == c ? Found::deep : Found::all;
-  if (!part.cut(depth - a, depth - b, a < depth, b < depth, kTop)) return Found::all;
-  const double v0 = part.end0 == c ? 0 : a + part.s0 * (b - a);
-  const double v1 = part.end1 == c ? 0 : part.s1 == 1 ? b : a + part.s1 * (b - a);
-  return add_piece(y, {part, c, false, v0, v1, 0, 0}, c == 0 ? y.size - 1 : c - 1, next);
+  return Found::all;
 }
 
-// The piece in the sector of a vertex; `own` is the place of the line of the edge behind it.
-inline CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, const double* from,
-                                                    const double* to, int vertex, size_t own) {
-  const double* const e0 = from + 2 * stride_ + own - 1;  // behind the end of the edge before it
-  const double* const e1 = to + 2 * stride_ + own - 1;
-  const double ta = -from[own + stride_], tb = -to[own + stride_];  // before the other one
-  Part part;
-  if (!part.cut(*e0, *e1, *e0 >= 0, *e1 >= 0, kBefore)) return Found::all;
-  if (!part.cut(ta, tb, ta > 0, tb > 0, kAfter)) return Found::all;
+CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int vertex) {
+  const PlacedEdge& edge = *edge_;
+  Piece& piece = pieces_[count_];
+  piece = {.s0 = 0,
+           .s1 = 1,
+           .v0 = 0,
+           .v1 = 0,
+           .end0 = kEdge,
+           .end1 = kEdge,
+           .cell = vertex,
+           .arc = true,
+           .foot = 0,
+           .square = 0};
+  // Behind the end of the edge before the vertex, and before the start of the other one.
+  const auto cut = [&](int e, double sign, bool closed, End by) {
+    const auto foot = [&](double px, double py) {
+      return sign * (y.gy[e] * (px - y.x[vertex]) - y.gx[e] * (py - y.y[vertex]));
+    };
+    const double a = foot(edge.px, edge.py), b = foot(end_x_, end_y_);
+    const bool a_inside = closed ? a >= 0 : a > 0, b_inside = closed ? b >= 0 : b > 0;
+    if (a_inside && b_inside) return true;
+    if (!a_inside && !b_inside) return false;
+    const double s = a / (a - b);
+    if (a_inside && s < piece.s1) piece.s1 = s, piece.end1 = by;
+    if (b_inside && s > piece.s0) piece.s0 = s, piece.end0 = by;
+    return piece.s0 < piece.s1;
+  };
+  if (!cut(vertex - 1, 1, true, kBorderBefore)) return Found::all;
+  if (!cut(vertex, -1, false, kBorderAfter)) return Found::all;
   const int before = vertex == 0 ? y.size - 1 : vertex - 1;
-  const double depth = std::min(y.cells[before].depth, y.cells[vertex].depth);
-  const double rx = y.x[vertex] - px_, ry = y.y[vertex] - py_;
-  const double e2 = ex_ * ex_ + ey_ * ey_;
-  const double side = (ex_ * ry - ey_ * rx) * y.distance->slope;
-  const double foot = (rx * ex_ + ry * ey_) / e2;
-  const double square = side * side / e2, rate2 = e2 * y.distance->slope * y.distance->slope;
-  const auto at = [&](double s) { return square + rate2 * ((s - foot) * (s - foot)); };
-  if (!(at(std::clamp(foot, part.s0, part.s1)) < depth * depth)) return Found::all;
-  const double v0 = std::sqrt(at(part.s0)), v1 = std::sqrt(at(part.s1));
-  if (!(v0 < depth && v1 < depth)) return Found::deep;
-  return add_piece(y, {part, vertex, true, v0, v1, foot, square}, before, vertex);
+  const double depth = std::min(y.cells->depth[before], y.cells->depth[vertex]);
+  const double slope = y.distance->slope;
+  const double rx = y.x[vertex] - edge.px, ry = y.y[vertex] - edge.py;
+  const double e2 = edge.ex * edge.ex + edge.ey * edge.ey;
+  const double side = (edge.ex * ry - edge.ey * rx) * slope;
+  piece.foot = (rx * edge.ex + ry * edge.ey) / e2;
+  piece.square = side * side / e2;
+  const auto at = [&](double s) {
+    return piece.square + e2 * slope * slope * ((s - piece.foot) * (s - piece.foot));
+  };
+  if (!(at(std::clamp(piece.foot, piece.s0, piece.s1)) < depth * depth)) return Found::all;
+  piece.v0 = std::sqrt(at(piece.s0)), piece.v1 = std::sqrt(at(piece.s1));
+  if (!(piece.v0 < depth && piece.v1 < depth)) return Found::deep;
+  ++count_;
+  return check_borders(y, piece, before, vertex);
 }
 
 // Puts the pieces of an edge in order, and together to runs.
-void CollarTrace::close_pieces(int edge, double slope) {
-  for (size_t i = 1; i < pieces_.size(); ++i) {
-    for (size_t j = i; j > 0 && pieces_[j].part.s0 < pieces_[j - 1].part.s0; --j) {
+void CollarTrace::close_pieces(const PlacedPotential& y, int edge) {
+  const auto behind = [](const Piece& p, const Piece& q) {
+    return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
+  };
+  for (size_t i = 1; i < count_; ++i) {
+    for (size_t j = i; j > 0 && behind(pieces_[j - 1], pieces_[j]); --j) {
       std::swap(pieces_[j], pieces_[j - 1]);
     }
   }
-  const auto crossed = [](const Piece& piece, int end) { return end < kEnd ? piece.cell : end; };
-  const Piece* last = nullptr;
-  for (const Piece& piece : pieces_) {
-    const Part& part = piece.part;
-    const bool follows =
-        last && last->part.end1 < kEnd && part.end0 < kEnd && last->part.s1 == part.s0;
-    if (!follows) {
-      runs_.push_back({edge, part.s0, part.s1, crossed(piece, part.end0), 0, {}});
+  // Where the next cell has no piece, the edge passes a vertex up to round-off.
+  const auto crossed = [](const Piece& piece, End end) { return end == kEdge ? -1 : piece.cell; };
+  const auto border = [](End end) { return end == kBorderBefore || end == kBorderAfter; };
+  Run* run = nullptr;
+  for (size_t i = 0; i < count_; ++i) {
+    const Piece& piece = pieces_[i];
+    if (!(run && run->s1 == piece.s0 && border(pieces_[i - 1].end1) && border(piece.end0))) {
+      run = &runs_.emplace_back();
+      run->edge = edge;
+      run->placed = edge_;
+      run->s0 = piece.s0;
+      run->edge0 = crossed(piece, piece.end0);
     }
-    Run& run = runs_.back();
-    run.s1 = part.s1;
-    run.edge1 = crossed(piece, part.end1);
-    last = &piece;
-    if (!piece.arc) {
-      run.moments.add(part.s0, piece.v0, part.s1, piece.v1);
-      continue;
+    run->s1 = piece.s1;
+    run->edge1 = crossed(piece, piece.end1);
+    if (piece.arc) {
+      const double length = std::sqrt(edge_->ex * edge_->ex + edge_->ey * edge_->ey);
+      add_root(piece.square, length * y.distance->slope, piece.foot, piece.s0, piece.v0, piece.s1,
+               piece.v1, run->moments);
+    } else {
+      run->moments.add(piece.s0, piece.v0, piece.s1, piece.v1);
     }
-    const double rate = std::sqrt(ex_ * ex_ + ey_ * ey_) * slope;
-    add_root(piece.square, rate, piece.foot, part.s0, piece.v0, part.s1, piece.v1, run.moments);
   }
 }
 

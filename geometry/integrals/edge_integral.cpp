@@ -104,9 +104,11 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& ot
   const auto planes = lines(p, shift);
   if (p.roof) {
     std::vector<Ring> faces;
+    RoofNodes placed;
+    placed.place(p);
     for (const std::vector<int>& nodes : p.roof->faces) {
       Ring& face = faces.emplace_back();
-      for (const int i : nodes) face.push_back(Vec2(p.node_x[i], p.node_y[i]) + shift);
+      for (const int i : nodes) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
     }
     return lower_envelope::volume_under_faces(faces, planes, p.capped, others);
   }

@@ -18,83 +18,76 @@ Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
 }  // namespace
 
 int PlacedShapes::add(const Potential& potential) {
-  Shape shape{x_.size(),
-              gx_.size(),
-              potential.size(),
-              potential.capped(),
-              0,
-              potential.steepest,
-              apothem::depth_ratio(potential),
-              by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
-              potential.roof ? &*potential.roof : nullptr,
-              node_x_.size(),
-              potential.distance ? &*potential.distance : nullptr,
-              potential.cells.empty() ? nullptr : potential.cells.data()};
-  if (shape.roof) {
-    node_x_.resize(node_x_.size() + shape.roof->points.size());
-    node_y_.resize(node_x_.size());
+  const auto n = static_cast<size_t>(potential.size());
+  const bool convex = !potential.cells;
+  Shape shape{
+      .placed = x_.size() + (convex ? 0 : 1),
+      .edges = body_.x.size(),
+      .size = potential.size(),
+      .capped = potential.capped(),
+      .radius = 0,
+      .slope = potential.steepest,
+      .depth_ratio = apothem::depth_ratio(potential),
+      .top = by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
+      .roof = potential.roof ? &*potential.roof : nullptr,
+      .distance = potential.distance ? &*potential.distance : nullptr,
+      .cells = convex ? nullptr : &*potential.cells};
+  for (size_t k = 0; k < n; ++k) {
+    const Vec2 &v = potential.vertices[k], &g = potential.gradients[k];
+    shape.radius = std::max(shape.radius, v.norm());
+    body_.x.push_back(v.x()), body_.y.push_back(v.y());
+    body_.gx.push_back(g.x()), body_.gy.push_back(g.y());
   }
-  for (const Vec2& v : potential.vertices) shape.radius = std::max(shape.radius, v.norm());
   shapes_.push_back(shape);
-  body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
-  body_gradients_.insert(body_gradients_.end(), potential.gradients.begin(),
-                         potential.gradients.end());
-  x_.resize(x_.size() + shape.size + 1);
-  y_.resize(x_.size());
-  gx_.resize(gx_.size() + shape.size);
-  gy_.resize(gx_.size());
+  const size_t end = shape.placed + n + 1 + (convex ? 0 : kReadBehind);
+  for (std::vector<double>* numbers : {&x_, &y_, &gx_, &gy_}) numbers->resize(end);
   boxes_.emplace_back();
   return size() - 1;
 }
 
-Box PlacedShapes::rotate(const Shape& shape, double angle, const Coordinates& to) const {
-  const auto [s, c] = sine_cosine(angle);
-  const Vec2* const v = body_vertices_.data() + shape.edges;
-  const Vec2* const g = body_gradients_.data() + shape.edges;
-  Box box;
-  for (int k = 0; k < shape.size; ++k) {
-    to.x[k] = c * v[k].x() - s * v[k].y();
-    to.y[k] = s * v[k].x() + c * v[k].y();
-    to.gx[k] = c * g[k].x() - s * g[k].y();
-    to.gy[k] = s * g[k].x() + c * g[k].y();
-    box.include(to.x[k], to.y[k]);
-  }
-  to.x[shape.size] = to.x[0];
-  to.y[shape.size] = to.y[0];
-  if (shape.roof) {
-    const std::vector<Vec2>& points = shape.roof->points;
-    for (size_t k = 0; k < points.size(); ++k) {
-      to.node_x[k] = c * points[k].x() - s * points[k].y();
-      to.node_y[k] = s * points[k].x() + c * points[k].y();
+Box PlacedShapes::rotate(const Shape& shape, const BodyFrame& body, double c, double s,
+                         const Coordinates& to) {
+  const auto turn = [&](const double* from_x, const double* from_y, double* to_x, double* to_y) {
+    for (int k = 0; k < shape.size; ++k) {
+      to_x[k] = c * from_x[k] - s * from_y[k];
+      to_y[k] = s * from_x[k] + c * from_y[k];
     }
-  }
+    to_x[shape.size] = to_x[0];
+    to_y[shape.size] = to_y[0];
+    if (!shape.cells) return;
+    to_x[-1] = to_x[shape.size - 1];
+    to_y[-1] = to_y[shape.size - 1];
+  };
+  turn(body.x.data() + shape.edges, body.y.data() + shape.edges, to.x, to.y);
+  turn(body.gx.data() + shape.edges, body.gy.data() + shape.edges, to.gx, to.gy);
+  Box box;
+  for (int k = 0; k < shape.size; ++k) box.include(to.x[k], to.y[k]);
   return box;
 }
 
 void PlacedShapes::place(int i, double x, double y, double angle) {
-  const Shape& shape = shapes_[i];
-  const Box box = rotate(
-      shape, angle,
-      {x_.data() + shape.vertices, y_.data() + shape.vertices, gx_.data() + shape.edges,
-       gy_.data() + shape.edges, node_x_.data() + shape.nodes, node_y_.data() + shape.nodes});
+  Shape& shape = shapes_[i];
+  const auto [sine, cosine] = sine_cosine(angle);
+  shape.cosine = cosine, shape.sine = sine;
+  const size_t p = shape.placed;
+  const Box box = rotate(shape, body_, cosine, sine,
+                         {x_.data() + p, y_.data() + p, gx_.data() + p, gy_.data() + p});
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
 PlacedPotential PlacedShapes::turn(int i, double angle, Turned& t) const {
   const Shape& shape = shapes_[i];
-  const auto n = static_cast<size_t>(shape.size);
-  const size_t nodes = shape.roof ? shape.roof->points.size() : 0;
-  const auto grow = [](std::vector<double>& v, size_t size) {
-    if (v.size() < size) v.resize(size);
-  };
-  for (std::vector<double>* v : {&t.x, &t.y, &t.gx, &t.gy}) grow(*v, n + 1);
-  for (std::vector<double>* v : {&t.node_x, &t.node_y}) grow(*v, nodes);
-  rotate(shape, angle,
-         {t.x.data(), t.y.data(), t.gx.data(), t.gy.data(), t.node_x.data(), t.node_y.data()});
+  const auto [sine, cosine] = sine_cosine(angle);
+  const size_t size = static_cast<size_t>(shape.size) + 2 + kReadBehind;
+  for (std::vector<double>* v : {&t.x, &t.y, &t.gx, &t.gy}) {
+    if (v->size() < size) v->resize(size);
+  }
+  const Coordinates to{t.x.data() + 1, t.y.data() + 1, t.gx.data() + 1, t.gy.data() + 1};
+  rotate(shape, body_, cosine, sine, to);
   PlacedPotential result = view(i);
-  result.x = t.x.data(), result.y = t.y.data();
-  result.gx = t.gx.data(), result.gy = t.gy.data();
-  result.node_x = t.node_x.data(), result.node_y = t.node_y.data();
+  result.x = to.x, result.y = to.y;
+  result.gx = to.gx, result.gy = to.gy;
+  result.cosine = cosine, result.sine = sine;
   return result;
 }
 
@@ -110,10 +103,10 @@ int PlacedShapes::add_deforming(const Potential& potential) {
 
 bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> vertices) {
   Shape& shape = shapes_[i];
-  double* const vx = x_.data() + shape.vertices;
-  double* const vy = y_.data() + shape.vertices;
-  double* const gx = gx_.data() + shape.edges;
-  double* const gy = gy_.data() + shape.edges;
+  double* const vx = x_.data() + shape.placed;
+  double* const vy = y_.data() + shape.placed;
+  double* const gx = gx_.data() + shape.placed;
+  double* const gy = gy_.data() + shape.placed;
   const double* const inverse = inverse_length_.data() + shape.edges;
   const int n = shape.size;
   Box box;
@@ -142,8 +135,8 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
 
 bool PlacedShapes::top_inside(int i, int j, const Vec2& offset) const {
   const Shape& shape = shapes_[i];
-  const double* const x = x_.data() + shape.vertices;
-  const double* const y = y_.data() + shape.vertices;
+  const double* const x = x_.data() + shape.placed;
+  const double* const y = y_.data() + shape.placed;
   const Vec2 edge(x[1] - x[0], y[1] - y[0]);
   const Vec2 top =
       offset + Vec2(x[0], y[0]) + shape.top.x() * edge + shape.top.y() * Vec2(-edge.y(), edge.x());

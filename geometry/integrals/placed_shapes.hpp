@@ -19,7 +19,7 @@ class PlacedShapes {
 
   /// Coordinates of one shape at another angle.
   struct Turned {
-    std::vector<double> x, y, gx, gy, node_x, node_y;
+    std::vector<double> x, y, gx, gy;
   };
   /// Shape i at an angle, in the memory of `turned`, which must live as long as the result is used.
   /// For shapes that do not deform.
@@ -35,20 +35,21 @@ class PlacedShapes {
 
   [[nodiscard]] PlacedPotential view(int i) const {
     const Shape& s = shapes_[i];
-    return {x_.data() + s.vertices,
-            y_.data() + s.vertices,
-            gx_.data() + s.edges,
-            gy_.data() + s.edges,
-            s.size,
-            s.capped,
-            s.roof,
-            node_x_.data() + s.nodes,
-            node_y_.data() + s.nodes,
-            s.distance,
-            Vec2::Zero(),
-            s.radius,
-            s.slope,
-            s.cells};
+    return {.x = x_.data() + s.placed,
+            .y = y_.data() + s.placed,
+            .gx = gx_.data() + s.placed,
+            .gy = gy_.data() + s.placed,
+            .size = s.size,
+            .capped = s.capped,
+            .roof = s.roof,
+            .distance = s.distance,
+            .reference = Vec2::Zero(),
+            .radius = s.radius,
+            .steepest = s.slope,
+            .cells = s.cells,
+            .cosine = s.cosine,
+            .sine = s.sine,
+            .shift = Vec2::Zero()};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's.
@@ -65,32 +66,36 @@ class PlacedShapes {
   [[nodiscard]] double depth_ratio(int i) const { return shapes_[i].depth_ratio; }
 
  private:
+  struct BodyFrame {
+    std::vector<double> x, y, gx, gy;
+  };
   struct Shape {
-    size_t vertices;  // first of size + 1 entries of x_, y_
-    size_t edges;     // first of size entries of gx_, gy_
+    size_t placed;  // number 0 in x_, y_, gx_, gy_, where it has all numbers of a PlacedPotential
+    size_t edges;   // first of `size` numbers in the body frame
     int size;
     bool capped;
     double radius;
     double slope;
     double depth_ratio;
-    Vec2 top;          // of the potential (see by_edge); of a deforming shape the mean vertex
-    const Roof* roof;  // if not convex, or
-    size_t nodes;      // (first of its placed nodes)
+    Vec2 top;  // of the potential (see by_edge); of a deforming shape the mean vertex
+    // Of a shape that is not convex.
+    const Roof* roof;
     const DistanceField* distance;
-    const CollarCell* cells;
+    const CollarCells* cells;
+    double cosine = 1, sine = 0;  // of its angle
   };
   struct Coordinates {
-    double *x, *y, *gx, *gy, *node_x, *node_y;
+    double *x, *y, *gx, *gy;
   };
   // Writes the coordinates of a shape at an angle and returns their box.
-  Box rotate(const Shape& shape, double angle, const Coordinates& to) const;
+  static Box rotate(const Shape& shape, const BodyFrame& body, double cosine, double sine,
+                    const Coordinates& to);
 
   std::vector<Shape> shapes_;
-  std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
-  std::vector<double> inverse_length_;                // 1/m, of deforming shapes, the same
-  std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
-  std::vector<double> node_x_, node_y_;               // of roofs, the same
-  std::vector<Box> boxes_;                            // in the coordinates of the model
+  BodyFrame body_;                       // indexed by `edges`
+  std::vector<double> inverse_length_;   // 1/m, of deforming shapes, the same
+  std::vector<double> x_, y_, gx_, gy_;  // relative to the reference point, rotated
+  std::vector<Box> boxes_;               // in the coordinates of the model
 };
 
 }  // namespace apothem

@@ -15,23 +15,25 @@ constexpr double kLeastTurn = 1e-4;
 constexpr double kShortest = 1e-6;
 
 // Cells up to the given heights (phi) over their edges.
-std::vector<CollarCell> cells_of(const Polygon& polygon, const std::vector<double>& heights) {
+CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights) {
   const int n = polygon.size();
   const double shortest = kShortest * bounding_box(polygon).extent();
-  std::vector<CollarCell> cells(static_cast<size_t>(n));
+  CollarCells cells;
+  cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
+  cells.side.assign(cells.depth.size() + 1, 1);
   // phi is limited to 1, and no cell is used beyond that.
-  for (int e = 0; e < n; ++e) cells[e].depth = kSafe * std::min(heights[e], 1.);
+  for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
   for (int e = 0; e < n; ++e) {
     const int before = e == 0 ? n - 1 : e - 1;
     const Vec2 in = polygon[e] - polygon[before], out = polygon.after(e) - polygon[e];
     const double turn = cross(in, out) / (in.norm() * out.norm());
-    cells[e].reflex = turn < 0;
-    // Of a spike as well: its cells are longer than any neighbour's.
-    if (!(std::abs(turn) > kLeastTurn)) cells[before].depth = cells[e].depth = 0;
+    cells.side[e] = turn < 0 ? -1 : 1;
+    if (!(std::abs(turn) > kLeastTurn)) cells.depth[before] = cells.depth[e] = 0;
     if (!(out.norm() > shortest)) {
-      cells[before].depth = cells[e].depth = cells[e + 1 == n ? 0 : e + 1].depth = 0;
+      cells.depth[before] = cells.depth[e] = cells.depth[e + 1 == n ? 0 : e + 1] = 0;
     }
   }
+  cells.side[n] = cells.side[0];
   return cells;
 }
 
@@ -49,7 +51,7 @@ double distance(const Polygon& polygon, int e, int k) {
 
 }  // namespace
 
-std::vector<CollarCell> collar_cells(const Polygon& polygon, const Roof& roof) {
+CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n), HUGE_VAL);
   for (int e = 0; e < n; ++e) {
@@ -63,7 +65,7 @@ std::vector<CollarCell> collar_cells(const Polygon& polygon, const Roof& roof) {
 // A point in front of an edge at the height h is nearer than h to another feature only if that is
 // nearer than 2 h to the edge. For neighbours the cells themselves decide. Heights end at 1/slope,
 // where phi = 1, and at a multiple of the edge's length, so that few edges have to be looked at.
-std::vector<CollarCell> collar_cells(const Polygon& polygon, double slope) {
+CollarCells collar_cells(const Polygon& polygon, double slope) {
   constexpr double kHighest = 8;  // of its length
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n));  // m

@@ -17,16 +17,23 @@
 
 namespace apothem {
 
-/// What is known of the cell of an edge, whose number is that of its first vertex.
-struct CollarCell {
-  double depth;  ///< the cell is valid where phi is smaller; 0 if it is not to be used
-  bool reflex;   ///< whether the first vertex is reflex
+/// How many numbers behind the last one may be read, and used for nothing.
+inline constexpr int kReadBehind = 4;
+
+/// The cells of the edges of a polygon with n vertices, and kReadBehind numbers behind.
+struct CollarCells {
+  /// Edge e: its cell is valid where phi is smaller than this; 0 if it is not to be used.
+  std::vector<double> depth;
+  /// Vertex i: 1 if it is convex and -1 if it is reflex. Vertex n is vertex 0.
+  std::vector<double> side;
+
+  [[nodiscard]] bool reflex(int vertex) const { return side[vertex] < 0; }
 };
 
 /// The cells of a polygon with a roof.
-std::vector<CollarCell> collar_cells(const Polygon& polygon, const Roof& roof);
+CollarCells collar_cells(const Polygon& polygon, const Roof& roof);
 
 /// The cells of a polygon with a distance field of the given slope, 1/m.
-std::vector<CollarCell> collar_cells(const Polygon& polygon, double slope);
+CollarCells collar_cells(const Polygon& polygon, double slope);
 
 }  // namespace apothem

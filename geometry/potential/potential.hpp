@@ -26,14 +26,14 @@ namespace apothem {
 /// The contact potential of a polygon. A polygon that is not convex has either a roof or a distance
 /// field, and phi is then not the minimum of the linear functions of its edges.
 struct Potential {
-  std::vector<Vec2> vertices;     ///< p_i relative to an origin that the owner chooses, m
-  std::vector<Vec2> gradients;    ///< g_i, 1/m
-  double top = 0;                 ///< maximum of phi if it is not limited to 1
-  std::vector<Vec2> top_points;   ///< where phi is highest: points and ends of ridges, m
-  double steepest = 0;            ///< largest |g_i|, 1/m
-  Rare<Roof> roof;                ///< roof over the straight skeleton
-  Rare<DistanceField> distance;   ///< distance field
-  std::vector<CollarCell> cells;  ///< of its collar, one per edge, if it is not convex
+  std::vector<Vec2> vertices;    ///< p_i relative to an origin that the owner chooses, m
+  std::vector<Vec2> gradients;   ///< g_i, 1/m
+  double top = 0;                ///< maximum of phi if it is not limited to 1
+  std::vector<Vec2> top_points;  ///< where phi is highest: points and ends of ridges, m
+  double steepest = 0;           ///< largest |g_i|, 1/m
+  Rare<Roof> roof;               ///< roof over the straight skeleton
+  Rare<DistanceField> distance;  ///< distance field
+  Rare<CollarCells> cells;       ///< of its collar, if it is not convex
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
