@@ -1,6 +1,7 @@
 #include "apothem/geometry/integrals/collar_trace.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "apothem/execution/dispatch.hpp"
@@ -128,6 +129,12 @@ APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, doub
   foot(first + 1).store(row + kFootFromEnd * kPack);
 }
 
+// A bit for each lane.
+APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
+  const MaskOf<4>::Vector b = mask.m & MaskOf<4>::Vector{1, 2, 4, 8};
+  return static_cast<unsigned>((b[0] | b[1]) | (b[2] | b[3]));
+}
+
 // The part of an edge that is left, in several cells at once.
 struct CollarTrace::Parts {
   Pack::Mask there;
@@ -179,27 +186,33 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   // A cell without depth must not be entered.
   const Pack::Mask crossed = (parts.end0 == zero) | (parts.end1 == zero);
   if (any(parts.there & (depth == zero) & crossed)) return Found::deep;
-  parts.cut(depth - a, depth - b, a < depth, b < depth, kTop);
-  parts.there = parts.there & (parts.s0 < parts.s1);
-  if (!any(parts.there)) return Found::all;
+  const Pack::Mask a_below = a < depth, b_below = b < depth;
+  if (any(parts.there & !(a_below & b_below))) {
+    parts.cut(depth - a, depth - b, a_below, b_below, kTop);
+    parts.there = parts.there & (parts.s0 < parts.s1);
+    if (!any(parts.there)) return Found::all;
+  }
   const Pack v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
   const Pack at_end = select(parts.s1 == Pack(1.), b, a + parts.s1 * (b - a));
   const Pack v1 = select(parts.end1 == zero, zero, at_end);
-  const Pack inner = double(kEdge);  // borders and depths are behind it
-  const bool bounded = any(parts.there & ((parts.end0 > inner) | (parts.end1 > inner)));
-  for (int k = 0; k < kPack; ++k) {
-    if (parts.there.m[k] == 0) continue;
+  enum { s0_, s1_, v0_, v1_, end0_, end1_, kNumbers };
+  double numbers[kNumbers][kPack];
+  parts.s0.store(numbers[s0_]), parts.s1.store(numbers[s1_]);
+  v0.store(numbers[v0_]), v1.store(numbers[v1_]);
+  parts.end0.store(numbers[end0_]), parts.end1.store(numbers[end1_]);
+  for (unsigned rest = bits(parts.there); rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
     const int c = window.first + k;
     Piece& piece = pieces_[count_++];
-    piece.s0 = parts.s0.v[k], piece.s1 = parts.s1.v[k];
-    piece.v0 = v0.v[k], piece.v1 = v1.v[k];
-    piece.end0 = static_cast<End>(parts.end0.v[k]);
-    piece.end1 = static_cast<End>(parts.end1.v[k]);
+    piece.s0 = numbers[s0_][k], piece.s1 = numbers[s1_][k];
+    piece.v0 = numbers[v0_][k], piece.v1 = numbers[v1_][k];
+    piece.end0 = static_cast<End>(numbers[end0_][k]);
+    piece.end1 = static_cast<End>(numbers[end1_][k]);
     piece.cell = c;
     piece.arc = false;
-    if (!bounded) continue;
-    const Found found =
-        check_borders(y, piece, c == 0 ? y.size - 1 : c - 1, c + 1 == y.size ? 0 : c + 1);
+    if (piece.end0 <= kEdge && piece.end1 <= kEdge) continue;
+    const Found found = check_borders(y, piece, c == 0 ? y.size - 1 : c - 1,
+                                      c + 1 == y.size ? 0 : c + 1);
     if (found != Found::all) return found;
   }
   return Found::all;
