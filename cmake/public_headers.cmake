@@ -26,9 +26,12 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/exact/exact_integral.hpp
   geometry/exact/overlap.hpp
   geometry/exact/pair_methods.hpp
+  geometry/integrals/collar_trace.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp
+  geometry/integrals/placed_edge.hpp
+  geometry/integrals/placed_potential.hpp
   geometry/integrals/edge_trace.hpp
   geometry/integrals/penetration.hpp
   geometry/meshing/delaunay_mesh.hpp
@@ -41,6 +44,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/progress.hpp
   geometry/polygon/segment_moments.hpp
   geometry/polygon/triangulation.hpp
+  geometry/potential/collar_cells.hpp
   geometry/potential/distance_field.hpp
   geometry/potential/inscribed_circle.hpp
   geometry/potential/piecewise_minimum.hpp

@@ -37,10 +37,10 @@ class Splitter {
       return {};
     }
     RunEnds ends(work_.edge.ends);
-    const Half half_a = trace(true, near.of_a, height.of_a, height.spare, ends);
+    const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
     of_a_ = size();
     const size_t middle = ends.used();
-    const Half half_b = trace(false, near.of_b, height.of_b, height.spare, ends);
+    const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
     return edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle);
   }
 
@@ -48,13 +48,20 @@ class Splitter {
 
   /// Joins the runs to patches.
   void group() {
-    work_.parent.resize(runs_.size());
-    for (int r = 0; r < size(); ++r) work_.parent[r] = r;
-    work_.joined.assign(2 * runs_.size(), 0);
+    const auto grow = [](auto& list, size_t least) {
+      if (list.size() < least) list.resize(2 * least);
+    };
+    grow(work_.parent, runs_.size());
+    grow(work_.joined, 2 * runs_.size());
+    for (int r = 0; r < size(); ++r) {
+      work_.parent[r] = r;
+      work_.joined[2 * r] = work_.joined[2 * r + 1] = 0;
+    }
+    loose_ = 2 * size();
     join_at_vertices(0, of_a_, a_.size);
     join_at_vertices(of_a_, size(), b_.size);
     join_at_crossings();
-    join_loose_ends();
+    if (loose_ > 0) join_loose_ends();
   }
 
   /// Numbers the patches in the order of their first run and returns how many there are.
@@ -85,13 +92,14 @@ class Splitter {
  private:
   // Finds the runs on the edges of a inside b if `of_a`, otherwise those on the edges of b inside
   // a. Returns their sum, with a weight that is NaN if a coordinate is not finite.
-  Half trace(bool of_a, std::uint64_t near, const double* rows, double* spare, RunEnds& ends) {
+  Half trace(bool of_a, std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
+             RunEnds& ends) {
     const PlacedPotential& x = of_a ? a_ : b_;
     const PlacedPotential& y = of_a ? b_ : a_;
     const double dx = of_a ? offset_.x() : -offset_.x();
     const double dy = of_a ? offset_.y() : -offset_.y();
     Half sum;
-    sum.weight += walk_runs<true>(x, y, dx, dy, near, rows, spare, work_.edge,
+    sum.weight += walk_runs<true>(x, y, dx, dy, near, near_y, rows, spare, work_.edge,
                                   [&](int e, const PlacedEdge& edge, double s0, int edge0,
                                       double s1, int edge1, const SegmentMoments<double>& moments) {
                                     Half& half = work_.halves.emplace_back();
@@ -106,14 +114,34 @@ class Splitter {
     return sum;
   }
 
+  // The integrals are those that `combine` makes of one run.
   void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, double s1, const Half& half) {
-    const PairIntegral pair = of_a ? combine(half, {}, arm_) : combine({}, half, arm_);
-    const Vec2 shift = of_a ? Vec2(-arm_) : Vec2(Vec2::Zero());  // to a's reference point
-    const Vec2 base = Vec2(edge.qx, edge.qy) + shift;
-    const Vec2 along(edge.ex, edge.ey);
-    runs_.push_back({of_a, e, 0, edge.share(s0), edge.share(s1), base + s0 * along,
-                     base + s1 * along, pair.force, pair.moment_a, pair.moment_b, pair.weight,
-                     pair.centre, half.length, half.largest});
+    const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
+    const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
+    const double x = edge.qx - shift_x, y = edge.qy - shift_y;  // about a's reference point
+    BoundaryRun& run = runs_.emplace_back();
+    run.of_a = of_a;
+    run.edge = e;
+    run.from = edge.share(s0);
+    run.to = edge.share(s1);
+    run.start = {x + s0 * edge.ex, y + s0 * edge.ey};
+    run.end = {x + s1 * edge.ex, y + s1 * edge.ey};
+    if (of_a) {
+      run.force = {-half.fx, -half.fy};
+      run.moment_a = turn - half.moment;
+      run.moment_b = half.moment;
+    } else {
+      run.force = {half.fx, half.fy};
+      run.moment_a = half.moment;
+      run.moment_b = -half.moment - turn;
+    }
+    run.weight = half.weight;
+    if (half.weight != 0) {
+      run.centre = {(half.wx - shift_x * half.weight) / half.weight,
+                    (half.wy - shift_y * half.weight) / half.weight};
+    }
+    run.length = half.length;
+    run.largest_phi = half.largest;
   }
 
   int root(int run) {
@@ -126,6 +154,7 @@ class Splitter {
   // the patch.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
+    loose_ -= 2;
     const int first = root(end / 2);
     const int second = root(other / 2);
     work_.parent[std::max(first, second)] = std::min(first, second);
@@ -145,24 +174,20 @@ class Splitter {
 
   // Joins runs where edge i of a crosses edge j of b. They are found by (i, j) and not by position.
   void join_at_crossings() {
-    auto& crossings = work_.crossings;
-    crossings.clear();
-    for (int end = 0; end < 2 * size(); ++end) {
-      const BoundaryRun& run = runs_[end / 2];
-      const int other = work_.crossed[end];
-      if (other < 0) continue;
-      crossings.push_back({run.of_a ? run.edge : other, run.of_a ? other : run.edge, end});
-    }
-    std::sort(crossings.begin(), crossings.end(), [](const auto& c, const auto& d) {
-      return std::tie(c.edge_a, c.edge_b, c.end) < std::tie(d.edge_a, d.edge_b, d.end);
-    });
-    for (size_t i = 0; i + 1 < crossings.size(); ++i) {
-      const auto& c = crossings[i];
-      const auto& d = crossings[i + 1];
-      if (c.edge_a != d.edge_a || c.edge_b != d.edge_b) continue;
-      if (runs_[c.end / 2].of_a == runs_[d.end / 2].of_a) continue;
-      join(c.end, d.end);
-      ++i;
+    const auto end_of_a = runs_.begin() + of_a_;
+    for (int end = 2 * of_a_; end < 2 * size(); ++end) {
+      const int i = work_.crossed[end];
+      if (i < 0) continue;
+      auto run = std::lower_bound(runs_.begin(), end_of_a, i,
+                                  [](const BoundaryRun& r, int edge) { return r.edge < edge; });
+      for (; run != end_of_a && run->edge == i && !work_.joined[end]; ++run) {
+        const int first = 2 * static_cast<int>(run - runs_.begin());
+        for (const int other : {first, first + 1}) {
+          if (work_.crossed[other] != runs_[end / 2].edge || work_.joined[other]) continue;
+          join(end, other);
+          break;
+        }
+      }
     }
   }
 
@@ -287,7 +312,8 @@ class Splitter {
   const Vec2 offset_, arm_;
   PatchWorkspace& work_;
   std::vector<BoundaryRun>& runs_;
-  int of_a_ = 0;  // number of runs on edges of a, which come first
+  int of_a_ = 0;   // number of runs on edges of a, which come first
+  int loose_ = 0;  // number of ends that are not joined
 };
 
 }  // namespace
@@ -306,7 +332,12 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
     return whole;
   }
   splitter.group();
-  splitter.sum(splitter.number(), patches);
+  const int count = splitter.number();
+  if (count == 1) {
+    patches.push_back(whole);
+  } else {
+    splitter.sum(count, patches);
+  }
   return whole;
 }
 

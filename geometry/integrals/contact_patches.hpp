@@ -37,11 +37,6 @@ struct BoundaryRun {
 /// Memory that contact_patches works in. Keep one per thread. An end of a run is numbered 2 run for
 /// its start and 2 run + 1 for its end.
 struct PatchWorkspace {
-  /// An end of a run at a crossing of two edges.
-  struct Crossing {
-    int edge_a, edge_b;  ///< edge of a and edge of b that cross
-    int end;             ///< number of the end
-  };
   /// Two loose ends that might be joined.
   struct Bridge {
     double cost2;    ///< square of the cost of joining them, m^2
@@ -53,7 +48,6 @@ struct PatchWorkspace {
   std::vector<int> crossed;                   ///< per end: crossed edge of the other polygon or -1
   std::vector<int> parent;                    ///< per run: union-find forest of the patches
   std::vector<char> joined;                   ///< per end: whether it has been joined to another
-  std::vector<Crossing> crossings;            ///< ends at crossings
   std::vector<Bridge> bridges;                ///< candidates for joining loose ends
   std::vector<edge_detail::Extent> extents;   ///< extents per patch
 };
@@ -61,8 +55,8 @@ struct PatchWorkspace {
 /// Splits a pair of polygons into its contact patches. The arguments a, b, offset and near are
 /// those of pair_integral, and so is the result. The runs are ordered by their edges, those of a
 /// first, and the patches by their first run. A pair that does not touch has neither. The sum over
-/// the patches equals the result of pair_integral to round-off; the patch of two convex polygons
-/// equals it to the last bit. If a coordinate is not finite, there is one patch that is not finite,
+/// the patches equals the result of pair_integral to round-off; a patch that is the only one equals
+/// it to the last bit. If a coordinate is not finite, there is one patch that is not finite,
 /// and no run. Nothing is allocated after the first calls.
 ///
 /// Round-off may make the two boundaries disagree about a crossing, if a vertex lies on an edge or

@@ -17,10 +17,10 @@ namespace {
 
 // The integrals of phi of y along the edges of x.
 Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
-                    RunEnds& ends) {
+                    std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
+                    EdgeWorkspace& workspace, RunEnds& ends) {
   Half half;
-  half.weight += walk_runs<false>(x, y, dx, dy, near, rows, spare, workspace,
+  half.weight += walk_runs<false>(x, y, dx, dy, near, near_y, rows, spare, workspace,
                                   [&](int e, const PlacedEdge& edge, double s0, int, double s1, int,
                                       const SegmentMoments<double>& moments) {
                                     accumulate(edge, moments, s1 - s0, half);
@@ -53,10 +53,12 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   }
   RunEnds ends(workspace.ends);
   const Half of_a =  // in the frame of b
-      integrate_runs(a, b, dx, dy, near.of_a, height.of_a, height.spare, workspace, ends);
+      integrate_runs(a, b, dx, dy, near.of_a, near.of_b, height.of_a, height.spare, workspace,
+                     ends);
   const size_t middle = ends.used();
   const Half of_b =  // in the frame of a
-      integrate_runs(b, a, -dx, -dy, near.of_b, height.of_b, height.spare, workspace, ends);
+      integrate_runs(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b, height.spare, workspace,
+                     ends);
   return join(a, b, offset, of_a, of_b, ends, middle);
 }
 
@@ -102,9 +104,11 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& ot
   const auto planes = lines(p, shift);
   if (p.roof) {
     std::vector<Ring> faces;
+    RoofNodes placed;
+    placed.place(p);
     for (const std::vector<int>& nodes : p.roof->faces) {
       Ring& face = faces.emplace_back();
-      for (const int i : nodes) face.push_back(Vec2(p.node_x[i], p.node_y[i]) + shift);
+      for (const int i : nodes) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
     }
     return lower_envelope::volume_under_faces(faces, planes, p.capped, others);
   }

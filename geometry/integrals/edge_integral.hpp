@@ -17,35 +17,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "apothem/geometry/integrals/collar_trace.hpp"
 #include "apothem/geometry/integrals/near_edges.hpp"
+#include "apothem/geometry/integrals/placed_potential.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
 #include "apothem/geometry/potential/potential.hpp"
 #include "apothem/geometry/skeleton/roof.hpp"
 
 namespace apothem {
-
-/// A potential at a position in the plane: pointers to arrays of coordinates relative to some
-/// frame. x and y have size + 1 entries, because the first vertex is repeated; gx and gy have
-/// `size`. A polygon that is not convex has either a roof or a distance field. If `radius` is 0, it
-/// is not known, and long edges of the other polygon are not shortened.
-struct PlacedPotential {
-  const double* x;                          ///< x coordinates of the vertices, m
-  const double* y;                          ///< y coordinates of the vertices, m
-  const double* gx;                         ///< x components of the gradients g_i, 1/m
-  const double* gy;                         ///< y components of the gradients g_i, 1/m
-  int size;                                 ///< number of vertices
-  bool capped;                              ///< whether phi is limited to 1
-  const Roof* roof = nullptr;               ///< roof, or null
-  const double* node_x = nullptr;           ///< x coordinates of the roof's nodes, m
-  const double* node_y = nullptr;           ///< y coordinates of the roof's nodes, m
-  const DistanceField* distance = nullptr;  ///< distance field, or null
-  Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
-  double radius = 0;    ///< largest distance of a vertex from `reference`, m, or 0
-  double steepest = 0;  ///< largest |g_i|, 1/m, or 0 if it is not known
-
-  /// True if phi is the lower envelope of the linear functions of the edges.
-  [[nodiscard]] bool convex() const { return !roof && !distance; }
-};
 
 /// The integrals of a pair for unit stiffness. Multiplied by the stiffness k_n (Pa), force and
 /// weight are in N/m, moments in N, and the energy of PairVolume in J/m. Moments are about the
@@ -86,7 +65,9 @@ struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
   std::vector<double> ends;    ///< ends of the parts of edges inside the other polygon
   RoofTrace<double> roof;      ///< memory for polygons with a roof
+  RoofNodes nodes;             ///< the nodes of a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
+  CollarTrace collar;              ///< memory for both
 };
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if

@@ -9,6 +9,7 @@
 
 #include "apothem/execution/pack.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
+#include "apothem/geometry/integrals/placed_edge.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
 
 namespace apothem::edge_detail {
@@ -192,59 +193,6 @@ inline void add_capped(double u1, double v1, double u2, double v2,
   moments.add(u, 1, u2, std::min(v2, 1.0));
 }
 
-// An edge of x in the frame of y: its start (px, py), the same relative to y's reference point
-// (qx, qy), and the vector (ex, ey) to its end.
-template <class Real>
-struct BasicEdge {
-  BasicEdge(const PlacedPotential& x, const PlacedPotential& y, int e, double dx, double dy)
-      : px(Real(x.x[e]) + dx),
-        py(Real(x.y[e]) + dy),
-        qx(px - y.reference.x()),
-        qy(py - y.reference.y()),
-        ex(Real(x.x[e + 1]) - x.x[e]),
-        ey(Real(x.y[e + 1]) - x.y[e]) {
-    shorten(y);
-  }
-  Real px, py, qx, qy, ex, ey;
-  Real first = 0, last = 1;  // the part of the whole edge that is represented
-  bool shortened = false;    // whether it is less than the whole edge
-
-  /// Position on the whole edge, from 0 to 1, of the parameter s of the represented part.
-  [[nodiscard]] Real share(Real s) const { return first + s * (last - first); }
-
- private:
-  // Reduces an edge that is much longer than y to the part around the foot of the perpendicular
-  // from y's reference point. On a floor of a kilometre, a parameter that runs over the whole edge
-  // could not resolve the few millimetres that lie inside y.
-  void shorten(const PlacedPotential& y) {
-    constexpr double kLong = 8;
-    const Real length2 = ex * ex + ey * ey;
-    if (!(length2 > kLong * kLong * y.radius * y.radius) || y.radius == 0) return;
-    const Real length = std::sqrt(length2);
-    const Real tx = ex / length;
-    const Real ty = ey / length;
-    const Real foot = -(tx * qx + ty * qy);  // foot, from the start of the edge
-    const Real height = tx * qy - ty * qx;   // from the line to the reference point
-    const Real from = foot - 2 * y.radius;
-    const Real until = foot + 2 * y.radius;
-    if (until <= 0 || from >= length) return;
-    const Real end_x = until >= length ? qx + ex : -ty * height + 2 * y.radius * tx;
-    const Real end_y = until >= length ? qy + ey : tx * height + 2 * y.radius * ty;
-    if (from > 0) {
-      qx = -ty * height - 2 * y.radius * tx;
-      qy = tx * height - 2 * y.radius * ty;
-    }
-    px = qx + y.reference.x();
-    py = qy + y.reference.y();
-    ex = end_x - qx;
-    ey = end_y - qy;
-    first = std::max(Real(0), from / length);
-    last = std::min(Real(1), until / length);
-    shortened = true;
-  }
-};
-using PlacedEdge = BasicEdge<double>;
-
 // Adds the integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
 // `inside` is the share of the edge that lies inside the other polygon.
 inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, double inside,
@@ -259,6 +207,17 @@ inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, 
   half.wy += length * (qy * m.sum + ey * m.first);
   half.length += length * inside;
   half.largest = std::max(half.largest, m.largest);
+}
+
+/// 0, or NaN if a coordinate of two polygons is not finite. If edges are known to be near each
+/// other, all are finite.
+inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                         std::uint64_t near_x, std::uint64_t near_y) {
+  double finite = 0;  // sum of 0 * coordinate
+  if (near_x != NearEdges::kAll && near_y != NearEdges::kAll) return finite;
+  for (int i = 0; i < y.size; ++i) finite += 0 * y.x[i] + 0 * y.y[i];
+  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
+  return finite;
 }
 
 /// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. `near` are the
@@ -321,9 +280,9 @@ inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b
 }
 
 /// The roof of a placed potential that has one.
-inline PlacedRoof<double> placed_roof(const PlacedPotential& y) {
-  return {&y.roof->arcs, y.size,   static_cast<int>(y.roof->values.size()),
-          y.node_x,      y.node_y, y.roof->values.data()};
+inline PlacedRoof<double> placed_roof(const PlacedPotential& y, const RoofNodes& nodes) {
+  return {&y.roof->arcs,  y.size,         static_cast<int>(y.roof->values.size()),
+          nodes.x.data(), nodes.y.data(), y.roof->values.data()};
 }
 
 /// The distance field of a placed potential that has one.
@@ -391,14 +350,25 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
 /// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
 /// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
 /// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
-/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y. Returns 0, or
-/// NaN without any call if y is not convex and a coordinate is not finite.
+/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and `near_y`
+/// those of y that may enter x. Returns 0, or NaN without any call if y is not convex and a
+/// coordinate is not finite.
 template <bool crossings, class Run>
 double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                 std::uint64_t near, const double* rows, double* spare, EdgeWorkspace& workspace,
-                 const Run& run) {
+                 std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
+                 EdgeWorkspace& workspace, const Run& run) {
+  if (y.cells) {
+    if (const double finite = all_finite(x, y, dx, dy, near, near_y); !(finite == 0)) return finite;
+    if (workspace.collar.find(x, y, dx, dy, near, near_y)) {
+      for (const CollarTrace::Run& r : workspace.collar.runs()) {
+        run(r.edge, *r.placed, r.s0, r.edge0, r.s1, r.edge1, r.moments);
+      }
+      return 0;
+    }
+  }
   if (y.roof) {
-    const PlacedRoof<double> roof = placed_roof(y);
+    workspace.nodes.place(y);
+    const PlacedRoof<double> roof = placed_roof(y, workspace.nodes);
     return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {
       workspace.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
       SegmentMoments<double> moments;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
 namespace apothem {
@@ -17,83 +18,75 @@ Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
 }  // namespace
 
 int PlacedShapes::add(const Potential& potential) {
-  Shape shape{x_.size(),
-              gx_.size(),
-              potential.size(),
-              potential.capped(),
-              0,
-              potential.steepest,
-              apothem::depth_ratio(potential),
-              potential.top_points.front().norm(),
-              by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
-              potential.roof ? &*potential.roof : nullptr,
-              node_x_.size(),
-              potential.distance ? &*potential.distance : nullptr};
-  if (shape.roof) {
-    node_x_.resize(node_x_.size() + shape.roof->points.size());
-    node_y_.resize(node_x_.size());
-  }
+  const int n = potential.size();
+  const bool convex = !potential.cells;
+  const int before = convex ? 0 : 1;
+  Shape shape{
+      .placed = placed_.size() + static_cast<size_t>(before),
+      .stride = before + n + 1,
+      .size = n,
+      .radius = 0,
+      .slope = potential.steepest,
+      .roof = potential.roof ? &*potential.roof : nullptr,
+      .distance = potential.distance ? &*potential.distance : nullptr,
+      .cells = convex ? nullptr : &*potential.cells,
+      .capped = potential.capped(),
+      .depth_ratio = apothem::depth_ratio(potential),
+      .top_radius = potential.top_points.front().norm(),
+      .top = by_edge(potential.top_points.front(), potential.vertices[0], potential.vertices[1]),
+      .edges = body_.size() / 4};
   for (const Vec2& v : potential.vertices) shape.radius = std::max(shape.radius, v.norm());
+  for (const auto* points : {&potential.vertices, &potential.gradients}) {
+    for (const Vec2& p : *points) body_.push_back(p.x());
+    for (const Vec2& p : *points) body_.push_back(p.y());
+  }
   shapes_.push_back(shape);
-  body_vertices_.insert(body_vertices_.end(), potential.vertices.begin(), potential.vertices.end());
-  body_gradients_.insert(body_gradients_.end(), potential.gradients.begin(),
-                         potential.gradients.end());
-  x_.resize(x_.size() + shape.size + 1);
-  y_.resize(x_.size());
-  gx_.resize(gx_.size() + shape.size);
-  gy_.resize(gx_.size());
+  placed_.resize(placed_.size() + 4 * static_cast<size_t>(shape.stride) +
+                 (convex ? 0 : kReadBehind));
   boxes_.emplace_back();
   return size() - 1;
 }
 
 Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const {
   const auto [s, c] = angle;
-  const Vec2* const v = body_vertices_.data() + shape.edges;
-  const Vec2* const g = body_gradients_.data() + shape.edges;
-  Box box;
-  for (int k = 0; k < shape.size; ++k) {
-    to.x[k] = c * v[k].x() - s * v[k].y();
-    to.y[k] = s * v[k].x() + c * v[k].y();
-    to.gx[k] = c * g[k].x() - s * g[k].y();
-    to.gy[k] = s * g[k].x() + c * g[k].y();
-    box.include(to.x[k], to.y[k]);
-  }
-  to.x[shape.size] = to.x[0];
-  to.y[shape.size] = to.y[0];
-  if (shape.roof) {
-    const std::vector<Vec2>& points = shape.roof->points;
-    for (size_t k = 0; k < points.size(); ++k) {
-      to.node_x[k] = c * points[k].x() - s * points[k].y();
-      to.node_y[k] = s * points[k].x() + c * points[k].y();
+  const int n = shape.size;
+  const auto turn = [&](const double* from, double* to_x, double* to_y) {
+    for (int k = 0; k < n; ++k) {
+      to_x[k] = c * from[k] - s * from[n + k];
+      to_y[k] = s * from[k] + c * from[n + k];
     }
-  }
+    to_x[n] = to_x[0];
+    to_y[n] = to_y[0];
+    if (!shape.cells) return;
+    to_x[-1] = to_x[n - 1];
+    to_y[-1] = to_y[n - 1];
+  };
+  const double* const body = body_.data() + 4 * shape.edges;
+  turn(body, to.x, to.y);
+  turn(body + 2 * n, to.gx, to.gy);
+  Box box;
+  for (int k = 0; k < n; ++k) box.include(to.x[k], to.y[k]);
   return box;
 }
 
 void PlacedShapes::place(int i, double x, double y, const SineCosine& angle) {
-  const Shape& shape = shapes_[i];
-  const Box box = rotate(
-      shape, angle,
-      {x_.data() + shape.vertices, y_.data() + shape.vertices, gx_.data() + shape.edges,
-       gy_.data() + shape.edges, node_x_.data() + shape.nodes, node_y_.data() + shape.nodes});
+  Shape& shape = shapes_[i];
+  shape.cosine = angle.cosine, shape.sine = angle.sine;
+  const Box box = rotate(shape, angle, coordinates(placed_.data() + shape.placed, shape.stride));
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
-PlacedPotential PlacedShapes::turn(int i, double angle, Turned& t) const {
+PlacedPotential PlacedShapes::turn(int i, double angle, Turned& turned) const {
   const Shape& shape = shapes_[i];
-  const auto n = static_cast<size_t>(shape.size);
-  const size_t nodes = shape.roof ? shape.roof->points.size() : 0;
-  const auto grow = [](std::vector<double>& v, size_t size) {
-    if (v.size() < size) v.resize(size);
-  };
-  for (std::vector<double>* v : {&t.x, &t.y, &t.gx, &t.gy}) grow(*v, n + 1);
-  for (std::vector<double>* v : {&t.node_x, &t.node_y}) grow(*v, nodes);
-  rotate(shape, sine_cosine(angle),
-         {t.x.data(), t.y.data(), t.gx.data(), t.gy.data(), t.node_x.data(), t.node_y.data()});
+  const size_t size = 1 + 4 * static_cast<size_t>(shape.stride) + kReadBehind;
+  if (turned.numbers.size() < size) turned.numbers.resize(size);
+  const Coordinates to = coordinates(turned.numbers.data() + 1, shape.stride);
+  const SineCosine at = sine_cosine(angle);
+  rotate(shape, at, to);
   PlacedPotential result = view(i);
-  result.x = t.x.data(), result.y = t.y.data();
-  result.gx = t.gx.data(), result.gy = t.gy.data();
-  result.node_x = t.node_x.data(), result.node_y = t.node_y.data();
+  result.x = to.x, result.y = to.y;
+  result.gx = to.gx, result.gy = to.gy;
+  result.cosine = at.cosine, result.sine = at.sine;
   return result;
 }
 
@@ -109,10 +102,7 @@ int PlacedShapes::add_deforming(const Potential& potential) {
 
 bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> vertices) {
   Shape& shape = shapes_[i];
-  double* const vx = x_.data() + shape.vertices;
-  double* const vy = y_.data() + shape.vertices;
-  double* const gx = gx_.data() + shape.edges;
-  double* const gy = gy_.data() + shape.edges;
+  const auto [vx, vy, gx, gy] = coordinates(placed_.data() + shape.placed, shape.stride);
   const double* const inverse = inverse_length_.data() + shape.edges;
   const int n = shape.size;
   Box box;
@@ -141,8 +131,8 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
 
 bool PlacedShapes::top_inside(int i, int j, const Vec2& offset) const {
   const Shape& shape = shapes_[i];
-  const double* const x = x_.data() + shape.vertices;
-  const double* const y = y_.data() + shape.vertices;
+  const double* const x = placed_.data() + shape.placed;
+  const double* const y = x + shape.stride;
   const Vec2 edge(x[1] - x[0], y[1] - y[0]);
   const Vec2 top =
       offset + Vec2(x[0], y[0]) + shape.top.x() * edge + shape.top.y() * Vec2(-edge.y(), edge.x());

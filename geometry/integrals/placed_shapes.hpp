@@ -22,7 +22,7 @@ class PlacedShapes {
 
   /// Coordinates of one shape at another angle.
   struct Turned {
-    std::vector<double> x, y, gx, gy, node_x, node_y;
+    std::vector<double> numbers;
   };
   /// Shape i at an angle, in the memory of `turned`, which must live as long as the result is used.
   /// For shapes that do not deform.
@@ -38,19 +38,22 @@ class PlacedShapes {
 
   [[nodiscard]] PlacedPotential view(int i) const {
     const Shape& s = shapes_[i];
-    return {x_.data() + s.vertices,
-            y_.data() + s.vertices,
-            gx_.data() + s.edges,
-            gy_.data() + s.edges,
-            s.size,
-            s.capped,
-            s.roof,
-            node_x_.data() + s.nodes,
-            node_y_.data() + s.nodes,
-            s.distance,
-            Vec2::Zero(),
-            s.radius,
-            s.slope};
+    const double* const x = placed_.data() + s.placed;
+    return {.x = x,
+            .y = x + s.stride,
+            .gx = x + 2 * s.stride,
+            .gy = x + 3 * s.stride,
+            .size = s.size,
+            .capped = s.capped,
+            .roof = s.roof,
+            .distance = s.distance,
+            .reference = Vec2::Zero(),
+            .radius = s.radius,
+            .steepest = s.slope,
+            .cells = s.cells,
+            .cosine = s.cosine,
+            .sine = s.sine,
+            .shift = Vec2::Zero()};
   }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's.
@@ -74,32 +77,39 @@ class PlacedShapes {
   [[nodiscard]] double depth_ratio(int i) const { return shapes_[i].depth_ratio; }
 
  private:
+  // What every pair needs comes first.
   struct Shape {
-    size_t vertices;  // first of size + 1 entries of x_, y_
-    size_t edges;     // first of size entries of gx_, gy_
+    size_t placed;  // where x of a PlacedPotential begins; y, gx and gy follow
+    int stride;     // from one of these to the next
     int size;
-    bool capped;
     double radius;
     double slope;
+    // Of a shape that is not convex.
+    const Roof* roof;
+    const DistanceField* distance;
+    const CollarCells* cells;
+    bool capped;
     double depth_ratio;
     double top_radius;  // distance of the top from the reference point
     Vec2 top;           // of the potential (see by_edge); of a deforming shape the mean vertex
-    const Roof* roof;   // if not convex, or
-    size_t nodes;       // (first of its placed nodes)
-    const DistanceField* distance;
+    size_t edges;       // number of the first edge, among those of all shapes
+    double cosine = 1, sine = 0;  // of its angle
   };
   struct Coordinates {
-    double *x, *y, *gx, *gy, *node_x, *node_y;
+    double *x, *y, *gx, *gy;
   };
   // Writes the coordinates of a shape at an angle and returns their box.
   Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const;
+  // Of a shape; x begins at `first`.
+  static Coordinates coordinates(double* first, int stride) {
+    return {first, first + stride, first + 2 * stride, first + 3 * stride};
+  }
 
   std::vector<Shape> shapes_;
-  std::vector<Vec2> body_vertices_, body_gradients_;  // body frame, indexed by `edges`
-  std::vector<double> inverse_length_;                // 1/m, of deforming shapes, the same
-  std::vector<double> x_, y_, gx_, gy_;               // relative to the reference point, rotated
-  std::vector<double> node_x_, node_y_;               // of roofs, the same
-  std::vector<Box> boxes_;                            // in the coordinates of the model
+  std::vector<double> body_;            // x, y, gx, gy of each shape in the body frame
+  std::vector<double> inverse_length_;  // of each edge, 1/m, of deforming shapes
+  std::vector<double> placed_;          // relative to the reference point, rotated
+  std::vector<Box> boxes_;              // in the coordinates of the model
 };
 
 }  // namespace apothem

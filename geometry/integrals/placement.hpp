@@ -14,45 +14,36 @@ namespace apothem {
 /// Coordinates are relative to `origin`, and the reference point of the moments is vertex 0.
 struct Placement {
   Placement(const Polygon& polygon, const Potential& potential, const Vec2& origin) {
-    const auto add = [&](const Vec2& p) {
-      x.push_back(p.x());
-      y.push_back(p.y());
-    };
-    for (const Vec2& v : polygon.vertices()) add(v - origin);
-    add(polygon[0] - origin);
-    for (const Vec2& g : potential.gradients) {
-      gx.push_back(g.x());
-      gy.push_back(g.y());
-    }
-    if (potential.roof) {
-      // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
-      // coordinates of the polygon.
-      node_x.assign(x.begin(), x.end() - 1);
-      node_y.assign(y.begin(), y.end() - 1);
-      const Vec2 shift = polygon.origin() - origin;
-      for (size_t i = polygon.vertices().size(); i < potential.roof->points.size(); ++i) {
-        node_x.push_back(potential.roof->points[i].x() + shift.x());
-        node_y.push_back(potential.roof->points[i].y() + shift.y());
-      }
+    const auto n = static_cast<size_t>(polygon.size());
+    for (std::vector<double>* v : {&x, &y, &gx, &gy}) v->assign(n + 2 + kReadBehind, 0);
+    for (size_t i = 0; i < n + 2; ++i) {
+      const size_t from = (i + n - 1) % n;
+      const Vec2 point = polygon[static_cast<int>(from)] - origin;
+      x[i] = point.x(), y[i] = point.y();
+      gx[i] = potential.gradients[from].x(), gy[i] = potential.gradients[from].y();
     }
     double radius = 0;
-    for (size_t i = 1; i < x.size(); ++i)
-      radius = std::max(radius, std::hypot(x[i] - x[0], y[i] - y[0]));
-    view = {x.data(),
-            y.data(),
-            gx.data(),
-            gy.data(),
-            polygon.size(),
-            potential.capped(),
-            potential.roof ? &*potential.roof : nullptr,
-            node_x.data(),
-            node_y.data(),
-            potential.distance ? &*potential.distance : nullptr,
-            Vec2(x[0], y[0]),
-            radius,
-            potential.steepest};
+    for (size_t i = 2; i < n + 2; ++i)
+      radius = std::max(radius, std::hypot(x[i] - x[1], y[i] - y[1]));
+    // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
+    // coordinates of the polygon.
+    view = {.x = x.data() + 1,
+            .y = y.data() + 1,
+            .gx = gx.data() + 1,
+            .gy = gy.data() + 1,
+            .size = polygon.size(),
+            .capped = potential.capped(),
+            .roof = potential.roof ? &*potential.roof : nullptr,
+            .distance = potential.distance ? &*potential.distance : nullptr,
+            .reference = Vec2(x[1], y[1]),
+            .radius = radius,
+            .steepest = potential.steepest,
+            .cells = potential.cells ? &*potential.cells : nullptr,
+            .shift = polygon.origin() - origin};
   }
-  std::vector<double> x, y, gx, gy, node_x, node_y;
+  Placement(const Placement&) = delete;
+  Placement& operator=(const Placement&) = delete;
+  std::vector<double> x, y, gx, gy;
   PlacedPotential view;
 };
 

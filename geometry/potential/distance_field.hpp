@@ -71,6 +71,17 @@ std::array<Real, 2> root_moments(const Real& d2, const Real& w1, const Real& h) 
   return {sum, Real(m * (h * (r + rise * rise / (12 * r)) - sum))};
 }
 
+/// Adds the integrals of phi = sqrt(square + (rate (s - foot))^2) from s = u1 to u2, where it is v1
+/// and v2.
+template <class Real>
+void add_root(const Real& square, const Real& rate, const Real& foot, const Real& u1,
+              const Real& v1, const Real& u2, const Real& v2, SegmentMoments<Real>& moments) {
+  const auto [sum, first] = root_moments<Real>(square, rate * (u1 - foot), rate * (u2 - u1));
+  moments.sum += sum / rate;
+  moments.first += sum / rate * ((u1 + u2) / 2) + first / (rate * rate);
+  moments.largest = std::max(moments.largest, std::max(v1, v2));
+}
+
 /// Evaluates phi along a segment. Nothing is allocated after the first calls with polygons of a
 /// given size.
 template <class Real>
@@ -263,10 +274,7 @@ class DistanceTrace {
         moments.add(u1, v1, u2, v2);
         continue;
       }
-      const auto [sum, first] = root_moments<Real>(f.b, k_ * (u1 - f.a), k_ * (u2 - u1));
-      moments.sum += sum / k_;
-      moments.first += sum / k_ * ((u1 + u2) / 2) + first / (k_ * k_);
-      moments.largest = std::max(moments.largest, std::max(v1, v2));
+      add_root<Real>(f.b, k_, f.a, u1, v1, u2, v2, moments);
     }
   }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "apothem/geometry/polygon/polygon.hpp"
+#include "apothem/geometry/potential/collar_cells.hpp"
 #include "apothem/geometry/potential/distance_field.hpp"
 #include "apothem/geometry/potential/rare.hpp"
 #include "apothem/geometry/skeleton/roof.hpp"
@@ -32,6 +33,7 @@ struct Potential {
   double steepest = 0;           ///< largest |g_i|, 1/m
   Rare<Roof> roof;               ///< roof over the straight skeleton
   Rare<DistanceField> distance;  ///< distance field
+  Rare<CollarCells> cells;       ///< of its collar, if it is not convex
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }

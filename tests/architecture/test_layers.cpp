@@ -58,7 +58,7 @@ const std::map<std::string, std::set<std::string>> kGeometryMayInclude{
     {"polygon", {}},
     {"spatial", {"polygon"}},
     {"skeleton", {"polygon"}},
-    {"potential", {"polygon", "skeleton"}},
+    {"potential", {"polygon", "spatial", "skeleton"}},
     {"integrals", {"polygon", "skeleton", "potential"}},
     {"exact", {"polygon", "skeleton", "potential", "integrals"}},
     {"meshing", {"polygon", "spatial"}},

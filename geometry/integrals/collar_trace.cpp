@@ -1,0 +1,399 @@
+#include "apothem/geometry/integrals/collar_trace.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "apothem/execution/dispatch.hpp"
+#include "apothem/geometry/integrals/edge_trace.hpp"
+
+namespace apothem {
+
+using namespace edge_detail;
+
+namespace {
+
+// The box of a polygon, so much larger that rounding lets nothing outside reach into it.
+Box reach_of(const PlacedPotential& p, double dx, double dy) {
+  Box box;
+  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + dx, p.y[i] + dy);
+  return box.grown(kFarAway * box.extent());
+}
+
+Box edge_box(const PlacedPotential& p, int e, double dx, double dy) {
+  Box box;
+  box.include(p.x[e] + dx, p.y[e] + dy);
+  box.include(p.x[e + 1] + dx, p.y[e + 1] + dy);
+  return box;
+}
+
+// Even-odd rule.
+bool encloses(const PlacedPotential& y, double px, double py) {
+  bool inside = false;
+  for (int k = 0; k < y.size; ++k) {
+    const double y0 = y.y[k] - py, y1 = y.y[k + 1] - py;
+    if ((y0 > 0) == (y1 > 0)) continue;
+    const double x0 = y.x[k] - px, x1 = y.x[k + 1] - px;
+    if ((x0 * y1 - x1 * y0 > 0) == (y1 > y0)) inside = !inside;
+  }
+  return inside;
+}
+
+constexpr double kListed[16][4] = {
+    {-1, -1, -1, -1}, {1, -1, -1, -1}, {-1, 1, -1, -1}, {1, 1, -1, -1},
+    {-1, -1, 1, -1},  {1, -1, 1, -1},  {-1, 1, 1, -1},  {1, 1, 1, -1},
+    {-1, -1, -1, 1},  {1, -1, -1, 1},  {-1, 1, -1, 1},  {1, 1, -1, 1},
+    {-1, -1, 1, 1},   {1, -1, 1, 1},   {-1, 1, 1, 1},   {1, 1, 1, 1}};
+
+}  // namespace
+
+bool CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                       std::uint64_t near_x, std::uint64_t near_y) {
+  distance_ = y.distance != nullptr;
+  list_edges(x, y, dx, dy, near_x);
+  list_windows(x, y, dx, dy, near_y);
+  Found found = Found::neighbour;
+  while (found == Found::neighbour) found = trace(x, y, dx, dy);
+  if (found == Found::deep) return false;
+  // The boundary of x is one line. Where no part of it is in the collar, it is either all outside
+  // or all inside, deeper.
+  return !runs_.empty() || static_cast<int>(edges_.size()) < x.size ||
+         !encloses(y, x.x[0] + dx, x.y[0] + dy);
+}
+
+// If nothing is known, edges are left out whose boxes are apart from the other polygon's.
+void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                             double dy, std::uint64_t near) {
+  edges_.clear();
+  if (near != NearEdges::kAll) {
+    for_each_edge(near, x.size, [&](int e) { edges_.push_back(e); });
+  } else {
+    const Box reach = reach_of(y, 0, 0);
+    for (int e = 0; e < x.size; ++e) {
+      if (!apart(edge_box(x, e, dx, dy), reach)) edges_.push_back(e);
+    }
+  }
+  placed_.clear();
+  for (const int e : edges_) placed_.emplace_back(x, y, e, dx, dy);
+}
+
+void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                               double dy, std::uint64_t near) {
+  windows_.clear();
+  const auto add = [&](int c) {
+    if (windows_.empty() || c >= windows_.back().first + kPack) windows_.push_back({c, 0});
+    windows_.back().cells |= 1u << (c - windows_.back().first);
+  };
+  if (near != NearEdges::kAll) {
+    for_each_edge(near, y.size, add);
+    return;
+  }
+  const Box reach = reach_of(x, dx, dy);
+  for (int c = 0; c < y.size; ++c) {
+    if (!apart(edge_box(y, c, 0, 0), reach)) add(c);
+  }
+}
+
+// The last window that begins with the cell or before it, or null.
+CollarTrace::Window* CollarTrace::window_of(int cell) {
+  const auto behind = std::upper_bound(windows_.begin(), windows_.end(), cell,
+                                       [](int c, const Window& w) { return c < w.first; });
+  return behind == windows_.begin() ? nullptr : &*(behind - 1);
+}
+
+void CollarTrace::add_cell(int cell) {
+  Window* const window = window_of(cell);
+  if (window && cell < window->first + kPack) {
+    window->cells |= 1u << (cell - window->first);
+    return;
+  }
+  const auto at = window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
+  windows_.insert(at, {cell, 1});
+}
+
+APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, double px, double py,
+                                       double* row) const {
+  const auto over = [&](int i) APOTHEM_LAMBDA {
+    return Pack::load(y.gx + i) * (Pack(px) - Pack::load(y.x + i)) +
+           Pack::load(y.gy + i) * (Pack(py) - Pack::load(y.y + i));
+  };
+  over(first).store(row + kHeight * kPack);
+  over(first - 1).store(row + kHeightBefore * kPack);
+  over(first + 1).store(row + kHeightAfter * kPack);
+  if (!distance_) return;
+  const auto foot = [&](int vertex) APOTHEM_LAMBDA {
+    return Pack::load(y.gy + first) * (Pack(px) - Pack::load(y.x + vertex)) -
+           Pack::load(y.gx + first) * (Pack(py) - Pack::load(y.y + vertex));
+  };
+  foot(first).store(row + kFoot * kPack);
+  foot(first + 1).store(row + kFootFromEnd * kPack);
+}
+
+// A bit for each lane.
+APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
+  const MaskOf<4>::Vector b = mask.m & MaskOf<4>::Vector{1, 2, 4, 8};
+  return static_cast<unsigned>((b[0] | b[1]) | (b[2] | b[3]));
+}
+
+// The part of an edge that is left, in several cells at once.
+struct CollarTrace::Parts {
+  Pack::Mask there;
+  Pack s0{0.}, s1{1.}, end0{double(kEdge)}, end1{double(kEdge)};
+  // Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
+  APOTHEM_INLINE void cut(const Pack& a, const Pack& b, const Pack::Mask& a_inside,
+                          const Pack::Mask& b_inside, End by) {
+    there = there & (a_inside | b_inside);
+    const Pack s = a / (a - b);
+    const Pack::Mask ends = a_inside & (!b_inside) & (s < s1);
+    const Pack::Mask begins = (!a_inside) & b_inside & (s > s0);
+    s1 = select(ends, s, s1);
+    end1 = select(ends, Pack(double(by)), end1);
+    s0 = select(begins, s, s0);
+    end0 = select(begins, Pack(double(by)), end0);
+  }
+};
+
+// The pieces of an edge in the cells of a window.
+APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
+                                                           const Window& window, const double* from,
+                                                           const double* to) {
+  const auto row = [](const double* of, Row k)
+                       APOTHEM_LAMBDA { return Pack::load(of + k * kPack); };
+  const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
+  Parts parts;
+  const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
+  parts.there = (a_inside | b_inside) & (Pack::load(kListed[window.cells]) > zero);
+  if (!any(parts.there)) return Found::all;
+  parts.cut(a, b, a_inside, b_inside, kOwn);
+  const Pack side_before = Pack::load(y.cells->side.data() + window.first);
+  const Pack side_after = Pack::load(y.cells->side.data() + window.first + 1);
+  Pack fa = side_before * (row(from, kHeightBefore) - a),
+       fb = side_before * (row(to, kHeightBefore) - b);
+  if (distance_) {
+    fa = select(side_before < zero, row(from, kFoot), fa);
+    fb = select(side_before < zero, row(to, kFoot), fb);
+  }
+  parts.cut(fa, fb, fa >= zero, fb >= zero, kBorderBefore);
+  fa = side_after * (row(from, kHeightAfter) - a), fb = side_after * (row(to, kHeightAfter) - b);
+  if (distance_) {
+    fa = select(side_after < zero, -row(from, kFootFromEnd), fa);
+    fb = select(side_after < zero, -row(to, kFootFromEnd), fb);
+  }
+  parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
+  parts.there = parts.there & (parts.s0 < parts.s1);
+  if (!any(parts.there)) return Found::all;
+  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
+  // A cell without depth must not be entered.
+  const Pack::Mask crossed = (parts.end0 == zero) | (parts.end1 == zero);
+  if (any(parts.there & (depth == zero) & crossed)) return Found::deep;
+  const Pack::Mask a_below = a < depth, b_below = b < depth;
+  if (any(parts.there & !(a_below & b_below))) {
+    parts.cut(depth - a, depth - b, a_below, b_below, kTop);
+    parts.there = parts.there & (parts.s0 < parts.s1);
+    if (!any(parts.there)) return Found::all;
+  }
+  const Pack v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
+  const Pack at_end = select(parts.s1 == Pack(1.), b, a + parts.s1 * (b - a));
+  const Pack v1 = select(parts.end1 == zero, zero, at_end);
+  enum { s0_, s1_, v0_, v1_, end0_, end1_, kNumbers };
+  double numbers[kNumbers][kPack];
+  parts.s0.store(numbers[s0_]), parts.s1.store(numbers[s1_]);
+  v0.store(numbers[v0_]), v1.store(numbers[v1_]);
+  parts.end0.store(numbers[end0_]), parts.end1.store(numbers[end1_]);
+  for (unsigned rest = bits(parts.there); rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
+    const int c = window.first + k;
+    Piece& piece = pieces_[count_++];
+    piece.s0 = numbers[s0_][k], piece.s1 = numbers[s1_][k];
+    piece.v0 = numbers[v0_][k], piece.v1 = numbers[v1_][k];
+    piece.end0 = static_cast<End>(numbers[end0_][k]);
+    piece.end1 = static_cast<End>(numbers[end1_][k]);
+    piece.cell = c;
+    piece.arc = false;
+    if (piece.end0 <= kEdge && piece.end1 <= kEdge) continue;
+    const Found found =
+        check_borders(y, piece, c == 0 ? y.size - 1 : c - 1, c + 1 == y.size ? 0 : c + 1);
+    if (found != Found::all) return found;
+  }
+  return Found::all;
+}
+
+APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_edges(const PlacedPotential& x,
+                                                           const PlacedPotential& y, double dx,
+                                                           double dy) {
+  const size_t windows = windows_.size();
+  double* from = rows_.data();
+  double* to = from + windows * kRows * kPack;
+  const auto place_all = [&](double px, double py, double* rows) APOTHEM_LAMBDA {
+    for (size_t i = 0; i < windows; ++i) {
+      place(y, windows_[i].first, px, py, rows + i * kRows * kPack);
+    }
+  };
+  int placed = -1;  // the vertex of x in `to`
+  for (size_t k = 0; k < edges_.size(); ++k) {
+    const int e = edges_[k];
+    const PlacedEdge& edge = placed_[k];
+    edge_ = &edge;
+    std::swap(from, to);
+    if (placed != e || edge.shortened) place_all(edge.px, edge.py, from);
+    placed = edge.shortened ? -1 : e + 1;
+    end_x_ = edge.shortened ? edge.px + edge.ex : x.x[e + 1] + dx;
+    end_y_ = edge.shortened ? edge.py + edge.ey : x.y[e + 1] + dy;
+    place_all(end_x_, end_y_, to);
+    count_ = 0;
+    for (size_t i = 0; i < windows; ++i) {
+      const Found found =
+          trace_cells(y, windows_[i], from + i * kRows * kPack, to + i * kRows * kPack);
+      if (found != Found::all) return found;
+    }
+    if (distance_) {
+      const Found found = trace_sectors(y);
+      if (found != Found::all) return found;
+    }
+    if (count_ > 0) close_pieces(y, e);
+  }
+  return Found::all;
+}
+
+CollarTrace::Found CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                                      double dy) {
+  runs_.clear();
+  // A cell has one piece, and so has the sector of each of its two vertices.
+  if (const size_t most = 3 * kPack * windows_.size(); pieces_.size() < most) pieces_.resize(most);
+  if (const size_t all = 2 * kRows * kPack * windows_.size(); rows_.size() < all) rows_.resize(all);
+  Found found = Found::all;
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    found = trace_edges(x, y, dx, dy);
+    return 0.;
+  });
+  return found;
+}
+
+// Whether the piece stays in the collar, and the cells next to it are looked at as well.
+CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Piece& piece,
+                                              int before, int after) {
+  if (piece.end0 == kTop || piece.end1 == kTop) return Found::deep;
+  Found found = Found::all;
+  const auto enter = [&](double v, int cell, bool by_sector) {
+    if (!(v < y.cells->depth[cell])) {
+      found = Found::deep;
+    } else if (!by_sector) {
+      const Window* const window = window_of(cell);
+      if (window && cell < window->first + kPack &&
+          (window->cells >> (cell - window->first) & 1) != 0) {
+        return;
+      }
+      add_cell(cell);
+      if (found == Found::all) found = Found::neighbour;
+    }
+  };
+  for (const auto& [end, v] : {std::pair(piece.end0, piece.v0), std::pair(piece.end1, piece.v1)}) {
+    if (end == kBorderBefore) enter(v, before, !piece.arc && sector_at(y, piece.cell));
+    if (end == kBorderAfter) enter(v, after, !piece.arc && sector_at(y, after));
+  }
+  return found;
+}
+
+// The pieces in the sectors of the vertices of all cells.
+CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
+  int last = -1;  // vertex
+  const bool begins_at_zero = !windows_.empty() && windows_[0].first == 0;
+  for (const Window& window : windows_) {
+    for (int k = 0; k < kPack; ++k) {
+      if ((window.cells >> k & 1) == 0) continue;
+      const int c = window.first + k, next = c + 1 == y.size ? 0 : c + 1;
+      if (c != last && sector_at(y, c)) {
+        if (const Found found = trace_sector(y, c); found != Found::all) return found;
+      }
+      if (!(next == 0 && begins_at_zero) && sector_at(y, next)) {
+        if (const Found found = trace_sector(y, next); found != Found::all) return found;
+      }
+      last = next;
+    }
+  }
+  return Found::all;
+}
+
+CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int vertex) {
+  const PlacedEdge& edge = *edge_;
+  Piece& piece = pieces_[count_];
+  piece = {.s0 = 0,
+           .s1 = 1,
+           .v0 = 0,
+           .v1 = 0,
+           .end0 = kEdge,
+           .end1 = kEdge,
+           .cell = vertex,
+           .arc = true,
+           .foot = 0,
+           .square = 0};
+  // Behind the end of the edge before the vertex, and before the start of the other one.
+  const auto cut = [&](int e, double sign, bool closed, End by) {
+    const auto foot = [&](double px, double py) {
+      return sign * (y.gy[e] * (px - y.x[vertex]) - y.gx[e] * (py - y.y[vertex]));
+    };
+    const double a = foot(edge.px, edge.py), b = foot(end_x_, end_y_);
+    const bool a_inside = closed ? a >= 0 : a > 0, b_inside = closed ? b >= 0 : b > 0;
+    if (a_inside && b_inside) return true;
+    if (!a_inside && !b_inside) return false;
+    const double s = a / (a - b);
+    if (a_inside && s < piece.s1) piece.s1 = s, piece.end1 = by;
+    if (b_inside && s > piece.s0) piece.s0 = s, piece.end0 = by;
+    return piece.s0 < piece.s1;
+  };
+  if (!cut(vertex - 1, 1, true, kBorderBefore)) return Found::all;
+  if (!cut(vertex, -1, false, kBorderAfter)) return Found::all;
+  const int before = vertex == 0 ? y.size - 1 : vertex - 1;
+  const double depth = std::min(y.cells->depth[before], y.cells->depth[vertex]);
+  const double slope = y.distance->slope;
+  const double rx = y.x[vertex] - edge.px, ry = y.y[vertex] - edge.py;
+  const double e2 = edge.ex * edge.ex + edge.ey * edge.ey;
+  const double side = (edge.ex * ry - edge.ey * rx) * slope;
+  piece.foot = (rx * edge.ex + ry * edge.ey) / e2;
+  piece.square = side * side / e2;
+  const auto at = [&](double s) {
+    return piece.square + e2 * slope * slope * ((s - piece.foot) * (s - piece.foot));
+  };
+  if (!(at(std::clamp(piece.foot, piece.s0, piece.s1)) < depth * depth)) return Found::all;
+  piece.v0 = std::sqrt(at(piece.s0)), piece.v1 = std::sqrt(at(piece.s1));
+  if (!(piece.v0 < depth && piece.v1 < depth)) return Found::deep;
+  ++count_;
+  return check_borders(y, piece, before, vertex);
+}
+
+// Puts the pieces of an edge in order, and together to runs.
+void CollarTrace::close_pieces(const PlacedPotential& y, int edge) {
+  const auto behind = [](const Piece& p, const Piece& q) {
+    return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
+  };
+  for (size_t i = 1; i < count_; ++i) {
+    for (size_t j = i; j > 0 && behind(pieces_[j - 1], pieces_[j]); --j) {
+      std::swap(pieces_[j], pieces_[j - 1]);
+    }
+  }
+  // Where the next cell has no piece, the edge passes a vertex up to round-off.
+  const auto crossed = [](const Piece& piece, End end) { return end == kEdge ? -1 : piece.cell; };
+  const auto border = [](End end) { return end == kBorderBefore || end == kBorderAfter; };
+  Run* run = nullptr;
+  for (size_t i = 0; i < count_; ++i) {
+    const Piece& piece = pieces_[i];
+    if (!(run && run->s1 == piece.s0 && border(pieces_[i - 1].end1) && border(piece.end0))) {
+      run = &runs_.emplace_back();
+      run->edge = edge;
+      run->placed = edge_;
+      run->s0 = piece.s0;
+      run->edge0 = crossed(piece, piece.end0);
+    }
+    run->s1 = piece.s1;
+    run->edge1 = crossed(piece, piece.end1);
+    if (piece.arc) {
+      const double length = std::sqrt(edge_->ex * edge_->ex + edge_->ey * edge_->ey);
+      add_root(piece.square, length * y.distance->slope, piece.foot, piece.s0, piece.v0, piece.s1,
+               piece.v1, run->moments);
+    } else {
+      run->moments.add(piece.s0, piece.v0, piece.s1, piece.v1);
+    }
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,95 @@
+// phi of a polygon that is not convex, along the edges of another polygon that stay in its collar
+// (collar_cells.hpp). Most contacts are that shallow. The heights of the ends of an edge over the
+// lines of the cells then give all: where the edge enters and leaves a cell, and phi between. Four
+// cells are the lanes of a pack.
+//
+// Two cells share the number that says where an edge passes from one to the other, so that round-
+// off leaves no gap between them, and overlaps are no longer than round-off.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apothem/execution/pack.hpp"
+#include "apothem/geometry/integrals/placed_edge.hpp"
+#include "apothem/geometry/polygon/segment_moments.hpp"
+
+namespace apothem {
+
+/// Nothing is allocated after the first calls with polygons of a given size.
+class CollarTrace {
+ public:
+  /// A maximal part of an edge inside the polygon, from s0 to s1, with the integrals of phi along
+  /// it. edge0 and edge1 are the edges that it crosses there, or -1 at an end of the edge itself.
+  struct Run {
+    int edge;
+    const edge_detail::PlacedEdge* placed;
+    double s0, s1;
+    int edge0, edge1;
+    SegmentMoments<double> moments;
+  };
+
+  /// Finds the runs of x in y, whose coordinates are finite. The arguments are those of walk_runs
+  /// (edge_trace.hpp). Returns false if an edge of x leaves the collar; then there is no result. It
+  /// depends on the polygons alone, and not on near_x and near_y, whether this is so.
+  bool find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+            std::uint64_t near_x, std::uint64_t near_y);
+  /// The runs in the order of their edges, and along each edge.
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+
+ private:
+  static constexpr int kPack = kComparedLanes;
+  using Pack = PackOf<kPack>;
+  enum class Found { all, neighbour, deep };
+  // Where a part of an edge in a cell ends: on the cell's own edge, with the edge itself, at the
+  // border to the cell before or after, or at the depth of the cell.
+  enum End { kOwn, kEdge, kBorderBefore, kBorderAfter, kTop };
+  // A part of an edge in the cell of an edge, or, of an arc, in the sector of a vertex.
+  struct Piece {
+    double s0, s1, v0, v1;  // its ends, and phi there
+    End end0, end1;
+    int cell;
+    bool arc;
+    double foot, square;  // of an arc: s of the point nearest to the vertex, and phi^2 there
+  };
+  // Cells of consecutive edges, from `first` on: a bit of `cells` for each.
+  struct Window {
+    int first;
+    unsigned cells;
+  };
+  // What a point is compared with in a window: heights over the edges, those before and those
+  // after; of a distance field also where its foot is, from both ends of the edges. So many packs.
+  enum Row : size_t { kHeight, kHeightBefore, kHeightAfter, kFoot, kFootFromEnd, kRows };
+  struct Parts;
+  [[nodiscard]] bool sector_at(const PlacedPotential& y, int vertex) const {
+    return distance_ && y.cells->reflex(vertex);
+  }
+  void list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                  std::uint64_t near);
+  void list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                    std::uint64_t near);
+  void add_cell(int cell);
+  [[nodiscard]] Window* window_of(int cell);
+  void place(const PlacedPotential& y, int first, double px, double py, double* row) const;
+  Found trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  Found trace_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  Found trace_cells(const PlacedPotential& y, const Window& window, const double* from,
+                    const double* to);
+  Found trace_sectors(const PlacedPotential& y);
+  Found trace_sector(const PlacedPotential& y, int vertex);
+  Found check_borders(const PlacedPotential& y, const Piece& piece, int before, int after);
+  void close_pieces(const PlacedPotential& y, int edge);
+
+  std::vector<int> edges_;                         // of x
+  std::vector<edge_detail::PlacedEdge> placed_;    // the same
+  std::vector<Window> windows_;                    // of y, in ascending order of their first cells
+  std::vector<double> rows_;                       // of the ends of an edge, for each window
+  bool distance_ = false;                          // phi is the distance from the boundary
+  const edge_detail::PlacedEdge* edge_ = nullptr;  // the one at hand
+  double end_x_ = 0, end_y_ = 0;                   // its end
+  std::vector<Piece> pieces_;                      // of this edge, and
+  size_t count_ = 0;                               // how many of them there are
+  std::vector<Run> runs_;
+};
+
+}  // namespace apothem

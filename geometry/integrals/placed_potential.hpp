@@ -1,0 +1,57 @@
+// A potential at a position in the plane.
+#pragma once
+
+#include <vector>
+
+#include "apothem/geometry/potential/collar_cells.hpp"
+#include "apothem/geometry/potential/distance_field.hpp"
+#include "apothem/geometry/skeleton/roof.hpp"
+
+namespace apothem {
+
+/// A potential at a position in the plane: pointers to arrays of coordinates relative to some
+/// frame. x and y have size + 1 entries, because the first vertex is repeated; gx and gy have
+/// `size`. A polygon that is not convex has either a roof or a distance field. Its arrays have one
+/// entry more at both ends, at -1 and behind the last one, with which they go round the polygon,
+/// and kReadBehind numbers behind. If `radius` is 0, it is not known, and long edges of the other
+/// polygon are not shortened.
+struct PlacedPotential {
+  const double* x;                          ///< x coordinates of the vertices, m
+  const double* y;                          ///< y coordinates of the vertices, m
+  const double* gx;                         ///< x components of the gradients g_i, 1/m
+  const double* gy;                         ///< y components of the gradients g_i, 1/m
+  int size;                                 ///< number of vertices
+  bool capped;                              ///< whether phi is limited to 1
+  const Roof* roof = nullptr;               ///< roof, or null
+  const DistanceField* distance = nullptr;  ///< distance field, or null
+  Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
+  double radius = 0;                   ///< largest distance of a vertex from `reference`, m, or 0
+  double steepest = 0;                 ///< largest |g_i|, 1/m, or 0 if it is not known
+  const CollarCells* cells = nullptr;  ///< of its edges, if it is not convex
+  /// The nodes of the roof that are no vertices, in the frame: turned by the angle with this cosine
+  /// and sine, and then moved by `shift`, m.
+  double cosine = 1, sine = 0;
+  Vec2 shift = Vec2::Zero();
+
+  /// True if phi is the lower envelope of the linear functions of the edges.
+  [[nodiscard]] bool convex() const { return !roof && !distance; }
+};
+
+/// The nodes of a roof at its present position, m. They are made where a contact is so deep that
+/// they are needed.
+struct RoofNodes {
+  std::vector<double> x, y;
+
+  void place(const PlacedPotential& p) {
+    const std::vector<Vec2>& points = p.roof->points;
+    if (x.size() < points.size()) x.resize(points.size());
+    if (y.size() < points.size()) y.resize(points.size());
+    for (int i = 0; i < p.size; ++i) x[i] = p.x[i], y[i] = p.y[i];
+    for (size_t i = p.size; i < points.size(); ++i) {
+      x[i] = p.cosine * points[i].x() - p.sine * points[i].y() + p.shift.x();
+      y[i] = p.sine * points[i].x() + p.cosine * points[i].y() + p.shift.y();
+    }
+  }
+};
+
+}  // namespace apothem

@@ -1,0 +1,92 @@
+#include "apothem/geometry/potential/collar_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apothem/geometry/spatial/boxes.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kSafe = .99;  // share of the height at which the front meets itself
+// Vertices that turn by less (sine) have no bisector that round-off leaves in its place, and edges
+// that are shorter (share of the polygon's extent) no two bisectors in their order.
+constexpr double kLeastTurn = 1e-4;
+constexpr double kShortest = 1e-6;
+
+// Cells up to the given heights (phi) over their edges.
+CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights) {
+  const int n = polygon.size();
+  const double shortest = kShortest * bounding_box(polygon).extent();
+  CollarCells cells;
+  cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
+  cells.side.assign(cells.depth.size() + 1, 1);
+  // phi is limited to 1, and no cell is used beyond that.
+  for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
+  for (int e = 0; e < n; ++e) {
+    const int before = e == 0 ? n - 1 : e - 1;
+    const Vec2 in = polygon[e] - polygon[before], out = polygon.after(e) - polygon[e];
+    const double turn = cross(in, out) / (in.norm() * out.norm());
+    cells.side[e] = turn < 0 ? -1 : 1;
+    if (!(std::abs(turn) > kLeastTurn)) cells.depth[before] = cells.depth[e] = 0;
+    if (!(out.norm() > shortest)) {
+      cells.depth[before] = cells.depth[e] = cells.depth[e + 1 == n ? 0 : e + 1] = 0;
+    }
+  }
+  cells.side[n] = cells.side[0];
+  return cells;
+}
+
+double distance(const Vec2& point, const Vec2& from, const Vec2& along) {
+  const double share = std::clamp((point - from).dot(along) / along.squaredNorm(), 0., 1.);
+  return (point - from - share * along).norm();
+}
+
+// The distance of two edges that do not cross, m.
+double distance(const Polygon& polygon, int e, int k) {
+  const Vec2 &a = polygon[e], &b = polygon.after(e), &c = polygon[k], &d = polygon.after(k);
+  return std::min(
+      {distance(a, c, d - c), distance(b, c, d - c), distance(c, a, b - a), distance(d, a, b - a)});
+}
+
+}  // namespace
+
+CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
+  const int n = polygon.size();
+  std::vector<double> heights(static_cast<size_t>(n), HUGE_VAL);
+  for (int e = 0; e < n; ++e) {
+    for (const int node : roof.faces[e]) {
+      if (node >= n) heights[e] = std::min(heights[e], roof.values[node]);
+    }
+  }
+  return cells_of(polygon, heights);
+}
+
+// A point in front of an edge at the height h is nearer than h to another feature only if that is
+// nearer than 2 h to the edge. For neighbours the cells themselves decide. Heights end at 1/slope,
+// where phi = 1, and at a multiple of the edge's length, so that few edges have to be looked at.
+CollarCells collar_cells(const Polygon& polygon, double slope) {
+  constexpr double kHighest = 8;  // of its length
+  const int n = polygon.size();
+  std::vector<double> heights(static_cast<size_t>(n));  // m
+  std::vector<Box> boxes(heights.size());
+  for (int e = 0; e < n; ++e) {
+    heights[e] = std::min(1 / slope, kHighest * (polygon.after(e) - polygon[e]).norm());
+    Box box;
+    box.include(polygon[e].x(), polygon[e].y());
+    box.include(polygon.after(e).x(), polygon.after(e).y());
+    boxes[e] = box.grown(2 * heights[e]);
+  }
+  std::vector<BoxPair> near;
+  BoxGrid().find_pairs(boxes, near);
+  for (const auto& [e, k] : near) {
+    if (k == e + 1 || (e == 0 && k + 1 == n)) continue;  // neighbours
+    const double height = distance(polygon, e, k) / 2;
+    heights[e] = std::min(heights[e], height);
+    heights[k] = std::min(heights[k], height);
+  }
+  for (double& height : heights) height *= slope;
+  return cells_of(polygon, heights);
+}
+
+}  // namespace apothem
