@@ -125,14 +125,25 @@ CollarTrace::Window* CollarTrace::window_of(int cell) {
   return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
-void CollarTrace::add_cell(int cell) {
+// Lists the cell; false if it was listed before.
+bool CollarTrace::add_cell(int cell) {
   Window* const window = window_of(cell);
   if (window && cell < window->first + kPack) {
-    window->cells |= 1u << (cell - window->first);
-    return;
+    const unsigned bit = 1u << (cell - window->first);
+    const bool added = (window->cells & bit) == 0;
+    window->cells |= bit;
+    return added;
   }
   const auto at = window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
   windows_.insert(at, {cell, 1});
+  return true;
+}
+
+// The same for the cells on both sides of one in which an edge has ended.
+bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
+  const bool before = add_cell(cell == 0 ? y.size - 1 : cell - 1);
+  const bool after = add_cell(cell + 1 == y.size ? 0 : cell + 1);
+  return before || after;
 }
 
 APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, double px, double py,
@@ -153,12 +164,31 @@ APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, doub
   foot(first + 1).store(row + kFootFromEnd * kPack);
 }
 
-constexpr double kOnEdge = 1e-9;  // phi; what is lower may be on the edge but for round-off
-
 // A bit for each lane.
 APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
   const MaskOf<4>::Vector b = mask.m & MaskOf<4>::Vector{1, 2, 4, 8};
   return static_cast<unsigned>((b[0] | b[1]) | (b[2] | b[3]));
+}
+
+// Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
+bool CollarTrace::touches(const PlacedPotential& y, int c) const {
+  constexpr double kNear = 1e-9;  // phi
+  const auto height = [&](double px, double py) {
+    return y.gx[c] * (px - y.x[c]) + y.gy[c] * (py - y.y[c]);
+  };
+  const auto foot = [&](double px, double py) {
+    return y.gy[c] * (px - y.x[c]) - y.gx[c] * (py - y.y[c]);
+  };
+  const double a = height(edge_->px, edge_->py), b = height(end_x_, end_y_);
+  if (std::min(a, b) > kNear || std::max(a, b) < -kNear) return false;
+  // The part of the edge that is near the line.
+  const double s = (kNear - a) / (b - a), t = (-kNear - a) / (b - a);
+  const bool level = !(std::abs(b - a) > kNear);
+  const double s0 = level ? 0 : std::clamp(std::min(s, t), 0., 1.);
+  const double s1 = level ? 1 : std::clamp(std::max(s, t), 0., 1.);
+  const double from = foot(edge_->px, edge_->py), to = foot(end_x_, end_y_);
+  const double u = from + s0 * (to - from), v = from + s1 * (to - from);
+  return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
 // The part of an edge that is left, in several cells at once.
@@ -188,7 +218,12 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
   Parts parts;
   const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
-  parts.there = (a_inside | b_inside) & (Pack::load(kListed[window.cells]) > zero);
+  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
+  const Pack::Mask listed = Pack::load(kListed[window.cells]) > zero;
+  for (unsigned rest = bits(listed & (depth == zero)); rest != 0; rest &= rest - 1) {
+    if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
+  }
+  parts.there = (a_inside | b_inside) & listed & (depth > zero);
   if (!any(parts.there)) return Found::all;
   parts.cut(a, b, a_inside, b_inside, kOwn);
   const Pack side_before = Pack::load(y.cells->side.data() + window.first);
@@ -208,11 +243,6 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
   parts.there = parts.there & (parts.s0 < parts.s1);
   if (!any(parts.there)) return Found::all;
-  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
-  // A cell without depth must not be entered, be it at a vertex that lies on the edge.
-  const Pack low = Pack(kOnEdge);
-  const Pack::Mask enters = (a + parts.s0 * (b - a) < low) | (a + parts.s1 * (b - a) < low);
-  if (any(parts.there & (depth == zero) & enters)) return Found::deep;
   const Pack::Mask a_below = a < depth, b_below = b < depth;
   if (any(parts.there & !(a_below & b_below))) {
     parts.cut(depth - a, depth - b, a_below, b_below, kTop);
@@ -256,6 +286,10 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
     }
   };
   int placed = -1;  // the vertex of x in `to`
+  // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
+  // a border, in a cell that need not be listed.
+  int ended = -1, last = -1;
+  bool first_begins = false;
   for (Edge& listed : edges_) {
     const int e = listed.index;
     const PlacedEdge& edge = listed.placed;
@@ -276,8 +310,18 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
     listed.deep = found == Found::deep;
     if (!listed.deep && count_ > 0) close_pieces(y);
     listed.runs_end = runs_.size();
+    bool begins = listed.deep;
+    int ends = -1;
+    for (size_t i = 0; i < count_ && !listed.deep; ++i) {
+      begins = begins || (pieces_[i].s0 == 0 && pieces_[i].end0 == kEdge);
+      if (pieces_[i].end1 == kEdge) ends = pieces_[i].cell;
+    }
+    if (e == 0) first_begins = begins;
+    if (last + 1 == e && ended >= 0 && !begins && add_neighbours(y, ended)) return false;
+    last = e, ended = ends;
   }
-  return true;
+  const bool round = last == x.size - 1 && edges_[0].index == 0;
+  return !(round && ended >= 0 && !first_begins && add_neighbours(y, ended));
 }
 
 // False if there are more cells than were known.
@@ -303,13 +347,7 @@ CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Pi
     if (!(v < y.cells->depth[cell])) {
       if (found == Found::all) found = Found::deep;
     } else if (!by_sector) {
-      const Window* const window = window_of(cell);
-      if (window && cell < window->first + kPack &&
-          (window->cells >> (cell - window->first) & 1) != 0) {
-        return;
-      }
-      add_cell(cell);
-      found = Found::neighbour;
+      if (add_cell(cell)) found = Found::neighbour;
     }
   };
   for (const auto& [end, v] : {std::pair(piece.end0, piece.v0), std::pair(piece.end1, piece.v1)}) {

@@ -77,11 +77,13 @@ class CollarTrace {
                   std::uint64_t near);
   void list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                     std::uint64_t near);
-  void add_cell(int cell);
+  bool add_cell(int cell);
+  bool add_neighbours(const PlacedPotential& y, int cell);
   [[nodiscard]] Window* window_of(int cell);
   void place(const PlacedPotential& y, int first, double px, double py, double* row) const;
   bool trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
   bool trace_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  [[nodiscard]] bool touches(const PlacedPotential& y, int c) const;
   Found trace_cells(const PlacedPotential& y, const Window& window, const double* from,
                     const double* to);
   Found trace_sectors(const PlacedPotential& y);
