@@ -47,18 +47,14 @@ constexpr double kListed[16][4] = {
 
 }  // namespace
 
-bool CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                        std::uint64_t near_x, std::uint64_t near_y) {
   distance_ = y.distance != nullptr;
   list_edges(x, y, dx, dy, near_x);
   list_windows(x, y, dx, dy, near_y);
-  Found found = Found::neighbour;
-  while (found == Found::neighbour) found = trace(x, y, dx, dy);
-  if (found == Found::deep) return false;
-  // The boundary of x is one line. Where no part of it is in the collar, it is either all outside
-  // or all inside, deeper.
-  return !runs_.empty() || static_cast<int>(edges_.size()) < x.size ||
-         !encloses(y, x.x[0] + dx, x.y[0] + dy);
+  while (!trace(x, y, dx, dy)) {
+  }
+  find_deep(x, y, dx, dy);
 }
 
 // If nothing is known, edges are left out whose boxes are apart from the other polygon's.
@@ -66,15 +62,43 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
                              double dy, std::uint64_t near) {
   edges_.clear();
   if (near != NearEdges::kAll) {
-    for_each_edge(near, x.size, [&](int e) { edges_.push_back(e); });
-  } else {
-    const Box reach = reach_of(y, 0, 0);
-    for (int e = 0; e < x.size; ++e) {
-      if (!apart(edge_box(x, e, dx, dy), reach)) edges_.push_back(e);
-    }
+    for_each_edge(near, x.size, [&](int e) {
+      edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
+    });
+    return;
   }
-  placed_.clear();
-  for (const int e : edges_) placed_.emplace_back(x, y, e, dx, dy);
+  const Box reach = reach_of(y, 0, 0);
+  for (int e = 0; e < x.size; ++e) {
+    if (apart(edge_box(x, e, dx, dy), reach)) continue;
+    edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
+  }
+}
+
+// Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
+// is deeper all along follows one that leaves the collar, or another one like itself. Cells that
+// only such edges reach may be unknown; so what follows a deep edge is deep as well, as long as it
+// begins inside.
+void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                            double dy) {
+  if (edges_.empty()) return;
+  const auto begins_inside = [&](const Edge& edge) {
+    return encloses(y, x.x[edge.index] + dx, x.y[edge.index] + dy);
+  };
+  // Where all edges are deeper, none of them follows another one.
+  const bool round = static_cast<int>(edges_.size()) == x.size;
+  if (round && runs_.empty() && !edges_[0].deep) edges_[0].deep = begins_inside(edges_[0]);
+  const Edge* before = nullptr;
+  for (Edge& edge : edges_) {
+    const bool follows = before && before->deep && before->index + 1 == edge.index;
+    if (follows && !edge.deep) edge.deep = begins_inside(edge);
+    before = &edge;
+  }
+  if (!before->deep || before->index != x.size - 1 || edges_[0].index != 0) return;
+  for (size_t i = 0; i < edges_.size() && edges_[i].index == static_cast<int>(i); ++i) {
+    if (edges_[i].deep) break;
+    edges_[i].deep = begins_inside(edges_[i]);
+    if (!edges_[i].deep) break;
+  }
 }
 
 void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
@@ -101,14 +125,25 @@ CollarTrace::Window* CollarTrace::window_of(int cell) {
   return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
-void CollarTrace::add_cell(int cell) {
+// Lists the cell; false if it was listed before.
+bool CollarTrace::add_cell(int cell) {
   Window* const window = window_of(cell);
   if (window && cell < window->first + kPack) {
-    window->cells |= 1u << (cell - window->first);
-    return;
+    const unsigned bit = 1u << (cell - window->first);
+    const bool added = (window->cells & bit) == 0;
+    window->cells |= bit;
+    return added;
   }
   const auto at = window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
   windows_.insert(at, {cell, 1});
+  return true;
+}
+
+// The same for the cells on both sides of one in which an edge has ended.
+bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
+  const bool before = add_cell(cell == 0 ? y.size - 1 : cell - 1);
+  const bool after = add_cell(cell + 1 == y.size ? 0 : cell + 1);
+  return before || after;
 }
 
 APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, double px, double py,
@@ -133,6 +168,27 @@ APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, doub
 APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
   const MaskOf<4>::Vector b = mask.m & MaskOf<4>::Vector{1, 2, 4, 8};
   return static_cast<unsigned>((b[0] | b[1]) | (b[2] | b[3]));
+}
+
+// Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
+bool CollarTrace::touches(const PlacedPotential& y, int c) const {
+  constexpr double kNear = 1e-9;  // phi
+  const auto height = [&](double px, double py) {
+    return y.gx[c] * (px - y.x[c]) + y.gy[c] * (py - y.y[c]);
+  };
+  const auto foot = [&](double px, double py) {
+    return y.gy[c] * (px - y.x[c]) - y.gx[c] * (py - y.y[c]);
+  };
+  const double a = height(edge_->px, edge_->py), b = height(end_x_, end_y_);
+  if (std::min(a, b) > kNear || std::max(a, b) < -kNear) return false;
+  // The part of the edge that is near the line.
+  const double s = (kNear - a) / (b - a), t = (-kNear - a) / (b - a);
+  const bool level = !(std::abs(b - a) > kNear);
+  const double s0 = level ? 0 : std::clamp(std::min(s, t), 0., 1.);
+  const double s1 = level ? 1 : std::clamp(std::max(s, t), 0., 1.);
+  const double from = foot(edge_->px, edge_->py), to = foot(end_x_, end_y_);
+  const double u = from + s0 * (to - from), v = from + s1 * (to - from);
+  return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
 // The part of an edge that is left, in several cells at once.
@@ -162,7 +218,12 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
   Parts parts;
   const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
-  parts.there = (a_inside | b_inside) & (Pack::load(kListed[window.cells]) > zero);
+  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
+  const Pack::Mask listed = Pack::load(kListed[window.cells]) > zero;
+  for (unsigned rest = bits(listed & (depth == zero)); rest != 0; rest &= rest - 1) {
+    if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
+  }
+  parts.there = (a_inside | b_inside) & listed & (depth > zero);
   if (!any(parts.there)) return Found::all;
   parts.cut(a, b, a_inside, b_inside, kOwn);
   const Pack side_before = Pack::load(y.cells->side.data() + window.first);
@@ -182,10 +243,6 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
   parts.there = parts.there & (parts.s0 < parts.s1);
   if (!any(parts.there)) return Found::all;
-  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
-  // A cell without depth must not be entered.
-  const Pack::Mask crossed = (parts.end0 == zero) | (parts.end1 == zero);
-  if (any(parts.there & (depth == zero) & crossed)) return Found::deep;
   const Pack::Mask a_below = a < depth, b_below = b < depth;
   if (any(parts.there & !(a_below & b_below))) {
     parts.cut(depth - a, depth - b, a_below, b_below, kTop);
@@ -218,9 +275,8 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   return Found::all;
 }
 
-APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_edges(const PlacedPotential& x,
-                                                           const PlacedPotential& y, double dx,
-                                                           double dy) {
+APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
+                                             double dx, double dy) {
   const size_t windows = windows_.size();
   double* from = rows_.data();
   double* to = from + windows * kRows * kPack;
@@ -230,9 +286,13 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_edges(const PlacedPotential
     }
   };
   int placed = -1;  // the vertex of x in `to`
-  for (size_t k = 0; k < edges_.size(); ++k) {
-    const int e = edges_[k];
-    const PlacedEdge& edge = placed_[k];
+  // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
+  // a border, in a cell that need not be listed.
+  int ended = -1, last = -1;
+  bool first_begins = false;
+  for (Edge& listed : edges_) {
+    const int e = listed.index;
+    const PlacedEdge& edge = listed.placed;
     edge_ = &edge;
     std::swap(from, to);
     if (placed != e || edge.shortened) place_all(edge.px, edge.py, from);
@@ -241,32 +301,41 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_edges(const PlacedPotential
     end_y_ = edge.shortened ? edge.py + edge.ey : x.y[e + 1] + dy;
     place_all(end_x_, end_y_, to);
     count_ = 0;
-    for (size_t i = 0; i < windows; ++i) {
-      const Found found =
-          trace_cells(y, windows_[i], from + i * kRows * kPack, to + i * kRows * kPack);
-      if (found != Found::all) return found;
+    Found found = Found::all;
+    for (size_t i = 0; i < windows && found == Found::all; ++i) {
+      found = trace_cells(y, windows_[i], from + i * kRows * kPack, to + i * kRows * kPack);
     }
-    if (distance_) {
-      const Found found = trace_sectors(y);
-      if (found != Found::all) return found;
+    if (distance_ && found == Found::all) found = trace_sectors(y);
+    if (found == Found::neighbour) return false;
+    listed.deep = found == Found::deep;
+    if (!listed.deep && count_ > 0) close_pieces(y);
+    listed.runs_end = runs_.size();
+    bool begins = listed.deep;
+    int ends = -1;
+    for (size_t i = 0; i < count_ && !listed.deep; ++i) {
+      begins = begins || (pieces_[i].s0 == 0 && pieces_[i].end0 == kEdge);
+      if (pieces_[i].end1 == kEdge) ends = pieces_[i].cell;
     }
-    if (count_ > 0) close_pieces(y, e);
+    if (e == 0) first_begins = begins;
+    if (last + 1 == e && ended >= 0 && !begins && add_neighbours(y, ended)) return false;
+    last = e, ended = ends;
   }
-  return Found::all;
+  const bool round = last == x.size - 1 && edges_[0].index == 0;
+  return !(round && ended >= 0 && !first_begins && add_neighbours(y, ended));
 }
 
-CollarTrace::Found CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx,
-                                      double dy) {
+// False if there are more cells than were known.
+bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
   runs_.clear();
   // A cell has one piece, and so has the sector of each of its two vertices.
   if (const size_t most = 3 * kPack * windows_.size(); pieces_.size() < most) pieces_.resize(most);
   if (const size_t all = 2 * kRows * kPack * windows_.size(); rows_.size() < all) rows_.resize(all);
-  Found found = Found::all;
+  bool done = true;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    found = trace_edges(x, y, dx, dy);
+    done = trace_edges(x, y, dx, dy);
     return 0.;
   });
-  return found;
+  return done;
 }
 
 // Whether the piece stays in the collar, and the cells next to it are looked at as well.
@@ -276,15 +345,9 @@ CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Pi
   Found found = Found::all;
   const auto enter = [&](double v, int cell, bool by_sector) {
     if (!(v < y.cells->depth[cell])) {
-      found = Found::deep;
+      if (found == Found::all) found = Found::deep;
     } else if (!by_sector) {
-      const Window* const window = window_of(cell);
-      if (window && cell < window->first + kPack &&
-          (window->cells >> (cell - window->first) & 1) != 0) {
-        return;
-      }
-      add_cell(cell);
-      if (found == Found::all) found = Found::neighbour;
+      if (add_cell(cell)) found = Found::neighbour;
     }
   };
   for (const auto& [end, v] : {std::pair(piece.end0, piece.v0), std::pair(piece.end1, piece.v1)}) {
@@ -362,7 +425,7 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
 }
 
 // Puts the pieces of an edge in order, and together to runs.
-void CollarTrace::close_pieces(const PlacedPotential& y, int edge) {
+void CollarTrace::close_pieces(const PlacedPotential& y) {
   const auto behind = [](const Piece& p, const Piece& q) {
     return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
   };
@@ -379,8 +442,6 @@ void CollarTrace::close_pieces(const PlacedPotential& y, int edge) {
     const Piece& piece = pieces_[i];
     if (!(run && run->s1 == piece.s0 && border(pieces_[i - 1].end1) && border(piece.end0))) {
       run = &runs_.emplace_back();
-      run->edge = edge;
-      run->placed = edge_;
       run->s0 = piece.s0;
       run->edge0 = crossed(piece, piece.end0);
     }

@@ -22,19 +22,28 @@ class CollarTrace {
   /// A maximal part of an edge inside the polygon, from s0 to s1, with the integrals of phi along
   /// it. edge0 and edge1 are the edges that it crosses there, or -1 at an end of the edge itself.
   struct Run {
-    int edge;
-    const edge_detail::PlacedEdge* placed;
     double s0, s1;
     int edge0, edge1;
     SegmentMoments<double> moments;
   };
 
+  /// An edge of x that may enter y. An edge that leaves the collar, or is deeper all along, has no
+  /// runs here.
+  struct Edge {
+    int index;
+    edge_detail::PlacedEdge placed;
+    bool deep;
+    size_t runs_end;  ///< its runs are those behind the edge before, up to here
+  };
+
   /// Finds the runs of x in y, whose coordinates are finite. The arguments are those of walk_runs
-  /// (edge_trace.hpp). Returns false if an edge of x leaves the collar; then there is no result. It
-  /// depends on the polygons alone, and not on near_x and near_y, whether this is so.
-  bool find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+  /// (edge_trace.hpp). What is found of an edge depends on the polygons alone, and not on near_x
+  /// and near_y.
+  void find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
             std::uint64_t near_x, std::uint64_t near_y);
-  /// The runs in the order of their edges, and along each edge.
+  /// The edges that may enter, in ascending order.
+  [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
+  /// The runs of all of them, along each edge.
   [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
 
  private:
@@ -68,20 +77,22 @@ class CollarTrace {
                   std::uint64_t near);
   void list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                     std::uint64_t near);
-  void add_cell(int cell);
+  bool add_cell(int cell);
+  bool add_neighbours(const PlacedPotential& y, int cell);
   [[nodiscard]] Window* window_of(int cell);
   void place(const PlacedPotential& y, int first, double px, double py, double* row) const;
-  Found trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
-  Found trace_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  bool trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  bool trace_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
+  [[nodiscard]] bool touches(const PlacedPotential& y, int c) const;
   Found trace_cells(const PlacedPotential& y, const Window& window, const double* from,
                     const double* to);
   Found trace_sectors(const PlacedPotential& y);
   Found trace_sector(const PlacedPotential& y, int vertex);
   Found check_borders(const PlacedPotential& y, const Piece& piece, int before, int after);
-  void close_pieces(const PlacedPotential& y, int edge);
+  void close_pieces(const PlacedPotential& y);
+  void find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
 
-  std::vector<int> edges_;                         // of x
-  std::vector<edge_detail::PlacedEdge> placed_;    // the same
+  std::vector<Edge> edges_;
   std::vector<Window> windows_;                    // of y, in ascending order of their first cells
   std::vector<double> rows_;                       // of the ends of an edge, for each window
   bool distance_ = false;                          // phi is the distance from the boundary

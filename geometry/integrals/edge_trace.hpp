@@ -220,36 +220,6 @@ inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, dou
   return finite;
 }
 
-/// Calls along(e, edge) for every edge e of x that may enter y, which is not convex. `near` are the
-/// edges that are not known to keep away, as in NearEdges. Returns 0, or NaN without any call if a
-/// coordinate is not finite. Edges that are left out are so far away that no rounding could let
-/// them enter; hence the calls that find something do not depend on `near`.
-template <class Along>
-double edges_near(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                  std::uint64_t near, const Along& along) {
-  if (near != NearEdges::kAll) {
-    for_each_edge(near, x.size, [&](int e) { along(e, PlacedEdge(x, y, e, dx, dy)); });
-    return 0;
-  }
-  Box box;
-  double finite = 0;  // sum of 0 * coordinate, which is NaN if a coordinate is not finite
-  for (int i = 0; i < y.size; ++i) {
-    box.include(y.x[i], y.y[i]);
-    finite += 0 * y.x[i] + 0 * y.y[i];
-  }
-  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
-  if (!(finite == 0)) return finite;
-  box = box.grown(kFarAway * box.extent());
-  for (int e = 0; e < x.size; ++e) {
-    const PlacedEdge edge(x, y, e, dx, dy);
-    Box own;
-    own.include(edge.px, edge.py);
-    own.include(edge.px + edge.ex, edge.py + edge.ey);
-    if (!apart(own, box)) along(e, edge);
-  }
-  return 0;
-}
-
 /// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
 /// `heights` has written, or computed in `spare`, which has room for two rows, if the edge has been
 /// shortened.
@@ -347,6 +317,26 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
   return -1;
 }
 
+/// Calls run(s0, edge0, s1, edge1, moments) for the runs of an edge in y, which is not convex, by
+/// all of its roof or of its distance field. The nodes of a roof are placed in the workspace.
+template <class Run>
+void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
+               const Run& run) {
+  SegmentMoments<double> moments;
+  const auto end = [&](double s0, int edge0, double s1, int edge1) {
+    run(s0, edge0, s1, edge1, moments);
+    moments = {};
+  };
+  if (y.distance) {
+    workspace.distance.runs(placed_distance(y), edge.px, edge.py, edge.ex, edge.ey, moments, end);
+    return;
+  }
+  workspace.roof.cross(placed_roof(y, workspace.nodes), edge.px, edge.py, edge.ex, edge.ey);
+  workspace.roof.runs(
+      [&](double u1, double v1, double u2, double v2) { add_piece(y, u1, v1, u2, v2, moments); },
+      end);
+}
+
 /// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
 /// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
 /// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
@@ -357,39 +347,26 @@ template <bool crossings, class Run>
 double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                  std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
                  EdgeWorkspace& workspace, const Run& run) {
-  if (y.cells) {
+  if (!y.convex()) {
     if (const double finite = all_finite(x, y, dx, dy, near, near_y); !(finite == 0)) return finite;
-    if (workspace.collar.find(x, y, dx, dy, near, near_y)) {
-      for (const CollarTrace::Run& r : workspace.collar.runs()) {
-        run(r.edge, *r.placed, r.s0, r.edge0, r.s1, r.edge1, r.moments);
+    CollarTrace& collar = workspace.collar;
+    collar.find(x, y, dx, dy, near, near_y);
+    size_t r = 0;
+    bool nodes = false;  // whether they are placed
+    for (const CollarTrace::Edge& edge : collar.edges()) {
+      for (; r < edge.runs_end; ++r) {
+        if (edge.deep) continue;
+        const CollarTrace::Run& part = collar.runs()[r];
+        run(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
       }
-      return 0;
+      if (!edge.deep) continue;
+      if (y.roof && !nodes) workspace.nodes.place(y), nodes = true;
+      walk_deep(y, edge.placed, workspace,
+                [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
+                  run(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
+                });
     }
-  }
-  if (y.roof) {
-    workspace.nodes.place(y);
-    const PlacedRoof<double> roof = placed_roof(y, workspace.nodes);
-    return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {
-      workspace.roof.cross(roof, edge.px, edge.py, edge.ex, edge.ey);
-      SegmentMoments<double> moments;
-      workspace.roof.runs([&](double u1, double v1, double u2,
-                              double v2) { add_piece(y, u1, v1, u2, v2, moments); },
-                          [&](double s0, int edge0, double s1, int edge1) {
-                            run(e, edge, s0, edge0, s1, edge1, moments);
-                            moments = {};
-                          });
-    });
-  }
-  if (y.distance) {
-    const PlacedDistance<double> field = placed_distance(y);
-    return edges_near(x, y, dx, dy, near, [&](int e, const PlacedEdge& edge) {
-      SegmentMoments<double> moments;
-      workspace.distance.runs(field, edge.px, edge.py, edge.ex, edge.ey, moments,
-                              [&](double s0, int edge0, double s1, int edge1) {
-                                run(e, edge, s0, edge0, s1, edge1, moments);
-                                moments = {};
-                              });
-    });
+    return 0;
   }
   for_each_edge(near, x.size, [&](int e) {
     const PlacedEdge edge(x, y, e, dx, dy);
