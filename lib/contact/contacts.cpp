@@ -55,7 +55,19 @@ bool Contacts::search_if_stale() {
 
 void Contacts::evaluate() {
   contacts_.clear();
+  listed_ = false;
   each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
+}
+
+const std::vector<Contact>& Contacts::contacts() const {
+  if (!listed_) each([&](const Kernel& kernel) { kernel.list(contacts_); });
+  listed_ = true;
+  return contacts_;
+}
+
+size_t Contacts::touching() const {
+  if (listed_) return contacts_.size();
+  return contacts_.size() + sum<size_t>([](const Kernel& kernel) { return kernel.unlisted(); });
 }
 
 std::optional<ContactFault> Contacts::fault() const {
@@ -142,7 +154,7 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     const auto [a, b] = bodies(c);
     peak = {depth, a, b};
   };
-  for (const Contact& c : contacts_) {
+  for (const Contact& c : contacts()) {
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   }
@@ -161,8 +173,10 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
 bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const {
   constexpr double kRoundOff = 1 - 1e-12;
   const double least = std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
+  bool unlisted = false;
+  each([&](const Kernel& kernel) { unlisted = unlisted || kernel.deepest_unlisted() > least; });
   const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
-  return std::ranges::any_of(contacts_, deeper);
+  return unlisted || std::ranges::any_of(contacts_, deeper);
 }
 
 PairPeak Contacts::largest_force() const {

@@ -60,8 +60,9 @@ class Contacts {
   void drop_trial();
   void add_forces(const ForceViews& forces);
 
-  /// Ascending within a kernel.
-  [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+  /// Ascending within a kernel. Not for every step; `touching` says how many there are.
+  [[nodiscard]] const std::vector<Contact>& contacts() const;
+  [[nodiscard]] size_t touching() const;
   /// The bodies of a contact, and of a spring.
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const SpringKey& key) const;
@@ -143,7 +144,8 @@ class Contacts {
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_;
   bool tangential_;  // there is friction or damping
-  std::vector<Contact> contacts_;
+  mutable std::vector<Contact> contacts_;
+  mutable bool listed_ = false;  // those are in it that kernels had left out
   FrictionMemory memory_;
   bool tried_ = false;  // the last slide was a trial
   std::int64_t searches_ = 0;

@@ -43,6 +43,11 @@ class Kernel {
   /// ascending order. The same bits for any number of threads. No allocation unless there are more
   /// contacts than ever before.
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
+  /// A kernel may leave its contacts out until they are asked for: appends them.
+  virtual void list(std::vector<Contact>& /*contacts*/) const {}
+  /// How many it has left out, and a depth that none of these exceeds, m.
+  [[nodiscard]] virtual size_t unlisted() const { return 0; }
+  [[nodiscard]] virtual double deepest_unlisted() const { return 0; }
   /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.
