@@ -306,8 +306,8 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
                                      piece};
   piece = clipped.part(lo, hi, h1, h2);
   if (in == End::a) clipped.along_a(h1, -1);
-  if (out == End::a) clipped.along_a(h2, 1);
   if (in == End::b) clipped.along_b(h1, 1);
+  if (out == End::a) clipped.along_a(h2, 1);
   if (out == End::b) clipped.along_b(h2, -1);
   return true;
 }

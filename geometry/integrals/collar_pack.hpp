@@ -107,16 +107,14 @@ APOTHEM_INLINE CollarPieces<Pack> collar_pieces(const CollarFaces<Pack>& f, cons
   piece.height = -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) * sixth;
   piece.deepest = select(h1 < h2, h2, h1);
 
-  // collar_piece adds what belongs to the bisector at a before that at b.
   const Pack alpha = f.alpha(), beta = f.beta();
   const detail::AlongBisector<Pack> enters(in_a, select(in_a, alpha, beta), h1, f.length, -1);
   const detail::AlongBisector<Pack> leaves(out_a, select(out_a, alpha, beta), h2, f.length, 1);
-  const Mask in = in_a | in_b, out = out_a | out_b, swap = in_b & out_a;
-  const Mask with_first = select(swap, out, in), with_second = select(swap, in, out);
+  const Mask in = in_a | in_b, out = out_a | out_b;
   const auto add = [&](const Pack& entering, const Pack& leaving, Pack& sum)
-      __attribute__((always_inline)) {
-    sum = select(with_first, sum + select(swap, leaving, entering), sum);
-    sum = select(with_second, sum + select(swap, entering, leaving), sum);
+                       APOTHEM_LAMBDA {
+    sum = select(in, sum + entering, sum);
+    sum = select(out, sum + leaving, sum);
   };
   add(enters.area, leaves.area, piece.area);
   add(enters.along, leaves.along, piece.along);

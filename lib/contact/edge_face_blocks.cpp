@@ -6,10 +6,30 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kUnit = 64;        // candidates, or more where they have one spring
+constexpr int kUnitEdges = 48;      // of a unit
+constexpr int kUnitFaces = 64;      // of a unit with one long edge
+constexpr double kLong = 32;        // times the smallest r of a mesh
 constexpr double kNothing = 1e-12;  // of a collar: round-off where an edge begins on a face
 
 }  // namespace
+
+EdgeFaceBlocks::EdgeFaceBlocks(const Outlines& outlines)
+    : outlines_(outlines), is_long_(static_cast<size_t>(outlines.size())) {
+  double smallest = HUGE_VAL;
+  for (const Outlines::Body& body : outlines.bodies) {
+    if (!body.is_rigid()) smallest = std::min(smallest, body.reference);
+  }
+  for (const Outlines::Body& body : outlines.bodies) {
+    for (int i = body.first; body.is_rigid() && i < body.end; ++i) {
+      is_long_[static_cast<size_t>(i)] = outlines.given_length(i) > kLong * smallest;
+    }
+  }
+}
+
+EdgeFaceBlocks::Key EdgeFaceBlocks::unit_of(const EdgeFace& c) const {
+  if (is_long_[static_cast<size_t>(c.edge)]) return {c.edge, c.face / kUnitFaces};
+  return {-1 - c.edge / kUnitEdges, 0};
+}
 
 // Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
 // rigid bodies are long: they have one for each face, which the face takes with it.
@@ -23,8 +43,8 @@ void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const 
   most_blocks_ = 0;
   number_of_law_.assign(laws.size(), -1);
   for (size_t first = 0; first < candidates.size();) {
-    size_t end = std::min(first + kUnit, candidates.size());
-    while (end < candidates.size() && key_of(candidates[end]) == key_of(candidates[end - 1])) ++end;
+    size_t end = first + 1;
+    while (end < candidates.size() && unit_of(candidates[end]) == unit_of(candidates[first])) ++end;
     add_unit(candidates.subspan(first, end - first), static_cast<std::int32_t>(first), laws);
     first = end;
   }
@@ -44,6 +64,7 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
   for (size_t i = 0; i < candidates.size(); i += kBlock) {
     EdgeFaceBlock& block = blocks_.emplace_back();
     block.lanes = 0;
+    block.one_law = true;
     for (size_t l = 0; l < kBlock; ++l) {
       const EdgeFace& c = candidates[std::min(i + l, candidates.size() - 1)];
       const EdgeFaceLaw& law = laws[static_cast<size_t>(c.pair)];
@@ -56,6 +77,7 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
       block.p[l] = c.edge, block.q[l] = o.next[c.edge];
       block.a[l] = c.face, block.b[l] = o.next[c.face];
       block.law[l] = number;
+      block.one_law = block.one_law && number == block.law[0];
       block.slope[l] = repeated ? 0 : law.slope;
       block.spring[l] = repeated ? 0 : law.spring;
       block.nothing[l] = repeated ? HUGE_VAL : law.self ? kNothing * o.depth[c.face] : 0;

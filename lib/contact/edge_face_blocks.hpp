@@ -1,8 +1,10 @@
 // The candidates of outlines, four side by side, and what an evaluation finds of them.
 //
 // Candidates ascend by edge and face. They are cut into units, which are worked on one at a time or
-// by several threads: no law and no friction spring belongs to two of them. A unit is a number of
-// blocks of four candidates. What is summed over a unit does not depend on the number of threads.
+// by several threads: no friction spring belongs to two of them. Where they are cut follows from the
+// numbers of edges and faces alone. So what is summed over a unit, contact by contact, depends
+// neither on the number of threads nor on when candidates were searched for. A unit is a number of
+// blocks of four candidates.
 #pragma once
 
 #include <array>
@@ -30,6 +32,7 @@ struct EdgeFaceBlock {
   Numbers slope, spring;  ///< of the law; 0 in what is repeated
   Numbers nothing;        ///< up to this depth it is no contact, m
   unsigned lanes;         ///< one bit for each candidate
+  bool one_law;           ///< of all lanes
 };
 
 /// What friction needs to know of the contacts of a block. `sum`, `first`, `from` and `to` are 0
@@ -65,7 +68,7 @@ struct EdgeFaceUnit {
 
 class EdgeFaceBlocks {
  public:
-  explicit EdgeFaceBlocks(const Outlines& outlines) : outlines_(outlines) {}
+  explicit EdgeFaceBlocks(const Outlines& outlines);
 
   /// `candidates` ascend; their pairs are indices of `laws`.
   void take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws);
@@ -108,10 +111,12 @@ class EdgeFaceBlocks {
     bool operator==(const Key&) const = default;
   };
   [[nodiscard]] Key key_of(const EdgeFace& candidate) const;
+  [[nodiscard]] Key unit_of(const EdgeFace& candidate) const;
   void add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                 std::span<const EdgeFaceLaw> laws);
 
   const Outlines& outlines_;
+  std::vector<bool> is_long_;  // edges of rigid bodies that may touch many faces
   std::vector<EdgeFaceUnit> units_;
   std::vector<EdgeFaceBlock> blocks_;
   std::vector<EdgeFaceGroup> groups_;

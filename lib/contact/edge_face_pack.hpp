@@ -135,8 +135,13 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     }
     met = static_cast<std::uint8_t>(found | EdgeFaceBlocks::kPushed);
     touching += std::popcount(found);
-    for (size_t l = 0; l < kBlock; ++l) {
-      all.lengths()[block.law[l]] += (touch.to[l] - touch.from[l]) * touch.edge_length[l];
+    EdgeFaceTouch::Numbers length;
+    put(length, (Pack::load(touch.to.data()) - Pack::load(touch.from.data())) * edge_length);
+    if (block.one_law) {
+      double& sum = all.lengths()[block.law[0]];
+      sum = sum + length[0] + length[1] + length[2] + length[3];
+    } else {
+      for (size_t l = 0; l < kBlock; ++l) all.lengths()[block.law[l]] += length[l];
     }
     push(i, pushes);
   }

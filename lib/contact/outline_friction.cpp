@@ -174,7 +174,6 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
   }
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     using Pack = PackOf<kBlock>;
-    Pack friction(0.), damping(0.);  // W
     for (size_t i = 0; i < blocks; ++i) {
       if (!touches(i)) continue;
       const auto at = static_cast<size_t>(unit.first) + i;
@@ -184,8 +183,13 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
             [&](size_t l) APOTHEM_LAMBDA { return worker.shares[kBlock * i + l][number]; });
       };
       const Pack spring = share(0), dashpot = share(1), rate = Pack::load(slip.rate.data());
-      friction += spring * rate;
-      damping += dashpot * rate + Pack::load(slip.push_power.data());
+      EdgeFaceBlock::Numbers friction, damping;  // W
+      (spring * rate).store(friction.data());
+      (dashpot * rate + Pack::load(slip.push_power.data())).store(damping.data());
+      for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+        found.powers.friction += friction[l];
+        found.powers.damping += damping[l];
+      }
       BlockDrag& drag = block_drags_[at];
       const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
       ((spring + dashpot) * normal).store(drag.along.data());
@@ -193,10 +197,6 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
       SlipForces& forces = keep_forces ? forces_[at] : worker.forces;
       find_drags(step.blocks.touches()[at], slip, spring, dashpot, forces);
       if (!keep_forces) add_drags(step.blocks.blocks()[at], forces, drags_.data());
-    }
-    for (int l = 0; l < kBlock; ++l) {
-      found.powers.friction += friction.v[l];
-      found.powers.damping += damping.v[l];
     }
     return 0.;
   });
