@@ -111,8 +111,7 @@ APOTHEM_INLINE CollarPieces<Pack> collar_pieces(const CollarFaces<Pack>& f, cons
   const detail::AlongBisector<Pack> enters(in_a, select(in_a, alpha, beta), h1, f.length, -1);
   const detail::AlongBisector<Pack> leaves(out_a, select(out_a, alpha, beta), h2, f.length, 1);
   const Mask in = in_a | in_b, out = out_a | out_b;
-  const auto add = [&](const Pack& entering, const Pack& leaving, Pack& sum)
-                       APOTHEM_LAMBDA {
+  const auto add = [&](const Pack& entering, const Pack& leaving, Pack& sum) APOTHEM_LAMBDA {
     sum = select(in, sum + entering, sum);
     sum = select(out, sum + leaving, sum);
   };

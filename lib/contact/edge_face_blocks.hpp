@@ -1,8 +1,8 @@
 // The candidates of outlines, four side by side, and what an evaluation finds of them.
 //
 // Candidates ascend by edge and face. They are cut into units, which are worked on one at a time or
-// by several threads: no friction spring belongs to two of them. Where they are cut follows from the
-// numbers of edges and faces alone. So what is summed over a unit, contact by contact, depends
+// by several threads: no friction spring belongs to two of them. Where they are cut follows from
+// the numbers of edges and faces alone. So what is summed over a unit, contact by contact, depends
 // neither on the number of threads nor on when candidates were searched for. A unit is a number of
 // blocks of four candidates.
 #pragma once

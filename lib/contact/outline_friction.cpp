@@ -98,10 +98,15 @@ void OutlineFriction::find_times(const Step& step) {
 void OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, const EdgeFaceGroup& group,
                              Worker& worker, Unit& found) {
   const EdgeFaceLaw& law = step.blocks.laws()[static_cast<size_t>(group.law)];
-  std::array<double, 4> sums = worker.addends[static_cast<size_t>(group.first)];
-  for (std::int32_t i = group.first + 1; i < group.end; ++i) {
-    const std::array<double, 4>& addend = worker.addends[static_cast<size_t>(i)];
-    for (size_t k = 0; k < 4; ++k) sums[k] += addend[k];
+  // Most springs have one contact or two: these are summed without a branch.
+  constexpr std::array<double, 4> kNone{};
+  const std::array<double, 4>* const addends = &worker.addends[static_cast<size_t>(group.first)];
+  const std::int32_t count = group.end - group.first;
+  const std::array<double, 4>& second = count > 1 ? addends[1] : kNone;
+  std::array<double, 4> sums;
+  for (size_t k = 0; k < 4; ++k) sums[k] = addends[0][k] + second[k];
+  for (std::int32_t i = 2; i < count; ++i) {
+    for (size_t k = 0; k < 4; ++k) sums[k] += addends[i][k];
   }
   const double normal = sums[SlipSums::normal];
   if (!(law.friction > 0 && normal > 0)) return;
@@ -140,9 +145,10 @@ void OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, const E
     const double resists = spring.force - time * spring.stiffness * slip;
     dashpot = std::clamp(resists, -limit, limit) - spring.force;
   }
-  for (std::int32_t i = group.first; i < group.end; ++i) {
-    worker.shares[static_cast<size_t>(i)] = {spring.force * per_normal, dashpot * per_normal};
-  }
+  const std::array<double, 2> share{spring.force * per_normal, dashpot * per_normal};
+  std::array<double, 2>* const shares = &worker.shares[static_cast<size_t>(group.first)];
+  shares[0] = shares[count - 1] = share;
+  for (std::int32_t i = 1; i < count - 1; ++i) shares[i] = share;
 }
 
 // `keep_forces`: several threads work, and the forces are added to those on the vertices later.

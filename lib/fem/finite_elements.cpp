@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <tuple>
 
@@ -216,7 +217,7 @@ void FiniteElements::add_chunks() {
 }
 
 void FiniteElements::add_chunk(std::span<const Member> elements) {
-  Chunk chunk{runs_.size(), 0, nodes_.size(), 0};
+  Chunk chunk{runs_.size(), 0, nodes_.size(), 0, false};
   std::vector<int> nodes;
   for (const Member& m : elements) {
     for (const int node : corners_of(m)) nodes.push_back(sets_[m.set].first_node + node);
@@ -284,6 +285,13 @@ void FiniteElements::find_shared_nodes() {
   }
   halo_.resize(2 * static_cast<size_t>(slots_.back()));
   for (const int node : nodes_) target_.push_back(next[node] < 0 ? node : -1 - next[node]++);
+  for (Chunk& chunk : chunks_) {
+    chunk.apart = true;
+    for (size_t i = chunk.nodes; i < chunk.nodes_end; ++i) {
+      const int own = nodes_[chunk.nodes] + static_cast<int>(i - chunk.nodes);
+      chunk.apart = chunk.apart && target_[i] == own;
+    }
+  }
 }
 
 double FiniteElements::run(Task task, std::span<const double> u, std::span<const double> v,
@@ -296,18 +304,19 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       const Chunk& chunk = chunks_[c];
       const size_t n = chunk.nodes_end - chunk.nodes;
       const int* nodes = &nodes_[chunk.nodes];
-      for (size_t i = 0; i < n; ++i) {
-        s.u[2 * i] = u[2 * static_cast<size_t>(nodes[i])];
-        s.u[2 * i + 1] = u[2 * static_cast<size_t>(nodes[i]) + 1];
-      }
-      s.u[2 * n] = s.u[2 * n + 1] = 0;
-      if (moving) {
-        for (size_t i = 0; i < n; ++i) {
-          s.v[2 * i] = v[2 * static_cast<size_t>(nodes[i])];
-          s.v[2 * i + 1] = v[2 * static_cast<size_t>(nodes[i]) + 1];
+      const auto take = [&](std::span<const double> from, Aligned& to) {
+        if (chunk.apart) {
+          std::copy_n(from.begin() + 2 * nodes[0], 2 * n, to.begin());
+        } else {
+          for (size_t i = 0; i < n; ++i) {
+            to[2 * i] = from[2 * static_cast<size_t>(nodes[i])];
+            to[2 * i + 1] = from[2 * static_cast<size_t>(nodes[i]) + 1];
+          }
         }
-        s.v[2 * n] = s.v[2 * n + 1] = 0;
-      }
+        to[2 * n] = to[2 * n + 1] = 0;
+      };
+      take(u, s.u);
+      if (moving) take(v, s.v);
       std::fill(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * (n + 1)), 0.);
       double sum = 0;
       for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
@@ -325,6 +334,11 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       }
       chunk_sums_[c] = sum;
       if (task == Task::energy) continue;
+      if (chunk.apart) {
+        std::transform(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * n),
+                       f.begin() + 2 * nodes[0], std::negate<>());
+        continue;
+      }
       const int* target = &target_[chunk.nodes];
       for (size_t i = 0; i < n; ++i) {
         double* to = target[i] >= 0 ? &f[2 * static_cast<size_t>(target[i])]

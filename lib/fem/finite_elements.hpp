@@ -126,6 +126,7 @@ class FiniteElements {
   struct Chunk {
     size_t runs, runs_end;
     size_t nodes, nodes_end;
+    bool apart;  ///< its nodes follow each other, and no other chunk uses them
   };
   using Aligned = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
   /// Local copies of the displacements, velocities and forces of one chunk's nodes.
