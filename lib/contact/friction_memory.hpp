@@ -53,12 +53,18 @@ inline double slide(double force, double slip, double stiffness, double limit) {
   return std::clamp(force - stiffness * slip, -limit, limit);
 }
 
-/// What one pair books in a step, J. Each has an entry of its own, which is summed over the pairs
-/// in their order, so that sums do not depend on who works on which pairs.
+/// What a pair, or a block of pairs, books in a step, J. Blocks have entries of their own, which
+/// are summed in their order, so that sums do not depend on who works on which pairs.
 struct PairBook {
   double energy = 0;        ///< that its springs store
   double loss = 0;          ///< that its springs have lost
   double damping_loss = 0;  ///< that damping has taken from the bodies
+
+  void add(const PairBook& other) {
+    energy += other.energy;
+    loss += other.loss;
+    damping_loss += other.damping_loss;
+  }
 };
 
 /// The springs of the step before, for a range of pairs that one thread works on. What contacts

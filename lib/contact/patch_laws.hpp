@@ -207,37 +207,40 @@ APOTHEM_INLINE PatchForces<Real> step_patch(const PatchStep<Real>& p, bool rough
   return forces;
 }
 
-/// Friction and damping of a pair at the end of a step, and what the ledger needs of them.
+/// The damping of a pair at the end of a step, and what the ledger needs of it.
 template <class Real>
-struct TangentialForceOf {
-  PairVectorOf<Real> all{};
-  PairVectorOf<Real> damping{};            ///< of this
+struct PairDampingOf {
+  PairVectorOf<Real> damping{};            ///< the force of all its patches
   PairVectorOf<Real> change_of_damping{};  ///< in the last step
   PairVectorOf<Real> rate{};               ///< of the bodies in the last half step
   Real power_before{};                     ///< of the change at the rate before that one, W
+
+  void fields(Archive& archive) {
+    archive("damping", damping)("change_of_damping", change_of_damping)("rate", rate)(
+        "power_before", power_before);
+  }
 };
 
-/// Closes a step of dt (s) in which damping has become force.damping, with the bodies at
-/// force.rate; `before` is zero, with the same rate, if the pair did not touch. Returns what
-/// damping takes from the bodies, J.
+/// Closes a step of dt (s) in which damping has become now.damping, with the bodies at now.rate;
+/// `before` is zero, with the same rate, if the pair did not touch. Returns what damping takes from
+/// the bodies, J.
 ///
 /// Velocity Verlet sums the work of a force G by the trapezoid rule, along a path that bends within
 /// the step. With the accelerations of the bodies against each other at both ends, the work on them
 /// is h^2/12 (G_1 - G_0) (a_0 + a_1) larger, summed over a contact. The last one is known a step
 /// later, so that this part is of the step before.
 template <class Real>
-APOTHEM_INLINE Real close_damping(const TangentialForceOf<Real>& before, double dt,
-                                  TangentialForceOf<Real>& force) {
+APOTHEM_INLINE Real close_damping(const PairDampingOf<Real>& before, double dt,
+                                  PairDampingOf<Real>& now) {
   if (!(dt > 0)) {
-    force.change_of_damping = {};
-    force.power_before = Real(0.);
+    now.change_of_damping = {};
+    now.power_before = Real(0.);
     return Real(0.);
   }
-  force.change_of_damping = force.damping - before.damping;
-  force.power_before = force.change_of_damping.power(before.rate);
-  const Real half = Real(dt / 2) * (force.damping + before.damping).power(force.rate);
-  return -(half +
-           Real(dt / 12) * (before.change_of_damping.power(force.rate) - before.power_before));
+  now.change_of_damping = now.damping - before.damping;
+  now.power_before = now.change_of_damping.power(before.rate);
+  const Real half = Real(dt / 2) * (now.damping + before.damping).power(now.rate);
+  return -(half + Real(dt / 12) * (before.change_of_damping.power(now.rate) - before.power_before));
 }
 
 }  // namespace apothem

@@ -7,8 +7,6 @@
 namespace apothem {
 namespace {
 
-constexpr double kSlideTime = 150;  // of a touching pair, ns
-
 // The force of a spring after a slip in m: never beyond Coulomb's limit in N. What it loses is the
 // mean force times the slip that it does not follow.
 double follow(double force, double slip, double stiffness, double limit, PairBook& book) {
@@ -33,197 +31,209 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
       table_(table),
       thickness_(thickness),
       threads_(threads),
-      ranges_(static_cast<size_t>(threads_.count()), Range(*this)) {}
+      ranges_(static_cast<size_t>(threads_.count()), Range(*this)),
+      scene_{surfaces_, thickness_} {}
 
-void PatchTangential::slide(const PairIntegrals& pairs, const Kinematics& now, double dt,
-                            FrictionMemory& memory, std::span<PairStiffness> stiffness) {
-  const std::vector<PairInTouch>& touching = pairs.touching();
-  stiffness_ = stiffness;
+void PatchTangential::begin_step(const PairIntegrals& pairs, const Kinematics& now, double dt,
+                                 FrictionMemory& memory) {
+  pairs_ = &pairs;
+  kinematics_ = now;
+  scene_.now = &kinematics_;
+  scene_.dt = dt;
   std::swap(now_, before_);
-  std::swap(forces_, forces_before_);
-  make_room(touching);
-  springs_ = memory.make_room(places_.back().spring);
+  springs_ = memory.make_room(make_room());
   for (Range& range : ranges_) memory.begin(range.springs, {-1, 0});
-  const int count = static_cast<int>(touching.size());
-  const PatchScene scene{surfaces_, now, dt, thickness_};
-  threads_.chunks(count, kSlideTime, [&](int first, int end, int worker) {
-    if (first == end && count > 0) return;
-    Range& range = ranges_[static_cast<size_t>(worker)];
-    range.begin({}, 0);
-    if (first > 0) {
-      const PairInTouch& last = touching[static_cast<size_t>(first - 1)];
-      memory.begin(range.springs, {last.a, last.b});
-      range.begin(place_behind({last.a, last.b}), forces_behind({last.a, last.b}));
-    }
-    for (int i = first; i < end; ++i) {
-      range.step_pair(pairs, static_cast<size_t>(i), scene);
-    }
-    range.finish(scene);
-    if (end == count) range.release_until(std::numeric_limits<RigidIndex>::max(), 0, scene);
+}
+
+// Every pair has its place in the lists, so that threads do not wait for each other. Returns the
+// number of springs.
+size_t PatchTangential::make_room() {
+  const std::vector<PairInTouch>& touching = pairs_->touching();
+  places_.clear();
+  Place place;
+  for (size_t i = 0; i < touching.size(); ++i) {
+    if (i % kBlock == 0) places_.push_back(place);
+    const PairInTouch& pair = touching[i];
+    place.pass(pair.patches, pair.runs, kind_of(table_.between(pair.a, pair.b)), *this);
+  }
+  now_.pairs.resize(touching.size());
+  now_.runs.resize(static_cast<size_t>(place.run));
+  now_.dampers.resize(static_cast<size_t>(place.damper));
+  now_.damping.resize(table_.damped() ? touching.size() : 0);
+  books_.assign(places_.size(), {});
+  return place.spring;
+}
+
+// What a pair has comes behind this place, and this place moves behind it.
+void PatchTangential::Place::pass(int patches, int runs, Tangential kind,
+                                  const PatchTangential& all) {
+  if (!kind.any()) return;
+  run += runs;
+  if (all.table_.damped()) damper += patches;
+  if (kind.rough) spring += static_cast<size_t>(all.per_edge_ ? runs : patches);
+}
+
+void PatchTangential::begin_range(Range& range, int first, FrictionMemory& memory) {
+  range.begin(0);
+  if (first == 0) return;
+  const PairInTouch& last = pairs_->touching()[static_cast<size_t>(first - 1)];
+  const BoxPair behind{last.a, last.b};
+  memory.begin(range.springs, {last.a, last.b});
+  const auto next = std::ranges::partition_point(before_.pairs, [&](const PairHistory& p) {
+    return BoxPair{p.a, p.b} <= behind;
   });
+  range.begin(static_cast<size_t>(next - before_.pairs.begin()));
+}
+
+void PatchTangential::end_step(FrictionMemory& memory) {
   for (const Range& range : ranges_) memory.add(range.springs);
   for (const PairBook& book : books_) memory.add(book);
 }
 
-// Every pair has its place in the lists, so that threads do not wait for each other.
-void PatchTangential::make_room(std::span<const PairInTouch> pairs) {
-  places_.resize(pairs.size() + 1);
-  Place place;
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    places_[i] = place;
-    const PairInTouch& pair = pairs[i];
-    const PairLaw& law = table_.between(pair.a, pair.b);
-    ++place.pair;
-    if (!is_rough(law) && !is_damped(law)) continue;
-    const auto patches = static_cast<size_t>(pair.patches), runs = static_cast<size_t>(pair.runs);
-    place.run += runs;
-    if (table_.damped()) place.damper += patches;
-    if (is_rough(law)) place.spring += edgewise() ? runs : patches;
+void PatchTangential::inherit(History history) {
+  now_ = std::move(history);
+  now_.number();
+  now_.damping.assign(table_.damped() ? now_.pairs.size() : 0, {});
+}
+
+void PatchTangential::History::number() {
+  int run = 0, damper = 0;
+  for (PairHistory& pair : pairs) {
+    pair.first_run = run;
+    pair.first_damper = damper;
+    run += pair.runs;
+    damper += pair.patches;
   }
-  places_.back() = place;
-  forces_.resize(place.pair);
-  books_.resize(place.pair);
-  now_.pairs.resize(place.pair);
-  now_.runs.resize(place.run);
-  now_.dampers.resize(place.damper);
 }
 
-PatchTangential::Place PatchTangential::place_behind(const BoxPair& pair) const {
-  Place place;
-  for (const PairHistory& p : before_.pairs) {
-    if (BoxPair{p.a, p.b} > pair) break;
-    place.pass(p);
-  }
-  return place;
+void PatchTangential::History::fields(Archive& archive) {
+  archive("pairs", pairs)("runs", runs)("dampers", dampers)("damping", damping);
+  number();
 }
 
-size_t PatchTangential::forces_behind(const BoxPair& pair) const {
-  const auto behind = std::partition_point(forces_before_.begin(), forces_before_.end(),
-                                           [&](const TangentialForce& f) {
-                                             return BoxPair{f.a, f.b} <= pair;
-                                           });
-  return static_cast<size_t>(behind - forces_before_.begin());
-}
-
-void PatchTangential::Range::begin(const Place& place, size_t force) {
-  place_ = place;
-  last_ = force;
-}
-
-void PatchTangential::Range::release_until(RigidIndex a, RigidIndex b, const PatchScene& scene) {
-  const std::vector<TangentialForce>& before = all_.forces_before_;
-  for (; last_ < before.size() && BoxPair{before[last_].a, before[last_].b} < BoxPair{a, b};
-       ++last_) {
-    release(before[last_], scene);
+void PatchTangential::Range::release_until(RigidIndex a, RigidIndex b) {
+  const std::vector<PairHistory>& before = all_.before_.pairs;
+  for (; next_ < before.size() && BoxPair{before[next_].a, before[next_].b} < BoxPair{a, b};
+       ++next_) {
+    release(before[next_], all_.damping_before(next_));
   }
 }
 
 // Of a pair that touches no more: in the first half of this step its last force has still acted.
-void PatchTangential::Range::release(const TangentialForce& last, const PatchScene& scene) {
-  const PairRate rate = pair_rate(scene.now, last.a, last.b);
-  springs.lose(-scene.dt / 2 * (last.all.power(rate) - last.damping.power(rate)));
-  TangentialForceOf<double> gone{.rate = rate}, over{.rate = rate};
-  springs.damp(close_damping(last, scene.dt, gone));
-  springs.damp(close_damping(gone, scene.dt, over));
+void PatchTangential::Range::release(const PairHistory& last, const PairDamping* damping) {
+  const PairRate rate = pair_rate(*all_.scene_.now, last.a, last.b);
+  const double dt = all_.scene_.dt;
+  const PairForce damped = damping ? damping->damping : PairForce();
+  springs.lose(-dt / 2 * (last.force.power(rate) - damped.power(rate)));
+  if (!damping) return;
+  PairDamping gone{.rate = rate}, over{.rate = rate};
+  springs.damp(close_damping(*damping, dt, gone));
+  springs.damp(close_damping(gone, dt, over));
 }
 
-void PatchTangential::History::fields(Archive& archive) {
-  archive("pairs", pairs)("runs", runs)("dampers", dampers);
-}
-
-// Leaves place_ at the pair, if it was there before.
-const PatchTangential::PairHistory* PatchTangential::Range::find_before(RigidIndex a,
-                                                                        RigidIndex b) {
-  while (place_.pair < all_.before_.pairs.size()) {
-    const PairHistory& pair = all_.before_.pairs[place_.pair];
-    if (BoxPair{pair.a, pair.b} == BoxPair{a, b}) return &pair;
-    if (BoxPair{pair.a, pair.b} > BoxPair{a, b}) return nullptr;
-    place_.pass(pair);
+void PatchTangential::Range::step_block(int first, int end, PairBook& book) {
+  const std::vector<PairInTouch>& touching = all_.pairs_->touching();
+  const size_t count = static_cast<size_t>(end - first);
+  loads.resize(count);
+  books_.resize(count);
+  Place to = all_.places_[static_cast<size_t>(first / kBlock)];
+  for (size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<size_t>(first) + k;
+    step_pair(touching[i], i, to, loads[k], books_[k]);
   }
-  return nullptr;
+  batch_.flush(all_.scene_);
+  for (const PairBook& pair : books_) book.add(pair);
 }
 
-void PatchTangential::Range::step_pair(const PairIntegrals& pairs, size_t i,
-                                       const PatchScene& scene) {
-  const PairInTouch& result = pairs.touching()[i];
-  const RigidIndex a = result.a, b = result.b;
-  release_until(a, b, scene);
-  const TangentialForce* last = nullptr;
-  if (last_ < all_.forces_before_.size()) {
-    const TangentialForce& next = all_.forces_before_[last_];
-    if (next.a == a && next.b == b) last = &next, ++last_;
+void PatchTangential::Range::step_pair(const PairInTouch& touching, size_t number, Place& to,
+                                       PairLoad& load, PairBook& book) {
+  const RigidIndex a = touching.a, b = touching.b;
+  release_until(a, b);
+  const std::vector<PairHistory>& all_before = all_.before_.pairs;
+  const PairHistory* before = nullptr;
+  const PairDamping* last = nullptr;
+  if (next_ < all_before.size() && all_before[next_].a == a && all_before[next_].b == b) {
+    before = &all_before[next_];
+    last = all_.damping_before(next_++);
   }
-  const Place& to = all_.places_[i];
   const PairLaw& law = all_.table_.between(a, b);
-  Pair pair{.a = a,
-            .b = b,
-            .law = law,
-            .rough = all_.is_rough(law),
-            .damped = all_.is_damped(law),
-            .last = last,
-            // Also of pairs without friction: what has ended before them is booked by this range.
-            .springs = springs.before(polygon_kernel, a, b),
-            .dampers = {},
-            .to = to,
-            .total = all_.forces_[to.pair],
-            .held = all_.stiffness_[to.pair],
-            .book = all_.books_[to.pair]};
-  PairHistory& history = all_.now_.pairs[to.pair] = {a, b, 0, 0};
-  if (!pair.rough && !pair.damped) {
-    pair.clear();
+  const Pair pair{.a = a,
+                  .b = b,
+                  .integral = touching.integral,
+                  .law = law,
+                  .kind = all_.kind_of(law),
+                  .before = before,
+                  .last = last,
+                  // Also of pairs without friction: what has ended before them is booked by this
+                  // range.
+                  .springs = springs.before(polygon_kernel, a, b),
+                  .to = to,
+                  .now = all_.now_.pairs[number],
+                  .damping = all_.table_.damped() ? &all_.now_.damping[number] : nullptr,
+                  .load = load,
+                  .book = book};
+  to.pass(touching.patches, touching.runs, pair.kind, all_);
+  pair.now = {a, b, 0, 0, pair.to.run, pair.to.damper, {}};
+  if (!pair.kind.any()) {
+    if (pair.damping) *pair.damping = {};
+    book = {};
+    batch_.add(all_.scene_, {}, {a, b, touching.integral, &law}, {&load});
     return;
   }
-  runs_ = pairs.runs(result);
-  patches_ = pairs.patches(result);
-  history.patches = static_cast<int>(patches_.size());
-  history.runs = static_cast<int>(runs_.size());
-  std::copy(runs_.begin(), runs_.end(),
-            all_.now_.runs.begin() + static_cast<std::ptrdiff_t>(to.run));
-  const PairHistory* const before = find_before(a, b);
+  runs_ = all_.pairs_->runs(touching);
+  patches_ = all_.pairs_->patches(touching);
+  pair.now.patches = static_cast<int>(patches_.size());
+  pair.now.runs = static_cast<int>(runs_.size());
+  std::ranges::copy(runs_, all_.now_.runs.begin() + pair.to.run);
   ancestors_ = before ? static_cast<size_t>(before->patches) : 0;
-  if (pair.damped && before) {
-    pair.dampers = std::span(all_.before_.dampers).subspan(place_.damper, ancestors_);
-  }
   if (patches_.size() == 1 && ancestors_ <= 1 && !all_.edgewise()) {
-    add_alone(pair, scene);
-    return;
+    add_alone(pair);
+  } else {
+    step_patches(pair);
   }
-  pair.clear();
-  find_shares(before);
-  step_patches(pair, scene);
-  if (pair.rough && all_.edgewise()) per_edge(pair, scene);
-  if (pair.damped) {
-    TangentialForceOf<double> none{.rate = pair.total.rate};
-    pair.book.damping_loss += close_damping(
-        last ? static_cast<const TangentialForceOf<double>&>(*last) : none, scene.dt, pair.total);
-  }
+}
+
+// What the patches of the step before have; nothing where the pair was not damped.
+std::span<const PatchDamper> PatchTangential::dampers_of(const PairHistory* pair) const {
+  if (!pair || before_.dampers.empty()) return {};
+  return std::span(before_.dampers)
+      .subspan(static_cast<size_t>(pair->first_damper), static_cast<size_t>(pair->patches));
 }
 
 // The one patch of a pair, which had one or none before.
-void PatchTangential::Range::add_alone(const Pair& pair, const PatchScene& scene) {
-  if (!pair.rough || !pair.damped) pair.clear();  // otherwise all of it will be written
-  pair.total.a = pair.a;
-  pair.total.b = pair.b;
-  Spring* spring = nullptr;
-  if (pair.rough) {
-    spring = &all_.springs_[pair.to.spring];
-    spring->key = {polygon_kernel, pair.a, pair.b, 0};
-    spring->accounted = true;
+void PatchTangential::Range::add_alone(const Pair& pair) {
+  PairTarget to{.load = &pair.load, .tangential = &pair.now.force, .book = &pair.book};
+  if (pair.kind.rough) {
+    to.spring = &all_.springs_[pair.to.spring];
+    to.spring->key = {polygon_kernel, pair.a, pair.b, 0};
+    to.spring->accounted = true;
   }
-  PatchDamper* damper = nullptr;
-  if (all_.table_.damped()) *(damper = &all_.now_.dampers[pair.to.damper]) = {};
-  batch_.add(scene, pair.rough, pair.damped,
-             {pair.a, pair.b, &patches_[0], &pair.law, pair.last, ancestors_ == 0,
-              pair.springs.empty() ? 0 : pair.springs[0].force,
-              pair.dampers.empty() ? nullptr : &pair.dampers[0]},
-             {&pair.total, &pair.held, spring, damper, &pair.book});
+  if (pair.damping) {
+    to.damping = pair.damping;
+    to.damper = &all_.now_.dampers[static_cast<size_t>(pair.to.damper)];
+    if (!pair.kind.damped) *to.damping = {}, *to.damper = {};
+  }
+  const std::span<const PatchDamper> dampers = all_.dampers_of(pair.before);
+  batch_.add(all_.scene_, pair.kind,
+             {.a = pair.a,
+              .b = pair.b,
+              .integral = pair.integral,
+              .law = &pair.law,
+              .touched = pair.before != nullptr,
+              .begins = ancestors_ == 0,
+              .last = pair.last,
+              .damper = dampers.empty() ? nullptr : &dampers[0],
+              .spring = pair.springs.empty() ? 0 : pair.springs[0].force},
+             to);
 }
 
-void PatchTangential::Range::step_patches(const Pair& pair, const PatchScene& scene) {
-  const bool one_each = pair.rough && !all_.edgewise();
+void PatchTangential::Range::step_patches(const Pair& pair) {
+  const bool one_each = pair.kind.rough && !all_.edgewise();
+  pair.book = {};
+  find_shares(pair.before);
   dampers_.assign(patches_.size(), {});
-  if (pair.damped) {
-    inherit(pair.dampers, dampers_,
+  if (pair.kind.damped) {
+    inherit(all_.dampers_of(pair.before), dampers_,
             [](PatchDamper& heir, double share, const PatchDamper& old, const PairIntegral&) {
               heir.elastic = heir.elastic + share * old.elastic;
               heir.damping = heir.damping + share * old.damping;
@@ -238,22 +248,25 @@ void PatchTangential::Range::step_patches(const Pair& pair, const PatchScene& sc
               heir.force += share * old.force * tangent.dot(old.tangent);
             });
   }
-  pair.total.rate = pair_rate(scene.now, pair.a, pair.b);
+  const PairScene& scene = all_.scene_;
+  Sum sum{.rate = pair_rate(*scene.now, pair.a, pair.b)};
   for (size_t j = 0; j < patches_.size(); ++j) {
-    const PatchWork work{pair.a,
-                         pair.b,
-                         &patches_[j],
-                         &pair.law,
-                         pair.last,
-                         ancestors_ == 0,
-                         one_each ? patch_springs_[j].force : 0,
-                         &dampers_[j]};
-    const PatchForces<double> forces = step_one(scene, work, one_each, pair.damped, dampers_[j]);
-    pair.total.all = pair.total.all + forces.all;
-    pair.total.damping = pair.total.damping + forces.damping;
+    const PairWork work{.a = pair.a,
+                        .b = pair.b,
+                        .integral = &patches_[j],
+                        .law = &pair.law,
+                        .touched = pair.before != nullptr,
+                        .begins = ancestors_ == 0,
+                        .last = pair.last,
+                        .damper = &dampers_[j],
+                        .spring = one_each ? patch_springs_[j].force : 0};
+    const PatchForces<double> forces =
+        step_patch(scene, work, {one_each, pair.kind.damped}, dampers_[j]);
+    sum.force = sum.force + forces.all;
+    sum.damping = sum.damping + forces.damping;
     if (!one_each) continue;
-    pair.held.a.add(forces.held_a, 1);
-    pair.held.b.add(forces.held_b, 1);
+    sum.held_a.add(forces.held_a, 1);
+    sum.held_b.add(forces.held_b, 1);
     Spring& spring = all_.springs_[pair.to.spring + j];
     spring = {{polygon_kernel, pair.a, pair.b, static_cast<int>(j)},
               forces.spring,
@@ -263,11 +276,20 @@ void PatchTangential::Range::step_patches(const Pair& pair, const PatchScene& sc
     pair.book.energy += spring.energy();
     pair.book.loss += forces.lost;
   }
-  if (one_each && !inherit_whole()) pair.book.loss = lost_by_balance(pair, scene.dt);
-  if (all_.table_.damped()) {
-    std::copy(dampers_.begin(), dampers_.end(),
-              all_.now_.dampers.begin() + static_cast<std::ptrdiff_t>(pair.to.damper));
+  if (one_each && !inherit_whole()) pair.book.loss = lost_by_balance(pair, sum);
+  if (pair.kind.rough && all_.edgewise()) per_edge(pair, sum);
+  pair.now.force = sum.force;
+  if (pair.damping) {
+    std::ranges::copy(dampers_, all_.now_.dampers.begin() + pair.to.damper);
+    *pair.damping = {};
   }
+  if (pair.kind.damped) {
+    *pair.damping = {.damping = sum.damping, .rate = sum.rate};
+    const PairDamping none{.rate = sum.rate};
+    pair.book.damping_loss = close_damping(pair.last ? *pair.last : none, scene.dt, *pair.damping);
+  }
+  load_pair(scene, {.a = pair.a, .b = pair.b, .integral = pair.integral, .law = &pair.law},
+            sum.force, sum.held_a, sum.held_b, pair.load);
 }
 
 // What the patches before hand down to those of now: everything to the only heir, otherwise in
@@ -276,7 +298,7 @@ void PatchTangential::Range::step_patches(const Pair& pair, const PatchScene& sc
 void PatchTangential::Range::find_shares(const PairHistory* before) {
   const size_t heirs = patches_.size();
   if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return;
-  shared_length({all_.before_.runs.data() + place_.run, static_cast<size_t>(before->runs)},
+  shared_length({all_.before_.runs.data() + before->first_run, static_cast<size_t>(before->runs)},
                 before->patches, runs_, static_cast<int>(heirs), shares_);
   for (size_t i = 0; i < ancestors_; ++i) {
     double* const share = &shares_[i * heirs];
@@ -318,22 +340,24 @@ void PatchTangential::Range::inherit(std::span<const T> before, std::vector<T>& 
 
 // Where patches come, go, split or merge, springs do not know what they lose: what friction has
 // taken from the bodies and the springs do not store.
-double PatchTangential::Range::lost_by_balance(const Pair& pair, double dt) const {
-  const auto power = [&](const TangentialForceOf<double>& f) {
-    return (f.all - f.damping).power(pair.total.rate);
-  };
-  double lost = -dt / 2 * ((pair.last ? power(*pair.last) : 0) + power(pair.total));
+double PatchTangential::Range::lost_by_balance(const Pair& pair, const Sum& sum) const {
+  double power = (sum.force - sum.damping).power(sum.rate);
+  if (pair.before) {
+    const PairForce damping = pair.last ? pair.last->damping : PairForce();
+    power += (pair.before->force - damping).power(sum.rate);
+  }
+  double lost = -all_.scene_.dt / 2 * power;
   for (const Spring& spring : pair.springs) lost += spring.energy();
   return lost - pair.book.energy;
 }
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
-void PatchTangential::Range::per_edge(const Pair& pair, const PatchScene& scene) {
+void PatchTangential::Range::per_edge(const Pair& pair, Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
-  const PairRate& rate = pair.total.rate;
-  const double stiffness = pair.law.friction.tangential_stiffness * scene.thickness;
-  const double normal_stiffness = pair.law.normal_stiffness * scene.thickness;
+  const PairRate& rate = sum.rate;
+  const double stiffness = pair.law.friction.tangential_stiffness * all_.thickness_;
+  const double normal_stiffness = pair.law.normal_stiffness * all_.thickness_;
   const int edges_of_a = all_.surfaces_.shapes().view(pair.a).size;
   Spring* next = &all_.springs_[pair.to.spring];
   auto old = pair.springs.begin();
@@ -348,32 +372,28 @@ void PatchTangential::Range::per_edge(const Pair& pair, const PatchScene& scene)
     const Vec2 behind = run.centre + between;
     const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, run.centre) - cross(rate.b, behind);
     const double force =
-        follow(before, slip.dot(tangent) * scene.dt, stiffness,
+        follow(before, slip.dot(tangent) * all_.scene_.dt, stiffness,
                pair.law.friction.coefficient * normal_stiffness * run.force.norm(), pair.book);
     *next = {key, force, stiffness, tangent, true};
     pair.book.energy += (next++)->energy();
     const double arm_a = cross(run.centre, tangent), arm_b = cross(behind, tangent);
-    pair.total.all = pair.total.all + force * PairForce{tangent.x(), tangent.y(), arm_a, -arm_b};
-    pair.held.a.add(stiffness, tangent.x(), tangent.y(), arm_a);
-    pair.held.b.add(stiffness, tangent.x(), tangent.y(), arm_b);
+    sum.force = sum.force + force * PairForce{tangent.x(), tangent.y(), arm_a, -arm_b};
+    sum.held_a.add(stiffness, tangent.x(), tangent.y(), arm_a);
+    sum.held_b.add(stiffness, tangent.x(), tangent.y(), arm_b);
   }
   while (old != pair.springs.end()) lost();
 }
 
 void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
-                             std::span<const Spring> springs, Cursor& cursor) const {
-  const std::pair pair(patches[0].a, patches[0].b);
-  const auto order = [&] {
-    const PairHistory& p = now_.pairs[cursor.pair];
-    return std::pair(p.a, p.b);
-  };
-  while (cursor.pair < now_.pairs.size() && order() < pair) {
-    cursor.damper += static_cast<size_t>(now_.pairs[cursor.pair++].patches);
-  }
-  if (cursor.pair == now_.pairs.size() || order() != pair) return;
-  if (now_.pairs[cursor.pair].patches == 0) return;
+                             std::span<const Spring> springs) const {
+  const BoxPair pair{patches[0].a, patches[0].b};
+  const auto found = std::ranges::partition_point(now_.pairs, [&](const PairHistory& p) {
+    return BoxPair{p.a, p.b} < pair;
+  });
+  if (found == now_.pairs.end() || BoxPair{found->a, found->b} != pair) return;
+  if (found->patches == 0) return;
   for (size_t j = 0; table_.damped() && j < patches.size(); ++j) {
-    const PatchDamper& damper = now_.dampers[cursor.damper + j];
+    const PatchDamper& damper = now_.dampers[static_cast<size_t>(found->first_damper) + j];
     patches[j].damping += Vec2(damper.damping.x, damper.damping.y);
     if (damper.tangential != 0) {
       patches[j].tangential += damper.tangential * tangent_of(patches[j].normal);

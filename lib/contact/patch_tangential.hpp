@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "apothem/contact/law.hpp"
+#include "apothem/contact/pair_batch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_table.hpp"
-#include "apothem/contact/patch_batch.hpp"
-#include "apothem/contact/stiffness.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
@@ -20,63 +19,62 @@ namespace apothem {
 
 class PatchTangential {
  public:
-  /// `thickness` in m.
-  PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
-                  double thickness, int threads);
-
-  /// One step further: see Kernel::slide. Books what friction loses, and finds how stiff the
-  /// friction springs of each touching pair hold its bodies.
-  void slide(const PairIntegrals& pairs, const Kinematics& now, double dt, FrictionMemory& memory,
-             std::span<PairStiffness> stiffness);
-
-  /// Takes back the last slide.
-  void undo_slide() {
-    std::swap(now_, before_);
-    std::swap(forces_, forces_before_);
-  }
-
-  /// Of the touching pairs; zero where they have neither friction nor damping.
-  [[nodiscard]] const std::vector<TangentialForce>& forces() const { return forces_; }
-
-  /// Where the next pair is looked for first: pairs must be asked for in ascending order.
-  struct Cursor {
-    size_t pair = 0, damper = 0;
-  };
-  /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
-  /// needed by the law per_edge.
-  void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
-              std::span<const Spring> springs, Cursor& cursor) const;
-  [[nodiscard]] bool edgewise() const { return per_edge_; }
-
-  /// What a pair had in the step before; the lists of runs and dampers follow in this order.
+  /// What a pair had in a step. The lists of runs and dampers follow in the order of the pairs.
   struct PairHistory {
     RigidIndex a, b;
     int patches, runs;
-    void fields(Archive& archive) { archive("a", a)("b", b)("patches", patches)("runs", runs); }
+    int first_run, first_damper;  // in the lists; not archived
+    PairForce force;              // friction and damping; moments about the mass centres
+    void fields(Archive& archive) {
+      archive("a", a)("b", b)("patches", patches)("runs", runs)("force", force);
+    }
   };
   struct History {
     std::vector<PairHistory> pairs;    ///< ascending
     std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
     std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
-    void clear() { pairs.clear(), runs.clear(), dampers.clear(); }
+    std::vector<PairDamping> damping;  ///< of every pair, where any pair is damped
     void fields(Archive& archive);
+    /// Finds where what each pair has begins in the lists.
+    void number();
   };
+
+  /// `thickness` in m.
+  PatchTangential(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
+                  double thickness, int threads);
+
+  /// Begins a step of dt (s): see Kernel::slide. `pairs` and `now` are used until it ends.
+  void begin_step(const PairIntegrals& pairs, const Kinematics& now, double dt,
+                  FrictionMemory& memory);
+  /// Takes the touching pairs from number `first` to `end`, which are blocks of kBlock pairs, one
+  /// step further, and hands the loads of each block to take(loads).
+  template <class Take>
+  void step(int first, int end, int worker, FrictionMemory& memory, const Take& take);
+  /// Books what friction and damping have lost.
+  void end_step(FrictionMemory& memory);
+
+  /// Takes back the last step.
+  void undo_step() { std::swap(now_, before_); }
+
+  /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
+  /// needed by the law per_edge.
+  void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+              std::span<const Spring> springs) const;
+  [[nodiscard]] bool edgewise() const { return per_edge_; }
+
   /// Takes over what the patches of another simulation remember.
-  void inherit(History history) { now_ = std::move(history); }
-  void fields(Archive& archive) {
-    now_.fields(archive);
-    archive("forces", forces_);
-  }
+  void inherit(History history);
+  void fields(Archive& archive) { archive("history", now_); }
+
+  /// Pairs whose sums are booked together, so that they do not depend on the number of threads.
+  static constexpr int kBlock = 32;
 
  private:
-  struct Place {  // in a History
-    size_t pair = 0, run = 0, damper = 0;
+  // Where what a pair has begins in the lists of now.
+  struct Place {
+    int run = 0, damper = 0;
     size_t spring = 0;  // in the memory of friction
-    void pass(const PairHistory& p) {
-      ++pair;
-      run += static_cast<size_t>(p.runs);
-      damper += static_cast<size_t>(p.patches);
-    }
+    void pass(int patches, int runs, Tangential kind, const PatchTangential& all);
   };
 
   // The pairs that one thread takes a step further.
@@ -85,52 +83,52 @@ class PatchTangential {
     explicit Range(PatchTangential& all) : all_(all) {}
 
     // Begins a step behind a pair of the last step, or with the first one.
-    void begin(const Place& place, size_t force);
-    // Takes the touching pair number i a step further, or adds it to those that wait for others.
-    void step_pair(const PairIntegrals& pairs, size_t i, const PatchScene& scene);
-    void finish(const PatchScene& scene) { batch_.flush(scene); }
+    void begin(size_t next) { next_ = next; }
+    void step_block(int first, int end, PairBook& book);
     // Pairs that touch no more and come before this one.
-    void release_until(RigidIndex a, RigidIndex b, const PatchScene& scene);
+    void release_until(RigidIndex a, RigidIndex b);
 
     SpringRange springs;
+    std::vector<PairLoad> loads;  // of the block
 
    private:
     // A pair in a step.
     struct Pair {
       RigidIndex a, b;
+      const PairIntegral* integral;
       const PairLaw& law;
-      bool rough, damped;
-      const TangentialForce* last;           // of the step before, or null
-      std::span<const Spring> springs;       // of the step before
-      std::span<const PatchDamper> dampers;  // of the step before
+      Tangential kind;
+      const PairHistory* before;        // null if the bodies did not touch
+      const PairDamping* last;          // the same, where any pair is damped
+      std::span<const Spring> springs;  // of the step before
       Place to;
-      TangentialForce& total;
-      PairStiffness& held;
+      PairHistory& now;
+      PairDamping* damping;  // null where no pair is damped
+      PairLoad& load;
       PairBook& book;
-
-      void clear() const {
-        total = {};
-        total.a = a;
-        total.b = b;
-        held = {};
-        book = {};
-      }
     };
-    const PairHistory* find_before(RigidIndex a, RigidIndex b);
-    void release(const TangentialForce& last, const PatchScene& scene);
+    void step_pair(const PairInTouch& touching, size_t number, Place& to, PairLoad& load,
+                   PairBook& book);
+    // What the patches of a pair add up to.
+    struct Sum {
+      PairRate rate;
+      PairForce force = {}, damping = {};
+      BodyStiffness held_a = {}, held_b = {};  // by its friction springs
+    };
+    void release(const PairHistory& last, const PairDamping* damping);
     void find_shares(const PairHistory* before);
     [[nodiscard]] bool inherit_whole() const;
     template <class T, class Add>
     void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
-    [[nodiscard]] double lost_by_balance(const Pair& pair, double dt) const;
-    void add_alone(const Pair& pair, const PatchScene& scene);
-    void step_patches(const Pair& pair, const PatchScene& scene);
-    void per_edge(const Pair& pair, const PatchScene& scene);
+    [[nodiscard]] double lost_by_balance(const Pair& pair, const Sum& sum) const;
+    void add_alone(const Pair& pair);
+    void step_patches(const Pair& pair);
+    void per_edge(const Pair& pair, Sum& sum);
 
     PatchTangential& all_;
-    Place place_;      // of the next pair of the step before
-    size_t last_ = 0;  // of its forces
-    PatchBatch batch_;
+    size_t next_ = 0;  // of the pairs of the step before
+    PairBatch batch_;
+    std::vector<PairBook> books_;  // of the pairs of the block
     // Of the pair at hand.
     std::span<const BoundaryRun> runs_;
     std::span<const PairIntegral> patches_;
@@ -140,14 +138,17 @@ class PatchTangential {
     std::vector<PatchDamper> dampers_;
   };
 
-  [[nodiscard]] bool is_rough(const PairLaw& law) const { return law.friction.coefficient > 0; }
-  [[nodiscard]] bool is_damped(const PairLaw& law) const {
-    return law.damping.normal > 0 || law.damping.tangential > 0;
+  [[nodiscard]] Tangential kind_of(const PairLaw& law) const {
+    return {law.friction.coefficient > 0, law.damping.normal > 0 || law.damping.tangential > 0};
   }
-  void make_room(std::span<const PairInTouch> pairs);
-  // In the step before, behind a pair.
-  [[nodiscard]] Place place_behind(const BoxPair& pair) const;
-  [[nodiscard]] size_t forces_behind(const BoxPair& pair) const;
+  size_t make_room();
+  // Of pair number i of the step before, where any pair is damped.
+  [[nodiscard]] const PairDamping* damping_before(size_t i) const {
+    return i < before_.damping.size() ? &before_.damping[i] : nullptr;
+  }
+  // Of the patches of a pair in the step before; nothing where it is not damped.
+  [[nodiscard]] std::span<const PatchDamper> dampers_of(const PairHistory* pair) const;
+  void begin_range(Range& range, int first, FrictionMemory& memory);
 
   const Surfaces& surfaces_;
   bool per_edge_;
@@ -155,13 +156,27 @@ class PatchTangential {
   double thickness_;
   Threads threads_;
   std::vector<Range> ranges_;  // one for each thread
-  std::vector<Place> places_;  // of each touching pair, and behind the last one
   History now_, before_;
-  std::vector<TangentialForce> forces_, forces_before_;
-  // Of each touching pair, while it slides.
-  std::span<PairStiffness> stiffness_;
+  // Of the step at hand.
+  const PairIntegrals* pairs_ = nullptr;
+  Kinematics kinematics_;
+  PairScene scene_;
+  std::vector<Place> places_;  // of each block
   std::span<Spring> springs_;
-  std::vector<PairBook> books_;
+  std::vector<PairBook> books_;  // of each block
 };
+
+template <class Take>
+void PatchTangential::step(int first, int end, int worker, FrictionMemory& memory,
+                           const Take& take) {
+  Range& range = ranges_[static_cast<size_t>(worker)];
+  begin_range(range, first, memory);
+  const int count = static_cast<int>(pairs_->touching().size());
+  for (int i = first; i < end; i += kBlock) {
+    range.step_block(i, std::min(i + kBlock, count), books_[static_cast<size_t>(i / kBlock)]);
+    take(std::span<const PairLoad>(range.loads));
+  }
+  if (end >= count) range.release_until(std::numeric_limits<RigidIndex>::max(), 0);
+}
 
 }  // namespace apothem

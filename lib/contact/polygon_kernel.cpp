@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "apothem/contact/stiffness.hpp"
 
 namespace apothem {
 
 namespace {
 
 // Of a touching pair, ns.
-constexpr double kLoadTime = 40, kGatherTime = 20;
+constexpr double kLoadTime = 100;
 
 // What friction and damping need.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
@@ -31,8 +28,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       onset_(surfaces, table, thickness),
       threads_(threads),
       found_(static_cast<size_t>(threads_.count())),
-      body_stiffness_(static_cast<size_t>(surfaces.rigid_count())),
-      rate_bounds_(body_stiffness_.size()) {
+      loads_(surfaces, threads) {
   if (table.rough() || table.damped()) {
     tangential_.emplace(surfaces, law, table, thickness, threads);
   }
@@ -75,82 +71,77 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
           c.a, c.b, surfaces_.reference(c.a) + loading_point(pair)};
 }
 
+void PolygonKernel::take(std::span<const BoxPair> pairs) {
+  pairs_.take(pairs);
+  loads_.take(pairs);
+}
+
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!tangential_) return 0;
-  pair_stiffness_.resize(pairs_.touching().size());
-  tangential_->slide(pairs_, now, dt, memory, pair_stiffness_);
+  tangential_->begin_step(pairs_, now, dt, memory);
+  sum_loads([&](int first, int end, int worker) {
+    tangential_->step(first, end, worker, memory,
+                      [&](std::span<const PairLoad> loads) { add_block(loads, worker); });
+  });
+  tangential_->end_step(memory);
   return 0;  // its springs are accounted
 }
 
-// Each thread adds what acts on a range of bodies, for every body in the order of its pairs.
 void PolygonKernel::add_forces(const ForceViews& forces) {
-  find_loads();
-  const int pairs = static_cast<int>(loads_.size());
-  const int bodies = surfaces_.rigid_count();
-  threads_.chunks(bodies, kGatherTime * pairs / std::max(bodies, 1),
-                  [&](int first, int end, int) { add_loads(forces, first, end); });
-  add_rates(forces.lambda, forces.lambda_limit);
+  if (!tangential_) {
+    sum_loads([&](int first, int end, int worker) { find_normal_loads(first, end, worker); });
+  }
+  loads_.add_to(forces);
 }
 
-void PolygonKernel::find_loads() {
+// Calls part(first, end, worker) for the blocks of touching pairs of each thread.
+template <class Part>
+void PolygonKernel::sum_loads(const Part& part) {
   const std::vector<PairInTouch>& touching = pairs_.touching();
-  loads_.resize(touching.size());
-  if (!tangential_) pair_stiffness_.resize(touching.size());
+  const int count = static_cast<int>(touching.size());
   for (Found& found : found_) found.largest_force = {};
-  const TouchingPairs all{
-      surfaces_, table_, thickness_, touching,
-      tangential_ ? std::span(tangential_->forces()) : std::span<const TangentialForce>()};
-  threads_.chunks(static_cast<int>(touching.size()), kLoadTime,
-                  [&](int first, int end, int worker) {
-                    found_[static_cast<size_t>(worker)].largest_force =
-                        apothem::find_loads(all, first, end, loads_, pair_stiffness_);
+  const int blocks = (count + PatchTangential::kBlock - 1) / PatchTangential::kBlock;
+  threads_.chunks(blocks, PatchTangential::kBlock * kLoadTime,
+                  [&](int first_block, int end_block, int worker) {
+                    if (first_block == end_block && count > 0) return;
+                    const int first = first_block * PatchTangential::kBlock;
+                    const int end = std::min(end_block * PatchTangential::kBlock, count);
+                    loads_.begin(worker, first > 0 ? touching[static_cast<size_t>(first)].a : -1);
+                    part(first, end, worker);
                   });
+  loads_.end();
   largest_force_ = {};
   for (const Found& found : found_) {
     if (found.largest_force.value > largest_force_.value) largest_force_ = found.largest_force;
   }
 }
 
-void PolygonKernel::add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end) {
-  const auto here = [&](RigidIndex body) { return body >= first && body < end; };
-  const auto add = [&](RigidIndex body, double fx, double fy, double moment) {
-    double* const f = &forces.rigid[3 * static_cast<size_t>(body)];
-    f[0] += fx;
-    f[1] += fy;
-    f[2] += moment;
-  };
-  for (RigidIndex i = first; i < end; ++i) body_stiffness_[static_cast<size_t>(i)] = {};
-  for (size_t i = 0; i < loads_.size(); ++i) {
-    const PairLoad& load = loads_[i];
-    const PairForce& f = load.force;
-    if (here(load.a)) {
-      add(load.a, f.x, f.y, f.a);
-      body_stiffness_[static_cast<size_t>(load.a)].add(pair_stiffness_[i].a, 1);
+// The loads of pairs that have neither friction nor damping.
+void PolygonKernel::find_normal_loads(int first, int end, int worker) {
+  const PairScene scene{surfaces_, thickness_};
+  Found& found = found_[static_cast<size_t>(worker)];
+  for (int block = first; block < end; block += PatchTangential::kBlock) {
+    found.loads.resize(static_cast<size_t>(std::min(PatchTangential::kBlock, end - block)));
+    for (size_t k = 0; k < found.loads.size(); ++k) {
+      const PairInTouch& pair = pairs_.touching()[static_cast<size_t>(block) + k];
+      found.batch.add(scene, {},
+                      {.a = pair.a,
+                       .b = pair.b,
+                       .integral = pair.integral,
+                       .law = &table_.between(pair.a, pair.b)},
+                      {.load = &found.loads[k]});
     }
-    if (here(load.b)) {
-      add(load.b, -f.x, -f.y, f.b);
-      body_stiffness_[static_cast<size_t>(load.b)].add(pair_stiffness_[i].b, 1);
-    }
-  }
-  for (RigidIndex i = first; i < end; ++i) {
-    rate_bounds_[static_cast<size_t>(i)] =
-        rate_bound_of(body_stiffness_[static_cast<size_t>(i)], surfaces_.rigid(i).inverse_mass);
+    found.batch.flush(scene);
+    add_block(found.loads, worker);
   }
 }
 
-// The largest one is exact above the limit, so that it does not shorten the step in vain.
-void PolygonKernel::add_rates(std::span<double> rates, double limit) {
-  double largest = 0;
-  for (const PairLoad& load : loads_) {
-    for (const RigidIndex body : {load.a, load.b}) {
-      const auto i = static_cast<size_t>(body);
-      double rate = std::exchange(rate_bounds_[i], 0);
-      if (rate > limit && rate > largest) {
-        rate = rate_of(body_stiffness_[i], surfaces_.rigid(body).inverse_mass);
-        largest = std::max(largest, rate);
-      }
-      rates[i] += rate;
-    }
+void PolygonKernel::add_block(std::span<const PairLoad> loads, int worker) {
+  PairPeak& largest = found_[static_cast<size_t>(worker)].largest_force;
+  for (const PairLoad& load : loads) {
+    if (load.normal > largest.value) largest = {load.normal, load.a, load.b};
+    loads_.add(worker, load.a, load.on_a);
+    loads_.add(worker, load.b, load.on_b);
   }
 }
 
@@ -164,7 +155,6 @@ void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
 
 void PolygonKernel::add_records(const FrictionMemory& memory,
                                 std::vector<ContactRecord>& records) const {
-  PatchTangential::Cursor cursor;
   PatchWorkspace workspace;
   PenetrationWorkspace penetration_workspace;
   std::vector<BoundaryRun> runs;
@@ -186,7 +176,7 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
                          stiffness(a, b) * patch.force, Vec2::Zero(), deepest[i],
                          patch.largest_phi});
     }
-    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs, cursor);
+    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs);
   }
 }
 

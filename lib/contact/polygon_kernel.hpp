@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "apothem/contact/body_loads.hpp"
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/onset.hpp"
+#include "apothem/contact/pair_batch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
-#include "apothem/contact/pair_loads.hpp"
 #include "apothem/contact/patch_tangential.hpp"
-#include "apothem/contact/stiffness.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/penetration.hpp"
 
@@ -21,13 +21,13 @@ class PolygonKernel final : public Kernel {
   PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 double thickness, int threads);
 
-  void take(std::span<const BoxPair> pairs) override { pairs_.take(pairs); }
+  void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void undo_slide() override {
-    if (tangential_) tangential_->undo_slide();
+    if (tangential_) tangential_->undo_step();
   }
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
@@ -62,11 +62,14 @@ class PolygonKernel final : public Kernel {
   struct Found {
     std::vector<Contact> contacts;
     PairPeak largest_force;
+    PairBatch batch;
+    std::vector<PairLoad> loads;
   };
   [[nodiscard]] Contact contact_of(const PairInTouch& pair) const;
-  void find_loads();
-  void add_loads(const ForceViews& forces, RigidIndex first, RigidIndex end);
-  void add_rates(std::span<double> rates, double limit);
+  template <class Part>
+  void sum_loads(const Part& part);
+  void find_normal_loads(int first, int end, int worker);
+  void add_block(std::span<const PairLoad> loads, int worker);
 
   const Surfaces& surfaces_;
   const PairTable& table_;
@@ -75,11 +78,8 @@ class PolygonKernel final : public Kernel {
   Onset onset_;
   std::optional<PatchTangential> tangential_;  // only where there is friction or damping
   Threads threads_;
-  std::vector<Found> found_;                   // by each thread
-  std::vector<PairLoad> loads_;                // of the touching pairs
-  std::vector<PairStiffness> pair_stiffness_;  // of these: of springs, then also of the contacts
-  std::vector<BodyStiffness> body_stiffness_;  // of each rigid body
-  std::vector<double> rate_bounds_;            // of each rigid body, 1/s^2
+  std::vector<Found> found_;  // by each thread
+  BodyLoads loads_;
   PairPeak largest_force_;
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;

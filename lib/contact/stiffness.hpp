@@ -57,11 +57,6 @@ double rate_of(const BodyStiffness& stiffness, const std::array<double, 3>& inve
 /// Not less than `rate_of`, and faster.
 double rate_bound_of(const BodyStiffness& stiffness, const std::array<double, 3>& inverse_mass);
 
-/// How stiff the contact of a pair, or a part of it, holds its two bodies.
-struct PairStiffness {
-  BodyStiffness a = {}, b = {};
-};
-
 /// Bound of w^2, 1/s^2, for a boundary node of the mass `mass` (kg) with half of the edges at it as
 /// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (docs/theory.md, Step).
 /// `stiffness`: k_n times the thickness, N/m. With a mass of 1 it is a stiffness in N/m.

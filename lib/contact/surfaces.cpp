@@ -16,6 +16,8 @@ void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   pose_.push_back({});
   if (rigid.moves) moving_.push_back(i);
   rigid_.push_back(rigid);
+  rigid_.back().slope = shapes_.slope(i);
+  rigid_.back().radius = shapes_.radius(i);
   inverse_mass_.push_back(std::max(rigid.inverse_mass[0], rigid.inverse_mass[1]));
   if (collars_) outlines_.add_rigid(potential.vertices, i, 1 / potential.steepest);
 }

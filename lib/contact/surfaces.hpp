@@ -37,8 +37,11 @@ class Surfaces {
   /// A rigid body as contact sees it.
   struct Rigid {
     std::array<double, 3> inverse_mass;  ///< 1/m, 1/m, 1/I where forces can move it, else 0
-    double inradius;                     ///< m
-    bool moves;                          ///< it can change its place
+    /// Steepest slope of its potential, 1/m, and largest distance of a vertex from its mass centre,
+    /// m: found by add_polygon.
+    double slope = 0, radius = 0;
+    double inradius = 0;  ///< m
+    bool moves = false;   ///< it can change its place
     /// How far its boundary may move between two searches, twice over, m: no more than this.
     double skin = HUGE_VAL;
   };

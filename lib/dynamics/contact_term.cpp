@@ -73,7 +73,10 @@ Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& do
                     outlines);
   for (const RigidBody& body : model.bodies) {
     surfaces.add_polygon(body.potential,
-                         {body.inverse_mass(), body.inradius, body.can_move(), own_skin(body)});
+                         {.inverse_mass = body.inverse_mass(),
+                          .inradius = body.inradius,
+                          .moves = body.can_move(),
+                          .skin = own_skin(body)});
   }
   const PotentialChoice& choice = model.contact.potential;
   std::optional<double> reference;

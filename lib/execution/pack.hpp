@@ -115,6 +115,20 @@ APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
   return (both[0] | both[1]) != 0;
 }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
+/// Bit k is set where lane k of the mask is true.
+APOTHEM_INLINE unsigned lanes_where(const MaskOf<4>& mask) {
+#if defined(__x86_64__)
+  using Pair = double __attribute__((vector_size(16)));
+  const auto low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
+  const auto high = __builtin_shufflevector(mask.m, mask.m, 2, 3);
+  return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<Pair>(low)) |
+                               __builtin_ia32_movmskpd(reinterpret_cast<Pair>(high)) << 2);
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= static_cast<unsigned>(mask.m[k] & 1) << k;
+  return bits;
+#endif
+}
 
 /// One bit for each lane, the lowest one for the first.
 APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
@@ -193,6 +207,19 @@ struct Stored<PackOf<lanes>> {
 template <class Real>
 using FourOf = std::array<Real, 4>;
 
+/// Lane k of pack i becomes lane i of pack k.
+APOTHEM_INLINE void transpose(const FourOf<PackOf<4>>& from, FourOf<PackOf<4>>& to) {
+  PackOf<4>::Vector t[4];
+  for (size_t k = 0; k < 4; k += 2) {
+    t[k] = __builtin_shufflevector(from[k].v, from[k + 1].v, 0, 4, 2, 6);
+    t[k + 1] = __builtin_shufflevector(from[k].v, from[k + 1].v, 1, 5, 3, 7);
+  }
+  for (size_t k = 0; k < 2; ++k) {
+    to[k].v = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 4, 5);
+    to[k + 2].v = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
+  }
+}
+
 /// Reads four consecutive doubles from row(k) on for every lane k of packs; for plain numbers from
 /// row(0).
 template <class Row>
@@ -201,33 +228,17 @@ APOTHEM_INLINE void read_rows(const Row& row, FourOf<double>& to) {
 }
 template <class Row>
 APOTHEM_INLINE void read_rows(const Row& row, FourOf<PackOf<4>>& to) {
-  using V = PackOf<4>::Vector;
-  V r[4], t[4];
-  for (int k = 0; k < 4; ++k) std::memcpy(&r[k], row(k), sizeof(V));
-  for (int k = 0; k < 4; k += 2) {
-    t[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 4, 2, 6);
-    t[k + 1] = __builtin_shufflevector(r[k], r[k + 1], 1, 5, 3, 7);
-  }
-  for (size_t k = 0; k < 2; ++k) {
-    to[k].v = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 4, 5);
-    to[k + 2].v = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
-  }
+  FourOf<PackOf<4>> rows;
+  for (int k = 0; k < 4; ++k) rows[static_cast<size_t>(k)] = PackOf<4>::load(row(k));
+  transpose(rows, to);
 }
 
 /// Writes four consecutive doubles from row(k) on for every lane k.
 template <class Row>
 APOTHEM_INLINE void write_rows(const FourOf<PackOf<4>>& from, const Row& row) {
-  using V = PackOf<4>::Vector;
-  V t[4], r[4];
-  for (size_t k = 0; k < 4; k += 2) {
-    t[k] = __builtin_shufflevector(from[k].v, from[k + 1].v, 0, 4, 2, 6);
-    t[k + 1] = __builtin_shufflevector(from[k].v, from[k + 1].v, 1, 5, 3, 7);
-  }
-  for (size_t k = 0; k < 2; ++k) {
-    r[k] = __builtin_shufflevector(t[k], t[k + 2], 0, 1, 4, 5);
-    r[k + 2] = __builtin_shufflevector(t[k], t[k + 2], 2, 3, 6, 7);
-  }
-  for (int k = 0; k < 4; ++k) std::memcpy(row(k), &r[k], sizeof(V));
+  FourOf<PackOf<4>> rows;
+  transpose(from, rows);
+  for (int k = 0; k < 4; ++k) rows[static_cast<size_t>(k)].store(row(k));
 }
 
 }  // namespace apothem

@@ -114,7 +114,7 @@ TEST_CASE("a mesh has one outline, and polygons beside it have their collars as 
   // Without meshes nothing needs a collar.
   Surfaces polygons(.1, 0, false);
   const Potential potential = about_centre(kSquares[0]);
-  polygons.add_polygon(potential, {{1, 1, 1}, .5, true});
+  polygons.add_polygon(potential, {.inverse_mass = {1, 1, 1}, .inradius = .5, .moves = true});
   CHECK_FALSE(polygons.has_outlines());
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("boxes of polygons and of meshes grow by half of their own skins",
   for (const bool outlines : {false, true}) {
     Surfaces s(.3, .1, outlines);
     const Potential potential = about_centre(kSquares[0]);
-    s.add_polygon(potential, {{1, 1, 1}, .5, true});
+    s.add_polygon(potential, {.inverse_mass = {1, 1, 1}, .inradius = .5, .moves = true});
     if (outlines) {
       s.add_outline(one_cell(), 0, {});
     } else {
@@ -152,7 +152,7 @@ TEST_CASE("a body that cannot move is placed once", "[surfaces][contact]") {
   const Potential potential = about_centre(kSquares[0]);
   Surfaces s(.1, 0, false);
   s.add_polygon(potential, {{0, 0, 0}, .5, false});
-  s.add_polygon(potential, {{1, 1, 1}, .5, true});
+  s.add_polygon(potential, {.inverse_mass = {1, 1, 1}, .inradius = .5, .moves = true});
   std::vector<double> pose{1, 2, .5, 3, 4, .25};
   const Kinematics now{pose, {}, {}, {}};
   s.place_all(now);

@@ -1,0 +1,247 @@
+#include "apothem/contact/pair_batch.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "apothem/contact/pair_lanes.hpp"
+#include "apothem/execution/dispatch.hpp"
+
+namespace apothem {
+namespace {
+
+// Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
+// length: twice the worst of a million pairs (docs/verification.md).
+constexpr double kForceError = 1.2;
+
+const PairDamping kNoDamping;
+const PatchDamper kNoDamper;
+
+template <class Real>
+APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<Real>& p) {
+  bool same = true;
+  for (int k = 1; k < lanes_of<Real>; ++k) same = same && work[k].law == work[0].law;
+  const auto number = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+    if (same) {
+      to = Real(of(*work[0].law));
+    } else {
+      read_lanes(to, [&](int k) APOTHEM_LAMBDA { return of(*work[k].law); });
+    }
+  };
+  number(p.normal_stiffness,
+         [&](const PairLaw& l) APOTHEM_LAMBDA { return l.normal_stiffness * thickness; });
+  number(p.tangential_stiffness, [&](const PairLaw& l) APOTHEM_LAMBDA {
+    return l.friction.tangential_stiffness * thickness;
+  });
+  number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
+  number(p.normal_ratio, [](const PairLaw& l) APOTHEM_LAMBDA { return l.damping.normal; });
+  number(p.tangential_ratio, [](const PairLaw& l) APOTHEM_LAMBDA { return l.damping.tangential; });
+}
+
+// The integrals of a pair and where its bodies are, which its load needs.
+template <class Real>
+APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, PatchStep<Real>& p) {
+  const Surfaces& surfaces = scene.surfaces;
+  FourOf<Real> four;
+  const auto integral = [&](int first) APOTHEM_LAMBDA {
+    read_rows([&](int k) APOTHEM_LAMBDA { return integral_numbers(*work[k].integral) + first; },
+              four);
+  };
+  integral(kForceNumbers);
+  p.force = {four[0], four[1]};
+  p.moment_a = four[2];
+  p.moment_b = four[3];
+  integral(kCentreNumbers);
+  p.weight = four[0];
+  p.centre = {four[2], four[3]};
+  integral(kLengthNumbers);
+  const Real length_a = four[0], length_b = four[1];
+  // Inverse masses and slope.
+  read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].a).inverse_mass.data(); },
+            four);
+  p.inverse_mass_a = {four[0], four[1], four[2]};
+  const Real slope_a = four[3];
+  read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].b).inverse_mass.data(); },
+            four);
+  p.inverse_mass_b = {four[0], four[1], four[2]};
+  p.slopes = length_a * four[3] + length_b * slope_a;
+  read_between(surfaces, work, p.between);
+  read_law(work, scene.thickness, p);
+  p.find_direction();
+}
+
+template <class Real>
+APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, PatchStep<Real>& p,
+                                DamperOf<Real>& damper) {
+  const auto last = [&](int k) APOTHEM_LAMBDA -> const PairDamping& {
+    return work[k].last ? *work[k].last : kNoDamping;
+  };
+  const auto dashpot = [&](int k) APOTHEM_LAMBDA -> const PatchDamper& {
+    return work[k].damper ? *work[k].damper : kNoDamper;
+  };
+  Real radii;
+  read_lanes(radii, [&](int k) APOTHEM_LAMBDA {
+    return scene.surfaces.rigid(work[k].a).radius + scene.surfaces.rigid(work[k].b).radius;
+  });
+  p.force_error = Real(kForceError * std::numeric_limits<double>::epsilon()) * radii * p.slopes;
+  const auto rate = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+    const double* const all = scene.now->pose_rate.data();
+    read_lanes(to, [&](int k) APOTHEM_LAMBDA {
+      return of(all + 3 * static_cast<size_t>(work[k].a), all + 3 * static_cast<size_t>(work[k].b));
+    });
+  };
+  rate(p.rate.x, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[0] - b[0]; });
+  rate(p.rate.y, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[1] - b[1]; });
+  rate(p.rate.a, [](const double* a, const double*) APOTHEM_LAMBDA { return a[2]; });
+  rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
+  read_lanes(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).rate; });
+  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].touched ? 1. : 0.; });
+  read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].begins ? 1. : 0.; });
+  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].spring; });
+  read_lanes(damper.elastic,
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return dashpot(k).elastic; });
+  read_lanes(damper.damping,
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return dashpot(k).damping; });
+  read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return dashpot(k).tangential; });
+}
+
+template <class Real>
+APOTHEM_INLINE void hold(const PairScene& scene, const PairWork* work, const PatchStep<Real>& p,
+                         BodyStiffnessOf<Real>& a, BodyStiffnessOf<Real>& b) {
+  FourOf<Real> four;
+  read_rows([&](int k)
+                APOTHEM_LAMBDA { return integral_numbers(*work[k].integral) + kBreadthNumbers; },
+            four);
+  ContactStrip<Real> strip{four[0], four[1], {}};
+  read_lanes(strip.times, [&](int k) APOTHEM_LAMBDA {
+    return scene.surfaces.responsive(work[k].a) && scene.surfaces.responsive(work[k].b) ? 2. : 1.;
+  });
+  strip.hold(p, a, b);
+}
+
+// Force and moments of a pair, with those beside the normal force.
+template <class Real>
+APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
+                                              const PairVectorOf<Real>& beside) {
+  const Real& k = p.normal_stiffness;
+  return PairVectorOf<Real>{k * p.force.x, k * p.force.y, k * p.moment_a, k * p.moment_b} + beside;
+}
+
+// The numbers of a load stand in a row.
+static_assert(offsetof(BodyLoad, held) == 3 * sizeof(double) &&
+              sizeof(BodyLoad) == 9 * sizeof(double));
+template <int lanes, class F>
+APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
+                               const PackOf<lanes>& moment,
+                               const BodyStiffnessOf<PackOf<lanes>>& held, const F& to) {
+  write_rows({x, y, moment, held.xx}, [&](int k) APOTHEM_LAMBDA { return &to(k).x; });
+  write_rows({held.xy, held.yy, held.xt, held.yt},
+             [&](int k) APOTHEM_LAMBDA { return &to(k).held.xy; });
+  for (int k = 0; k < lanes; ++k) to(k).held.tt = held.tt.v[k];
+}
+
+}  // namespace
+
+PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tangential kind,
+                               PatchDamper& damper) {
+  PatchStep<double> p;
+  read_pair(scene, &work, p);
+  read_memory(scene, &work, p, damper);
+  return step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper);
+}
+
+void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
+               const BodyStiffness& held_a, const BodyStiffness& held_b, PairLoad& load) {
+  PatchStep<double> p;
+  read_pair(scene, &work, p);
+  BodyStiffness a = held_a, b = held_b;
+  hold(scene, &work, p, a, b);
+  const PairForce f = whole_force(p, beside);
+  load = {{f.x, f.y, f.a, a}, {-f.x, -f.y, f.b, b}, p.normal_stiffness * p.size, work.a, work.b};
+}
+
+APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
+  using Pack = PackOf<kAtOnce>;
+  const PairWork* const work = work_.data();
+  const PairTarget* const to = targets_.data();
+  PatchStep<Pack> p;
+  read_pair(scene, work, p);
+  PatchForces<Pack> forces{};
+  if (kind_.any()) {
+    DamperOf<Pack> damper;
+    read_memory(scene, work, p, damper);
+    forces = step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper);
+    write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return *to[k].tangential; });
+    for (int k = 0; k < kAtOnce; ++k) *to[k].book = {};
+    if (kind_.damped) {
+      PairDampingOf<Pack> before, now;
+      now.damping = forces.damping;
+      now.rate = p.rate;
+      const auto last = [&](int k) APOTHEM_LAMBDA -> const PairDamping& {
+        return work[k].last ? *work[k].last : kNoDamping;
+      };
+      read_lanes(before.damping,
+                 [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).damping; });
+      read_lanes(before.change_of_damping, [&](int k) APOTHEM_LAMBDA -> const PairForce& {
+        return last(k).change_of_damping;
+      });
+      read_lanes(before.power_before, [&](int k) APOTHEM_LAMBDA { return last(k).power_before; });
+      before.rate = {select(p.touched, p.rate_before.x, p.rate.x),
+                     select(p.touched, p.rate_before.y, p.rate.y),
+                     select(p.touched, p.rate_before.a, p.rate.a),
+                     select(p.touched, p.rate_before.b, p.rate.b)};
+      const Pack lost = close_damping(before, scene.dt, now);
+      const auto target = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return *to[k].damping; };
+      write_lanes(now.damping,
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).damping; });
+      write_lanes(now.change_of_damping,
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).change_of_damping; });
+      write_lanes(now.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).rate; });
+      write_lanes(damper.elastic,
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->elastic; });
+      write_lanes(damper.damping,
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->damping; });
+      for (int k = 0; k < kAtOnce; ++k) {
+        target(k).power_before = now.power_before.v[k];
+        to[k].damper->tangential = damper.tangential.v[k];
+        to[k].book->damping_loss = lost.v[k];
+      }
+    }
+    if (kind_.rough) {
+      const Pack energy = forces.spring * forces.spring / (Pack(2.) * p.tangential_stiffness);
+      write_rows({forces.spring, p.tangential_stiffness, forces.tangent.x, forces.tangent.y},
+                 [&](int k) APOTHEM_LAMBDA { return &to[k].spring->force; });
+      for (int k = 0; k < kAtOnce; ++k) {
+        to[k].book->energy = energy.v[k];
+        to[k].book->loss = forces.lost.v[k];
+      }
+    }
+  }
+  hold(scene, work, p, forces.held_a, forces.held_b);
+  const PairVectorOf<Pack> f = whole_force(p, forces.all);
+  write_load(f.x, f.y, f.a, forces.held_a,
+             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return to[k].load->on_a; });
+  write_load(-f.x, -f.y, f.b, forces.held_b,
+             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return to[k].load->on_b; });
+  const Pack normal = p.normal_stiffness * p.size;
+  for (int k = 0; k < kAtOnce; ++k) {
+    to[k].load->normal = normal.v[k];
+    to[k].load->a = work[k].a;
+    to[k].load->b = work[k].b;
+  }
+}
+
+void PairBatch::flush(const PairScene& scene) {
+  if (count_ == 0) return;
+  // Lanes that are left over do the last pair again, for nobody.
+  const PairTarget nobody{&spare_.load,   &spare_.tangential, &spare_.damping,
+                          &spare_.damper, &spare_.spring,     &spare_.book};
+  std::fill(work_.begin() + count_, work_.end(), work_[static_cast<size_t>(count_ - 1)]);
+  std::fill(targets_.begin() + count_, targets_.end(), nobody);
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    step(scene);
+    return 0.;
+  });
+  count_ = 0;
+}
+
+}  // namespace apothem

@@ -1,0 +1,104 @@
+// Steps of touching pairs of rigid bodies, four at a time: friction and damping of pairs that have
+// one contact patch, and the loads of all. The formulas are those of patch_laws.hpp and
+// pair_load.hpp.
+#pragma once
+
+#include <array>
+
+#include "apothem/contact/friction_memory.hpp"
+#include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/law.hpp"
+#include "apothem/contact/pair_load.hpp"
+#include "apothem/contact/surfaces.hpp"
+
+namespace apothem {
+
+using PatchDamper = DamperOf<double>;
+using PairDamping = PairDampingOf<double>;
+
+/// How the two rigid bodies of a pair move against each other.
+inline PairRate pair_rate(const Kinematics& now, RigidIndex a, RigidIndex b) {
+  const double* va = &now.pose_rate[3 * static_cast<size_t>(a)];
+  const double* vb = &now.pose_rate[3 * static_cast<size_t>(b)];
+  return {va[0] - vb[0], va[1] - vb[1], va[2], vb[2]};
+}
+
+/// What all pairs of a step have in common.
+struct PairScene {
+  const Surfaces& surfaces;
+  double thickness;                 ///< m
+  const Kinematics* now = nullptr;  ///< not needed without friction and damping
+  double dt = 0;                    ///< s
+};
+
+/// What acts between two bodies beside the normal force.
+struct Tangential {
+  bool rough = false, damped = false;
+  [[nodiscard]] bool any() const { return rough || damped; }
+  bool operator==(const Tangential&) const = default;
+};
+
+/// A pair, or one of its contact patches, and what it remembers of the step before.
+struct PairWork {
+  RigidIndex a, b;
+  const PairIntegral* integral;
+  const PairLaw* law;
+  bool touched = false;                 ///< the bodies touched in the step before
+  bool begins = true;                   ///< the pair had no patch then
+  const PairDamping* last = nullptr;    ///< null if there was none
+  const PatchDamper* damper = nullptr;  ///< null if there was none
+  double spring = 0;                    ///< force of the friction spring, N
+};
+
+/// Where the results of a pair go.
+struct PairTarget {
+  PairLoad* load;
+  PairForce* tangential = nullptr;  ///< friction and damping; null where there are none
+  PairDamping* damping = nullptr;   ///< null without damping
+  PatchDamper* damper = nullptr;    ///< the same
+  Spring* spring = nullptr;         ///< null without friction
+  PairBook* book = nullptr;         ///< null without friction and damping
+};
+
+/// Friction and damping of one contact patch.
+PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tangential kind,
+                               PatchDamper& damper);
+/// The load of a pair with these forces beside the normal one. `held_a`, `held_b`: how its friction
+/// springs hold the bodies.
+void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
+               const BodyStiffness& held_a, const BodyStiffness& held_b, PairLoad& load);
+
+/// Pairs of at most one contact patch, collected until there are enough of them.
+class PairBatch {
+ public:
+  void add(const PairScene& scene, Tangential kind, const PairWork& work,
+           const PairTarget& target) {
+    if (!(kind == kind_)) flush(scene);
+    kind_ = kind;
+    work_[static_cast<size_t>(count_)] = work;
+    targets_[static_cast<size_t>(count_)] = target;
+    if (++count_ == kAtOnce) flush(scene);
+  }
+  /// Takes all pairs that have been added a step further.
+  void flush(const PairScene& scene);
+
+ private:
+  static constexpr int kAtOnce = kComparedLanes;
+
+  void step(const PairScene& scene);
+
+  int count_ = 0;
+  Tangential kind_;
+  std::array<PairWork, kAtOnce> work_{};
+  std::array<PairTarget, kAtOnce> targets_{};
+  struct {
+    PairLoad load;
+    PairForce tangential;
+    PairDamping damping;
+    PatchDamper damper;
+    Spring spring;
+    PairBook book;
+  } spare_ = {};
+};
+
+}  // namespace apothem
