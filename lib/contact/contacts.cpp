@@ -55,24 +55,38 @@ bool Contacts::search_if_stale() {
 
 void Contacts::evaluate() {
   contacts_.clear();
-  listed_ = false;
+  all_listed_ = false;
   each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
 }
 
 const std::vector<Contact>& Contacts::contacts() const {
-  if (!listed_) each([&](const Kernel& kernel) { kernel.list(contacts_); });
-  listed_ = true;
+  if (all_listed_) return contacts_;
+  all_listed_ = true;
+  const auto others = static_cast<std::ptrdiff_t>(contacts_.size());
+  each([&](const Kernel& kernel) { kernel.add_contacts(contacts_); });
+  if (others > 0) {
+    std::rotate(contacts_.begin(), contacts_.begin() + others, contacts_.end());
+    std::ranges::stable_sort(contacts_, {}, &Contact::kernel);
+  }
   return contacts_;
 }
 
-size_t Contacts::touching() const {
-  if (listed_) return contacts_.size();
-  return contacts_.size() + sum<size_t>([](const Kernel& kernel) { return kernel.unlisted(); });
+int Contacts::count() const {
+  if (all_listed_) return static_cast<int>(contacts_.size());
+  int late = 0;
+  each([&](const Kernel& kernel) { late += kernel.summary().count; });
+  return late + static_cast<int>(contacts_.size());
 }
 
 std::optional<ContactFault> Contacts::fault() const {
-  for (const Contact& contact : contacts_) {
-    if (contact.share < 1 || contact.kernel == outline_kernel) continue;
+  const auto is_out = [](const Contact& contact) {
+    return contact.share >= 1 && contact.kernel != outline_kernel;
+  };
+  bool late = false;
+  each([&](const Kernel& kernel) { late = late || kernel.summary().share >= 1; });
+  if (!late && std::ranges::none_of(contacts_, is_out)) return {};
+  for (const Contact& contact : contacts()) {
+    if (!is_out(contact)) continue;
     ContactFault fault = kernels_[contact.kernel]->fault(contact);
     fault.depth = kernels_[contact.kernel]->penetration(contact, 0);
     return fault;
@@ -158,7 +172,7 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   }
-  for (const Contact& c : contacts_) {
+  for (const Contact& c : contacts()) {
     if (c.at_most <= kKnown * c.depth) continue;
     const double known = std::min(found.largest.value, found.relative.value * length(c));
     if (!(c.at_most > known)) continue;
@@ -173,10 +187,10 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
 bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const {
   constexpr double kRoundOff = 1 - 1e-12;
   const double least = std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
-  bool unlisted = false;
-  each([&](const Kernel& kernel) { unlisted = unlisted || kernel.deepest_unlisted() > least; });
   const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
-  return unlisted || std::ranges::any_of(contacts_, deeper);
+  bool late = false;
+  each([&](const Kernel& kernel) { late = late || kernel.summary().deepest > least; });
+  return late || std::ranges::any_of(contacts_, deeper);
 }
 
 PairPeak Contacts::largest_force() const {

@@ -60,9 +60,10 @@ class Contacts {
   void drop_trial();
   void add_forces(const ForceViews& forces);
 
-  /// Ascending within a kernel. Not for every step; `touching` says how many there are.
+  /// Ascending within a kernel. Not for every step.
   [[nodiscard]] const std::vector<Contact>& contacts() const;
-  [[nodiscard]] size_t touching() const;
+  /// How many there are.
+  [[nodiscard]] int count() const;
   /// The bodies of a contact, and of a spring.
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const SpringKey& key) const;
@@ -145,7 +146,8 @@ class Contacts {
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_;
   bool tangential_;  // there is friction or damping
   mutable std::vector<Contact> contacts_;
-  mutable bool listed_ = false;  // those are in it that kernels had left out
+  // Without those that kernels add when they are asked for.
+  mutable bool all_listed_ = true;
   FrictionMemory memory_;
   bool tried_ = false;  // the last slide was a trial
   std::int64_t searches_ = 0;

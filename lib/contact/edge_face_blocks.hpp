@@ -63,7 +63,7 @@ struct EdgeFaceUnit {
   std::int32_t first_vertex, end_vertex;  ///< all its vertices are among these
   // Found by an evaluation:
   std::int32_t touching = 0;  ///< contacts
-  double deepest = 0;         ///< no contact is deeper, m
+  double deepest = 0;         ///< square of a depth that no contact exceeds, m^2
 };
 
 class EdgeFaceBlocks {

@@ -32,6 +32,23 @@ struct PairPeak {
   BodyIndex a = -1, b = -1;
 };
 
+/// Of all contacts of a kernel.
+struct ContactSummary {
+  int count = 0;
+  double deepest = 0;  ///< none is deeper, m
+  double share = 0;    ///< largest: see Contact
+
+  void include(double depth, double of_range) {
+    ++count;
+    deepest = depth > deepest ? depth : deepest;
+    share = of_range > share ? of_range : share;
+  }
+  void include(const ContactSummary& other) {
+    count += other.count - 1;
+    include(other.deepest, other.share);
+  }
+};
+
 class Kernel {
  public:
   virtual ~Kernel() = default;
@@ -40,14 +57,13 @@ class Kernel {
   /// itself.
   virtual void take(std::span<const BoxPair> pairs) = 0;
   /// Finds the contacts of its pairs and the normal forces in them; appends the contacts in
-  /// ascending order. The same bits for any number of threads. No allocation unless there are more
-  /// contacts than ever before.
+  /// ascending order, or leaves that to `add_contacts`. The same bits for any number of threads. No
+  /// allocation unless there are more contacts than ever before.
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
-  /// A kernel may leave its contacts out until they are asked for: appends them.
-  virtual void list(std::vector<Contact>& /*contacts*/) const {}
-  /// How many it has left out, and a depth that none of these exceeds, m.
-  [[nodiscard]] virtual size_t unlisted() const { return 0; }
-  [[nodiscard]] virtual double deepest_unlisted() const { return 0; }
+  /// What a step asks of contacts that `evaluate` has not appended.
+  [[nodiscard]] virtual ContactSummary summary() const { return {}; }
+  /// Appends them.
+  virtual void add_contacts(std::vector<Contact>& /*contacts*/) const {}
   /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.

@@ -179,21 +179,20 @@ void OutlineKernel::add_plateaus() {
   }
 }
 
-size_t OutlineKernel::unlisted() const {
+// Outlines have no contacts out of range.
+ContactSummary OutlineKernel::summary() const {
   size_t count = plateaus_.edges().size() + plateaus_.faces().size();
-  for (const EdgeFaceUnit& unit : blocks_.units()) count += static_cast<size_t>(unit.touching);
-  return count;
-}
-
-double OutlineKernel::deepest_unlisted() const {
-  if (!plateaus_.edges().empty()) return HUGE_VAL;
   double square = 0;
-  for (const EdgeFaceUnit& unit : blocks_.units()) square = std::max(square, unit.deepest);
-  return kAbove * std::sqrt(square);
+  for (const EdgeFaceUnit& unit : blocks_.units()) {
+    count += static_cast<size_t>(unit.touching);
+    square = std::max(square, unit.deepest);
+  }
+  const double deepest = plateaus_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
+  return {static_cast<int>(count), deepest, 0};
 }
 
 // A plateau has the first face, or the first edge, of its body for its partner.
-void OutlineKernel::list(std::vector<Contact>& contacts) const {
+void OutlineKernel::add_contacts(std::vector<Contact>& contacts) const {
   const Outlines& o = outlines_;
   for (const EdgeFaceContact& c : edge_faces()) {
     const CollarFace<double> face = o.face(c.face);

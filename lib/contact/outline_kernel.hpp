@@ -34,9 +34,8 @@ class OutlineKernel final : public Kernel {
   void take(std::span<const BoxPair> pairs) override;
   /// The contacts are those of edges with faces, then of edges with tops and of tops with edges.
   void evaluate(std::vector<Contact>& contacts) override;
-  void list(std::vector<Contact>& contacts) const override;
-  [[nodiscard]] size_t unlisted() const override;
-  [[nodiscard]] double deepest_unlisted() const override;
+  [[nodiscard]] ContactSummary summary() const override;
+  void add_contacts(std::vector<Contact>& contacts) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void undo_slide() override {

@@ -229,13 +229,13 @@ void ContactTerm::add_forces(const Evaluation& now) {
   now.clock.lap(Phase::gather);
   if (now.trial) return;
   counts_.candidate_pairs += static_cast<std::int64_t>(contacts_.candidates());
-  counts_.touching_now = static_cast<int>(contacts_.touching());
+  counts_.touching_now = contacts_.count();
   counts_.touching_pairs += counts_.touching_now;
   note_peaks(state);
 }
 
 void ContactTerm::note_peaks(const State& state) {
-  if (counts_.touching_now == 0) return;
+  if (contacts_.count() == 0) return;
   const auto note = [&](const PairPeak& found, Peak& peak) {
     if (found.value > peak.value) peak = {found.value, state.time, found.a, found.b};
   };
