@@ -195,7 +195,8 @@ void FiniteElements::find_behaviours() {
   }
 }
 
-// Small bodies share a chunk, so that they fill its blocks.
+// Small bodies share a chunk, so that they fill its blocks. None of them begins in one chunk and
+// goes on in the next: then chunks share no nodes.
 void FiniteElements::add_chunks() {
   std::vector<Member> members;
   const auto close = [&] {
@@ -208,7 +209,9 @@ void FiniteElements::add_chunks() {
     members.clear();
   };
   for (int i = 0; i < static_cast<int>(sets_.size()); ++i) {
-    for (int e = 0; e < sets_[i].mesh->element_count(); ++e) {
+    const int count = sets_[i].mesh->element_count();
+    if (!members.empty() && members.size() + static_cast<size_t>(count) > kChunk) close();
+    for (int e = 0; e < count; ++e) {
       members.push_back({i, e});
       if (members.size() == kChunk) close();
     }
