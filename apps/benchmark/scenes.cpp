@@ -149,6 +149,11 @@ Model quadrilaterals(int count) {
   return troughs(pile, count / static_cast<int>(pile.bodies.size()), pile.height);
 }
 
+Model meshes(int count) {
+  const Pile& pile = pile_of_meshes();
+  return troughs(pile, count / static_cast<int>(pile.deformables.size()), pile.height);
+}
+
 // 6000 quadrilaterals that carry eight squares ten times and one a hundred times as large.
 Model sizes() {
   const Pile& pile = pile_of_quadrilaterals();
@@ -188,12 +193,11 @@ Model meshes_apart(int count) {
 }
 
 // The same scene with one thread and with two, in turn. Two are timed.
-Work two_threads(int count) {
+Work two_threads(const std::function<Model()>& make, bool per_element = false) {
   struct Both {
     SteppedScene one, two;
     double one_seconds = 0, two_seconds = 0;
   };
-  const auto make = [count] { return quadrilaterals(count); };
   const auto both = std::shared_ptr<Both>(new Both{.one = {make, 1}, .two = {make, 2}});
   const auto timed_step = [](SteppedScene& scene, double& seconds) {
     const auto begin = std::chrono::steady_clock::now();
@@ -203,7 +207,7 @@ Work two_threads(int count) {
   return {.once =
               [=] {
                 timed_step(both->two, both->two_seconds);
-                return both->two.bodies();
+                return per_element ? both->two.elements() : both->two.bodies();
               },
           .before = [=] { timed_step(both->one, both->one_seconds); },
           .extras =
@@ -282,7 +286,7 @@ std::vector<BenchmarkCase> scene_cases() {
   cases.push_back({.name = "quads_two_threads/3000",
                    .item = "body",
                    .about = "two threads, compared with one",
-                   .prepare = [](int) { return two_threads(3000); },
+                   .prepare = [](int) { return two_threads([] { return quadrilaterals(3000); }); },
                    .clock = ClockKind::wall});
   for (const int count : {300, 3000}) {
     cases.push_back({.name = "crosses/" + std::to_string(count),
@@ -297,15 +301,23 @@ std::vector<BenchmarkCase> scene_cases() {
                          },
                      .size = static_cast<double>(count)});
   }
-  cases.push_back({.name = "blocks/300",
+  for (const int count : {300, 3000, 30000}) {
+    cases.push_back({.name = "blocks/" + std::to_string(count),
+                     .item = "element",
+                     .about = "step of a pile of blocks of 5 x 5 Q4, friction 0.5",
+                     .prepare =
+                         [count](int threads) {
+                           pile_of_meshes();
+                           return stepped([count] { return meshes(count); }, threads, true);
+                         },
+                     .size = static_cast<double>(count),
+                     .on_request = count > 3000});
+  }
+  cases.push_back({.name = "blocks_two_threads/300",
                    .item = "element",
-                   .about = "step of a pile of blocks of 5 x 5 Q4, friction 0.5",
-                   .prepare = [](int threads) {
-                     const Pile& pile = pile_of_meshes();
-                     const int copies = 300 / static_cast<int>(pile.deformables.size());
-                     return stepped([&] { return troughs(pile, copies, pile.height); }, threads,
-                                    true);
-                   }});
+                   .about = "two threads, compared with one",
+                   .prepare = [](int) { return two_threads([] { return meshes(300); }, true); },
+                   .clock = ClockKind::wall});
   cases.push_back({.name = "blocks_apart/300",
                    .item = "element",
                    .about = "the same blocks, and nothing touches",

@@ -105,6 +105,8 @@ struct CollarCrossings {
 
 namespace detail {
 
+constexpr double kThird = 1. / 3, kSixth = 1. / 6;  // a division takes as long as ten products
+
 // One edge and one cell.
 template <class Number>
 struct CollarClip {
@@ -119,11 +121,11 @@ struct CollarClip {
     const Number d = hi - lo, t1 = tp + lo * dt, t2 = tp + hi * dt;
     return {lo,
             hi,
-            d * (h1 + h2) / 2.,
-            d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) / 6.,
-            -d * dt * (h1 + h2) / 2.,
-            -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) / 6.,
-            -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / 6.,
+            d * (h1 + h2) * .5,
+            d * (h1 * (2. * lo + hi) + h2 * (lo + 2. * hi)) * kSixth,
+            -d * dt * (h1 + h2) * .5,
+            -d * dt * (h1 * (2. * t1 + t2) + h2 * (t1 + 2. * t2)) * kSixth,
+            -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) * kSixth,
             std::max(real_part(h1), real_part(h2))};
   }
   void add(const CollarPiece<Number>& p, double sign) {
@@ -134,15 +136,15 @@ struct CollarClip {
   // The same along a bisector from the base to the height h.
   void along_a(const Number& h, double sign) {
     const Number slope = f.alpha(), s = sign * slope * h * h;
-    piece.area += s / 2.;
-    piece.along += s * slope * h / 3.;
-    piece.height += s * h / 6.;
+    piece.area += s * .5;
+    piece.along += s * slope * h * kThird;
+    piece.height += s * h * kSixth;
   }
   void along_b(const Number& h, double sign) {
     const Number slope = f.beta(), s = sign * slope * h * h;
-    piece.area -= s / 2.;
-    piece.along -= s * (f.length / 2. + slope * h / 3.);
-    piece.height -= s * h / 6.;
+    piece.area -= s * .5;
+    piece.along -= s * (f.length * .5 + slope * h * kThird);
+    piece.height -= s * h * kSixth;
   }
 };
 
@@ -262,11 +264,17 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
   const Number ap = pax * f.may - pay * f.max, aq = qax * f.may - qay * f.max;
   const Number bp = (px - f.bx) * f.mby - (py - f.by) * f.mbx;
   const Number bq = (qx - f.bx) * f.mby - (qy - f.by) * f.mbx;
-  if (!(real_part(hp) <= f.plain && real_part(hq) <= f.plain)) {
+  const auto deep = [&] {
     return detail::deep_collar_piece(f, {pax, pay, hp, hq, ap, aq, bp, bq}, px, py, qx, qy, piece,
                                      top);
-  }
-  if (negative(ap) && negative(aq)) return false;
+  };
+  // An edge that is nowhere beyond both bisectors does not meet the negative part of the cell, and
+  // what lies between the bisectors may be plain although the edge goes on to larger heights.
+  const bool plain = real_part(hp) <= f.plain && real_part(hq) <= f.plain;
+  const bool beyond_both = (negative(ap) && !negative(bp)) || (negative(aq) && !negative(bq));
+  const bool beyond_a = negative(ap) && negative(aq), beyond_b = !negative(bp) && !negative(bq);
+  if (!plain && (beyond_both || beyond_a || beyond_b)) return deep();
+  if (beyond_a) return false;
   if (real_part(bp) >= 0 && real_part(bq) >= 0) return false;
 
   enum class End { vertex, base, a, b };
@@ -282,7 +290,7 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
   clip(ap, aq, negative(ap), negative(aq), End::a);
   clip(bp, bq, !negative(bp), !negative(bq), End::b);
   // A piece without length still crosses a bisector.
-  if (real_part(lo) > real_part(hi)) return false;
+  if (real_part(lo) > real_part(hi)) return plain ? false : deep();
 
   const Number dh = hq - hp;
   const Number ex = qx - px, ey = qy - py;
@@ -293,12 +301,13 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
     return hp + u * dh;
   };
   const Number h1 = height(lo, in), h2 = height(hi, out);
+  if (!plain && !(real_part(h1) <= f.plain && real_part(h2) <= f.plain)) return deep();
   detail::CollarClip<Number> clipped{f,    ex, ey, f.tx * pax + f.ty * pay, f.tx * ex + f.ty * ey,
                                      piece};
   piece = clipped.part(lo, hi, h1, h2);
   if (in == End::a) clipped.along_a(h1, -1);
-  if (out == End::a) clipped.along_a(h2, 1);
   if (in == End::b) clipped.along_b(h1, 1);
+  if (out == End::a) clipped.along_a(h2, 1);
   if (out == End::b) clipped.along_b(h2, -1);
   return true;
 }

@@ -35,10 +35,10 @@ struct AlongBisector {
   APOTHEM_INLINE AlongBisector(const typename Pack::Mask& at_a, const Pack& slope, const Pack& h,
                                const Pack& length, double sign) {
     const Pack s = Pack(sign) * slope * h * h;
-    const Pack third = select(at_a, s * slope * h, slope * h) / Pack(3.);
-    area = s / Pack(2.);
-    along = select(at_a, third, s * (length / Pack(2.) + third));
-    height = s * h / Pack(6.);
+    const Pack third = select(at_a, s * slope * h, slope * h) * Pack(kThird);
+    area = s * Pack(.5);
+    along = select(at_a, third, s * (length * Pack(.5) + third));
+    height = s * h * Pack(kSixth);
   }
 };
 
@@ -56,8 +56,15 @@ APOTHEM_INLINE CollarPieces<Pack> collar_pieces(const CollarFaces<Pack>& f, cons
   const Pack bp = pbx * f.mby - pby * f.mbx, bq = qbx * f.mby - qby * f.mbx;
   const Mask under = (hp < zero) & (hq < zero);
   CollarPieces<Pack> piece;
-  piece.deep = !(((hp <= f.plain) & (hq <= f.plain)) | under);
-  Mask missed = under | piece.deep | ((ap < zero) & (aq < zero)) | ((bp >= zero) & (bq >= zero));
+  const Mask out_ap = ap < zero, out_aq = aq < zero, out_bp = !(bp < zero), out_bq = !(bq < zero);
+  const Mask plain = (hp <= f.plain) & (hq <= f.plain);
+  // Edges that are beyond one bisector only, and all of them, miss the cell, unless a number is not
+  // finite.
+  const Pack all = hp + hq + ap + aq + bp + bq;
+  const Mask beside =
+      ((out_ap & out_aq & (!(out_bp | out_bq))) | ((!(out_ap | out_aq)) & out_bp & out_bq)) &
+      (all == all);
+  const Mask missed = under | (out_ap & out_aq) | ((bp >= zero) & (bq >= zero));
 
   // The part inside: it begins or ends at the edge's end, at the base, or at a bisector.
   Pack lo = zero, hi = one;
@@ -72,39 +79,41 @@ APOTHEM_INLINE CollarPieces<Pack> collar_pieces(const CollarFaces<Pack>& f, cons
   };
   Mask in_base, out_base;
   clip(hp, hq, hp < zero, hq < zero, in_base, out_base);
-  clip(ap, aq, ap < zero, aq < zero, in_a, out_a);
-  clip(bp, bq, !(bp < zero), !(bq < zero), in_b, out_b);
+  clip(ap, aq, out_ap, out_aq, in_a, out_a);
+  clip(bp, bq, out_bp, out_bq, in_b, out_b);
   in_a = in_a & (!in_b);
   out_a = out_a & (!out_b);
-  piece.met = !(missed | (lo > hi));
 
   const Pack dh = hq - hp, ex = qx - px, ey = qy - py;
   const Pack on_a = (pax * ey - pay * ex) / (f.max * ey - f.may * ex);
   const Pack on_b = (pbx * ey - pby * ex) / (f.mbx * ey - f.mby * ex);
   const Pack h1 = select(in_a, on_a, select(in_b, on_b, hp + lo * dh));
   const Pack h2 = select(out_a, on_a, select(out_b, on_b, hp + hi * dh));
+  const Mask reversed = lo > hi;
+  const Mask easy = plain | !((out_ap & out_bp) | (out_aq & out_bq) | reversed |
+                              !((h1 <= f.plain) & (h2 <= f.plain)));
+  piece.deep = !(easy | under | beside);
+  piece.met = easy & !(missed | reversed);
 
   const Pack tp = f.tx * pax + f.ty * pay, dt = f.tx * ex + f.ty * ey;
-  const Pack d = hi - lo, t1 = tp + lo * dt, t2 = tp + hi * dt, two(2.), six(6.);
+  const Pack d = hi - lo, t1 = tp + lo * dt, t2 = tp + hi * dt, two(2.), half(.5),
+             sixth(detail::kSixth);
   piece.from = lo;
   piece.to = hi;
-  piece.sum = d * (h1 + h2) / two;
-  piece.first = d * (h1 * (two * lo + hi) + h2 * (lo + two * hi)) / six;
-  piece.area = -d * dt * (h1 + h2) / two;
-  piece.along = -d * dt * (h1 * (two * t1 + t2) + h2 * (t1 + two * t2)) / six;
-  piece.height = -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) / six;
+  piece.sum = d * (h1 + h2) * half;
+  piece.first = d * (h1 * (two * lo + hi) + h2 * (lo + two * hi)) * sixth;
+  piece.area = -d * dt * (h1 + h2) * half;
+  piece.along = -d * dt * (h1 * (two * t1 + t2) + h2 * (t1 + two * t2)) * sixth;
+  piece.height = -d * dt * (h1 * h1 + h1 * h2 + h2 * h2) * sixth;
   piece.deepest = select(h1 < h2, h2, h1);
 
-  // collar_piece adds what belongs to the bisector at a before that at b.
   const Pack alpha = f.alpha(), beta = f.beta();
   const detail::AlongBisector<Pack> enters(in_a, select(in_a, alpha, beta), h1, f.length, -1);
   const detail::AlongBisector<Pack> leaves(out_a, select(out_a, alpha, beta), h2, f.length, 1);
-  const Mask in = in_a | in_b, out = out_a | out_b, swap = in_b & out_a;
-  const Mask with_first = select(swap, out, in), with_second = select(swap, in, out);
-  const auto add = [&](const Pack& entering, const Pack& leaving, Pack& sum)
-      __attribute__((always_inline)) {
-    sum = select(with_first, sum + select(swap, leaving, entering), sum);
-    sum = select(with_second, sum + select(swap, entering, leaving), sum);
+  const Mask in = in_a | in_b, out = out_a | out_b;
+  const auto add = [&](const Pack& entering, const Pack& leaving, Pack& sum) APOTHEM_LAMBDA {
+    sum = select(in, sum + entering, sum);
+    sum = select(out, sum + leaving, sum);
   };
   add(enters.area, leaves.area, piece.area);
   add(enters.along, leaves.along, piece.along);

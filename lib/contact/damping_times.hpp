@@ -56,6 +56,8 @@ class DampingTimes {
   }
   void end_step(double dt) {
     for (Pair& pair : pairs_) {
+      pair.normal_time = pair.tangential_time = 0;
+      if (pair.normal == 0 && pair.tangential == 0) continue;
       const PairLaw& law = table_.between(pair.a, pair.b);
       const double mobility = inverse_mass_[pair.a] + inverse_mass_[pair.b];
       const double softer = law.friction.tangential_stiffness / law.normal_stiffness;

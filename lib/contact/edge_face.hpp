@@ -27,9 +27,10 @@ struct EdgeFaceLaw {
 /// An edge that meets a face.
 struct EdgeFaceContact {
   std::int32_t edge, face;
-  std::int32_t pair;  ///< index of the EdgeFaceLaw
-  double slope;       ///< k_n thickness / r of the face, N/m^2
+  double slope;  ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
+  double along = 0;  ///< friction force on the edge along the face, with the dashpot beside it, N
+  double push = 0;   ///< of the dashpots across the face, N
 };
 
 /// The normal forces of a contact, N, each along the inward normal of its edge or face, on its
@@ -40,14 +41,14 @@ struct EdgeFaceForces {
   Real edge_start, edge_end, face_start, face_end;
 };
 
-/// `piece` has the members of CollarPiece. `slope` of the face, as above; lengths of the edge and
-/// of the face's base, m.
+/// `piece` has the members of CollarPiece. `slope` of the face, as above; length of the edge, m,
+/// and 1 over that of the face's base, 1/m.
 template <class Real, class Piece>
 APOTHEM_INLINE EdgeFaceForces<Real> edge_face_forces(const Piece& p, const Real& slope,
                                                      const Real& edge_length,
-                                                     const Real& face_length) {
+                                                     const Real& per_face_length) {
   const Real on_edge = slope * edge_length;
-  const Real on_face_end = slope * p.along / face_length;
+  const Real on_face_end = slope * p.along * per_face_length;
   return {on_edge * (p.sum - p.first), on_edge * p.first, slope * p.area - on_face_end,
           on_face_end};
 }

@@ -4,170 +4,150 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "apothem/contact/contact.hpp"
-#include "apothem/contact/edge_face.hpp"
+#include "apothem/contact/edge_face_blocks.hpp"
 #include "apothem/contact/outlines.hpp"
 #include "apothem/geometry/integrals/collar_pack.hpp"
 
 namespace apothem {
 
-/// What has been found of some candidates, in their order.
-struct EdgeFaceMeetings {
-  struct Push {
-    std::int32_t edge, face;
-    EdgeFaceForces<double> force;
-  };
-  std::vector<Push> pushes;
-  std::vector<EdgeFaceContact> contacts;
-  std::vector<Contact> records;  ///< of the same contacts
-  std::vector<std::pair<EdgeFace, CollarCrossings<double>>> crossings;
+/// The normal forces of the candidates of a block, N: of each lane on the start and the end of its
+/// edge, then of its face. 0 where they do not meet.
+using EdgeFacePushes = std::array<FourOf<double>, kBlock>;
 
-  void clear() { pushes.clear(), contacts.clear(), records.clear(), crossings.clear(); }
-};
+/// Adds them to the forces on the two ends of edges, of those from `first` to `last` - 1.
+using EndForces = std::array<double, 2>;
+APOTHEM_INLINE void add_pushes(const EdgeFaceBlock& block, const EdgeFacePushes& pushes,
+                               EndForces* ends, std::int32_t first = 0,
+                               std::int32_t last = std::numeric_limits<std::int32_t>::max()) {
+  using Pair = double __attribute__((vector_size(16)));
+  const auto add = [&](std::int32_t edge, double start, double end) APOTHEM_LAMBDA {
+    if (edge < first || edge >= last) return;
+    EndForces& on = ends[edge];
+    const Pair sum = Pair{on[0], on[1]} + Pair{start, end};
+    on[0] = sum[0], on[1] = sum[1];
+  };
+  for (size_t l = 0; l < kBlock; ++l) {
+    add(block.p[l], pushes[l][0], pushes[l][1]);
+    add(block.a[l], pushes[l][2], pushes[l][3]);
+  }
+}
+
+using EdgeFaceCrossings = std::vector<std::pair<EdgeFace, CollarCrossings<double>>>;
 
 namespace edge_face_detail {
 
-constexpr double kNothing = 1e-12;  // of a collar: round-off where an edge begins on a face
-
-/// What else is known of an edge that meets a face. Of numbers or packs.
-template <class Real>
-struct Meeting {
-  EdgeFaceForces<Real> force;
-  Real surely, at_most;  ///< bounds of the depth, m
-  Real share;            ///< of the collar
-  Real stiffness;        ///< N/m
-};
-
-/// `piece` has the members of CollarPiece; `alpha` and `beta`: slopes of the face's bisectors.
-template <class Real, class Piece>
-APOTHEM_INLINE Meeting<Real> meeting_of(const Piece& piece, const Real& slope,
-                                        const Real& edge_length, const Real& face_length,
-                                        const Real& depth, const Real& plain, const Real& alpha,
-                                        const Real& beta) {
-  const Real zero(0.), one(1.), deepest(piece.deepest);
-  // The distance from the boundary over the height in a face is more than 1 where the face reaches
-  // beyond the end of its edge, at a reflex vertex.
-  const Real beyond = select(-alpha < beta, beta, -alpha);
-  const Real ratio = select(beyond > zero, square_root(one + beyond * beyond), one);
-  const Real share = deepest / depth;
-  return {edge_face_forces(piece, slope, edge_length, face_length),
-          select(deepest <= sure_depth(plain, depth), deepest, zero), deepest * ratio,
-          select(share < one, share, one), slope * edge_length * (piece.to - piece.from)};
-}
-
-inline void add(const EdgeFace& pair, const EdgeFaceLaw& law, double depth,
-                const CollarPiece<double>& piece, const Meeting<double>& m,
-                EdgeFaceMeetings& found) {
-  found.pushes.push_back({pair.edge, pair.face, m.force});
-  if (piece.deepest <= (law.self ? kNothing * depth : 0)) return;
-  found.contacts.push_back({pair.edge, pair.face, pair.pair, law.slope, piece});
-  const bool known = law.self && m.surely > 0;
-  found.records.push_back({outline_kernel, pair.edge, pair.face, m.surely,
-                           known ? m.surely : m.at_most, m.share, m.stiffness});
-}
+using Pack = PackOf<kBlock>;
 
 /// One candidate that may cross the top of the collar.
-inline void find_deep(const Outlines& o, const EdgeFace& pair, const EdgeFaceLaw& law,
-                      EdgeFaceMeetings& found) {
-  const auto [e, f, index] = pair;
-  const int q = o.next[e];
-  const CollarFace<double> face = o.face(f);
+inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
+                      unsigned& met, EdgeFacePushes& pushes, double& deepest,
+                      EdgeFaceCrossings& crossings) {
+  const std::int32_t p = block.p[l], q = block.q[l], a = block.a[l];
+  const CollarFace<double> face = o.face(a);
   CollarPiece<double> piece;
   CollarCrossings<double> top;
-  if (!collar_piece(face, o.x[e], o.y[e], o.x[q], o.y[q], piece, top)) return;
-  add(pair, law, face.depth, piece,
-      meeting_of(piece, law.slope, o.length[e], face.length, face.depth, face.plain, face.alpha(),
-                 face.beta()),
-      found);
-  if (top.count > 0) found.crossings.emplace_back(pair, top);
+  if (!collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
+  const EdgeFaceForces<double> f =
+      edge_face_forces(piece, block.slope[l], o.length[p], 1 / face.length);
+  pushes[l] = {f.edge_start, f.edge_end, f.face_start, f.face_end};
+  if (top.count > 0) crossings.emplace_back(EdgeFace{p, a}, top);
+  if (piece.deepest <= block.nothing[l]) return;
+  met |= 1U << l;
+  touch.from[l] = piece.from, touch.to[l] = piece.to;
+  touch.sum[l] = piece.sum, touch.first[l] = piece.first, touch.deepest[l] = piece.deepest;
+  const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
+  deepest = std::max(deepest, piece.deepest * piece.deepest * (1 + beyond * beyond));
 }
 
 }  // namespace edge_face_detail
 
-/// Appends what is found of the candidates, ascending as they are.
-template <int lanes>
-APOTHEM_INLINE void find_meetings(const Outlines& o, std::span<const EdgeFace> candidates,
-                                  std::span<const EdgeFaceLaw> laws, EdgeFaceMeetings& found) {
-  using Pack = PackOf<lanes>;
-  const size_t count = candidates.size();
-  for (size_t first = 0; first < count; first += lanes) {
-    std::array<int, lanes> e, q, f, g;
-    std::array<double, lanes> slope;
-    for (size_t l = 0; l < lanes; ++l) {
-      const EdgeFace& pair = candidates[std::min(first + l, count - 1)];
-      e[l] = pair.edge, f[l] = pair.face;
-      q[l] = o.next[pair.edge], g[l] = o.next[pair.face];
-      slope[l] = laws[static_cast<size_t>(pair.pair)].slope;
+/// Finds the contacts of a unit. push(block, pushes) for blocks in which something meets.
+template <class Push>
+APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
+                                  EdgeFaceCrossings& crossings, const Push& push) {
+  using edge_face_detail::Pack;
+  using Vertices = EdgeFaceBlock::Vertices;
+  const Pack zero(0.), one(1.);
+  Pack deepest(0.);  // squares of bounds
+  double deep_deepest = 0;
+  int touching = 0;
+  for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.lengths()[i] = 0;
+  for (std::int32_t i = unit.first; i < unit.end; ++i) {
+    const EdgeFaceBlock& block = all.blocks()[i];
+    const auto at = [](const std::vector<double>& of, const Vertices& v) APOTHEM_LAMBDA {
+      return pack_of<kBlock>([&](size_t l)
+                                 APOTHEM_LAMBDA { return of[static_cast<size_t>(v[l])]; });
+    };
+    const CollarFaces<Pack> face{at(o.x, block.a),      at(o.y, block.a),  at(o.x, block.b),
+                                 at(o.y, block.b),      at(o.tx, block.a), at(o.ty, block.a),
+                                 at(o.length, block.a), at(o.mx, block.a), at(o.my, block.a),
+                                 at(o.mx, block.b),     at(o.my, block.b), at(o.plain, block.a)};
+    const Pack px = at(o.x, block.p), py = at(o.y, block.p);
+    const Pack qx = at(o.x, block.q), qy = at(o.y, block.q);
+    const CollarPieces<Pack> piece = collar_pieces(face, px, py, qx, qy);
+    unsigned deep = bits(piece.deep) & block.lanes;
+    std::uint8_t& met = all.met()[i];
+    met = 0;
+    if ((bits(piece.met) | deep) == 0) continue;
+
+    const Pack edge_length = at(o.length, block.p), scale = one / face.length;
+    const EdgeFaceForces<Pack> force =
+        edge_face_forces(piece, Pack::load(block.slope.data()), edge_length, scale);
+    const auto where = [&](const auto& mask, const Pack& x)
+                           APOTHEM_LAMBDA { return select(mask, x, zero); };
+    EdgeFacePushes pushes;
+    write_rows({where(piece.met, force.edge_start), where(piece.met, force.edge_end),
+                where(piece.met, force.face_start), where(piece.met, force.face_end)},
+               [&](int l) APOTHEM_LAMBDA { return pushes[static_cast<size_t>(l)].data(); });
+
+    const auto contact = piece.met & !(piece.deepest <= Pack::load(block.nothing.data()));
+    EdgeFaceTouch& touch = all.touches()[i];
+    const auto put = [&](EdgeFaceTouch::Numbers& to, const Pack& x)
+                         APOTHEM_LAMBDA { x.store(to.data()); };
+    put(touch.from, where(contact, piece.from)), put(touch.to, where(contact, piece.to));
+    put(touch.sum, where(contact, piece.sum)), put(touch.first, where(contact, piece.first));
+    put(touch.deepest, where(contact, piece.deepest));
+    put(touch.tx, face.tx), put(touch.ty, face.ty), put(touch.edge_length, edge_length);
+    const Pack x = px - face.ax, y = py - face.ay, ex = qx - px, ey = qy - py;
+    put(touch.start, (face.tx * x + face.ty * y) * scale);
+    put(touch.rise, (face.tx * ex + face.ty * ey) * scale);
+    put(touch.height, (face.tx * y - face.ty * x) * scale);
+    put(touch.climb, (face.tx * ey - face.ty * ex) * scale);
+
+    // The distance from the boundary over the height in a face is more than 1 where the face
+    // reaches beyond the end of its edge, at a reflex vertex.
+    const Pack alpha = -face.alpha(), beta = face.beta();
+    const Pack further = select(alpha < beta, beta, alpha);
+    const Pack beyond = where(further > zero, further);
+    const Pack square = where(contact, piece.deepest * piece.deepest * (one + beyond * beyond));
+    deepest = select(square <= deepest, deepest, square);
+
+    unsigned found = bits(contact);
+    for (; deep != 0; deep &= deep - 1) {
+      edge_face_detail::find_deep(o, block, static_cast<size_t>(std::countr_zero(deep)), touch,
+                                  found, pushes, deep_deepest, crossings);
     }
-    const auto at = [](const std::vector<double>& of, const std::array<int, lanes>& i)
-        __attribute__((always_inline)) {
-      return pack_of<lanes>([&](size_t l) __attribute__((always_inline)) {
-        return of[static_cast<size_t>(i[l])];
-      });
-    };
-    const CollarFaces<Pack> face{at(o.x, f),  at(o.y, f),  at(o.x, g),      at(o.y, g),
-                                 at(o.tx, f), at(o.ty, f), at(o.length, f), at(o.mx, f),
-                                 at(o.my, f), at(o.mx, g), at(o.my, g),     at(o.plain, f)};
-    const CollarPieces<Pack> p =
-        collar_pieces(face, at(o.x, e), at(o.y, e), at(o.x, q), at(o.y, q));
-    const edge_face_detail::Meeting<Pack> m =
-        edge_face_detail::meeting_of(p, Pack::load(slope.data()), at(o.length, e), face.length,
-                                     at(o.depth, f), face.plain, face.alpha(), face.beta());
-    enum {
-      from,
-      to,
-      sum,
-      start,
-      area,
-      along,
-      height,
-      deepest,
-      edge_start,
-      edge_end,
-      face_start,
-      face_end,
-      surely,
-      at_most,
-      share,
-      stiffness,
-      numbers
-    };
-    std::array<std::array<double, lanes>, numbers> of;
-    const auto put = [&](int number, const Pack& value) __attribute__((always_inline)) {
-      value.store(of[static_cast<size_t>(number)].data());
-    };
-    put(from, p.from), put(to, p.to), put(sum, p.sum), put(start, p.first);
-    put(area, p.area), put(along, p.along), put(height, p.height), put(deepest, p.deepest);
-    put(edge_start, m.force.edge_start), put(edge_end, m.force.edge_end);
-    put(face_start, m.force.face_start), put(face_end, m.force.face_end);
-    put(surely, m.surely), put(at_most, m.at_most);
-    put(share, m.share), put(stiffness, m.stiffness);
-    for (size_t l = 0; l < lanes && first + l < count; ++l) {
-      const EdgeFace& pair = candidates[first + l];
-      const EdgeFaceLaw& law = laws[static_cast<size_t>(pair.pair)];
-      if (p.deep.m[l] != 0) {
-        edge_face_detail::find_deep(o, pair, law, found);
-      } else if (p.met.m[l] != 0) {
-        const auto value = [&](int number) __attribute__((always_inline)) {
-          return of[static_cast<size_t>(number)][l];
-        };
-        const CollarPiece<double> piece{value(from), value(to),    value(sum),    value(start),
-                                        value(area), value(along), value(height), value(deepest)};
-        edge_face_detail::add(
-            pair, law, o.depth[static_cast<size_t>(pair.face)], piece,
-            {{value(edge_start), value(edge_end), value(face_start), value(face_end)},
-             value(surely),
-             value(at_most),
-             value(share),
-             value(stiffness)},
-            found);
-      }
+    met = static_cast<std::uint8_t>(found | EdgeFaceBlocks::kPushed);
+    touching += std::popcount(found);
+    EdgeFaceTouch::Numbers length;
+    put(length, (Pack::load(touch.to.data()) - Pack::load(touch.from.data())) * edge_length);
+    if (block.one_law) {
+      double& sum = all.lengths()[block.law[0]];
+      sum = sum + length[0] + length[1] + length[2] + length[3];
+    } else {
+      for (size_t l = 0; l < kBlock; ++l) all.lengths()[block.law[l]] += length[l];
     }
+    push(i, pushes);
   }
+  unit.touching = touching;
+  for (size_t l = 0; l < kBlock; ++l) deep_deepest = std::max(deep_deepest, deepest.v[l]);
+  unit.deepest = deep_deepest;
 }
 
 }  // namespace apothem

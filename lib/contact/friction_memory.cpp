@@ -71,6 +71,19 @@ std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
   });
 }
 
+std::span<const Spring> FrictionMemory::before(int law) {
+  const auto behind = [&](int last) {
+    return std::ranges::partition_point(before_,
+                                        [&](const Spring& s) { return s.key.law <= last; });
+  };
+  const auto first = static_cast<size_t>(behind(law - 1) - before_.begin());
+  for (; next_ < first; ++next_) {
+    if (before_[next_].accounted) lose(before_[next_].energy());
+  }
+  next_ = static_cast<size_t>(behind(law) - before_.begin());
+  return std::span(before_).subspan(first, next_ - first);
+}
+
 std::span<const Spring> FrictionMemory::springs_of(int law, int a, int b) const {
   const auto [first, end] =
       std::equal_range(now_.begin(), now_.end(), Spring{.key = {law, a, b, 0}},

@@ -95,6 +95,9 @@ class FrictionMemory {
   /// The springs that a pair had in the step before, in the order of their parts; empty if it is
   /// new. Pairs must be asked for in ascending order.
   [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
+  /// All springs that a law had in the step before. The next law to be asked for must be a later
+  /// one.
+  [[nodiscard]] std::span<const Spring> before(int law);
   /// Makes room for the springs of the first law, which are put there in ascending order of their
   /// keys. All of them must be accounted.
   [[nodiscard]] std::span<Spring> make_room(size_t springs) {
@@ -115,6 +118,12 @@ class FrictionMemory {
     now_.push_back(spring);
     energy_ += spring.energy();
     if (!spring.accounted) balanced_ += spring.energy();
+  }
+  /// Keeps springs that are not accounted and store `energy` together, J; in ascending order.
+  void keep(std::span<const Spring> springs, double energy) {
+    now_.insert(now_.end(), springs.begin(), springs.end());
+    energy_ += energy;
+    balanced_ += energy;
   }
   /// What an accounted spring has lost, J. Those of contacts that are over lose all they store, and
   /// need not be told of.

@@ -26,6 +26,9 @@ BoundaryDistance& OutlineDepths::boundary(BodyIndex body) {
 double OutlineDepths::of_piece(int edge, int face, const CollarPiece<double>& piece, double floor) {
   const BodyIndex in = outlines_.body[face];
   if (outlines_.body[edge] == in || !is_depth(face, piece)) return of_edge(edge, in, floor);
+  // A face that does not reach beyond its edge has heights that are distances.
+  const CollarFace<double> at = outlines_.face(face);
+  if (at.alpha() >= 0 && at.beta() <= 0) return std::max(floor, piece.deepest);
   const Vec2 start = outlines_.point(edge);
   const Vec2 along = outlines_.point(outlines_.next[edge]) - start;
   return boundary(in).largest(start + piece.from * along, start + piece.to * along, floor);

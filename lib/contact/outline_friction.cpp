@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "apothem/contact/kernel.hpp"
 #include "apothem/execution/dispatch.hpp"
@@ -10,251 +11,285 @@
 namespace apothem {
 namespace {
 
-constexpr double kSlipTime = 20, kFollowTime = 30, kGatherTime = 15;  // of a contact, ns
-constexpr size_t kPart = 128;                                         // contacts of a part
+constexpr double kSlipTime = 100, kDragTime = 30, kVelocityTime = 5;  // ns
 
-// Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
-// rigid bodies are long: they have one for each face, which the face takes with it.
-SpringKey key_of(const Outlines& o, const EdgeFaceContact& c) {
-  return {outline_kernel, c.edge, o.bodies[o.body[c.edge]].is_rigid() ? c.face : o.body[c.face], 0};
-}
-
-double length_of(const Outlines& o, const EdgeFaceContact& c) {
-  return (c.piece.to - c.piece.from) * o.length[c.edge];
+SpringKey key_of(const EdgeFaceGroup& group) {
+  return {outline_kernel, group.edge, group.partner, 0};
 }
 
 }  // namespace
 
-void OutlineFriction::find_velocities(const Kinematics& now, double dt) {
+OutlineFriction::OutlineFriction(const Outlines& outlines, const PairTable& table,
+                                 const std::vector<double>& inverse_mass, int threads)
+    : outlines_(outlines),
+      damped_(table.damped()),
+      threads_(threads),
+      times_(table, inverse_mass),
+      all_(outlines.bodies.size()),
+      workers_(static_cast<size_t>(threads_.count())) {
+  std::iota(all_.begin(), all_.end(), 0);
+}
+
+// Finds the velocities of the vertices, and makes room for the new forces. Returns the powers of
+// the old ones.
+OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& now,
+                                               const Step& step) {
   const Outlines& o = outlines_;
-  velocities_.resize(2 * static_cast<size_t>(o.size()));
-  const auto find = [&](const Outlines::Body& body) {
-    for (int i = body.first; i < body.end; ++i) {
-      double* const to = &velocities_[2 * static_cast<size_t>(i)];
-      if (!body.is_rigid()) {
-        const double* v = now.node_velocity.data() + 2 * static_cast<size_t>(o.node[i]);
-        to[0] = v[0], to[1] = v[1];
-        continue;
-      }
-      const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
-      const double x = o.x[i] - body.cx, y = o.y[i] - body.cy;
-      to[0] = v[0] - v[2] * y;
-      to[1] = v[1] + v[2] * x;
-      if (!now.finite) continue;
-      // From where the vertex was, along the chord of its arc.
-      const double angle = v[2] * dt, half = sine_cosine(angle / 2).sine;
-      const double turned = sine_cosine(angle).sine / dt - v[2], drawn = 2 * half * half / dt;
-      to[0] += drawn * x - turned * y;
-      to[1] += drawn * y + turned * x;
-    }
+  const Outlines::Body& body = o.bodies[b];
+  Powers sum;
+  const auto put = [&](int i, double vx, double vy) {
+    velocities_[2 * static_cast<size_t>(i)] = vx;
+    velocities_[2 * static_cast<size_t>(i) + 1] = vy;
+    const VertexDrag& before = drags_before_[static_cast<size_t>(i)];
+    sum.friction += before[0] * vx + before[1] * vy;
+    sum.damping += before[2] * vx + before[3] * vy;
+    VertexDrag& drag = drags_[static_cast<size_t>(i)];
+    // A first look, perhaps with the memory of another run: as springs do, dashpots keep their
+    // force.
+    drag = step.dashpots ? VertexDrag{} : VertexDrag{0, 0, before[2], before[3]};
   };
-  if (everywhere_) {
-    std::ranges::for_each(o.bodies, find);
-  } else {
-    for (const BodyIndex b : o.active()) find(o.bodies[b]);
+  if (!body.is_rigid()) {
+    for (int i = body.first; i < body.end; ++i) {
+      const double* v = now.node_velocity.data() + 2 * static_cast<size_t>(o.node[i]);
+      put(i, v[0], v[1]);
+    }
+    return sum;
   }
+  const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
+  double drawn = 0, turned = 0;
+  if (now.finite) {  // from where the vertex was, along the chord of its arc
+    const double angle = v[2] * step.dt, half = sine_cosine(angle / 2).sine;
+    turned = sine_cosine(angle).sine / step.dt - v[2], drawn = 2 * half * half / step.dt;
+  }
+  for (int i = body.first; i < body.end; ++i) {
+    const double x = o.x[i] - body.cx, y = o.y[i] - body.cy;
+    const double vx = v[0] - v[2] * y, vy = v[1] + v[2] * x;
+    if (now.finite) {
+      put(i, vx + (drawn * x - turned * y), vy + (drawn * y + turned * x));
+    } else {
+      put(i, vx, vy);
+    }
+  }
+  return sum;
 }
 
 void OutlineFriction::find_times(const Step& step) {
+  const std::span<const EdgeFaceLaw> laws = step.blocks.laws();
+  law_times_.resize(laws.size());
+  if (!step.dashpots) {
+    std::ranges::fill(law_times_, LawTimes{0, 0});
+    return;
+  }
   times_.begin_step();
-  for (const EdgeFaceContact& c : step.contacts) {
-    const EdgeFaceLaw& law = step.laws[static_cast<size_t>(c.pair)];
-    DampingTimes::Pair& pair = times_[law.bodies];
-    const double length = length_of(outlines_, c);
-    pair.normal += c.slope * length;
-    pair.tangential += law.spring * length;
+  for (size_t i = 0; i < laws.size(); ++i) {
+    const double length = step.blocks.lengths()[i];
+    DampingTimes::Pair& pair = times_[laws[i].bodies];
+    pair.normal += laws[i].slope * length;
+    pair.tangential += laws[i].spring * length;
   }
   times_.end_step(step.dt);
-}
-
-void OutlineFriction::find_groups(const Step& step, FrictionMemory& memory) {
-  groups_.clear();
-  for (size_t i = 0; i < step.contacts.size(); ++i) {
-    const SpringKey key = key_of(outlines_, step.contacts[i]);
-    if (!groups_.empty() && groups_.back().spring.key == key) {
-      groups_.back().end = i + 1;
-      continue;
-    }
-    Group& group = groups_.emplace_back(Group{i, i + 1, nullptr, {key}, false});
-    if (!(step.laws[static_cast<size_t>(step.contacts[i].pair)].friction > 0)) continue;
-    const std::span<const Spring> before = memory.before(key.law, key.a, key.b);
-    if (!before.empty()) group.before = before.data();
+  for (size_t i = 0; i < laws.size(); ++i) {
+    const DampingTimes::Pair& pair = times_[laws[i].bodies];
+    law_times_[i] = {pair.normal_time, pair.tangential_time};
   }
 }
 
-void OutlineFriction::find_slips(const Step& step, const Part& part) {
-  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
-    constexpr size_t lanes = kComparedLanes;
-    for (size_t i = part.first; i < part.end; i += lanes) {
-      std::array<double, lanes> times{};
-      for (size_t l = 0; step.dashpots && l < lanes && i + l < part.end; ++l) {
-        const auto pair = static_cast<size_t>(step.contacts[i + l].pair);
-        times[l] = times_[step.laws[pair].bodies].normal_time;
-      }
-      apothem::find_slips<lanes>(outlines_, step.contacts.first(part.end), step.laws, velocities_,
-                                 times, i, part.place + i - part.first, slips_);
-    }
-    return 0.;
-  });
-}
-
-// Finds the spring and the dashpot along the face of the contacts of a spring. `place` of the slip
-// of the first of them.
-void OutlineFriction::follow(const Step& step, Group& group, size_t place) {
-  using S = OutlineSlips;
-  const size_t count = group.end - group.first;
-  const EdgeFaceLaw& law = step.laws[static_cast<size_t>(step.contacts[group.first].pair)];
-  Spring& spring = group.spring;
-  double pushes = 0, normal = 0, rate = 0, approach = 0, width = 0, depth = 0;
-  for (size_t k = 0; k < count; ++k) {
-    const size_t i = place + k;
-    pushes_[group.first + k] = slips_.of(i, S::push);
-    pushes += slips_.of(i, S::push);
-    normal += slips_.of(i, S::normal);
-    spring.stiffness += slips_.of(i, S::stiffness);
-    rate += slips_.of(i, S::rate);
-    approach += slips_.of(i, S::approach);
-    width += slips_.of(i, S::length);
-    depth += slips_.of(i, S::depth);
+// Finds the spring and the dashpot along the face of the contacts of a spring.
+void OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, const EdgeFaceGroup& group,
+                             Worker& worker, Unit& found) {
+  const EdgeFaceLaw& law = step.blocks.laws()[static_cast<size_t>(group.law)];
+  // Most springs have one contact or two: these are summed without a branch.
+  constexpr std::array<double, 4> kNone{};
+  const std::array<double, 4>* const addends = &worker.addends[static_cast<size_t>(group.first)];
+  const std::int32_t count = group.end - group.first;
+  const std::array<double, 4>& second = count > 1 ? addends[1] : kNone;
+  std::array<double, 4> sums;
+  for (size_t k = 0; k < 4; ++k) sums[k] = addends[0][k] + second[k];
+  for (std::int32_t i = 2; i < count; ++i) {
+    for (size_t k = 0; k < 4; ++k) sums[k] += addends[i][k];
   }
+  const double normal = sums[SlipSums::normal];
   if (!(law.friction > 0 && normal > 0)) return;
-  group.slides = true;
-  // Contact that has closed within a long step: what came before is no slip.
-  const Spring* const before = group.before;
-  if (step.finite && !before && approach / normal * step.dt > depth / width) {
-    rate *= depth / width / (approach / normal * step.dt);
+  const SpringKey key = key_of(group);
+  while (worker.next < step.before.size() && step.before[worker.next].key < key) ++worker.next;
+  const bool is_old = worker.next < step.before.size() && step.before[worker.next].key == key;
+  const Spring* const before = is_old ? &step.before[worker.next] : nullptr;
+
+  double rate = sums[SlipSums::rate];
+  if (step.finite && !before) {
+    // Contact that has closed within a long step: what came before is no slip.
+    double approach = 0, width = 0, depth = 0;
+    for (std::int32_t i = group.first; i < group.end; ++i) {
+      const EdgeFaceTouch& touch = step.blocks.touches()[unit.first + i / kBlock];
+      const size_t lane = static_cast<size_t>(i % kBlock);
+      approach += worker.slips[static_cast<size_t>(i / kBlock)].approach[lane];
+      width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
+      depth += touch.sum[lane] * touch.edge_length[lane];
+    }
+    if (approach / normal * step.dt > depth / width) {
+      rate *= depth / width / (approach / normal * step.dt);
+    }
   }
+  Spring& spring = worker.springs.emplace_back(Spring{.key = key});
+  spring.stiffness = sums[SlipSums::stiffness];
   // New contact joins without a slip of its own; contact that ends takes its share along.
   const double force =
       before ? before->force * std::min(1., spring.stiffness / before->stiffness) : 0;
-  const double limit = law.friction * std::max(normal + pushes, 0.);
-  const double slip = rate / normal;  // m/s
+  const double limit = law.friction * std::max(normal + sums[SlipSums::push], 0.);
+  const double per_normal = 1 / normal, slip = rate * per_normal;  // m/s
   spring.force = apothem::slide(force, slip * step.dt, spring.stiffness, limit);
+  found.energy += spring.energy();
   double dashpot = 0;
-  const double time = step.dashpots ? times_[law.bodies].tangential_time : 0;
+  const double time = law_times_[static_cast<size_t>(group.law)].tangential;
   if (time > 0) {
     const double resists = spring.force - time * spring.stiffness * slip;
     dashpot = std::clamp(resists, -limit, limit) - spring.force;
   }
-  for (size_t k = 0; k < count; ++k) {
-    const size_t i = place + k;
-    *slips_.at(i, S::friction) = spring.force / normal;
-    *slips_.at(i, S::dashpot) = dashpot / normal;
-    shares_[group.first + k] = (spring.force + dashpot) / normal * slips_.of(i, S::normal);
-  }
+  const std::array<double, 2> share{spring.force * per_normal, dashpot * per_normal};
+  std::array<double, 2>* const shares = &worker.shares[static_cast<size_t>(group.first)];
+  shares[0] = shares[count - 1] = share;
+  for (std::int32_t i = 1; i < count - 1; ++i) shares[i] = share;
 }
 
-// Adds the forces on the vertices from `first` to `end` - 1, those of whole bodies, for every
-// vertex in the order of the contacts.
-void OutlineFriction::add_forces(const Part& part, int first, int end) {
-  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
-    constexpr size_t lanes = kComparedLanes;
-    const size_t count = part.end - part.first;
-    for (size_t i = 0; i < count; i += lanes) {
-      add_slip_forces<lanes>(slips_, part.place + i, std::min(lanes, count - i), first, end,
-                             friction_, damping_);
+// `keep_forces`: several threads work, and the forces are added to those on the vertices later.
+void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool keep_forces) {
+  const EdgeFaceUnit& unit = step.blocks.units()[index];
+  Unit& found = units_[index] = {};
+  if (unit.touching == 0) return;
+  const auto blocks = static_cast<size_t>(unit.end - unit.first);
+  worker.addends.assign(kBlock * blocks, {});
+  worker.shares.assign(kBlock * blocks, {});
+  const auto touches = [&](size_t i) {
+    return (step.blocks.met()[unit.first + i] & EdgeFaceBlocks::kContacts) != 0;
+  };
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    for (size_t i = 0; i < blocks; ++i) {
+      if (!touches(i)) continue;
+      const EdgeFaceBlock& block = step.blocks.blocks()[unit.first + i];
+      std::array<double, kBlock> times;
+      for (size_t l = 0; step.dashpots && l < kBlock; ++l) {
+        times[l] = law_times_[static_cast<size_t>(block.law[l])].normal;
+      }
+      find_slip(block, step.blocks.touches()[unit.first + i], velocities_,
+                step.dashpots ? &times : nullptr, worker.slips[i], &worker.addends[kBlock * i]);
+    }
+    return 0.;
+  });
+  for (const EdgeFaceGroup& group : step.blocks.groups(unit)) {
+    follow(step, unit, group, worker, found);
+  }
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    using Pack = PackOf<kBlock>;
+    for (size_t i = 0; i < blocks; ++i) {
+      if (!touches(i)) continue;
+      const auto at = static_cast<size_t>(unit.first) + i;
+      const OutlineSlip& slip = worker.slips[i];
+      const auto share = [&](size_t number) APOTHEM_LAMBDA {
+        return pack_of<kBlock>(
+            [&](size_t l) APOTHEM_LAMBDA { return worker.shares[kBlock * i + l][number]; });
+      };
+      const Pack spring = share(0), dashpot = share(1), rate = Pack::load(slip.rate.data());
+      EdgeFaceBlock::Numbers friction, damping;  // W
+      (spring * rate).store(friction.data());
+      (dashpot * rate + Pack::load(slip.push_power.data())).store(damping.data());
+      for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+        found.powers.friction += friction[l];
+        found.powers.damping += damping[l];
+      }
+      BlockDrag& drag = block_drags_[at];
+      const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
+      ((spring + dashpot) * normal).store(drag.along.data());
+      drag.push = slip.push;
+      SlipForces& forces = keep_forces ? forces_[at] : worker.forces;
+      find_drags(step.blocks.touches()[at], slip, spring, dashpot, forces);
+      if (!keep_forces) add_drags(step.blocks.blocks()[at], forces, drags_.data());
     }
     return 0.;
   });
 }
 
-// One part after the other, each with all that is to be done, so that its slips stay in the cache.
-void OutlineFriction::slide_by_parts(const Step& step, FrictionMemory& memory) {
-  for (size_t g = 0; g < groups_.size();) {
-    Part part{groups_[g].first, groups_[g].end, 0};
-    size_t end = g + 1;
-    while (end < groups_.size() && groups_[end].end - part.first <= kPart) {
-      part.end = groups_[end++].end;
-    }
-    slips_.resize(part.end - part.first);
-    find_slips(step, part);
-    for (; g < end; ++g) {
-      Group& group = groups_[g];
-      follow(step, group, group.first - part.first);
-      if (group.slides) memory.keep(group.spring);
-    }
-    add_forces(part, 0, outlines_.size());
-  }
-}
-
-void OutlineFriction::slide_on_threads(const Step& step, FrictionMemory& memory) {
-  const size_t count = step.contacts.size();
-  slips_.resize(count);
-  const auto blocks = static_cast<int>((count + kLanes - 1) / kLanes);
-  threads_.chunks(blocks, kLanes * kSlipTime, [&](int first, int end, int) {
-    const size_t begin = static_cast<size_t>(first) * kLanes;
-    find_slips(step, {begin, std::min(static_cast<size_t>(end) * kLanes, count), begin});
-  });
-  threads_.chunks(static_cast<int>(groups_.size()), kFollowTime, [&](int first, int end, int) {
-    for (int g = first; g < end; ++g) {
-      Group& group = groups_[static_cast<size_t>(g)];
-      follow(step, group, group.first);
-    }
-  });
-  for (const Group& group : groups_) {
-    if (group.slides) memory.keep(group.spring);
-  }
-  const std::span<const BodyIndex> active = outlines_.active();
-  const int bodies = static_cast<int>(active.size());
-  threads_.chunks(bodies, kGatherTime * static_cast<double>(count) / std::max(bodies, 1),
-                  [&](int first, int end, int) {
-                    if (first == end) return;
-                    add_forces({0, count, 0}, outlines_.bodies[active[first]].first,
-                               outlines_.bodies[active[end - 1]].end);
-                  });
-}
-
-double OutlineFriction::slide(std::span<const EdgeFaceContact> contacts,
-                              std::span<const EdgeFaceLaw> laws, const Kinematics& now, double dt,
+double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
-  const Step step{contacts, laws, dt, now.finite, damped_ && dt > 0};
-  find_velocities(now, dt);
-  const size_t n = 2 * static_cast<size_t>(o.size());
-  friction_.resize(n);
-  if (damped_) damping_.resize(n);
-  std::swap(friction_, friction_before_);
-  const Powers before = powers(friction_before_);
-  friction_.assign(n, 0);
-  if (step.dashpots) {
-    damping_.assign(n, 0);
-    find_times(step);
+  const Step step{blocks, memory.before(outline_kernel), dt, now.finite, damped_ && dt > 0};
+  const auto n = static_cast<size_t>(o.size());
+  velocities_.resize(2 * n);
+  drags_.resize(n), drags_before_.resize(n);
+  std::swap(drags_, drags_before_);
+  const std::span<const BodyIndex> bodies =
+      everywhere_ > 0 ? std::span<const BodyIndex>(all_) : o.active();
+  body_powers_.resize(bodies.size());
+  threads_.chunks(static_cast<int>(bodies.size()),
+                  kVelocityTime * o.size() / static_cast<double>(o.bodies.size()),
+                  [&](int first, int end, int) {
+                    for (int i = first; i < end; ++i) {
+                      body_powers_[static_cast<size_t>(i)] = begin(bodies[i], now, step);
+                    }
+                  });
+  find_times(step);
+  units_.resize(blocks.units().size());
+  block_drags_.resize(blocks.blocks().size());
+  for (Worker& worker : workers_) {
+    const auto most = static_cast<size_t>(blocks.most_blocks());
+    if (worker.slips.size() < most) worker.slips.resize(most);
+    worker.springs.clear();
   }
-  const size_t count = contacts.size();
-  shares_.assign(count, 0);
-  pushes_.resize(count);
-  find_groups(step, memory);
-  if (threads_.worth(static_cast<int>(count), kSlipTime)) {
-    slide_on_threads(step, memory);
-  } else {
-    slide_by_parts(step, memory);
+  const auto units = static_cast<int>(blocks.units().size());
+  const double per_unit = static_cast<double>(blocks.blocks().size()) / std::max(units, 1);
+  const bool shared = threads_.worth(units, kSlipTime * per_unit);
+  if (shared) forces_.resize(blocks.blocks().size());
+  threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
+    Worker& worker = workers_[static_cast<size_t>(number)];
+    if (first == end) return;
+    const std::span<const EdgeFaceGroup> groups = blocks.groups(blocks.units()[first]);
+    const auto place =
+        std::ranges::lower_bound(step.before, key_of(groups.front()), {}, &Spring::key);
+    worker.next = static_cast<size_t>(place - step.before.begin());
+    for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, shared);
+  });
+  if (shared) {
+    threads_.chunks(
+        o.size(), kDragTime * per_unit * units / o.size(), [&](int first, int end, int) {
+          for (const EdgeFaceUnit& unit : blocks.units()) {
+            if (unit.end_vertex <= first || unit.first_vertex >= end || unit.touching == 0)
+              continue;
+            for (std::int32_t i = unit.first; i < unit.end; ++i) {
+              if ((blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
+              add_drags(blocks.blocks()[i], forces_[static_cast<size_t>(i)], drags_.data(), first,
+                        end);
+            }
+          }
+        });
   }
-  const Powers after = powers(friction_);
-  everywhere_ = !(dt > 0);
-  if (damped_) memory.damp(-dt / 2 * (before.damping + after.damping));
-  return dt / 2 * (before.friction + after.friction);
+  Powers powers;
+  for (const Powers& of_body : body_powers_) {
+    powers.friction += of_body.friction;
+    powers.damping += of_body.damping;
+  }
+  double energy = 0;
+  for (const Unit& unit : units_) {
+    powers.friction += unit.powers.friction;
+    powers.damping += unit.powers.damping;
+    energy += unit.energy;
+  }
+  for (const Worker& worker : workers_) {
+    memory.keep(worker.springs, energy);
+    energy = 0;
+  }
+  everywhere_ = dt > 0 ? std::max(everywhere_ - 1, 0) : kBothVectors;
+  if (damped_) memory.damp(-dt / 2 * powers.damping);
+  return dt / 2 * powers.friction;
 }
 
-// Both sums at once, so that neither waits for its own last addition only.
-OutlineFriction::Powers OutlineFriction::powers(const VertexForces& friction) const {
-  Powers sum;
-  const auto add = [&](int first, int end) {
-    for (size_t c = 2 * static_cast<size_t>(first); c < 2 * static_cast<size_t>(end); c += 2) {
-      const double vx = velocities_[c], vy = velocities_[c + 1];
-      sum.friction += friction[c] * vx + friction[c + 1] * vy;
-      if (damped_) sum.damping += damping_[c] * vx + damping_[c + 1] * vy;
-    }
-  };
-  if (everywhere_) {
-    add(0, outlines_.size());
-  } else {
-    for (const BodyIndex b : outlines_.active()) {
-      const Outlines::Body& body = outlines_.bodies[static_cast<size_t>(b)];
-      add(body.first, body.end);
-    }
+void OutlineFriction::fields(Archive& archive) {
+  if (!damped_) return;
+  std::vector<double> damping;
+  for (const VertexDrag& drag : drags_) damping.insert(damping.end(), {drag[2], drag[3]});
+  archive("damping", damping);
+  drags_.resize(damping.size() / 2);
+  for (size_t i = 0; i < drags_.size(); ++i) {
+    drags_[i][2] = damping[2 * i], drags_[i][3] = damping[2 * i + 1];
   }
-  return sum;
 }
 
 }  // namespace apothem

@@ -9,8 +9,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kCandidateTime = 20;  // ns
-constexpr double kInsideTop = 2;       // share of a contact that is not with a face
+constexpr double kMeetTime = 80, kPushTime = 20, kForceTime = 4;  // ns
+constexpr double kInsideTop = 2;     // share of a contact that is not with a face
+constexpr double kAbove = 1 + 1e-9;  // of bounds
 
 }  // namespace
 
@@ -21,12 +22,12 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       table_(table),
       slopes_{outlines, table, thickness},
       threads_(threads),
-      found_(static_cast<size_t>(threads_.count())),
+      blocks_(outlines),
+      crossings_(static_cast<size_t>(threads_.count())),
       plateaus_(outlines),
       depths_(outlines),
       onset_(outlines, slopes_) {
-  const auto n = static_cast<size_t>(outlines.size());
-  fx_.resize(n), fy_.resize(n), ends_.resize(n);
+  ends_.resize(static_cast<size_t>(outlines.size()));
   if (table.rough() || table.damped()) {
     friction_.emplace(outlines, table, inverse_mass, threads);
   }
@@ -36,13 +37,13 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
   if (friction_) friction_->take(pairs);
   candidates_.clear();
   laws_.clear();
-  std::fill(ends_.begin(), ends_.end(), Ends{0, 0});
-  for (std::vector<double>* of_all : {&fx_, &fy_}) std::fill(of_all->begin(), of_all->end(), 0.);
+  std::fill(ends_.begin(), ends_.end(), EndForces{0, 0});
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
     if (a != b) find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
+  blocks_.take(candidates_, laws_);
   plateaus_.take(pairs);
 }
 
@@ -104,55 +105,63 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
   }
 }
 
-void OutlineKernel::evaluate(std::vector<Contact>& contacts) {
+void OutlineKernel::evaluate(std::vector<Contact>& /*contacts*/) {
   const Outlines& o = outlines_;
-  contacts_.clear();
+  listed_ = false;
   depths_.forget();
   o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
   plateaus_.begin();
-  for (EdgeFaceMeetings& found : found_) found.clear();
-  threads_.chunks(static_cast<int>(candidates_.size()), kCandidateTime,
+  for (EdgeFaceCrossings& crossings : crossings_) crossings.clear();
+  if (threads_.worth(static_cast<int>(blocks_.blocks().size()), kMeetTime)) {
+    meet_on_threads();
+  } else {
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      for (EdgeFaceUnit& unit : blocks_.units()) {
+        find_meetings(o, blocks_, unit, crossings_[0],
+                      [&](std::int32_t i, const EdgeFacePushes& pushes) APOTHEM_LAMBDA {
+                        add_pushes(blocks_.blocks()[i], pushes, ends_.data());
+                      });
+      }
+      return 0.;
+    });
+  }
+  for (const EdgeFaceCrossings& of_thread : crossings_) {
+    for (const auto& [pair, top] : of_thread) plateaus_.add(pair, top);
+  }
+  add_plateaus();
+}
+
+// Every thread adds the forces on some vertices, for each of them in the order of the candidates.
+void OutlineKernel::meet_on_threads() {
+  const Outlines& o = outlines_;
+  const std::span<EdgeFaceUnit> units = blocks_.units();
+  const double blocks = static_cast<double>(blocks_.blocks().size());  // of a unit, and a vertex
+  pushes_.resize(blocks_.blocks().size());
+  threads_.chunks(static_cast<int>(units.size()),
+                  kMeetTime * blocks / static_cast<double>(units.size()),
                   [&](int first, int end, int worker) {
-                    const auto part =
-                        std::span<const EdgeFace>(candidates_)
-                            .subspan(static_cast<size_t>(first), static_cast<size_t>(end - first));
-                    EdgeFaceMeetings& found = found_[static_cast<size_t>(worker)];
-                    with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
-                      find_meetings<kComparedLanes>(o, part, laws_, found);
+                    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+                      for (int u = first; u < end; ++u) {
+                        find_meetings(o, blocks_, units[u], crossings_[static_cast<size_t>(worker)],
+                                      [&](std::int32_t i, const EdgeFacePushes& pushes)
+                                          APOTHEM_LAMBDA { pushes_[i] = pushes; });
+                      }
                       return 0.;
                     });
                   });
-  for (EdgeFaceMeetings& found : found_) take(found, contacts);
-  add_plateaus(contacts);
-  o.each_active_vertex([&](int i) {
-    const int p = o.previous[i];
-    const double own = ends_[i][0], before = ends_[p][1];
-    fx_[i] = -before * o.ty[p] - own * o.ty[i];
-    fy_[i] = before * o.tx[p] + own * o.tx[i];
+  threads_.chunks(o.size(), kPushTime * blocks / o.size(), [&](int first, int end, int) {
+    for (const EdgeFaceUnit& unit : units) {
+      if (unit.end_vertex <= first || unit.first_vertex >= end) continue;
+      for (std::int32_t i = unit.first; i < unit.end; ++i) {
+        if (blocks_.met()[i] == 0) continue;
+        add_pushes(blocks_.blocks()[i], pushes_[i], ends_.data(), first, end);
+      }
+    }
   });
 }
 
-void OutlineKernel::take(EdgeFaceMeetings& found, std::vector<Contact>& contacts) {
-  for (const EdgeFaceMeetings::Push& push : found.pushes) {
-    Ends& edge = ends_[static_cast<size_t>(push.edge)];
-    edge[0] += push.force.edge_start;
-    edge[1] += push.force.edge_end;
-    Ends& face = ends_[static_cast<size_t>(push.face)];
-    face[0] += push.force.face_start;
-    face[1] += push.force.face_end;
-  }
-  contacts.insert(contacts.end(), found.records.begin(), found.records.end());
-  if (contacts_.empty()) {
-    contacts_.swap(found.contacts);
-  } else {
-    contacts_.insert(contacts_.end(), found.contacts.begin(), found.contacts.end());
-  }
-  for (const auto& [pair, top] : found.crossings) plateaus_.add(pair, top);
-}
-
-// An edge inside the top of a body is a contact with that body, and has the first face of its
-// outline for it.
-void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
+// An edge inside the top of a body is a contact with that body.
+void OutlineKernel::add_plateaus() {
   const Outlines& o = outlines_;
   plateaus_.evaluate();
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
@@ -161,19 +170,74 @@ void OutlineKernel::add_plateaus(std::vector<Contact>& contacts) {
     const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
     ends_[on.edge][0] += force * (on.sum - on.first);
     ends_[on.edge][1] += force * on.first;
-    contacts.push_back({outline_kernel, on.edge, in.first, 0, HUGE_VAL, kInsideTop, 0});
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
     const double slope = slopes_(o.body[on.face], on.in);
     const double end = slope * on.moment.along / o.length[on.face];
     ends_[on.face][0] += slope * on.moment.area - end;
     ends_[on.face][1] += end;
+  }
+}
+
+// Outlines have no contacts out of range.
+ContactSummary OutlineKernel::summary() const {
+  size_t count = plateaus_.edges().size() + plateaus_.faces().size();
+  double square = 0;
+  for (const EdgeFaceUnit& unit : blocks_.units()) {
+    count += static_cast<size_t>(unit.touching);
+    square = std::max(square, unit.deepest);
+  }
+  const double deepest = plateaus_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
+  return {static_cast<int>(count), deepest, 0};
+}
+
+// A plateau has the first face, or the first edge, of its body for its partner.
+void OutlineKernel::add_contacts(std::vector<Contact>& contacts) const {
+  const Outlines& o = outlines_;
+  for (const EdgeFaceContact& c : edge_faces()) {
+    const CollarFace<double> face = o.face(c.face);
+    const double deepest = c.piece.deepest, share = deepest / face.depth;
+    const double surely = deepest <= sure_depth(face.plain, face.depth) ? deepest : 0;
+    // The distance from the boundary over the height in a face is more than 1 where the face
+    // reaches beyond the end of its edge, at a reflex vertex.
+    const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
+    const bool known = o.body[c.edge] == o.body[c.face] && surely > 0;
+    const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
+    contacts.push_back({outline_kernel, c.edge, c.face, surely, at_most, std::min(share, 1.),
+                        c.slope * o.length[c.edge] * (c.piece.to - c.piece.from)});
+  }
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    contacts.push_back(
+        {outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
     contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
 
+// What an evaluation does not keep of the contacts is found again.
+const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
+  if (listed_) return edge_faces_;
+  const Outlines& o = outlines_;
+  edge_faces_.clear();
+  blocks_.each_contact([&](size_t i, size_t lane) {
+    const EdgeFaceBlock& block = blocks_.blocks()[i];
+    const std::int32_t p = block.p[lane], q = block.q[lane], a = block.a[lane];
+    CollarPiece<double> piece;
+    CollarCrossings<double> top;
+    collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
+    EdgeFaceContact& contact = edge_faces_.emplace_back(p, a, block.slope[lane], piece);
+    if (!friction_ || i >= friction_->drags().size()) return;
+    contact.along = friction_->drags()[i].along[lane];
+    contact.push = friction_->drags()[i].push[lane];
+  });
+  listed_ = true;
+  return edge_faces_;
+}
+
 const EdgeFaceContact& OutlineKernel::edge_face(const Contact& c) const {
-  return *std::lower_bound(contacts_.begin(), contacts_.end(), std::pair(c.a, c.b),
+  const std::vector<EdgeFaceContact>& contacts = edge_faces();
+  return *std::lower_bound(contacts.begin(), contacts.end(), std::pair(c.a, c.b),
                            [](const EdgeFaceContact& k, const std::pair<int, int>& key) {
                              return std::pair(k.edge, k.face) < key;
                            });
@@ -185,63 +249,62 @@ double OutlineKernel::penetration(const Contact& c, double floor) {
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  return friction_ ? friction_->slide(contacts_, laws_, now, dt, memory) : 0;
+  listed_ = false;
+  return friction_ ? friction_->slide(blocks_, now, dt, memory) : 0;
+}
+
+Vec2 OutlineKernel::normal_force(int i) const {
+  const Outlines& o = outlines_;
+  const int p = o.previous[i];
+  const double own = ends_[i][0], before = ends_[p][1];
+  return {-before * o.ty[p] - own * o.ty[i], before * o.tx[p] + own * o.tx[i]};
+}
+
+Vec2 OutlineKernel::force(int vertex) const {
+  const Vec2 normal = normal_force(vertex);
+  return friction_ ? Vec2(normal + friction_->force(vertex)) : normal;
 }
 
 void OutlineKernel::add_forces(const ForceViews& forces) {
   const Outlines& o = outlines_;
-  const VertexForces* const friction = friction_ ? &friction_->friction() : nullptr;
-  const VertexForces* const damping =
-      friction_ && !friction_->damping().empty() ? &friction_->damping() : nullptr;
-  o.each_active_vertex([&](int i) {
-    if (o.node[i] < 0) return;
-    const size_t vertex = 2 * static_cast<size_t>(i);
-    double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
-    f[0] += fx_[i];
-    f[1] += fy_[i];
-    for (const VertexForces* part : {friction, damping}) {
-      if (!part) continue;
-      f[0] += (*part)[vertex];
-      f[1] += (*part)[vertex + 1];
-    }
-  });
-  for (const BodyIndex b : o.active()) {
-    if (!o.bodies[b].is_rigid()) continue;
-    const Resultant on = resultant(b);
-    double* f = &forces.rigid[3 * static_cast<size_t>(b)];
-    f[0] += on.force.x();
-    f[1] += on.force.y();
-    f[2] += on.moment;
-  }
+  const std::span<const BodyIndex> active = o.active();
+  const int bodies = static_cast<int>(active.size());
+  threads_.chunks(bodies, kForceTime * o.size() / std::max(bodies, 1),
+                  [&](int first, int end, int) {
+                    for (int k = first; k < end; ++k) {
+                      const Outlines::Body& body = o.bodies[active[k]];
+                      if (body.is_rigid()) {
+                        const Resultant on = resultant(active[k]);
+                        double* const f = &forces.rigid[3 * static_cast<size_t>(body.rigid)];
+                        f[0] += on.force.x();
+                        f[1] += on.force.y();
+                        f[2] += on.moment;
+                        continue;
+                      }
+                      for (int i = body.first; i < body.end; ++i) {
+                        const Vec2 on = force(i);
+                        double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
+                        f[0] += on.x();
+                        f[1] += on.y();
+                      }
+                    }
+                  });
 }
 
-template <class Force>
-Resultant OutlineKernel::sum(BodyIndex b, const Force& force) const {
+Resultant OutlineKernel::resultant(BodyIndex b) const {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
-  Resultant sum;
+  Resultant on;
   for (int i = body.first; i < body.end; ++i) {
-    const Vec2 f = force(static_cast<size_t>(i));
-    sum.force += f;
-    sum.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
-  }
-  return sum;
-}
-
-Resultant OutlineKernel::resultant(BodyIndex body) const {
-  Resultant on = sum(body, [&](size_t i) { return Vec2(fx_[i], fy_[i]); });
-  if (!friction_) return on;
-  for (const VertexForces* part : {&friction_->friction(), &friction_->damping()}) {
-    if (part->empty()) continue;
-    const Resultant other = sum(body, [&](size_t i) { return Vec2(&(*part)[2 * i]); });
-    on.force += other.force;
-    on.moment += other.moment;
+    const Vec2 f = force(i);
+    on.force += f;
+    on.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
   }
   return on;
 }
 
 void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
-  for (const EdgeFaceContact& c : contacts_) {
+  for (const EdgeFaceContact& c : edge_faces()) {
     const double size = c.slope * c.piece.sum * outlines_.length[c.edge];
     of_bodies[outlines_.body[c.edge]] += size;
     of_bodies[outlines_.body[c.face]] += size;
@@ -250,7 +313,7 @@ void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
 
 double OutlineKernel::energy() const {
   double sum = 0;
-  for (const EdgeFaceContact& c : contacts_) sum += c.slope * c.piece.height;
+  for (const EdgeFaceContact& c : edge_faces()) sum += c.slope * c.piece.height;
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
     sum += slopes_(on.in, outlines_.body[on.edge]) * outlines_.bodies[on.in].depth * on.swept;
   }

@@ -9,10 +9,10 @@
 // tops of collars; only the vertices of the outlines get forces.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "apothem/contact/edge_face_blocks.hpp"
 #include "apothem/contact/edge_face_pack.hpp"
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/outline_depths.hpp"
@@ -32,7 +32,10 @@ class OutlineKernel final : public Kernel {
                 const std::vector<double>& inverse_mass, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
+  /// The contacts are those of edges with faces, then of edges with tops and of tops with edges.
   void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] ContactSummary summary() const override;
+  void add_contacts(std::vector<Contact>& contacts) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void undo_slide() override {
@@ -40,7 +43,7 @@ class OutlineKernel final : public Kernel {
   }
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
-    return onset_.find(candidates_, contacts_, plateaus_, now, dynamics, dt);
+    return onset_.find(candidates_, blocks_, plateaus_, now, dynamics, dt);
   }
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces);
@@ -70,18 +73,18 @@ class OutlineKernel final : public Kernel {
   }
 
  private:
+  /// All contacts of edges with faces, ascending.
+  [[nodiscard]] const std::vector<EdgeFaceContact>& edge_faces() const;
   [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
-  void take(EdgeFaceMeetings& found, std::vector<Contact>& contacts);
-  void add_plateaus(std::vector<Contact>& contacts);
-  template <class Force>
-  [[nodiscard]] Resultant sum(BodyIndex body, const Force& force) const;
-  [[nodiscard]] OutlineState state() const {
-    return {slopes_, contacts_, plateaus_, friction_ ? &*friction_ : nullptr};
-  }
+  void meet_on_threads();
+  void add_plateaus();
+  [[nodiscard]] Vec2 normal_force(int vertex) const;
+  [[nodiscard]] Vec2 force(int vertex) const;
+  [[nodiscard]] OutlineState state() const { return {slopes_, edge_faces(), plateaus_}; }
 
   const Outlines& outlines_;
   double thickness_;
@@ -92,11 +95,12 @@ class OutlineKernel final : public Kernel {
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // of these
   std::vector<int> near_edges_, near_faces_;
-  std::vector<EdgeFaceMeetings> found_;  // of each thread
-  std::vector<EdgeFaceContact> contacts_;
-  using Ends = std::array<double, 2>;
-  std::vector<Ends> ends_;       // force of each edge on its two ends, along its inward normal, N
-  std::vector<double> fx_, fy_;  // normal forces on the vertices, N
+  EdgeFaceBlocks blocks_;                            // of the candidates
+  std::vector<EdgeFaceCrossings> crossings_;         // that each thread has found
+  std::vector<EdgeFacePushes> pushes_;               // of each block, where several threads work
+  mutable std::vector<EdgeFaceContact> edge_faces_;  // if they have been asked for
+  mutable bool listed_ = false;                      // whether they have
+  std::vector<EndForces> ends_;  // force of each edge on its two ends, along its inward normal, N
   OutlinePlateaus plateaus_;
   OutlineDepths depths_;
   OutlineOnset onset_;

@@ -28,18 +28,20 @@ struct OutlineOnset::Step {
 };
 
 // One entry for each run of contacts of a pair, then one for each pair.
-void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
-                                 const OutlinePlateaus& plateaus, bool at_first) {
+void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus,
+                                 bool at_first) {
   const Outlines& o = outlines_;
   std::vector<TouchingPair>& list = watch_.begin_step();
-  for (const EdgeFaceContact& c : contacts) {
-    if (at_first && c.piece.deepest < kRoundOff * o.length[c.edge]) continue;
-    const auto [a, b] = std::minmax({o.body[c.edge], o.body[c.face]});
+  blocks.each_contact([&](size_t i, size_t lane) {
+    const EdgeFaceTouch& touch = blocks.touches()[i];
+    const int edge = blocks.blocks()[i].p[lane], face = blocks.blocks()[i].a[lane];
+    if (at_first && touch.deepest[lane] < kRoundOff * o.length[edge]) return;
+    const auto [a, b] = std::minmax({o.body[edge], o.body[face]});
     const TouchingPair pair{a, b, 0, 0, 0};
     if (list.empty() || !list.back().same_pair(pair)) list.push_back(pair);
-    if (c.piece.from == 0) list.back().inside_a += scrambled(c.edge);
-    list.back().length += (c.piece.to - c.piece.from) * o.length[c.edge];
-  }
+    if (touch.from[lane] == 0) list.back().inside_a += scrambled(edge);
+    list.back().length += (touch.to[lane] - touch.from[lane]) * o.length[edge];
+  });
   const auto add_deep = [&](int own, BodyIndex in) {
     const auto [a, b] = std::minmax(o.body[own], in);
     const TouchingPair pair{a, b, 0, 0, 0, true};
@@ -61,10 +63,10 @@ void OutlineOnset::find_touching(std::span<const EdgeFaceContact> contacts,
   list.resize(std::min(list.size(), last + 1));
 }
 
-bool OutlineOnset::find(std::span<const EdgeFace> candidates,
-                        std::span<const EdgeFaceContact> contacts, const OutlinePlateaus& plateaus,
-                        const Kinematics& now, const Dynamics& dynamics, double dt) {
-  find_touching(contacts, plateaus, !(dt > 0));
+bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
+                        const OutlinePlateaus& plateaus, const Kinematics& now,
+                        const Dynamics& dynamics, double dt) {
+  find_touching(blocks, plateaus, !(dt > 0));
   on_nodes_.clear(), on_rigid_.clear();
   if (!(dt > 0)) return false;
   const std::vector<Outlines::Body>& bodies = outlines_.bodies;
@@ -247,7 +249,7 @@ void OutlineOnset::find_forces() {
     const Vec2 edge = point(q) - point(e);
     const double length = edge.norm();
     const EdgeFaceForces<double> force =
-        edge_face_forces(piece, slopes_.of({e, f}), length, face_f.length);
+        edge_face_forces(piece, slopes_.of({e, f}), length, 1 / face_f.length);
     const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length;
     push(e, from_edge, force.edge_start);
     push(q, from_edge, force.edge_end);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
-#include "apothem/contact/edge_face.hpp"
+#include "apothem/contact/edge_face_blocks.hpp"
 #include "apothem/contact/kinematics.hpp"
 #include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/onset_watch.hpp"
@@ -24,10 +24,10 @@ class OutlineOnset {
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
-  /// much more or less boundary is inside. `contacts` are those of now, `candidates` those of the
-  /// last search, both ascending. True if there is a J. With dt = 0, at the start, there is none,
-  /// and what touches then is new in the first step. Pairs with `plateaus` are left as they are.
-  bool find(std::span<const EdgeFace> candidates, std::span<const EdgeFaceContact> contacts,
+  /// much more or less boundary is inside. `blocks` hold the contacts of now, `candidates` ascend.
+  /// True if there is a J. With dt = 0, at the start, there is none, and what touches then is new
+  /// in the first step. Pairs with `plateaus` are left as they are.
+  bool find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
             const OutlinePlateaus& plateaus, const Kinematics& now, const Dynamics& dynamics,
             double dt);
   /// Adds J / dt of the last `find`, times `scale`.
@@ -55,8 +55,7 @@ class OutlineOnset {
     size_t first_end, end, coordinates;
   };
 
-  void find_touching(std::span<const EdgeFaceContact> contacts, const OutlinePlateaus& plateaus,
-                     bool at_first);
+  void find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus, bool at_first);
   void find_pair(BodyIndex body_a, BodyIndex body_b, int panels,
                  std::span<const EdgeFace> candidates, const Step& step);
   void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);

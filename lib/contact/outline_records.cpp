@@ -116,13 +116,12 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   const Outlines& o = state.outlines();
   const OutlineSlopes& slopes = state.slopes;
   const std::vector<EdgeFaceContact>& contacts = state.contacts;
-  const OutlineFriction* const friction = state.friction;
   const std::vector<int> patch = patches_of(state);
   OutlineDepths depths(o);
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<PatchSum> found(static_cast<size_t>(count));
   for (size_t i = 0; i < contacts.size(); ++i) {
-    const auto& [edge, face, pair, slope, p] = contacts[i];
+    const auto& [edge, face, slope, p, along, push] = contacts[i];
     PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
@@ -139,12 +138,8 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
     sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, p.deepest);
-    if (friction) {
-      const double along = friction->shares()[i];
-      sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
-      const double push = own_is_a ? -friction->pushes()[i] : friction->pushes()[i];
-      sum.damping += push * gives;
-    }
+    sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
+    sum.damping += (own_is_a ? -push : push) * gives;
   }
   size_t next = contacts.size();
   for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {
@@ -187,12 +182,11 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
   SurfaceRecord* const record = records.data() + first;
   for (size_t i = 0; i < state.contacts.size(); ++i) {
-    const auto& [edge, face, pair, slope, piece] = state.contacts[i];
+    const auto& [edge, face, slope, piece, along, push] = state.contacts[i];
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
-    if (!state.friction) continue;
     for (const int k : {edge, face}) {  // the faces look the other way
-      record[k].traction -= state.friction->shares()[i] / (o.length[k] * thickness);
+      record[k].traction -= along / (o.length[k] * thickness);
     }
   }
   for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apothem/contact/contact.hpp"
-#include "apothem/contact/outline_friction.hpp"
+#include "apothem/contact/edge_face.hpp"
 #include "apothem/contact/outline_plateaus.hpp"
 #include "apothem/contact/outline_slopes.hpp"
 
@@ -15,7 +15,6 @@ struct OutlineState {
   const OutlineSlopes& slopes;
   const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
   const OutlinePlateaus& plateaus;
-  const OutlineFriction* friction;  ///< null without friction and damping
   [[nodiscard]] const Outlines& outlines() const { return slopes.outlines; }
 };
 

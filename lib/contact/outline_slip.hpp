@@ -2,249 +2,169 @@
 // Private to outline_friction.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <span>
+#include <cstdint>
 #include <vector>
 
-#include "apothem/contact/edge_face.hpp"
-#include "apothem/contact/outlines.hpp"
+#include "apothem/contact/edge_face_blocks.hpp"
 #include "apothem/execution/pack.hpp"
 
 namespace apothem {
 
-/// Numbers that each contact has, kLanes contacts side by side.
-class OutlineSlips {
- public:
-  /// An edge from p to q against a face from a to b. With t, the unit tangent of the face, and n
-  /// its inward normal: t counts at both ends of the edge and of the face, n at the ends of the
-  /// face. The coefficients at_p to couple are weighted with the pressure.
-  enum Number {
-    tx,
-    ty,
-    at_p,
-    at_q,
-    at_a,
-    at_b,
-    couple,
-    start,      ///< the foot of the edge's point u, from 0 at p to 1 at q, is at the share
-    rise,       ///< start + u rise of the face
-    push,       ///< of the dashpots, against the face, N
-    push_at_q,  ///< what q has of it
-    normal,     ///< force, N
-    length,     ///< of the contact, m
-    stiffness,  ///< of the spring, N/m
-    rate,       ///< of the slip, and
-    approach,   ///< of the edge towards the face; both times the normal force, N m/s
-    depth,      ///< times the length, m^2
-    friction,   ///< along the tangent over the normal force: of the spring, and
-    dashpot,    ///< of the dashpot beside it
-    numbers
-  };
-  struct Ends {
-    std::int32_t p, q, a, b;
-  };
+/// What acts on the vertices: of each x and y of the friction of springs, then x and y of the
+/// forces of dashpots, N.
+using VertexDrag = std::array<double, 4>;
 
-  /// Makes room for so many contacts; what they had is lost.
-  void resize(size_t contacts) {
-    if (ends_.size() >= contacts) return;
-    ends_.resize(contacts);
-    values_.resize((contacts + kLanes - 1) / kLanes * kLanes * numbers);
-  }
-  [[nodiscard]] Ends& ends(size_t contact) { return ends_[contact]; }
-  /// A number of contacts from this one on, as many as a pack has that begins here.
-  [[nodiscard]] double* at(size_t contact, Number number) {
-    return &values_[contact / kLanes * kLanes * numbers + static_cast<size_t>(number) * kLanes +
-                    contact % kLanes];
-  }
-  [[nodiscard]] double of(size_t contact, Number number) { return *at(contact, number); }
-
- private:
-  std::vector<Ends> ends_;
-  std::vector<double> values_;
+/// What is known of the slips of a block. With t, the unit tangent of the face, and n its inward
+/// normal: t counts at both ends of the edge and of the face, n at the ends of the face. All are 0
+/// where there is no contact.
+struct OutlineSlip {
+  using Numbers = EdgeFaceBlock::Numbers;
+  /// Coefficients of the slip rate, weighted with the pressure, N; `turn` counts along n.
+  Numbers at_p, at_q, at_b, turn;
+  Numbers rate;             ///< of the slip, times the normal force, N m/s
+  Numbers approach;         ///< rate of the edge towards the face, likewise
+  Numbers push, push_at_q;  ///< of the dashpots across the face, and what q has of it, N
+  Numbers push_power;       ///< of these dashpots on the bodies, W
 };
 
-/// Finds what does not depend on springs, of the contacts from `first` on: as many as there are
-/// lanes, or fewer at the end. They get their places from `place` on, a multiple of the lanes.
-/// `velocities` of the vertices, interleaved, m/s; `times`: strength of
-/// the dashpots across the faces, s.
-template <int lanes>
-APOTHEM_INLINE void find_slips(const Outlines& o, std::span<const EdgeFaceContact> contacts,
-                               std::span<const EdgeFaceLaw> laws,
-                               const std::vector<double>& velocities,
-                               const std::array<double, lanes>& times, size_t first, size_t place,
-                               OutlineSlips& slips) {
-  using Pack = PackOf<lanes>;
-  using S = OutlineSlips;
-  std::array<const EdgeFaceContact*, lanes> of;
-  std::array<std::int32_t, lanes> p, q, a, b;
-  bool damped = false;
-  for (size_t l = 0; l < lanes; ++l) {
-    const size_t i = std::min(first + l, contacts.size() - 1);
-    of[l] = &contacts[i];
-    p[l] = of[l]->edge, a[l] = of[l]->face;
-    q[l] = o.next[p[l]], b[l] = o.next[a[l]];
-    slips.ends(place + i - first) = {p[l], q[l], a[l], b[l]};
-    damped = damped || times[l] > 0;
+/// Sums over the contacts of a spring.
+struct SlipSums {
+  enum { normal, rate, stiffness, push };  // N, N m/s, N/m, N
+};
+
+/// Finds what does not depend on springs. `velocities` of the vertices, interleaved, m/s; `times`:
+/// strength of the dashpots across the faces, s, if there are any. Writes the addends of the sums
+/// of each lane to `addends`.
+APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& touch,
+                              const std::vector<double>& velocities,
+                              const std::array<double, kBlock>* times, OutlineSlip& slip,
+                              std::array<double, 4>* addends) {
+  using Pack = PackOf<kBlock>;
+  const auto load = [](const EdgeFaceTouch::Numbers& from)
+                        APOTHEM_LAMBDA { return Pack::load(from.data()); };
+  struct Velocity {
+    Pack x, y;
+  };
+  const auto velocity = [&](const EdgeFaceBlock::Vertices& i) APOTHEM_LAMBDA {
+    using Pair = double __attribute__((vector_size(16)));
+    const auto of = [&](size_t l) APOTHEM_LAMBDA {
+      Pair v;
+      std::memcpy(&v, &velocities[2 * static_cast<size_t>(i[l])], sizeof v);
+      return v;
+    };
+    const Pack::Vector low = __builtin_shufflevector(of(0), of(1), 0, 1, 2, 3);
+    const Pack::Vector high = __builtin_shufflevector(of(2), of(3), 0, 1, 2, 3);
+    return Velocity{Pack(__builtin_shufflevector(low, high, 0, 2, 4, 6)),
+                    Pack(__builtin_shufflevector(low, high, 1, 3, 5, 7))};
+  };
+  const Pack from = load(touch.from), to = load(touch.to);
+  const Pack depth = load(touch.sum), moment = load(touch.first);
+  const Pack tx = load(touch.tx), ty = load(touch.ty), edge_length = load(touch.edge_length);
+  const Pack start = load(touch.start), rise = load(touch.rise);
+  const Pack part = to - from, length = part * edge_length;
+
+  const Pack weight = load(block.slope) * edge_length;
+  const Pack sum = weight * depth, first = weight * moment;
+  const Pack on_b = start * sum + rise * first;
+  const Pack turn = load(touch.height) * sum + load(touch.climb) * first;
+  const Pack at_p = sum - first, at_a = on_b - sum;
+
+  const Velocity p = velocity(block.p), q = velocity(block.q);
+  const Velocity a = velocity(block.a), b = velocity(block.b);
+  const Pack fx = b.x - a.x, fy = b.y - a.y;
+  const Pack x = at_p * p.x + first * q.x + at_a * a.x - on_b * b.x;
+  const Pack y = at_p * p.y + first * q.y + at_a * a.y - on_b * b.y;
+  const Pack rate = tx * x + ty * y + turn * (tx * fy - ty * fx), zero(0.);
+
+  const auto put = [](OutlineSlip::Numbers& numbers, const Pack& number)
+                       APOTHEM_LAMBDA { number.store(numbers.data()); };
+  put(slip.at_p, at_p), put(slip.at_q, first), put(slip.at_b, on_b), put(slip.turn, turn);
+  put(slip.rate, rate), put(slip.approach, tx * y - ty * x);
+  Pack push = zero, push_at_q = zero, push_power = zero;
+  if (times) {
+    // Dashpots in the two points of Gauss, which are exact for what is linear along the piece.
+    constexpr double kGauss = .57735026918962576451;
+    const Pack half(.5), time = load(*times), per_part = Pack(1.) / part;
+    const Pack middle = from + part * half, mean = depth * per_part;  // of u, and of the depth
+    const Pack steepness = Pack(12.) * (moment - middle * depth) * (per_part * per_part * per_part);
+    // How fast the edge closes in on the face, along the inward normal (-ty, tx), is linear in u.
+    const Pack x0 = p.x - a.x - start * fx, y0 = p.y - a.y - start * fy;
+    const Pack x1 = q.x - p.x - rise * fx, y1 = q.y - p.y - rise * fy;
+    const Pack closing = tx * y0 - ty * x0, change = tx * y1 - ty * x1;
+    const Pack share = weight * part * half;
+    Pack at_both = zero, at_end = zero, power = zero;
+    for (const double point : {-kGauss, kGauss}) {
+      const Pack off = Pack(.5 * point) * part, u = middle + off;
+      const Pack at_u = mean + steepness * off, speed = closing + u * change;
+      const Pack resists = time * speed;
+      const Pack force = share * select(resists < -at_u, -at_u, resists);
+      at_both += force;
+      at_end += u * force;
+      power += force * speed;
+    }
+    const auto acts = (time > zero) & (part > zero) & (depth > zero);
+    push = select(acts, at_both, zero);
+    push_at_q = select(acts, at_end, zero);
+    push_power = select(acts, -power, zero);
   }
-  const auto at = [](const std::vector<double>& from, const std::array<std::int32_t, lanes>& i)
-      __attribute__((always_inline)) {
-    return pack_of<lanes>([&](size_t l) __attribute__((always_inline)) {
-      return from[static_cast<size_t>(i[l])];
-    });
-  };
-  const auto velocity = [&](const std::array<std::int32_t, lanes>& i, size_t axis)
-      __attribute__((always_inline)) {
-    return pack_of<lanes>([&](size_t l) __attribute__((always_inline)) {
-      return velocities[2 * static_cast<size_t>(i[l]) + axis];
-    });
-  };
-  const auto piece = [&](double CollarPiece<double>::*number) __attribute__((always_inline)) {
-    return pack_of<lanes>([&](size_t l)
-                              __attribute__((always_inline)) { return of[l]->piece.*number; });
-  };
-  const auto put = [&](S::Number number, const Pack& value) __attribute__((always_inline)) {
-    value.store(slips.at(place, number));
-  };
-  const Pack from = piece(&CollarPiece<double>::from), to = piece(&CollarPiece<double>::to);
-  const Pack depth = piece(&CollarPiece<double>::sum), moment = piece(&CollarPiece<double>::first);
-  const Pack slope =
-      pack_of<lanes>([&](size_t l) __attribute__((always_inline)) { return of[l]->slope; });
-  const Pack spring = pack_of<lanes>([&](size_t l) __attribute__((always_inline)) {
-    return laws[static_cast<size_t>(of[l]->pair)].spring;
-  });
-  const Pack tx = at(o.tx, a), ty = at(o.ty, a), edge_length = at(o.length, p);
-  const Pack px0 = at(o.x, p), py0 = at(o.y, p);
-
-  const Pack scale = Pack(1.) / at(o.length, a);
-  const Pack px = (px0 - at(o.x, a)) * scale, py = (py0 - at(o.y, a)) * scale;
-  const Pack dx = (at(o.x, q) - px0) * scale, dy = (at(o.y, q) - py0) * scale;
-  const Pack start = tx * px + ty * py, rise = tx * dx + ty * dy;
-  const Pack weight = slope * edge_length;
-  const Pack sum = weight * depth, first_moment = weight * moment;
-  const Pack on_b = start * sum + rise * first_moment;
-  const Pack couple = (tx * py - ty * px) * sum + (tx * dy - ty * dx) * first_moment;
-  const Pack at_p = sum - first_moment, at_q = first_moment, at_a = on_b - sum, at_b = -on_b;
-
-  const Pack vpx = velocity(p, 0), vpy = velocity(p, 1), vqx = velocity(q, 0), vqy = velocity(q, 1);
-  const Pack vax = velocity(a, 0), vay = velocity(a, 1), vbx = velocity(b, 0), vby = velocity(b, 1);
-  const Pack fx = vbx - vax, fy = vby - vay;
-  const Pack x = at_p * vpx + at_q * vqx + at_a * vax + at_b * vbx;
-  const Pack y = at_p * vpy + at_q * vqy + at_a * vay + at_b * vby;
-  const Pack length = (to - from) * edge_length;
-
-  put(S::tx, tx), put(S::ty, ty);
-  put(S::at_p, at_p), put(S::at_q, at_q), put(S::at_a, at_a), put(S::at_b, at_b);
-  put(S::couple, couple), put(S::start, start), put(S::rise, rise);
-  put(S::normal, at_p + at_q), put(S::length, length), put(S::stiffness, spring * length);
-  put(S::rate, tx * x + ty * y + couple * (tx * fy - ty * fx));
-  put(S::approach, tx * y - ty * x), put(S::depth, depth * edge_length);
-  put(S::friction, Pack(0.)), put(S::dashpot, Pack(0.));
-  if (!damped) {
-    put(S::push, Pack(0.)), put(S::push_at_q, Pack(0.));
-    return;
-  }
-
-  // Dashpots in the two points of Gauss, which are exact for what is linear along the piece.
-  constexpr double kGauss = .57735026918962576451;
-  const Pack zero(0.), two(2.), time = Pack::load(times.data());
-  const Pack part = to - from;
-  const Pack middle = from + part / two, mean = depth / part;  // of u, and of the depth
-  const Pack steepness = Pack(12.) * (moment - middle * depth) / (part * part * part);
-  // How fast the edge closes in on the face, along the inward normal (-ty, tx), is linear in u.
-  const Pack x0 = vpx - vax - start * fx, y0 = vpy - vay - start * fy;
-  const Pack x1 = vqx - vpx - rise * fx, y1 = vqy - vpy - rise * fy;
-  const Pack closing = tx * y0 - ty * x0, change = tx * y1 - ty * x1;
-  const Pack share = slope * edge_length * part / two;
-  Pack push = zero, push_at_q = zero;
-  for (const double point : {-kGauss, kGauss}) {
-    const Pack u = middle + Pack(point) * part / two;
-    const Pack at_u = mean + steepness * (u - middle);
-    const Pack resists = time * (closing + u * change);
-    const Pack force = share * select(resists < -at_u, -at_u, resists);
-    push += force;
-    push_at_q += u * force;
-  }
-  const auto acts = (time > zero) & (part > zero) & (depth > zero);
-  put(S::push, select(acts, push, zero));
-  put(S::push_at_q, select(acts, push_at_q, zero));
+  put(slip.push, push), put(slip.push_at_q, push_at_q), put(slip.push_power, push_power);
+  write_rows({sum, rate, load(block.spring) * length, push},
+             [&](int l) APOTHEM_LAMBDA { return addends[l].data(); });
 }
 
-/// Forces on vertices, interleaved, N.
-using VertexForces = std::vector<double>;
+/// The forces of a block on its vertices, of each lane on p, q, a and b.
+using SlipForces = std::array<std::array<VertexDrag, kBlock>, 4>;
 
-/// Adds to the forces on the vertices from `first` to `end` - 1 those of some contacts, one after
-/// the other because they may share vertices: of the springs to `friction`, of the dashpots to
-/// `damping`, which may be empty. The force along a face times the coefficients of the slip rate
-/// acts on the vertices.
-template <int lanes>
-APOTHEM_INLINE void add_slip_forces(OutlineSlips& slips, size_t contact, size_t count,
-                                    std::int32_t first, std::int32_t end, VertexForces& friction,
-                                    VertexForces& damping) {
-  using Pack = PackOf<lanes>;
-  using S = OutlineSlips;
-  using Pair = double __attribute__((vector_size(16)));
-  const auto get = [&](S::Number number) __attribute__((always_inline)) {
-    return Pack::load(slips.at(contact, number));
+/// The force along a face times the coefficients of the slip rate acts on the vertices. `friction`
+/// and `dashpot`: forces along the tangent over the normal force.
+APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& slip,
+                               const PackOf<kBlock>& friction, const PackOf<kBlock>& dashpot,
+                               SlipForces& forces) {
+  using Pack = PackOf<kBlock>;
+  const auto load = [](const EdgeFaceTouch::Numbers& from)
+                        APOTHEM_LAMBDA { return Pack::load(from.data()); };
+  const Pack tx = load(touch.tx), ty = load(touch.ty);
+  const Pack friction_x = friction * tx, friction_y = friction * ty;
+  const Pack dashpot_x = dashpot * tx, dashpot_y = dashpot * ty;
+  const auto put = [&](size_t vertex, const Pack& fx, const Pack& fy, const Pack& dx,
+                       const Pack& dy) APOTHEM_LAMBDA {
+    write_rows({fx, fy, dx, dy},
+               [&](int l) APOTHEM_LAMBDA { return forces[vertex][static_cast<size_t>(l)].data(); });
   };
-  const auto any_of = [&](S::Number number) __attribute__((always_inline)) {
-    const double* const each = slips.at(contact, number);
-    bool any = false;
-    for (size_t l = 0; l < count; ++l) any = any || each[l] != 0;
-    return any;
+  const Pack at_p = load(slip.at_p), at_q = load(slip.at_q), at_b = load(slip.at_b);
+  const Pack turn = load(slip.turn), push = load(slip.push), on_q = load(slip.push_at_q);
+  const Pack on_p = push - on_q;
+  put(0, friction_x * at_p, friction_y * at_p, dashpot_x * at_p + on_p * ty,
+      dashpot_y * at_p - on_p * tx);
+  put(1, friction_x * at_q, friction_y * at_q, dashpot_x * at_q + on_q * ty,
+      dashpot_y * at_q - on_q * tx);
+  const Pack on_b = load(touch.start) * push + load(touch.rise) * on_q;
+  const Pack on_a = on_b - push, at_a = at_b - (at_p + at_q);
+  put(2, friction_x * at_a + friction_y * turn, friction_y * at_a - friction_x * turn,
+      dashpot_x * at_a + (dashpot_y * turn + on_a * ty),
+      dashpot_y * at_a - (dashpot_x * turn + on_a * tx));
+  put(3, -(friction_x * at_b + friction_y * turn), friction_x * turn - friction_y * at_b,
+      -(dashpot_x * at_b + (dashpot_y * turn + on_b * ty)),
+      dashpot_x * turn - dashpot_y * at_b + on_b * tx);
+}
+
+/// Adds them to those of the vertices from `first` to `last` - 1, one after the other because they
+/// may share vertices.
+APOTHEM_INLINE void add_drags(const EdgeFaceBlock& block, const SlipForces& forces,
+                              VertexDrag* drags, std::int32_t first = 0,
+                              std::int32_t last = std::numeric_limits<std::int32_t>::max()) {
+  const auto add = [&](std::int32_t vertex, const VertexDrag& force) APOTHEM_LAMBDA {
+    if (vertex < first || vertex >= last) return;
+    using Vector = PackOf<4>;
+    double* const to = drags[vertex].data();
+    (Vector::load(to) + Vector::load(force.data())).store(to);
   };
-  struct Forces {
-    std::array<std::array<double, lanes>, 8> of;  // x and y on p, q, a and b
-    APOTHEM_INLINE void put(size_t vertex, const Pack& x, const Pack& y) {
-      x.store(of[2 * vertex].data());
-      y.store(of[2 * vertex + 1].data());
-    }
-  };
-  const auto add = [&](const Forces& forces, size_t l, VertexForces& to)
-      __attribute__((always_inline)) {
-    const S::Ends& e = slips.ends(contact + l);
-    const auto add_to = [&](std::int32_t vertex, size_t k) __attribute__((always_inline)) {
-      double* const f = &to[2 * static_cast<size_t>(vertex)];
-      const Pair sum = Pair{f[0], f[1]} + Pair{forces.of[2 * k][l], forces.of[2 * k + 1][l]};
-      f[0] = sum[0], f[1] = sum[1];
-    };
-    if (e.p >= first && e.p < end) add_to(e.p, 0), add_to(e.q, 1);
-    if (e.a >= first && e.a < end) add_to(e.a, 2), add_to(e.b, 3);
-  };
-  const Pack tx = get(S::tx), ty = get(S::ty);
-  const auto drag = [&](S::Number number, Forces & to) __attribute__((always_inline)) {
-    const Pack force = get(number), on_p = force * get(S::at_p), on_q = force * get(S::at_q);
-    const Pack on_a = force * get(S::at_a), on_b = force * get(S::at_b);
-    const Pack turn = force * get(S::couple);
-    to.put(0, on_p * tx, on_p * ty);
-    to.put(1, on_q * tx, on_q * ty);
-    to.put(2, on_a * tx + turn * ty, on_a * ty - turn * tx);
-    to.put(3, on_b * tx - turn * ty, on_b * ty + turn * tx);
-  };
-  const auto acts = [&](S::Number number, size_t l) __attribute__((always_inline)) {
-    return slips.at(contact, number)[l] != 0;
-  };
-  Forces along, across;
-  if (any_of(S::friction)) {
-    drag(S::friction, along);
-    for (size_t l = 0; l < count; ++l) {
-      if (acts(S::friction, l)) add(along, l, friction);
-    }
-  }
-  if (damping.empty()) return;
-  const bool dragged = any_of(S::dashpot), pushed = any_of(S::push) || any_of(S::push_at_q);
-  if (dragged) drag(S::dashpot, along);
-  if (pushed) {
-    const Pack push = get(S::push), push_at_q = get(S::push_at_q), on_p = push - push_at_q;
-    const Pack on_b = get(S::start) * push + get(S::rise) * push_at_q, on_a = on_b - push;
-    across.put(0, on_p * ty, -(on_p * tx));
-    across.put(1, push_at_q * ty, -(push_at_q * tx));
-    across.put(2, on_a * ty, -(on_a * tx));
-    across.put(3, -(on_b * ty), on_b * tx);
-  }
-  for (size_t l = 0; l < count; ++l) {
-    if (dragged && acts(S::dashpot, l)) add(along, l, damping);
-    if (pushed && (acts(S::push, l) || acts(S::push_at_q, l))) add(across, l, damping);
+  for (size_t l = 0; l < kBlock; ++l) {
+    add(block.p[l], forces[0][l]);
+    add(block.q[l], forces[1][l]);
+    add(block.a[l], forces[2][l]);
+    add(block.b[l], forces[3][l]);
   }
 }
 

@@ -7,6 +7,7 @@
 // all outlines form one list; edge i leads from vertex i to vertex next[i].
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -118,6 +119,10 @@ class Outlines {
     return ((point(next[vertex]) - point(vertex)).norm() +
             (point(vertex) - point(previous[vertex])).norm()) /
            2;
+  }
+  /// Length of an edge as given, m.
+  [[nodiscard]] double given_length(int edge) const {
+    return std::hypot(x0_[next[edge]] - x0_[edge], y0_[next[edge]] - y0_[edge]);
   }
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {

@@ -130,6 +130,21 @@ APOTHEM_INLINE unsigned lanes_where(const MaskOf<4>& mask) {
 #endif
 }
 
+/// One bit for each lane, the lowest one for the first.
+APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
+#if defined(__x86_64__)
+  using Pair = double __attribute__((vector_size(16)));
+  const auto low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
+  const auto high = __builtin_shufflevector(mask.m, mask.m, 2, 3);
+  return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<Pair>(low)) |
+                               __builtin_ia32_movmskpd(reinterpret_cast<Pair>(high)) << 2);
+#else
+  unsigned all = 0;
+  for (int i = 0; i < 4; ++i) all |= (mask.m[i] != 0 ? 1U : 0U) << i;
+  return all;
+#endif
+}
+
 /// A pack of f(0), f(1) and so on.
 template <int lanes, class F>
 APOTHEM_INLINE PackOf<lanes> pack_of(const F& f) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <tuple>
 
 #include "apothem/execution/dispatch.hpp"
 #include "apothem/fem/mass.hpp"
@@ -22,8 +25,9 @@ struct Blocks {
   const double* data;
   const std::uint16_t* local;
   int elements, corners;
-  const ElementSet& set;
+  ElementKind kind;
   const ElementMaterial& material;
+  double thickness;
   const double* u;
   const double* v;
   double* f;
@@ -82,7 +86,7 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
   constexpr int kParts = kLanes / lanes;
   const ElementMaterial& material = blocks.material;
   const Response<Law, damped> response(Law(material.elastic), material.elastic,
-                                       material.stiffness_damping, blocks.set.thickness);
+                                       material.stiffness_damping, blocks.thickness);
   const int corners = Element::kCorners > 0 ? Element::kCorners : blocks.corners;
   constexpr int kMost = Element::kCorners > 0 ? Element::kCorners : kMostCorners;
   const ptrdiff_t stored = static_cast<ptrdiff_t>(Element::stored(corners)) * kLanes;
@@ -123,7 +127,7 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
 
 template <bool damped, bool forces>
 double dispatch(const Blocks& blocks) {
-  return with_element(blocks.set.kind, [&]<class Element>(Element) {
+  return with_element(blocks.kind, [&]<class Element>(Element) {
     return with_law(blocks.material.elastic, [&]<class Law>(const Law&) {
       return with_widest([&](auto lanes) __attribute__((always_inline)) {
         return work_through<decltype(lanes)::value, Element, Law, damped, forces>(blocks);
@@ -147,7 +151,9 @@ FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
       set.materials = {{set.material, set.density, set.stiffness_damping}};
     }
   }
-  for (int i = 0; i < static_cast<int>(sets_.size()); ++i) add_set(i, sets_[i]);
+  for (int i = 0; i < static_cast<int>(sets_.size()); ++i) add_masses(i, sets_[i]);
+  find_behaviours();
+  add_chunks();
   find_shared_nodes();
   chunk_sums_.resize(chunks_.size());
   size_t most = 0;
@@ -157,7 +163,7 @@ FiniteElements::FiniteElements(std::span<const ElementSet> sets, int threads)
   scratch_.assign(threads_.count(), scratch);
 }
 
-void FiniteElements::add_set(int index, const ElementSet& set) {
+void FiniteElements::add_masses(int index, const ElementSet& set) {
   const Mesh& mesh = *set.mesh;
   elements_ += mesh.element_count();
   mass_.resize(std::max(mass_.size(), set.first_node + mesh.nodes.size()), 0);
@@ -171,40 +177,67 @@ void FiniteElements::add_set(int index, const ElementSet& set) {
       mass_[set.first_node + mesh.element(e)[i]] += of_element.density * set.thickness * areas[i];
     }
   }
-  std::vector<int> members;
-  for (int e = 0; e < mesh.element_count(); e += kChunk) {
-    members.clear();
-    for (int k = e; k < std::min(e + kChunk, mesh.element_count()); ++k) members.push_back(k);
-    // Elements with the same number of corners and the same material form one run.
-    const auto kind = [&](int element) {
-      return std::pair(mesh.element(element).size(), set.material_number(element));
-    };
-    std::stable_sort(members.begin(), members.end(),
-                     [&](int a, int b) { return kind(a) < kind(b); });
-    add_chunk(index, set, members);
+}
+
+// Sets of the same kind, material and thickness share a behaviour.
+void FiniteElements::find_behaviours() {
+  using Key = std::tuple<ElementKind, ElasticLaw, Plane, double, double, double, double>;
+  std::map<Key, int> numbers;
+  for (const ElementSet& set : sets_) {
+    std::vector<int>& of_set = behaviour_numbers_.emplace_back();
+    for (const ElementMaterial& m : set.materials) {
+      const Key key(set.kind, m.elastic.law, m.elastic.plane, m.elastic.young, m.elastic.poisson,
+                    m.stiffness_damping, set.thickness);
+      const auto [found, is_new] = numbers.emplace(key, static_cast<int>(behaviours_.size()));
+      if (is_new) behaviours_.push_back({set.kind, m, set.thickness});
+      of_set.push_back(found->second);
+    }
   }
 }
 
-void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const int> elements) {
-  const Mesh& mesh = *set.mesh;
-  Chunk chunk{index, runs_.size(), 0, nodes_.size(), 0};
+// Small bodies share a chunk, so that they fill its blocks. None of them begins in one chunk and
+// goes on in the next: then chunks share no nodes.
+void FiniteElements::add_chunks() {
+  std::vector<Member> members;
+  const auto close = [&] {
+    // Elements with the same number of corners and the same behaviour form one run.
+    const auto key = [&](const Member& m) {
+      return std::pair(behaviour_of(m), corners_of(m).size());
+    };
+    std::ranges::stable_sort(members, {}, key);
+    add_chunk(members);
+    members.clear();
+  };
+  for (int i = 0; i < static_cast<int>(sets_.size()); ++i) {
+    const int count = sets_[i].mesh->element_count();
+    if (!members.empty() && members.size() + static_cast<size_t>(count) > kChunk) close();
+    for (int e = 0; e < count; ++e) {
+      members.push_back({i, e});
+      if (members.size() == kChunk) close();
+    }
+  }
+  if (!members.empty()) close();
+}
+
+void FiniteElements::add_chunk(std::span<const Member> elements) {
+  Chunk chunk{runs_.size(), 0, nodes_.size(), 0, false};
   std::vector<int> nodes;
-  for (const int e : elements) {
-    for (const int node : mesh.element(e)) nodes.push_back(set.first_node + node);
+  for (const Member& m : elements) {
+    for (const int node : corners_of(m)) nodes.push_back(sets_[m.set].first_node + node);
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   const auto local_of = [&](int node) {
-    return static_cast<std::uint16_t>(
-        std::lower_bound(nodes.begin(), nodes.end(), set.first_node + node) - nodes.begin());
+    return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) -
+                                      nodes.begin());
   };
   for (size_t begin = 0; begin < elements.size();) {
-    const int corners = static_cast<int>(mesh.element(elements[begin]).size());
-    const int number = set.material_number(elements[begin]);
+    const int corners = static_cast<int>(corners_of(elements[begin]).size());
+    const int number = behaviour_of(elements[begin]);
+    const Behaviour& behaviour = behaviours_[number];
     size_t end = begin;
-    while (end < elements.size() &&
-           static_cast<int>(mesh.element(elements[end]).size()) == corners &&
-           set.material_number(elements[end]) == number) {
+    while (end < elements.size() && static_cast<int>(corners_of(elements[end]).size()) == corners &&
+           behaviour_of(elements[end]) == number) {
       ++end;
     }
     const int count = static_cast<int>(end - begin);
@@ -213,8 +246,8 @@ void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const
         {corners, count, number, data_.size(), local_.size(), static_cast<int>(order_.size())});
     order_.insert(order_.end(), elements.begin() + static_cast<ptrdiff_t>(begin),
                   elements.begin() + static_cast<ptrdiff_t>(end));
-    const int stored =
-        with_element(set.kind, [&]<class Element>(Element) { return Element::stored(corners); });
+    const int stored = with_element(
+        behaviour.kind, [&]<class Element>(Element) { return Element::stored(corners); });
     data_.resize(data_.size() + blocks * stored * kLanes);
     // Lanes without an element repeat the data of the last one and use an additional local node,
     // which has no place in the global arrays.
@@ -222,15 +255,16 @@ void FiniteElements::add_chunk(int index, const ElementSet& set, std::span<const
                   static_cast<std::uint16_t>(nodes.size()));
     for (size_t k = 0; k < blocks * kLanes; ++k) {
       const size_t block = k / kLanes, lane = k % kLanes;
-      const int e = elements[std::min(begin + k, end - 1)];
-      with_element(set.kind, [&]<class Element>(Element) {
-        Element::prepare(places(mesh, e), set.materials[number].elastic, set.thickness,
+      const Member& m = elements[std::min(begin + k, end - 1)];
+      with_element(behaviour.kind, [&]<class Element>(Element) {
+        Element::prepare(places(*sets_[m.set].mesh, m.element), behaviour.material.elastic,
+                         behaviour.thickness,
                          &data_[runs_.back().data + block * stored * kLanes + lane]);
       });
       if (begin + k >= end) continue;
       for (int i = 0; i < corners; ++i) {
         local_[runs_.back().local + (block * corners + i) * kLanes + lane] =
-            local_of(mesh.element(e)[i]);
+            local_of(sets_[m.set].first_node + corners_of(m)[i]);
       }
     }
     begin = end;
@@ -254,6 +288,13 @@ void FiniteElements::find_shared_nodes() {
   }
   halo_.resize(2 * static_cast<size_t>(slots_.back()));
   for (const int node : nodes_) target_.push_back(next[node] < 0 ? node : -1 - next[node]++);
+  for (Chunk& chunk : chunks_) {
+    chunk.apart = true;
+    for (size_t i = chunk.nodes; i < chunk.nodes_end; ++i) {
+      const int own = nodes_[chunk.nodes] + static_cast<int>(i - chunk.nodes);
+      chunk.apart = chunk.apart && target_[i] == own;
+    }
+  }
 }
 
 double FiniteElements::run(Task task, std::span<const double> u, std::span<const double> v,
@@ -264,38 +305,43 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
     Scratch& s = scratch_[worker];
     for (int c = first; c < end; ++c) {
       const Chunk& chunk = chunks_[c];
-      const ElementSet& set = sets_[chunk.set];
       const size_t n = chunk.nodes_end - chunk.nodes;
       const int* nodes = &nodes_[chunk.nodes];
-      for (size_t i = 0; i < n; ++i) {
-        s.u[2 * i] = u[2 * static_cast<size_t>(nodes[i])];
-        s.u[2 * i + 1] = u[2 * static_cast<size_t>(nodes[i]) + 1];
-      }
-      s.u[2 * n] = s.u[2 * n + 1] = 0;
-      if (moving) {
-        for (size_t i = 0; i < n; ++i) {
-          s.v[2 * i] = v[2 * static_cast<size_t>(nodes[i])];
-          s.v[2 * i + 1] = v[2 * static_cast<size_t>(nodes[i]) + 1];
+      const auto take = [&](std::span<const double> from, Aligned& to) {
+        if (chunk.apart) {
+          std::copy_n(from.begin() + 2 * nodes[0], 2 * n, to.begin());
+        } else {
+          for (size_t i = 0; i < n; ++i) {
+            to[2 * i] = from[2 * static_cast<size_t>(nodes[i])];
+            to[2 * i + 1] = from[2 * static_cast<size_t>(nodes[i]) + 1];
+          }
         }
-        s.v[2 * n] = s.v[2 * n + 1] = 0;
-      }
+        to[2 * n] = to[2 * n + 1] = 0;
+      };
+      take(u, s.u);
+      if (moving) take(v, s.v);
       std::fill(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * (n + 1)), 0.);
       double sum = 0;
       for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
         const Run& part = runs_[r];
-        const ElementMaterial& of_part = set.materials[part.material];
-        const Blocks blocks{
-            &data_[part.data], &local_[part.local], part.elements, part.corners, set,
-            of_part,           s.u.data(),          s.v.data(),    s.f.data()};
+        const Behaviour& of_part = behaviours_[part.behaviour];
+        const Blocks blocks{&data_[part.data], &local_[part.local], part.elements,     part.corners,
+                            of_part.kind,      of_part.material,    of_part.thickness, s.u.data(),
+                            s.v.data(),        s.f.data()};
         if (task == Task::energy) {
           sum += dispatch<false, false>(blocks);
         } else {
-          sum += of_part.stiffness_damping > 0 ? dispatch<true, true>(blocks)
-                                               : dispatch<false, true>(blocks);
+          sum += of_part.material.stiffness_damping > 0 ? dispatch<true, true>(blocks)
+                                                        : dispatch<false, true>(blocks);
         }
       }
       chunk_sums_[c] = sum;
       if (task == Task::energy) continue;
+      if (chunk.apart) {
+        std::transform(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * n),
+                       f.begin() + 2 * nodes[0], std::negate<>());
+        continue;
+      }
       const int* target = &target_[chunk.nodes];
       for (size_t i = 0; i < n; ++i) {
         double* to = target[i] >= 0 ? &f[2 * static_cast<size_t>(target[i])]
@@ -336,19 +382,18 @@ double FiniteElements::strain_energy(std::span<const double> u) {
 // Calls f(element struct, stored numbers, number of corners, set, number in its mesh, displacements
 // of its corners) for the k-th element of a run. `corners` is working memory.
 template <class F>
-void FiniteElements::visit(const Chunk& chunk, const Run& part, int k, std::span<const double> u,
+void FiniteElements::visit(const Run& part, int k, std::span<const double> u,
                            std::vector<Point<double>>& corners, F&& f) const {
-  const ElementSet& set = sets_[chunk.set];
-  const int element = order_[part.first + k];
+  const Member& member = order_[part.first + k];
   corners.clear();
-  for (const int node : set.mesh->element(element)) {
-    const size_t at = 2 * static_cast<size_t>(set.first_node + node);
+  for (const int node : corners_of(member)) {
+    const size_t at = 2 * static_cast<size_t>(sets_[member.set].first_node + node);
     corners.push_back({u[at], u[at + 1]});
   }
-  with_element(set.kind, [&]<class Element>(Element e) {
+  with_element(behaviours_[part.behaviour].kind, [&]<class Element>(Element e) {
     const size_t block = static_cast<size_t>(Element::stored(part.corners)) * kLanes;
     const Stored<double> data{&data_[part.data + (k / kLanes) * block + k % kLanes]};
-    f(e, data, part.corners, chunk.set, element, corners.data());
+    f(e, data, part.corners, member.set, member.element, corners.data());
   });
 }
 
@@ -357,7 +402,7 @@ void FiniteElements::each_element(std::span<const double> u, F&& f) const {
   std::vector<Point<double>> corners;
   for (const Chunk& chunk : chunks_) {
     for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
-      for (int k = 0; k < runs_[r].elements; ++k) visit(chunk, runs_[r], k, u, corners, f);
+      for (int k = 0; k < runs_[r].elements; ++k) visit(runs_[r], k, u, corners, f);
     }
   }
 }
@@ -399,19 +444,15 @@ std::vector<CauchyStress> FiniteElements::stresses(std::span<const double> u) co
 CauchyStress FiniteElements::stress(std::span<const double> u, int set, int element) const {
   CauchyStress result;
   std::vector<Point<double>> corners;
-  for (const Chunk& chunk : chunks_) {
-    for (size_t r = chunk.runs; chunk.set == set && r < chunk.runs_end; ++r) {
-      const auto begin = order_.begin() + runs_[r].first;
-      const auto end = begin + runs_[r].elements;
-      const auto found = std::find(begin, end, element);
-      if (found == end) continue;
-      visit(chunk, runs_[r], static_cast<int>(found - begin), u, corners,
-            [&]<class Element>(Element, const Stored<double>& data, int count, int, int,
-                               const Point<double>* w) {
-              result = mean_stress<Element>(material(set, element).elastic, data, count, w);
-            });
-    }
-  }
+  const auto found = std::ranges::find_if(
+      order_, [&](const Member& m) { return m.set == set && m.element == element; });
+  const auto number = static_cast<int>(found - order_.begin());
+  const auto run = std::prev(std::ranges::upper_bound(runs_, number, {}, &Run::first));
+  visit(*run, number - run->first, u, corners,
+        [&]<class Element>(Element, const Stored<double>& data, int count, int, int,
+                           const Point<double>* w) {
+          result = mean_stress<Element>(material(set, element).elastic, data, count, w);
+        });
   return result;
 }
 

@@ -1,7 +1,7 @@
 // Internal forces, masses, strain energy and stresses of all finite elements of a model.
 //
 // The evaluation of the internal forces takes most of a run's time. Elements come in the order of a
-// space-filling curve, 512 to a chunk and 8 to a SIMD block:
+// space-filling curve, body after body, 512 to a chunk and 8 to a SIMD block:
 //
 //   for each chunk:  copy the nodal displacements (and velocities) into a local array
 //                    process the blocks of 8 elements, one SIMD pass each, into local forces
@@ -104,19 +104,29 @@ class FiniteElements {
   [[nodiscard]] Collapse smallest_ratio(std::span<const double> u) const;
 
  private:
+  /// An element of a set, by its number in the set's mesh.
+  struct Member {
+    int set, element;
+  };
+  /// What elements must have in common to be worked on together.
+  struct Behaviour {
+    ElementKind kind;
+    ElementMaterial material;
+    double thickness;  // m
+  };
   /// Consecutive SIMD blocks of elements of one chunk that have the same number of corners and the
-  /// same material.
+  /// same behaviour.
   struct Run {
     int corners, elements;
-    int material;        // among those of the set
+    int behaviour;       // among those of all (behaviours_)
     size_t data, local;  // where their stored numbers (data_) and local node numbers (local_) start
-    int first;           // where their element numbers (order_) start
+    int first;           // where their names (order_) start
   };
-  /// Up to 512 elements of one set, with the ranges of their runs (runs_) and nodes (nodes_).
+  /// Up to 512 elements, with the ranges of their runs (runs_) and nodes (nodes_).
   struct Chunk {
-    int set;
     size_t runs, runs_end;
     size_t nodes, nodes_end;
+    bool apart;  ///< its nodes follow each other, and no other chunk uses them
   };
   using Aligned = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
   /// Local copies of the displacements, velocities and forces of one chunk's nodes.
@@ -128,17 +138,27 @@ class FiniteElements {
   [[nodiscard]] const ElementMaterial& material(int set, int element) const {
     return sets_[set].materials[sets_[set].material_number(element)];
   }
-  void add_set(int index, const ElementSet& set);
-  void add_chunk(int index, const ElementSet& set, std::span<const int> elements);
+  void add_masses(int index, const ElementSet& set);
+  void find_behaviours();
+  void add_chunks();
+  void add_chunk(std::span<const Member> elements);
+  [[nodiscard]] std::span<const int> corners_of(const Member& member) const {
+    return sets_[member.set].mesh->element(member.element);
+  }
+  [[nodiscard]] int behaviour_of(const Member& member) const {
+    return behaviour_numbers_[member.set][sets_[member.set].material_number(member.element)];
+  }
   void find_shared_nodes();
   double run(Task task, std::span<const double> u, std::span<const double> v, std::span<double> f);
   template <class F>
-  void visit(const Chunk& chunk, const Run& part, int k, std::span<const double> u,
-             std::vector<Point<double>>& corners, F&& f) const;
+  void visit(const Run& part, int k, std::span<const double> u, std::vector<Point<double>>& corners,
+             F&& f) const;
   template <class F>
   void each_element(std::span<const double> u, F&& f) const;
 
   std::vector<ElementSet> sets_;
+  std::vector<Behaviour> behaviours_;
+  std::vector<std::vector<int>> behaviour_numbers_;  // of each set: that of each of its materials
   int elements_ = 0;
   bool damped_ = false;
   double shortest_edge_ = HUGE_VAL;
@@ -148,9 +168,9 @@ class FiniteElements {
   // SIMD blocks: kLanes values of each stored number, and of each corner's local node, in a row.
   Aligned data_;
   std::vector<std::uint16_t> local_;
-  std::vector<int> order_;   // number of each element in its mesh, run after run
-  std::vector<int> nodes_;   // number in the global arrays of each chunk's local nodes
-  std::vector<int> target_;  // place of its force: node n as n, slot s of the halo as -1 - s
+  std::vector<Member> order_;  // the elements, run after run
+  std::vector<int> nodes_;     // number in the global arrays of each chunk's local nodes
+  std::vector<int> target_;    // place of its force: node n as n, slot s of the halo as -1 - s
   std::vector<int> shared_, slots_;  // shared node i has the slots slots_[i] ... slots_[i + 1] - 1
   std::vector<double> halo_;         // forces on shared nodes, two numbers per slot
   std::vector<double> chunk_sums_;   // energy or damping power of each chunk

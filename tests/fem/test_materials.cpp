@@ -179,3 +179,51 @@ TEST_CASE("the highest frequency of two materials is that of the faster one", "[
   CHECK(frequency({.mesh = &mesh, .materials = kMaterials, .material_of = material}) ==
         Approx(fast).epsilon(.03));
 }
+
+TEST_CASE("small bodies that share blocks answer as each does alone", "[fem][materials]") {
+  constexpr int kBodies = 40;
+  samples::Random random(7);
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < kBodies; ++i) {
+    meshes.push_back(
+        distorted(quad_grid(2 + i % 5, 3, 1, 1), .2, static_cast<std::uint64_t>(i + 1)));
+  }
+  std::vector<ElementSet> sets;
+  std::vector<double> u, v;
+  for (int i = 0; i < kBodies; ++i) {
+    const ElementMaterial& m = kMaterials[static_cast<size_t>(i % 3)];
+    sets.push_back({.kind = i % 4 == 0 ? ElementKind::quad4_full : ElementKind::quad4,
+                    .mesh = &meshes[static_cast<size_t>(i)],
+                    .first_node = static_cast<int>(u.size() / 2),
+                    .material = m.elastic,
+                    .density = m.density,
+                    .thickness = i % 7 == 0 ? .5 : 1,
+                    .stiffness_damping = m.stiffness_damping});
+    for (size_t k = 0; k < 2 * meshes[static_cast<size_t>(i)].nodes.size(); ++k) {
+      u.push_back(random.uniform(-1e-3, 1e-3));
+      v.push_back(random.uniform(-1, 1));
+    }
+  }
+  FiniteElements all(sets, 1);
+  std::vector<double> force(u.size());
+  const double power = all.force(u, v, force);
+  double sum = 0;
+  for (int i = 0; i < kBodies; ++i) {
+    ElementSet alone = sets[static_cast<size_t>(i)];
+    const auto first = 2 * static_cast<size_t>(alone.first_node);
+    const size_t count = 2 * alone.mesh->nodes.size();
+    const auto part = [&](const std::vector<double>& of) {
+      return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(first),
+                                 of.begin() + static_cast<std::ptrdiff_t>(first + count));
+    };
+    alone.first_node = 0;
+    const ElementAnswer answer = answer_of(alone, part(u), part(v), 1);
+    sum += answer.power;
+    CAPTURE(i);
+    check_near(part(force), answer.force, 1e-14);
+    const int last = alone.mesh->element_count() - 1;
+    CHECK(all.stress(u, i, last).xx ==
+          FiniteElements(std::vector<ElementSet>{alone}, 1).stress(part(u), 0, last).xx);
+  }
+  CHECK(power == Approx(sum).epsilon(1e-12));
+}

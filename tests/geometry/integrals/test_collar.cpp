@@ -334,7 +334,7 @@ template <int lanes>
 void compare_packs(int count) {
   using Pack = PackOf<lanes>;
   samples::Random random(lanes);
-  int met = 0, deep = 0;
+  int met = 0, deep = 0, leaving = 0;  // the last: edges that are plain only inside the cell
   for (int i = 0; i < count; i += lanes) {
     std::vector<EdgeAndFace> all;
     for (int l = 0; l < lanes; ++l) all.emplace_back(random);
@@ -368,6 +368,8 @@ void compare_packs(int count) {
       REQUIRE(meets == (found.met.m[l] != 0));
       if (!meets) continue;
       ++met;
+      const Vec2 along(e.face.tx, e.face.ty), start(e.face.ax, e.face.ay);
+      leaving += std::max(cross(along, e.p - start), cross(along, e.q - start)) > e.face.plain;
       const std::array of_pack{found.from.v[l],   found.to.v[l],     found.sum.v[l],
                                found.first.v[l],  found.area.v[l],   found.along.v[l],
                                found.height.v[l], found.deepest.v[l]};
@@ -381,6 +383,7 @@ void compare_packs(int count) {
   }
   CHECK(met > count / 50);
   CHECK(deep > count / 50);
+  CHECK(leaving > count / 500);
 }
 
 }  // namespace
