@@ -122,17 +122,27 @@ def flows(study):
 def record(args):
     name = pathlib.Path(args.name)
     table = name.with_name(name.name + ".csv")
-    table.write_bytes((pathlib.Path(args.folder) / "runs.csv").read_bytes())
+    folder = pathlib.Path(args.folder)
+    rows = finished(folder / "runs.csv")
+    for row in rows:
+        run = json.loads((folder / "runs" / row["run"] / "run.json").read_text(encoding="utf-8"))
+        row["version"] = run["version"]
+    with open(table, "w", newline="", encoding="utf-8") as file:
+        out = csv.DictWriter(file, ["D/d", "fill.0.seed", "status", "jammed", "emptied", "discharged", "outside", "energy error",
+                                    "potential energy", "time [s]", "wall_time [s]", "scene_hash", "final_state_hash",
+                                    "stopped_by", "version"], restval="", extrasaction="ignore", lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
     with open(discharge_of(table), "w", newline="", encoding="utf-8") as file:
-        out = csv.writer(file)
+        out = csv.writer(file, lineterminator="\n")
         out.writerow(["D/d", "seed", "time [s]", "blocks"])
-        for row, flow in zip(finished(table), flows(args.folder)):
+        for row, flow in zip(rows, flows(folder)):
             last = len(flow.times) - 1
             keep = {0, last, flow.reached(.1), flow.reached(.6)}  # those that the rate needs, and ten in a second
             for i, (time, count) in enumerate(zip(flow.times, flow.counts)):
                 if i in keep or round(time / .1) > round(flow.times[max(0, i - 1)] / .1):
                     out.writerow([*key_of(row), f"{time:g}", f"{count:g}"])
-    print(f"{table} and {discharge_of(table)}: {len(finished(table))} runs")
+    print(f"{table} and {discharge_of(table)}: {len(rows)} runs")
 
 
 def by_width(runs):
