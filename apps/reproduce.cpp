@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -57,10 +58,21 @@ std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   return std::nullopt;
 }
 
+// The label and the column of the history, such as "energy error (largest size of total_error)".
 std::string in_words(const nlohmann::json& expectation) {
+  static const std::map<std::string, const char*> takes{{"first", "first"},
+                                                        {"last", "last"},
+                                                        {"min", "smallest"},
+                                                        {"max", "largest"},
+                                                        {"max_abs", "largest size of"},
+                                                        {"mean", "mean"},
+                                                        {"increase", "increase of"},
+                                                        {"decrease", "decrease of"},
+                                                        {"slope", "slope of"}};
   const std::string label = expectation.at("label");
-  const std::string column = fmt::format("{} of {}", expectation.at("take").get<std::string>(),
-                                         expectation.at("quantity").get<std::string>());
+  const std::string column =
+      fmt::format("{} {}", takes.at(expectation.at("take").get<std::string>()),
+                  expectation.at("quantity").get<std::string>());
   return label.empty() ? column : fmt::format("{} ({})", label, column);
 }
 
@@ -207,10 +219,10 @@ class Reproduction {
     for (const std::string& scene : figure.players) {
       write_player(folders_.runs + "/" + scene, scene, scene, report);
     }
-    for (const std::string& run : figure.study_players) {
-      std::string name = run;
+    for (const StudyPlayer& player : figure.study_players) {
+      std::string name = player.run;
       std::replace(name.begin(), name.end(), '/', '-');
-      write_player(folders_.studies + "/" + run, run, name, report);
+      write_player(folders_.studies + "/" + player.run, player.label, name, report);
     }
   }
 

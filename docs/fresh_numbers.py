@@ -263,6 +263,11 @@ NUMBER = r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf|nan)f?"
 COMPARED = re.compile(rf"^({NUMBER})\s*(<=|>=|<|>|==)\s*(?:({NUMBER})|Approx\( ({NUMBER}) \))$")
 
 
+def number_of(text):
+    """A number as Catch2 prints it; those of single precision end in f."""
+    return float(re.sub(r"(?<=[\d.])f$", "", text))
+
+
 def compared(report):
     """Texts of the left sides of the comparisons of numbers in a report of Catch2, and their values."""
     original = None
@@ -273,9 +278,9 @@ def compared(report):
             match = COMPARED.match(" ".join(element.text.split()))
             if match:
                 left = re.split(r"\s(?:<=|>=|<|>|==)\s", original)[0].strip()
-                value = float(match.group(1).rstrip("f"))
+                value = number_of(match.group(1))
                 if match.group(4):
-                    expected = float(match.group(4).rstrip("f"))
+                    expected = number_of(match.group(4))
                     value = abs(value - expected) / abs(expected) if expected else abs(value)
                 yield " ".join(left.split()), value
         elif element.tag == "Expression":

@@ -1,4 +1,5 @@
-// The number of decimals in which Catch2 prints what a test compares: docs/check_numbers.py asks for many.
+// The number of decimals in which Catch2 prints what a test compares: docs/check_numbers.py asks
+// for many.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
