@@ -208,6 +208,10 @@ class Fresh:
             raise Problem(f"the test '{test}' asserts nothing of {left}")
         return (min(values), max(values)) if nth is None else values[nth]
 
+    def times_seen(self, test, left):
+        """How often a test case makes this assertion."""
+        return sum(text == left for text, _ in self.assertions(test))
+
     def assertions(self, test):
         """Texts and values of the left sides of all comparisons that a test case asserts, in their order."""
         name = f"test {test}"
@@ -250,7 +254,7 @@ class Fresh:
 
     def evaluate(self, expression, **more):
         names = {f: getattr(self, f) for f in
-                 ("out", "csv", "total", "crashes", "bench", "expect", "summary", "history", "seen")}
+                 ("out", "csv", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
         names.update(ratio=ratio, scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
                      span=lambda a, b: Time(ends(a)[0], ends(b)[1], getattr(a, "power", 0)), **more)
         try:
