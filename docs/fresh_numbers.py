@@ -200,6 +200,12 @@ class Fresh:
         return {"first": lambda: values[0], "last": lambda: values[-1], "min": lambda: min(values),
                 "max": lambda: max(values), "max_abs": lambda: max(map(abs, values))}[take]()
 
+    def column(self, name, file, title, where, value):
+        """The numbers of a column of a table that a command leaves, in rows with this value in the column `where`."""
+        rows = self.read(self.run(name)[0] / file)
+        titles = [text.split(" [")[0] for text in rows[0]]
+        return [float(row[titles.index(title)]) for row in rows[1:] if float(row[titles.index(where)]) == value]
+
     def seen(self, test, left, nth=None):
         """Least and largest value of the left side of an assertion of a test case, by its text: `error / scale` of
         CHECK(error / scale < 1e-12). Of a comparison with Approx it is the relative difference. The nth one if it is given."""
@@ -254,8 +260,9 @@ class Fresh:
 
     def evaluate(self, expression, **more):
         names = {f: getattr(self, f) for f in
-                 ("out", "csv", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
-        names.update(ratio=ratio, scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
+                 ("out", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
+        names.update(timed=lambda time: Time(time, time, 1), mean=lambda values: sum(values) / len(values), ratio=ratio,
+                     scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
                      span=lambda a, b: Time(ends(a)[0], ends(b)[1], getattr(a, "power", 0)), **more)
         try:
             return eval(expression, {"__builtins__": {}, **names})  # from our own list
