@@ -25,7 +25,7 @@ Expressions may use the methods of `Fresh` in docs/fresh_numbers.py: `out` for w
 `apothem accuracy`, and `seen` for the values that a test case compares with its bounds.
 
 `within` says by how much a fresh number may differ: "2%", "x3" (a factor, for times), "1e-3" (in the
-unit of the text), "below" (a bound); without it by one unit of the last digit that is stated. Commands
+unit of the text), "below" (a bound), "below x10" (at most ten times as much: round-off); without it by one unit of the last digit that is stated. Commands
 are in `commands`, and the document names them by `named`; scenes need none, `apothem run` makes them. A
 command is run once, when a number needs it. {NAME} in a command is the folder of another one's results. A command of
 `data` needs no program that has to be built.
@@ -35,7 +35,7 @@ the one that the documents state (`machine`), both measured by the benchmark. Wi
 of times, may differ by one factor, which is for a machine that others use.
 
 With --write, stale numbers are replaced by fresh ones, with as many digits, here and in docs/numbers.json; so are all
-times, that those of a page are of one machine.
+times that a whole run gives (without --quick), that those of a page are of one machine.
 
 Exit code 1: a number is stale and not replaced, a passage is gone, or a test does not exist.
 """
@@ -176,7 +176,7 @@ class Checker:
         right = agrees(stated, compared, within)
         new = None
         if self.options.write and place and math.isfinite(low) and math.isfinite(high):
-            if isinstance(now, Time) or not right:
+            if (isinstance(now, Time) and not self.options.quick) or not right:
                 new = restated(stated, now)
             new = new if new != stated else None
         self.table.append((document.name, line, stated, shown, "written" if new else "ok" if right else "STALE"))

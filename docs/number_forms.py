@@ -35,9 +35,10 @@ def agrees(stated, now, within):
     low, high = now if isinstance(now, (tuple, list)) else (now, now)
     if not (math.isfinite(low) and math.isfinite(high)):
         return False
-    if stated.strip().startswith("<") or within == "below":
+    if stated.strip().startswith("<") or (within or "").startswith("below"):
         value, unit = number(stated)
-        return high <= value + unit / 2
+        factor = float(within.split(" x")[1]) if " x" in (within or "") else 1
+        return high <= factor * value + unit / 2
     ends = [number(end) for end in stated.split(" to ")]
     least, largest = ends[0][0], ends[-1][0]
     if within is None:

@@ -71,6 +71,7 @@ def make(study, options):
 
 
 def record(study, _):
+    study.seeds = [seed for seed in study.seeds if (study.folder / f"fills/runs/seed={seed}/run.json").exists()]
     study.make("--collect")
     tables.record(argparse.Namespace(folder=study.folder / "flows", name=RESULTS / study.name))
 
