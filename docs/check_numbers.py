@@ -25,10 +25,11 @@ Expressions may use the methods of `Fresh` in docs/fresh_numbers.py: `out` for w
 `apothem accuracy`, and `seen` for the values that a test case compares with its bounds.
 
 `within` says by how much a fresh number may differ: "2%", "x3" (a factor, for times), "1e-3" (in the
-unit of the text), "below" (a bound), "below x10" (at most ten times as much: round-off); without it by one unit of the last digit that is stated. Commands
-are in `commands`, and the document names them by `named`; scenes need none, `apothem run` makes them. A
-command is run once, when a number needs it. {NAME} in a command is the folder of another one's results. A command of
-`data` needs no program that has to be built.
+unit of the text), "below" (a bound), "below x10" (at most ten times as much: round-off); without it by one unit of the
+last digit that is stated. Commands are in `commands`, and the document names them by `named`; scenes need none,
+`apothem run` makes them. A command is run once, when a number needs it; with --quick only those that have the key `quick`,
+which may be a shorter command. {NAME} in a command is the folder of another one's results, {program} is apothem. A
+command of `data` needs no program that has to be built.
 
 Times are compared as if on the machine of the documents: they are multiplied by the rate of its arithmetic now over
 the one that the documents state (`machine`), both measured by the benchmark. With --times all of them, and all ratios
@@ -141,14 +142,13 @@ class Checker:
         self.machine = self.speed_of_the_documents(data.get("machine"))
         self.table, self.problems, self.asserted, self.by_hand = [], [], [], []
 
-    def speed_of_the_documents(self, machine):
-        """Least and largest speed of the machine that the documents state, and the expression for that of this one."""
-        if machine is None:
-            return None
-        stated = re.search(r"\{([^}]*)\}", machine["text"]).group(1)
-        self.document(machine["in"]).find(re.sub(r"[{}]", "", machine["text"]))
-        ends = [number(end)[0] for end in stated.split(" to ")]
-        return {"stated": (ends[0], ends[-1]), "value": machine["value"]}
+    def speed_of_the_documents(self, expression):
+        """Least and largest speed of the machine that the documents state by an entry with this expression."""
+        for entry in self.entries:
+            if expression and expression in entry.get("values", []):
+                stated = re.findall(r"\{([^}]*)\}", entry["text"])[entry["values"].index(expression)].split(" to ")
+                return {"stated": (number(stated[0])[0], number(stated[-1])[0]), "value": expression}
+        return None
 
     def document(self, name):
         if name not in self.documents:
@@ -240,7 +240,7 @@ class Checker:
             last += 1
         for i, cells in document.rows(at[0], last):
             first = cells[0] or first
-            more = {"cells": cells, "row": re.sub(r" \(.*|\*", "", cells[0]), "first": first}
+            more = {"cells": cells, "row": re.sub(r" \(.*|[*`]|,.*", "", cells[0]), "first": first}
             if "where" in entry and not self.fresh.evaluate(entry["where"], **more):
                 continue
             rows += 1

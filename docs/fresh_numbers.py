@@ -98,6 +98,8 @@ class Fresh:
         if self.options.keep and log.exists():
             return folder, log.read_text()
         shown = text.replace("{out}", str(folder))
+        if "{program}" in shown:
+            shown = shown.replace("{program}", self.program("apothem"))
         shown = re.sub(r"\{([\w-]+)\}", lambda match: str(self.run(match.group(1))[0]), shown)
         if "$APOTHEM_POLYGONS" in shown and "APOTHEM_POLYGONS" not in os.environ:
             raise NotRun("APOTHEM_POLYGONS names no folder")
@@ -134,6 +136,14 @@ class Fresh:
         if not match:
             raise Problem(f"{name} does not print '{pattern}'")
         return float(match.group(group).replace(" ", ""))
+
+    def listed(self, name, start, nth):
+        """The nth number, from 0, of the line "start: ..." that a command prints: a ratio of times. 0 if there are fewer."""
+        match = re.search(rf"^{re.escape(start)}: (.*)$", self.run(name)[1], re.MULTILINE)
+        if not match:
+            raise Problem(f"{name} prints no line {start}")
+        numbers = [float(number) for number in match.group(1).split()]
+        return Time(numbers[nth], numbers[nth], 0) if nth < len(numbers) else 0.0
 
     def csv(self, name, first, second, column):
         """A column (title or number) of the row of accuracy.csv with these first two cells."""
@@ -260,7 +270,7 @@ class Fresh:
 
     def evaluate(self, expression, **more):
         names = {f: getattr(self, f) for f in
-                 ("out", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
+                 ("out", "listed", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
         names.update(timed=lambda time: Time(time, time, 1), mean=lambda values: sum(values) / len(values), ratio=ratio,
                      scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
                      span=lambda a, b: Time(ends(a)[0], ends(b)[1], getattr(a, "power", 0)), **more)

@@ -123,7 +123,7 @@ class Numbers(unittest.TestCase):
                         {"in": "README.md", "text": "error {1e-15},", "values": ["bench('quad', 'error', 'lever')"]},
                         {"in": "README.md", "text": "{200} times", "values": [
                             "ratio(bench('quad', 'time', 'lever'), bench('machine_arithmetic', 'time', 'lever'))"], "within": "x1.2"}]
-        return {"in": "README.md", "text": "arithmetic {2 to 2} G/s", "value": "scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"}
+        return "scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"
 
     def test_times_are_compared_as_if_on_the_machine_of_the_document(self):
         machine = self.benchmark(.5, 100)
