@@ -42,7 +42,14 @@ constexpr const char* kAboutReport =
     "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
     "them. The paper shows its results as curves and fields. No number here is read off its "
     "pictures: each has another reference, which is named beside it, or rests on what its text "
-    "states. Forces are per thickness of 1 m.</p>";
+    "states. Forces are per thickness of 1 m.</p>"
+    "<p>A verdict holds as long as all numbers of its figure are within their tolerance. What the "
+    "numbers are compared with, beside the paper's words: <i>closed forms</i>; an <i>independent "
+    "prototype</i> of the contact method and an <i>independent explicit code</i> for deformable "
+    "bodies, which share no code with this program; <i>CalculiX</i> 2.20 with quadratic elements; "
+    "<i>Box2D</i> v3, which has another contact model. <code>data/reference/README.md</code> says "
+    "how each table was made. <i>Internal checks</i> are laws that every run obeys, and earlier "
+    "results of this program, which show changes but prove nothing.</p>";
 
 constexpr const char* kFiguresLeftOut =
     "<h2>Figures of the paper that are not here</h2>\n"
