@@ -52,7 +52,10 @@ class Study:
                    "--set", "time.onsets=plain", "--quiet", *more]
         for path, value in self.set.items():
             command += ["--set", f"{path}={value}"]
-        subprocess.run(command, check=True)
+        done = subprocess.run(command, check=False)
+        # 1: some runs are not done, which is no fault where what there is is collected.
+        if done.returncode != 0 and not (done.returncode == 1 and "--collect" in more):
+            raise subprocess.CalledProcessError(done.returncode, command)
 
     def make(self, *more):
         jobs = ["--jobs", str(self.jobs)] if self.jobs and not more else []

@@ -349,7 +349,7 @@ def picture(args):
 set terminal pngcairo noenhanced size 1500,700 font ',13'
 set output '{args.file}'
 set multiplot layout 1,2
-set bmargin 8
+set bmargin {5 + 1.3 * len(jams):g}
 set xlabel 'width of the opening D/d'
 set ylabel 'probability of a jam, with 95 % intervals'
 set yrange [0:1.02]
