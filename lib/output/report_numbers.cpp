@@ -81,10 +81,11 @@ std::vector<GroupCount> count_groups(const std::vector<ReportNumber>& numbers) {
 
 std::string table_cell(const char* head, const std::string& text, const char* kind) {
   // Lines may also break within paths.
+  constexpr size_t kLong = 20;
   std::string shown;
   for (const char c : escaped(text)) {
     shown += c;
-    if (c == '/' || c == '_') shown += "<wbr>";
+    if (text.size() > kLong && (c == '/' || c == '_')) shown += "<wbr>";
   }
   return fmt::format("<td class=\"{}{}\" data-head=\"{}\">{}</td>", kind,
                      text.empty() || text == "-" ? " none" : "", head, shown);
@@ -103,9 +104,9 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
     }
     if (rows.empty()) continue;
     text += fmt::format(
-        "<h3>{}</h3>\n<table>\n<tr>{}<th>quantity</th><th>unit</th>"
+        "<h3>{}</h3>\n<table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
         "<th>reference</th><th>result</th><th>error</th><th>relative</th><th>tolerance</th>"
-        "<th></th><th>rests on</th><th>source</th></tr>\n{}</table>\n",
+        "<th></th><th>rests on</th><th>source</th></tr></thead>\n{}</table>\n",
         kGroups[group].heading, with_scenes ? "<th>scene</th>" : "", rows);
   }
   return text;

@@ -31,7 +31,7 @@ p.top { font-size: 14px; }
   h1 { font-size: 1.5em; }
   .picture img { max-width: none; width: 680px; }
   table, tbody, tr, td { display: block; }
-  tr:first-child { display: none; }
+  thead { display: none; }
   tr { border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
   td, td.number { text-align: left; border: 0; padding: .1em 0 .1em 8.5em; position: relative; min-height: 1.4em; }
   td.number, td.verdict { white-space: normal; }
