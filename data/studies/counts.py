@@ -34,7 +34,7 @@ def read(path):
 def kept_runs():
     """A row for each width of each study of which results/NAME.csv has every run."""
     rows = []
-    for name, study in json.loads((HERE / "studies.json").read_text(encoding="utf-8")).items():
+    for name, study in json.loads((RESULTS / "studies.json").read_text(encoding="utf-8")).items():
         path = RESULTS / f"{name}.csv"
         if not path.exists():
             continue

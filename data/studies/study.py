@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the studies of the hopper that studies.json describes, and single runs of them again.
+"""Makes the studies of the hopper that results/studies.json describes, and single runs of them again.
 
     study.py make NAME [--shard I/N] [-o FOLDER]    the fills and flows, in FOLDER; runs that are there are not done again
     study.py record NAME [-o FOLDER]                what FOLDER has becomes results/NAME.csv and results/NAME-discharge.csv
@@ -26,7 +26,7 @@ RESULTS = HERE / "results"
 
 class Study:
     def __init__(self, name, options):
-        studies = json.loads((HERE / "studies.json").read_text(encoding="utf-8"))
+        studies = json.loads((RESULTS / "studies.json").read_text(encoding="utf-8"))
         if name not in studies:
             raise SystemExit(f"study.py: studies.json has no study {name} (it has {', '.join(studies)})")
         about = studies[name]

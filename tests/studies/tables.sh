@@ -49,7 +49,7 @@ python3 - <<'TEST'
 import json
 few = {"counted as": {"shape": "quad"}, "widths": [9], "seeds": 2,
        "set": {"fill.0.count": "40", "contact.normal_stiffness": "1e7", "time.end": "3"}}
-json.dump({"few": few}, open("here/studies.json", "w"))
+json.dump({"few": few}, open("here/results/studies.json", "w"))
 TEST
 export APOTHEM_PROGRAM="$program"
 python3 here/study.py make few --shard 2/2 -o few
