@@ -195,7 +195,9 @@ class Checker:
 
     def is_named(self, document, command):
         """The README leaves the commands to the page of all checks."""
-        texts = [document.text] + ([self.document(CHECKS).text] if document.name == "README.md" and (self.root / CHECKS).exists() else [])
+        texts = [document.text]
+        if document.name == "README.md" and (self.root / CHECKS).exists():
+            texts.append(self.document(CHECKS).text)
         if not any(" ".join(command["named"].split()) in " ".join(text.split()) for text in texts):
             raise Problem(f"{document.name} does not name the command: {command['named']}")
 

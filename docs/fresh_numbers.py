@@ -218,7 +218,8 @@ class Fresh:
 
     def seen(self, test, left, nth=None):
         """Least and largest value of the left side of an assertion of a test case, by its text: `error / scale` of
-        CHECK(error / scale < 1e-12). Of a comparison with Approx it is the relative difference. The nth one if it is given."""
+        CHECK(error / scale < 1e-12). Of a comparison with Approx it is the relative difference. With nth, from 0, only
+        that one."""
         values = [value for text, value in self.assertions(test) if text == left]
         if not values:
             raise Problem(f"the test '{test}' asserts nothing of {left}")
@@ -270,7 +271,8 @@ class Fresh:
 
     def evaluate(self, expression, **more):
         names = {f: getattr(self, f) for f in
-                 ("out", "listed", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen", "times_seen")}
+                 ("out", "listed", "csv", "column", "total", "crashes", "bench", "expect", "summary", "history", "seen",
+                  "times_seen")}
         names.update(timed=lambda time: Time(time, time, 1), mean=lambda values: sum(values) / len(values), ratio=ratio,
                      scaled=scaled, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
                      span=lambda a, b: Time(ends(a)[0], ends(b)[1], getattr(a, "power", 0)), **more)

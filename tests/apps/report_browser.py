@@ -48,7 +48,8 @@ def look(report, width, phone):
         check = Checks(browser, f"{width} px")
         check.equal("document.querySelectorAll('h2').length >= " + str(len(FIGURES) + 1), True, "headings")
         check.equal("document.images.length", len(FIGURES), "pictures")
-        check.equal("Array.from(document.images).filter(i => !i.naturalWidth || !i.alt).length", 0, "pictures without pixels or text")
+        check.equal("Array.from(document.images).filter(i => !i.naturalWidth || !i.alt).length", 0,
+                    "pictures without pixels or text")
         check.equal("document.documentElement.scrollWidth <= innerWidth", True, "the page fits")
         check.equal(TOO_WIDE, "", "what is cut off")
         check.equal(BROKEN, 0, "numbers that are broken")

@@ -117,13 +117,12 @@ class Numbers(unittest.TestCase):
                  {"name": "quad", "times": [quad, 1.1 * quad], "extras": {"error": 1e-15}}]
         self.write("build/apothem", "#!/bin/sh\ncat <<END\n" + json.dumps({"cases": cases}, indent=1) + "\nEND\n")
         self.write("README.md", "`apothem lever`: arithmetic 2 to 2 G/s, pair 100 to 110 ns, error 1e-15, 200 times.\n")
-        self.entries = [{"in": "README.md", "text": "arithmetic {2 to 2} G/s", "values": ["scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"],
-                         "within": "x1.2"},
-                        {"in": "README.md", "text": "pair {100 to 110} ns", "values": ["bench('quad', 'time', 'lever')"], "within": "x1.2"},
-                        {"in": "README.md", "text": "error {1e-15},", "values": ["bench('quad', 'error', 'lever')"]},
-                        {"in": "README.md", "text": "{200} times", "values": [
-                            "ratio(bench('quad', 'time', 'lever'), bench('machine_arithmetic', 'time', 'lever'))"], "within": "x1.2"}]
-        return "scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"
+        machine = "scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"
+        ratio = "ratio(bench('quad', 'time', 'lever'), bench('machine_arithmetic', 'time', 'lever'))"
+        self.entries = [{"in": "README.md", "text": text, "values": [value], "within": "x1.2"} for text, value in (
+            ("arithmetic {2 to 2} G/s", machine), ("pair {100 to 110} ns", "bench('quad', 'time', 'lever')"),
+            ("error {1e-15},", "bench('quad', 'error', 'lever')"), ("{200} times", ratio))]
+        return machine
 
     def test_times_are_compared_as_if_on_the_machine_of_the_document(self):
         machine = self.benchmark(.5, 100)
@@ -140,18 +139,20 @@ class Numbers(unittest.TestCase):
 
     def test_what_a_test_compares_is_a_number_of_the_document(self):
         report = ("<Catch><TestCase>" + "".join(
-            f"<Expression><Original>{left} &lt; 1e-12</Original><Expanded>{value} &lt; 0.000000000001</Expanded></Expression>"
-            for left, value in (("error / scale", "0.0000000000003"), ("error / scale", "0.0000000000005"), ("other", "1.0f")))
+            f"<Expression><Original>{left} &lt; 1e-12</Original><Expanded>{value} &lt; 0.000000000001</Expanded>"
+            "</Expression>" for left, value in (
+                ("error / scale", "0.0000000000003"), ("error / scale", "0.0000000000005"), ("other", "1.0f")))
             + "<Expression><Original>x == Approx( 2 )</Original><Expanded>2.002 == Approx( 2.0 )</Expanded></Expression>"
             "</TestCase></Catch>")
         self.write("report.xml", report)
-        self.write("build/apothem_tests", '#!/bin/sh\n[ "$1" = "a lever\\, in [balance\\]" ] || [ "$1" = "a lever is in balance" ] || exit 4\n'
+        self.write("build/apothem_tests", '#!/bin/sh\n[ "$1" = "a lever is in balance" ] || exit 4\n'
                    'while [ "$1" != -o ]; do shift; done\ncp report.xml "$2"\n')
         (self.root / "build/apothem_tests").chmod(0o755)
         self.write("README.md", "Errors 5e-13, 3e-13, relative 0.001, twice.\n")
         seen = "seen('a lever is in balance', '{}'{})"
         self.entries = [{"in": "README.md", "text": "Errors {5e-13}, {3e-13}, relative {0.001},", "values": [
-            "max(" + seen.format("error / scale", "") + ")", seen.format("error / scale", ", 0"), "max(" + seen.format("x", "") + ")"]},
+            "max(" + seen.format("error / scale", "") + ")", seen.format("error / scale", ", 0"),
+            "max(" + seen.format("x", "") + ")"]},
             {"in": "README.md", "text": "{2} times", "values": ["times_seen('a lever is in balance', 'error / scale')"]}]
         self.write("README.md", "Errors 5e-13, 3e-13, relative 0.001, 2 times.\n")
         code, text = self.check("--tests", "build")
