@@ -76,6 +76,12 @@ struct DrawnFields {
   std::vector<ReportNumber> numbers;
 };
 
+/// A run of a study that readers can play.
+struct StudyPlayer {
+  std::string run;    ///< its folder, relative to the folder of studies
+  std::string label;  ///< what the report calls it
+};
+
 /// A figure as its file describes it.
 struct Figure {
   std::string name;                                     ///< name of the file, without extension
@@ -91,8 +97,9 @@ struct Figure {
   std::vector<FigureStudy> studies;          ///< studies to make
   std::vector<TableComparison> comparisons;  ///< of tables, stated as numbers
   std::vector<std::string> scenes;           ///< scenes to run, each listed once
-  /// Runs that the report lets readers play: some of the scenes, and folders of studies' runs.
-  std::vector<std::string> players, study_players;
+  /// Runs that the report lets readers play: some of the scenes, and runs of studies.
+  std::vector<std::string> players;
+  std::vector<StudyPlayer> study_players;
 
   /// The curves with their points. Throws std::runtime_error, which names a table that cannot be
   /// read.

@@ -70,7 +70,9 @@ void FigureReader::players(const JsonValue& list) {
   for (const JsonValue& item : in_.array(list)) {
     if (item.type() == JsonValue::Type::object) {
       JsonObject object(in_, item);
-      figure_.study_players.push_back(in_.string(object.required("study", "folder of a run")));
+      StudyPlayer& player = figure_.study_players.emplace_back();
+      player.run = in_.string(object.required("study", "folder of a run"));
+      player.label = in_.string(object.required("label", "what the report calls it"));
       object.finish();
     } else {
       figure_.players.push_back(figure_.scenes[in_.choice(item, figure_.scenes)]);

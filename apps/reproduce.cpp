@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -41,7 +42,14 @@ constexpr const char* kAboutReport =
     "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
     "them. The paper shows its results as curves and fields. No number here is read off its "
     "pictures: each has another reference, which is named beside it, or rests on what its text "
-    "states. Forces are per thickness of 1 m.</p>";
+    "states. Forces are per thickness of 1 m.</p>"
+    "<p>A verdict holds as long as all numbers of its figure are within their tolerance. What the "
+    "numbers are compared with, beside the paper's words: <i>closed forms</i>; an <i>independent "
+    "prototype</i> of the contact method and an <i>independent explicit code</i> for deformable "
+    "bodies, which share no code with this program; <i>CalculiX</i> 2.20 with quadratic elements; "
+    "<i>Box2D</i> v3, which has another contact model. <code>data/reference/README.md</code> says "
+    "how each table was made. <i>Internal checks</i> are laws that every run obeys, and earlier "
+    "results of this program, which show changes but prove nothing.</p>";
 
 constexpr const char* kFiguresLeftOut =
     "<h2>Figures of the paper that are not here</h2>\n"
@@ -57,10 +65,21 @@ std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   return std::nullopt;
 }
 
+// The label and the column of the history, such as "energy error (largest size of total_error)".
 std::string in_words(const nlohmann::json& expectation) {
+  static const std::map<std::string, const char*> takes{{"first", "first"},
+                                                        {"last", "last"},
+                                                        {"min", "smallest"},
+                                                        {"max", "largest"},
+                                                        {"max_abs", "largest size of"},
+                                                        {"mean", "mean"},
+                                                        {"increase", "increase of"},
+                                                        {"decrease", "decrease of"},
+                                                        {"slope", "slope of"}};
   const std::string label = expectation.at("label");
-  const std::string column = fmt::format("{} of {}", expectation.at("take").get<std::string>(),
-                                         expectation.at("quantity").get<std::string>());
+  const std::string column =
+      fmt::format("{} {}", takes.at(expectation.at("take").get<std::string>()),
+                  expectation.at("quantity").get<std::string>());
   return label.empty() ? column : fmt::format("{} ({})", label, column);
 }
 
@@ -207,10 +226,10 @@ class Reproduction {
     for (const std::string& scene : figure.players) {
       write_player(folders_.runs + "/" + scene, scene, scene, report);
     }
-    for (const std::string& run : figure.study_players) {
-      std::string name = run;
+    for (const StudyPlayer& player : figure.study_players) {
+      std::string name = player.run;
       std::replace(name.begin(), name.end(), '/', '-');
-      write_player(folders_.studies + "/" + run, run, name, report);
+      write_player(folders_.studies + "/" + player.run, player.label, name, report);
     }
   }
 

@@ -1,5 +1,5 @@
 # The target apothem_numbers: runs the commands that docs/numbers.json lists and says which numbers of
-# the documents are stale. The target apothem_numbers_write replaces these.
+# the documents are stale. The target apothem_numbers_write replaces these, and all times.
 find_package(Python3 COMPONENTS Interpreter)
 if(NOT Python3_FOUND)
   return()
@@ -19,4 +19,12 @@ if(APOTHEM_TESTS)
   add_test(NAME docs.numbers COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --texts)
   add_test(NAME docs.check_numbers
            COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/docs/test_check_numbers.py)
+  # The values of the cheap commands, and of the scenes whose tests have run. Times are compared as ratios to the
+  # machine's arithmetic; others use the machine, so a factor of 4 is allowed.
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    add_test(NAME docs.values
+             COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/check_numbers.py --build ${PROJECT_BINARY_DIR}
+                     --tests ${PROJECT_BINARY_DIR} --scenes ${PROJECT_BINARY_DIR}/scenes --quick --times x4)
+    set_tests_properties(docs.values PROPERTIES FIXTURES_REQUIRED scenes)
+  endif()
 endif()

@@ -10,273 +10,48 @@ docs/numbers.json lists the numbers. An entry is one of:
       All rows of the table whose header starts so. The expressions belong to the numbers of a cell, from
       left to right; `row` is the first cell of the row, `first` the last one that is not empty, `cells`
       are all. `where` (an expression) chooses rows. Numbers that a cell leaves out at its end must be 0.
+  {"in": DOCUMENT, "table": "| case |", "printed": COMMAND}
+      The whole table, letter by letter, as the command prints it.
   {"in": DOCUMENT, "heading": "## Meshes", "rows": {"start of a row": ["name of a test"]}}
       A section that rests on tests: the tests exist, and every row of its tables is listed. Its key
       `text` lists in the same way what the section states outside of tables.
   {"in": DOCUMENT, "name": "Fig. 13"}
       Digits that are part of a name, or a choice of ours; nothing prints them.
+  {"in": DOCUMENT, "by hand": "200 MB to download", "how": "apt-get --print-uris, by hand"}
+      What no command of this list finds, and how it was found.
+
+Expressions may use the methods of `Fresh` in docs/fresh_numbers.py: `out` for what a command prints, `expect`,
+`summary` and `history` for the run of a scene, `bench` for a case of the benchmark, `csv`, `total` and `crashes` for
+`apothem accuracy`, and `seen` for the values that a test case compares with its bounds.
 
 `within` says by how much a fresh number may differ: "2%", "x3" (a factor, for times), "1e-3" (in the
-unit of the text), "below" (a bound); without it by one unit of the last digit that is stated. Commands
-are in `commands`, and the document names them by `named`; scenes need none, `apothem run` makes them. A
-command is run once, when a number needs it.
+unit of the text), "below" (a bound), "below x10" (at most ten times as much: round-off); without it by one unit of the
+last digit that is stated. Commands are in `commands`, and the document names them by `named`; scenes need none,
+`apothem run` makes them. A command is run once, when a number needs it; with --quick only those that have the key `quick`,
+which may be a shorter command. {NAME} in a command is the folder of another one's results, {program} is apothem. A
+command of `data` needs no program that has to be built.
 
-With --write, stale numbers are replaced by fresh ones, with as many digits, here and in docs/numbers.json.
+Times are compared as if on the machine of the documents: they are multiplied by the rate of its arithmetic now over
+the one that the documents state (`machine`), both measured by the benchmark. With --times all of them, and all ratios
+of times, may differ by one factor, which is for a machine that others use.
+
+With --write, stale numbers are replaced by fresh ones, with as many digits, here and in docs/numbers.json; so are all
+times that a whole run gives (without --quick), that those of a page are of one machine.
 
 Exit code 1: a number is stale and not replaced, a passage is gone, or a test does not exist.
 """
 import argparse
-import csv as csv_module
 import json
 import math
-import os
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 
-NUMBER = re.compile(
-    r"(?<![\w.^#/])([-+]?(?:\d{1,3}(?: \d{3})+(?:\.\d+)?(?![\d.])|\d+\.\d+|\d+|\.\d+)(?:e[-+]?\d+)?)(k|M)?(?![\w])")
-RANGE = re.compile(f"{NUMBER.pattern}(?: to {NUMBER.pattern})?")
+from number_forms import RANGE, Problem, agrees, number, restated
+from fresh_numbers import Fresh, NotRun, Time, scaled
 
 
-class NotRun(Exception):
-    """The command of a number is left out."""
-
-
-class Problem(Exception):
-    """What makes an entry wrong, whatever a fresh run prints."""
-
-
-def number(text):
-    match = NUMBER.search(text)
-    if not match:
-        raise Problem(f"'{text}' is no number")
-    return value_of(match)
-
-
-def value_of(match):
-    digits = match.group(1).replace(" ", "")
-    scale = {None: 1.0, "k": 1e3, "M": 1e6}[match.group(2)]
-    mantissa, _, exponent = digits.partition("e")
-    places = len(mantissa.partition(".")[2])
-    unit = 10.0 ** (int(exponent or 0) - places)
-    if "." not in mantissa and not exponent and match.group(2) is None:
-        zeros = len(mantissa) - len(mantissa.rstrip("0"))
-        unit = 10.0 ** min(zeros, max(0, len(mantissa.lstrip("+-")) - 2))
-    return float(digits) * scale, unit * scale
-
-
-def agrees(stated, now, within):
-    """Whether a fresh number, or (least, largest), is what the document states."""
-    low, high = now if isinstance(now, (tuple, list)) else (now, now)
-    if not (math.isfinite(low) and math.isfinite(high)):
-        return False
-    if stated.strip().startswith("<") or within == "below":
-        value, unit = number(stated)
-        return high <= value + unit / 2
-    ends = [number(end) for end in stated.split(" to ")]
-    least, largest = ends[0][0], ends[-1][0]
-    if within is None:
-        slack = 1.0001 * max(unit for _, unit in ends)
-    elif within.endswith("%"):
-        slack = float(within[:-1]) / 100 * max(abs(least), abs(largest))
-    elif within.startswith("x"):
-        factor = float(within[1:])
-        return low <= largest * factor and high >= least / factor
-    else:
-        slack = float(within)
-    return low <= largest + slack and high >= least - slack
-
-
-def written(value, like):
-    """A number in the form of another one: as many significant digits, the same unit, blanks and exponent."""
-    match = NUMBER.search(like)
-    digits, suffix = match.group(1), match.group(2) or ""
-    mantissa, _, exponent = digits.replace(" ", "").lstrip("+-").partition("e")
-    value /= {"": 1.0, "k": 1e3, "M": 1e6}[suffix]
-    places = max(1, len(mantissa.replace(".", "").lstrip("0")))
-    if exponent:
-        shown, power = f"{value:.{places - 1}e}".split("e")
-        return f"{shown}e{int(power)}{suffix}"
-    if value == 0:
-        return "0" + suffix
-    exact = float(f"{value:.{places - 1}e}")
-    decimals = max(0, places - 1 - math.floor(math.log10(abs(exact))))
-    blank = "" if 4 <= len(mantissa) < 5 and " " not in digits else " "
-    shown = f"{exact:,.{decimals}f}".replace(",", blank)
-    if digits.lstrip("+-").startswith("."):
-        shown = shown.replace("0.", ".", 1)
-    return shown + suffix
-
-
-def restated(stated, now):
-    """What a document should state in place of `stated`: a number, a range or a bound."""
-    low, high = now if isinstance(now, (tuple, list)) else (now, now)
-    if stated.strip().startswith("<"):
-        power = math.floor(math.log10(high)) if high > 0 else -300
-        bound = math.ceil(high / 10.0 ** power) * 10.0 ** power
-        return f"< {written(bound, stated)}"
-    ends = stated.split(" to ")
-    if len(ends) == 1:
-        return written((low + high) / 2, stated)
-    return f"{written(low, ends[0])} to {written(high, ends[1])}"
-
-
-class Fresh:
-    """Runs commands, each once, and reads what they leave."""
-
-    def __init__(self, root, commands, slow, options):
-        self.root, self.commands, self.slow, self.options = root, commands, slow, options
-        self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
-        self.done, self.files = {}, {}
-
-    def program(self, word):
-        folder = self.options.tests if word == "apothem_tests" else self.options.build
-        path = self.root / folder / word
-        if not path.exists():
-            raise NotRun(f"{folder}/{word} is not built")
-        return str(path)
-
-    def run(self, name):
-        """The output folder of a command, and what it printed."""
-        if name not in self.done:
-            self.done[name] = self.execute(name)
-        if isinstance(self.done[name], Exception):
-            raise self.done[name]
-        return self.done[name]
-
-    def execute(self, name):
-        scene = self.root / "data/scenes" / (name + ".json")
-        if name in self.commands:
-            command = self.commands[name]
-        elif scene.exists():
-            command = {"run": f"apothem run data/scenes/{name}.json -o {{out}} --overwrite",
-                       "quick": name not in self.slow}
-        else:
-            return Problem(f"no command and no scene is called {name}")
-        if self.options.only and name not in self.options.only:
-            return NotRun("left out")
-        if self.options.quick and not command.get("quick"):
-            return NotRun("not in the quick subset")
-        folder = self.folder / name
-        log = folder / "printed.txt"
-        if self.options.keep and log.exists():
-            return folder, log.read_text()
-        shown = command["run"].replace("{out}", str(folder))
-        if "$APOTHEM_POLYGONS" in shown and "APOTHEM_POLYGONS" not in os.environ:
-            return NotRun("APOTHEM_POLYGONS names no folder")
-        words = os.path.expandvars(shown).split()
-        environment = dict(os.environ)
-        while "=" in words[0]:
-            key, value = words.pop(0).split("=", 1)
-            environment[key] = value
-        try:
-            words[0] = self.program(words[0])
-        except NotRun as why:
-            return why
-        words = [word.replace("~", " ") for word in words]  # a space within a word
-        folder.mkdir(parents=True, exist_ok=True)
-        print(f"running {shown}", file=sys.stderr, flush=True)
-        result = subprocess.run(words, cwd=self.root, env=environment, stdout=subprocess.PIPE,
-                                stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
-        if result.returncode != command.get("exit", 0):
-            return Problem(f"'{shown}' ended with exit code {result.returncode}")
-        log.write_text(result.stdout)
-        return folder, result.stdout
-
-    def read(self, path):
-        if path not in self.files:
-            if path.suffix == ".json":
-                self.files[path] = json.loads(path.read_text())
-            else:
-                with open(path, newline="") as file:
-                    self.files[path] = list(csv_module.reader(file))
-        return self.files[path]
-
-    # What expressions may use.
-
-    def out(self, name, pattern, group=1):
-        """The first number that the pattern finds in what a command prints."""
-        match = re.search(pattern, self.run(name)[1])
-        if not match:
-            raise Problem(f"{name} does not print '{pattern}'")
-        return float(match.group(group).replace(" ", ""))
-
-    def csv(self, name, first, second, column):
-        """A column (title or number) of the row of accuracy.csv with these first two cells."""
-        rows = self.read(self.run(name)[0] / "accuracy.csv")
-        if isinstance(column, str):
-            column = [title.split(" [")[0] for title in rows[0]].index(column)
-        return float([row for row in rows if row[:2] == [first, second]][0][column])
-
-    def total(self, name, method, column):
-        """The sum of a column of accuracy.csv over the cases that are not random."""
-        rows = self.read(self.run(name)[0] / "accuracy.csv")
-        return sum(self.csv(name, r[0], method, column) for r in rows[1:]
-                   if r[1] == method and not r[0].startswith("generic"))
-
-    def crashes(self, name, method):
-        """How often a method crashed, by pairs.csv."""
-        rows = self.read(self.run(name)[0] / "pairs.csv")
-        return sum(row[2] == method and row[3].startswith("crashed") for row in rows)
-
-    def bench(self, name, of="time", command="benchmark"):
-        """Of a case of the benchmark: least and largest time of an item in ns or rate in 1/s, or an extra number."""
-        text = self.run(command)[1]
-        start = text.index("{\n")
-        cases = [c for c in json.loads(text[start:text.rindex("}") + 1])["cases"] if c["name"] == name]
-        if not cases:
-            raise Problem(f"the benchmark has no case {name}")
-        times = cases[0]["times"]
-        if of == "time":
-            values = times
-        elif of == "rate":
-            values = [1e9 / time for time in times]
-        else:
-            values = [cases[0]["extras"][of]]
-        return min(values), max(values)
-
-    def expect(self, scene, quantity, take="last", field="value", nth=0):
-        """The result of a scene's expectation; `field` may be error or relative as well."""
-        data = self.read(self.run(scene)[0] / "run.json")
-        found = [e for e in data["expectations"] if (e["quantity"], e["take"]) == (quantity, take)]
-        if nth >= len(found):
-            raise Problem(f"the scene {scene} expects no {take} of {quantity}")
-        e = found[nth]
-        error = e["value"] - e["expected"]
-        return {"value": e["value"], "error": abs(error),
-                "relative": abs(error / e["expected"]) if e["expected"] else math.nan}[field]
-
-    def summary(self, scene, pointer):
-        """A value of run.json."""
-        at = self.read(self.run(scene)[0] / "run.json")
-        for key in pointer.split("/"):
-            at = at[int(key) if isinstance(at, list) else key]
-        return at
-
-    def history(self, scene, column, take="last", file="history.csv"):
-        """The last, least, largest, or largest absolute value of a column of a scene's CSV file."""
-        rows = self.read(self.run(scene)[0] / file)
-        at = [i for i, title in enumerate(rows[0]) if title.split(" [")[0] == column][0]
-        values = [float(row[at]) for row in rows[1:]]
-        return {"first": lambda: values[0], "last": lambda: values[-1], "min": lambda: min(values),
-                "max": lambda: max(values), "max_abs": lambda: max(map(abs, values))}[take]()
-
-    def evaluate(self, expression, **more):
-        def ratio(a, b):
-            low_a, high_a = a if isinstance(a, tuple) else (a, a)
-            low_b, high_b = b if isinstance(b, tuple) else (b, b)
-            return low_a / high_b, high_a / low_b
-        names = {f: getattr(self, f) for f in
-                 ("out", "csv", "total", "crashes", "bench", "expect", "summary", "history")}
-        names.update(ratio=ratio, abs=abs, max=max, min=min, sum=sum, str=str, sqrt=math.sqrt, range=range,
-                     scaled=lambda a, s: (a[0] * s, a[1] * s) if isinstance(a, tuple) else a * s, **more)
-        try:
-            return eval(expression, {"__builtins__": {}, **names})  # from our own list
-        except (KeyError, IndexError, ValueError, NameError, OSError, TypeError) as error:
-            raise Problem(f"{expression}: {type(error).__name__} {error}") from error
+CHECKS = "docs/verification.md"  # the page that names the command of every number
 
 
 def loose(text):
@@ -364,7 +139,16 @@ class Checker:
         self.fresh = Fresh(root, self.commands, data.get("slow scenes", []), options)
         self.tests = tests_of(root)
         self.documents = {}
-        self.table, self.problems, self.asserted = [], [], []
+        self.machine = self.speed_of_the_documents(data.get("machine"))
+        self.table, self.problems, self.asserted, self.by_hand = [], [], [], []
+
+    def speed_of_the_documents(self, expression):
+        """Least and largest speed of the machine that the documents state by an entry with this expression."""
+        for entry in self.entries:
+            if expression and expression in entry.get("values", []):
+                stated = re.findall(r"\{([^}]*)\}", entry["text"])[entry["values"].index(expression)].split(" to ")
+                return {"stated": (number(stated[0])[0], number(stated[-1])[0]), "value": expression}
+        return None
 
     def document(self, name):
         if name not in self.documents:
@@ -373,20 +157,29 @@ class Checker:
 
     def compare(self, document, line, stated, expression, within, place=None, **more):
         """Returns what to state instead, or None. `place`: start and end of the number in the document."""
-        if self.options.texts:
-            compile(expression, expression, "eval")
-            number(stated)
-            return None
+        number(stated)
         try:
             now = self.fresh.evaluate(expression, **more)
         except NotRun as why:
-            self.table.append((document.name, line, stated, "-", f"not run: {why}"))
+            if not self.options.texts:
+                self.table.append((document.name, line, stated, "-", f"not run: {why}"))
             return None
-        shown = " to ".join(f"{x:.7g}" for x in now) if isinstance(now, (tuple, list)) else f"{now:.7g}"
-        right = agrees(stated, now, within)
-        finite = all(map(math.isfinite, now if isinstance(now, (tuple, list)) else (now,)))
-        new = restated(stated, now) if self.options.write and not right and place and finite else None
-        self.table.append((document.name, line, stated, shown, "ok" if right else "written" if new else "STALE"))
+        compared = now
+        if isinstance(now, Time):
+            if now.power and self.machine:
+                compared = scaled(now, self.fresh.machine(self.machine) ** now.power)
+            within = self.options.times or within
+        low, high = compared if isinstance(compared, (tuple, list)) else (compared, compared)
+        shown = f"{low:.7g} to {high:.7g}" if isinstance(compared, (tuple, list)) else f"{low:.7g}"
+        if compared is not now:
+            shown += " (as if there)"
+        right = agrees(stated, compared, within)
+        new = None
+        if self.options.write and place and math.isfinite(low) and math.isfinite(high):
+            if (isinstance(now, Time) and not self.options.quick) or not right:
+                new = restated(stated, now)
+            new = new if new != stated else None
+        self.table.append((document.name, line, stated, shown, "written" if new else "ok" if right else "STALE"))
         if new:
             document.replacements.append((*place, new))
         return new
@@ -397,8 +190,16 @@ class Checker:
             used = any(re.search(rf"'{re.escape(name)}'", e) for e in expressions)
             if name == "benchmark":
                 used = used or any("bench(" in e for e in expressions)
-            if used and " ".join(command["named"].split()) not in " ".join(document.text.split()):
-                raise Problem(f"{document.name} does not name the command: {command['named']}")
+            if used:
+                self.is_named(document, command)
+
+    def is_named(self, document, command):
+        """The README leaves the commands to the page of all checks."""
+        texts = [document.text]
+        if document.name == "README.md" and (self.root / CHECKS).exists():
+            texts.append(self.document(CHECKS).text)
+        if not any(" ".join(command["named"].split()) in " ".join(text.split()) for text in texts):
+            raise Problem(f"{document.name} does not name the command: {command['named']}")
 
     def passage(self, entry):
         document = self.document(entry["in"])
@@ -428,6 +229,9 @@ class Checker:
         at = [i for i, line in enumerate(document.lines) if line.startswith(entry["table"])]
         if len(at) != 1:
             raise Problem(f"{len(at)} tables in {document.name} start with: {entry['table']}")
+        if "printed" in entry:
+            self.printed_table(document, entry, at[0])
+            return
         titles = [cell.strip() for cell in document.lines[at[0]].strip("|").split("|")]
         for title in entry["cells"]:
             if title not in titles:
@@ -438,7 +242,7 @@ class Checker:
             last += 1
         for i, cells in document.rows(at[0], last):
             first = cells[0] or first
-            more = {"cells": cells, "row": re.sub(r" \(.*|\*", "", cells[0]), "first": first}
+            more = {"cells": cells, "row": re.sub(r" \(.*|[*`]|,.*", "", cells[0]), "first": first}
             if "where" in entry and not self.fresh.evaluate(entry["where"], **more):
                 continue
             rows += 1
@@ -460,6 +264,33 @@ class Checker:
             document.covered.append((start, start + len(document.lines[i])))
         if rows == 0:
             raise Problem(f"no row of the table {entry['table']} is chosen")
+
+    def printed_table(self, document, entry, first):
+        """The lines of a table are those that a command prints."""
+        self.is_named(document, self.commands[entry["printed"]])
+        last = first
+        while document.lines[last].startswith("|"):
+            last += 1
+        start = sum(len(line) + 1 for line in document.lines[:first])
+        stated = "\n".join(document.lines[first:last])
+        document.covered.append((start, start + len(stated)))
+        try:
+            printed = self.fresh.run(entry["printed"])[1].split("\n")
+        except NotRun as why:
+            if not self.options.texts:
+                self.table.append((document.name, first + 1, "a table", "-", f"not run: {why}"))
+            return
+        begin = [i for i, line in enumerate(printed) if line.startswith(entry["table"])]
+        if len(begin) != 1:
+            raise Problem(f"{entry['printed']} prints {len(begin)} tables that start with: {entry['table']}")
+        end = begin[0]
+        while printed[end].startswith("|"):
+            end += 1
+        now = "\n".join(printed[begin[0]:end])
+        verdict = "ok" if now == stated else "written" if self.options.write else "STALE"
+        self.table.append((document.name, first + 1, "a table", entry["printed"], verdict))
+        if verdict == "written":
+            document.replacements.append((start, start + len(stated), now))
 
     def section(self, entry):
         document = self.document(entry["in"])
@@ -496,10 +327,16 @@ class Checker:
         for text in names:
             document.covered.append(document.find(text))
 
+    def found_by_hand(self, entry):
+        document = self.document(entry["in"])
+        start, end = document.find(entry["by hand"])
+        document.covered.append((start, end))
+        self.by_hand.append((document.name, document.line(start), entry["by hand"], entry["how"]))
+
     def check(self):
         # Sections last: their rows may be covered by tables and passages.
         for kind, method in (("text", self.passage), ("table", self.whole_table), ("name", self.name),
-                             ("heading", self.section)):
+                             ("by hand", self.found_by_hand), ("heading", self.section)):
             for entry in self.entries:
                 if kind not in entry or (kind == "text" and "heading" in entry):
                     continue
@@ -540,6 +377,8 @@ class Checker:
         if not self.options.texts:
             for name, line, what, test, file in sorted(self.asserted):
                 print(f"{name + ':' + str(line):<26} {what[:48]:<48} asserted by the test '{test}' ({file})")
+            for name, line, what, how in sorted(self.by_hand):
+                print(f"{name + ':' + str(line):<26} {what[:48]:<48} by hand: {how}")
         for shown in ["README.md"] + self.options.uncovered:
             for line, text in self.document(shown).uncovered():
                 print(f"{shown}:{line}: no entry covers {text}")
@@ -557,9 +396,11 @@ def main():
     parser.add_argument("--build", default="build/release", help="folder of apothem")
     parser.add_argument("--tests", default="build/release", help="folder of apothem_tests")
     parser.add_argument("--quick", action="store_true", help="only the commands that take seconds")
-    parser.add_argument("--texts", action="store_true", help="run nothing: do passages and tests exist?")
+    parser.add_argument("--texts", action="store_true", help="do passages and tests exist, and what follows from data alone")
     parser.add_argument("--write", action="store_true", help="replace stale numbers by fresh ones")
-    parser.add_argument("--only", nargs="*", default=[], help="only these commands and scenes")
+    parser.add_argument("--only", nargs="*", default=[], help="only these commands, scenes and test cases")
+    parser.add_argument("--scenes", help="folder with results of scenes, in place of new runs")
+    parser.add_argument("--times", help="by how much times and their ratios may differ, like x4")
     parser.add_argument("--keep", help="folder for the results; what is there already is not run again")
     parser.add_argument("--uncovered", nargs="*", default=[], help="list numbers without entry of these too")
     return Checker(*(lambda o: (o.root, o))(parser.parse_args())).check()

@@ -2,7 +2,6 @@
 """Tables of the hopper and of the heap from the folders that `apothem sweep` has written.
 
     tables.py jam FLOWS [--reference quad,0.5]   jam probability, discharge rate, energy, blocks outside
-    tables.py counts RESULTS.csv                 the same from counts, and how likely so large a difference to Box2D is
     tables.py hazard FLOWS                       jams per discharged block, in windows of blocks
     tables.py pairs FLOWS OTHERS                 the same seeds and widths in two studies
     tables.py beverloo FLOWS                     fit of W = C rho_b sqrt(g) (D - k d)^(3/2)
@@ -122,17 +121,27 @@ def flows(study):
 def record(args):
     name = pathlib.Path(args.name)
     table = name.with_name(name.name + ".csv")
-    table.write_bytes((pathlib.Path(args.folder) / "runs.csv").read_bytes())
+    folder = pathlib.Path(args.folder)
+    rows = finished(folder / "runs.csv")
+    for row in rows:
+        run = json.loads((folder / "runs" / row["run"] / "run.json").read_text(encoding="utf-8"))
+        row["version"] = run["version"]
+    with open(table, "w", newline="", encoding="utf-8") as file:
+        out = csv.DictWriter(file, ["D/d", "fill.0.seed", "status", "jammed", "emptied", "discharged", "outside", "energy error",
+                                    "potential energy", "time [s]", "wall_time [s]", "scene_hash", "final_state_hash",
+                                    "stopped_by", "version"], restval="", extrasaction="ignore", lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
     with open(discharge_of(table), "w", newline="", encoding="utf-8") as file:
-        out = csv.writer(file)
+        out = csv.writer(file, lineterminator="\n")
         out.writerow(["D/d", "seed", "time [s]", "blocks"])
-        for row, flow in zip(finished(table), flows(args.folder)):
+        for row, flow in zip(rows, flows(folder)):
             last = len(flow.times) - 1
             keep = {0, last, flow.reached(.1), flow.reached(.6)}  # those that the rate needs, and ten in a second
             for i, (time, count) in enumerate(zip(flow.times, flow.counts)):
                 if i in keep or round(time / .1) > round(flow.times[max(0, i - 1)] / .1):
                     out.writerow([*key_of(row), f"{time:g}", f"{count:g}"])
-    print(f"{table} and {discharge_of(table)}: {len(finished(table))} runs")
+    print(f"{table} and {discharge_of(table)}: {len(rows)} runs")
 
 
 def by_width(runs):
@@ -184,24 +193,6 @@ def fisher(a, n, b, m):
 
     tables = [ways(x) for x in range(max(0, a + b - m), min(n, a + b) + 1)]
     return sum(w for w in tables if w <= ways(a)) / sum(tables)
-
-
-def counts(args):
-    print("blocks  mu   young  k_n    ratio  D/d  jammed   probability           rate, 1/s"
-          "            Box2D: jammed  rate   p of no difference (exact, Fisher)")
-    with open(args.folder, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            k, n = int(row["jammed"]), int(row["n"])
-            low, high = wilson(k, n)
-            rate = f"{row['rate']} +- {row['rate_half']} ({row['rate_n']})" if row["rate"] else "-"
-            line = (f"{row['shape']:<7} {row['mu']:<4} {row['young'] or '-':<6} {row['normal_stiffness']:<6}"
-                    f" {row['damping_ratio']:<6} {float(row['D_over_d']):<4g} {k:>3}/{n:<3}  {k / n:.2f} ({low:.2f} to {high:.2f})"
-                    f"  {rate:<20}")
-            other = reference(f"{row['shape']},{row['mu']}").get(float(row["D_over_d"]))
-            if other:
-                line += (f" {other['jammed']:>3}/{other['n']:<10} {other['rate'] or '-':<6}"
-                         f" {fisher(k, n, int(other['jammed']), int(other['n'])):.3f}")
-            print(line.rstrip())
 
 
 def hazard(args):
@@ -358,7 +349,7 @@ def picture(args):
 set terminal pngcairo noenhanced size 1500,700 font ',13'
 set output '{args.file}'
 set multiplot layout 1,2
-set bmargin 8
+set bmargin {5 + 1.3 * len(jams):g}
 set xlabel 'width of the opening D/d'
 set ylabel 'probability of a jam, with 95 % intervals'
 set yrange [0:1.02]
@@ -378,7 +369,7 @@ plot {", ".join(curves) if curves else "NaN notitle"}
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for command in (jam, counts, hazard, pairs, beverloo, repose, cost, outlines, picture, record):
+    for command in (jam, hazard, pairs, beverloo, repose, cost, outlines, picture, record):
         sub = commands.add_parser(command.__name__)
         if command is picture:
             sub.add_argument("file", metavar="FILE.png")
@@ -386,7 +377,7 @@ def main():
             sub.add_argument("--width", type=float, default=7, help="D/d of the discharge curves (7)")
             sub.add_argument("--reference", metavar="SHAPE,MU", action="append", default=[], help="as for jam; up to four")
         else:
-            sub.add_argument("folder", metavar="RESULTS.csv" if command is counts else "FOLDER")
+            sub.add_argument("folder", metavar="FOLDER")
         sub.set_defaults(command=command)
         if command is pairs:
             sub.add_argument("other")

@@ -78,7 +78,7 @@ std::string summary(const std::vector<ReportFigure>& figures) {
       "<h2 id=\"figures\">Figures</h2>\n<p>Numbers within their tolerance, of all that are stated: "
       "against the paper, against theory or an independent code, and internal checks (balances, "
       "symmetry, energy, and results of this program that are kept to notice changes).</p>\n"
-      "<table>\n<tr>{}</tr>\n{}</table>\n",
+      "<table>\n<thead><tr>{}</tr></thead>\n{}</table>\n",
       heads, rows);
 }
 

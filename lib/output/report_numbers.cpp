@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "apothem/output/html.hpp"
 
@@ -38,17 +39,28 @@ const BasisText& text_of(const ReportNumber& number) {
                        [&](const BasisText& t) { return t.basis == number.basis; });
 }
 
-std::string row(const ReportNumber& n) {
+std::string two_digits(double x) { return x == 0 ? "0" : fmt::format("{:.1e}", x); }
+
+// m^2 as it is printed.
+std::string unit_in_print(std::string unit) {
+  for (const auto& [plain, printed] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
+    for (size_t at = unit.find(plain); at != std::string::npos; at = unit.find(plain)) {
+      unit.replace(at, 2, printed);
+    }
+  }
+  return unit;
+}
+
+std::string row(const ReportNumber& n, bool with_scene) {
   const double error = n.value - n.reference;
   const std::string cells =
-      table_cell("scene", n.scene, "text") + table_cell("quantity", n.what, "text") +
-      table_cell("unit", n.unit, "text") +
+      (with_scene ? table_cell("scene", n.scene, "text") : "") +
+      table_cell("quantity", n.what, "text") + table_cell("unit", unit_in_print(n.unit), "text") +
       table_cell("reference", fmt::format("{:.10g}", n.reference)) +
-      table_cell("result", fmt::format("{:.10g}", n.value)) +
-      table_cell("error", fmt::format("{:.1e}", error)) +
-      table_cell("relative",
-                 n.reference != 0 ? fmt::format("{:.1e}", error / std::abs(n.reference)) : "-") +
-      table_cell("tolerance", fmt::format("{:.1e}", n.tolerance)) +
+      table_cell("result", fmt::format("{:.10g}", n.value == 0 ? 0.0 : n.value)) +
+      table_cell("error", two_digits(error)) +
+      table_cell("relative", n.reference != 0 ? two_digits(error / std::abs(n.reference)) : "-") +
+      table_cell("tolerance", two_digits(n.tolerance)) +
       table_cell("verdict", n.met ? "ok" : "MISSED", "verdict") +
       table_cell("rests on", text_of(n).words, "text") + table_cell("source", n.source, "text");
   return fmt::format("<tr{}>{}</tr>\n", n.met ? "" : " class=\"missed\"", cells);
@@ -68,22 +80,34 @@ std::vector<GroupCount> count_groups(const std::vector<ReportNumber>& numbers) {
 }
 
 std::string table_cell(const char* head, const std::string& text, const char* kind) {
-  return fmt::format("<td class=\"{}\" data-head=\"{}\">{}</td>", kind, head, escaped(text));
+  // Lines may also break within paths.
+  constexpr size_t kLong = 20;
+  std::string shown;
+  for (const char c : escaped(text)) {
+    shown += c;
+    if (text.size() > kLong && (c == '/' || c == '_')) shown += "<wbr>";
+  }
+  return fmt::format("<td class=\"{}{}\" data-head=\"{}\">{}</td>", kind,
+                     text.empty() || text == "-" ? " none" : "", head, shown);
 }
 
 std::string number_tables(const std::vector<ReportNumber>& numbers) {
   std::string text;
   for (size_t group = 0; group < kGroups.size(); ++group) {
+    const auto is_here = [&](const ReportNumber& n) { return text_of(n).group == group; };
+    const bool with_scenes =
+        std::any_of(numbers.begin(), numbers.end(),
+                    [&](const ReportNumber& n) { return is_here(n) && !n.scene.empty(); });
     std::string rows;
     for (const ReportNumber& n : numbers) {
-      if (text_of(n).group == group) rows += row(n);
+      if (is_here(n)) rows += row(n, with_scenes);
     }
     if (rows.empty()) continue;
     text += fmt::format(
-        "<h3>{}</h3>\n<table>\n<tr><th>scene</th><th>quantity</th><th>unit</th>"
+        "<h3>{}</h3>\n<table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
         "<th>reference</th><th>result</th><th>error</th><th>relative</th><th>tolerance</th>"
-        "<th></th><th>rests on</th><th>source</th></tr>\n{}</table>\n",
-        kGroups[group].heading, rows);
+        "<th></th><th>rests on</th><th>source</th></tr></thead>\n{}</table>\n",
+        kGroups[group].heading, with_scenes ? "<th>scene</th>" : "", rows);
   }
   return text;
 }

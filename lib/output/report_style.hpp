@@ -11,11 +11,11 @@ img { max-width: 100%; height: auto; }
 .picture { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14px; }
 th, td { padding: .2em .6em; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }
-td { overflow-wrap: anywhere; }
+td { overflow-wrap: break-word; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; }
 td.number, td.verdict { white-space: nowrap; }
 tr.missed, p.fault { background: #fde2dd; font-weight: bold; }
-pre { background: #f3f3f3; padding: .5em; overflow-x: auto; font-size: 13px; }
+pre { background: #f3f3f3; padding: .5em; white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 dt { font-weight: bold; }
 dd { margin: 0 0 .6em 1.2em; }
 .badge { display: inline-block; border-radius: .3em; padding: 0 .5em; font-weight: bold; border: 1px solid; }
@@ -26,21 +26,26 @@ dd { margin: 0 0 .6em 1.2em; }
 p.top { font-size: 14px; }
 /* On a narrow screen every row is a list of its cells, each behind the head of its column, and
    pictures stay large enough to read: they scroll. */
-@media (max-width: 800px) {
+@media screen and (max-width: 800px) {
   body { margin: 1em auto; padding: 0 .7em; }
   h1 { font-size: 1.5em; }
   .picture img { max-width: none; width: 680px; }
   table, tbody, tr, td { display: block; }
-  tr:first-child { display: none; }
+  thead { display: none; }
   tr { border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
   td, td.number { text-align: left; border: 0; padding: .1em 0 .1em 8.5em; position: relative; min-height: 1.4em; }
   td.number, td.verdict { white-space: normal; }
+  td.none { display: none; }
   td::before { content: attr(data-head); position: absolute; left: 0; color: #666; font-weight: normal; }
 }
 @media print {
   body { font-size: 11pt; margin: 0; max-width: none; }
-  table { font-size: 8pt; }
+  table { font-size: 7.5pt; }
+  th, td { padding: .15em .35em; }
+  pre { font-size: 7.5pt; }
   h2 { break-before: page; border: 0; margin-top: 0; }
+  #figures { break-before: auto; }
+  h3 { break-after: avoid; }
   .picture { overflow: visible; }
   .picture img { max-width: 100%; max-height: 22cm; width: auto; }
   tr, .picture, dl > div { break-inside: avoid; }

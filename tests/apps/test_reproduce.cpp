@@ -111,7 +111,7 @@ TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
 
   const std::string report = content(folder / "out/report.html");
   for (const char* text :
-       {"Free fall &amp; more", "A stone.", "speed &lt;at the end&gt; (last of stone.vy)",
+       {"Free fall &amp; more", "A stone.", "speed &lt;at the end&gt; (last stone.vy)",
         "href=\"fig-7/curve-1-1.csv\"", "href=\"runs/fall/run.json\"",
         "1 figures, 2 numbers, 1 missed", "<tr class=\"missed\">",
         "data-head=\"reference\">0.5</td><td class=\"number\" data-head=\"result\">0</td>",

@@ -35,10 +35,10 @@ class Numbers(unittest.TestCase):
     def write(self, name, text):
         (self.root / name).write_text(text)
 
-    def check(self, *options):
+    def check(self, *options, command=None, machine=None):
         self.write("docs/numbers.json", json.dumps({
-            "commands": {"lever": {"run": "apothem lever", "named": "apothem lever", "quick": True}},
-            "entries": self.entries}))
+            "commands": {"lever": command or {"run": "apothem lever", "named": "apothem lever", "quick": True}},
+            "machine": machine, "entries": self.entries}))
         result = subprocess.run([sys.executable, SCRIPT, "--root", self.root, "--build", "build", *options],
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         return result.returncode, result.stdout
@@ -89,6 +89,92 @@ class Numbers(unittest.TestCase):
         for within, code in (("2%", 0), ("1%", 1), ("x1.1", 0), ("0.3", 0), ("0.1", 1), ("below", 1)):
             self.entries[0]["within"] = [within, None, None]
             self.assertEqual(self.check()[0], code, within)
+
+    def test_round_off_may_be_larger_by_the_factor_that_the_entry_says(self):
+        self.replace("error 3e-9", "error 2.9e-8", "build/apothem")
+        self.entries = self.entries[:1]
+        for within, code in (("below", 1), ("below x10", 0), ("below x9", 1)):
+            self.entries[0]["within"] = [None, within, None]
+            self.assertEqual(self.check()[0], code, within)
+
+    def test_a_printed_table_is_compared_letter_by_letter_also_without_programs(self):
+        self.write("data/table.py", "print('| size | count |\\n| --- | --- |\\n| 1 | 20 |\\n')\n")
+        self.write("README.md", "By `table.py`:\n\n| size | count |\n| --- | --- |\n| 1 | 21 |\n")
+        self.entries = [{"in": "README.md", "table": "| size |", "printed": "lever"}]
+        run = {"run": "python3 data/table.py", "named": "table.py", "data": True}
+        code, text = self.check("--texts", command=run)
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"README.md:3 +stated a table +now lever +STALE")
+        self.assertEqual(self.check("--texts", "--write", command=run)[0], 0)
+        self.assertIn("| 1 | 20 |\n", (self.root / "README.md").read_text())
+        code, text = self.check("--texts", command=run)
+        self.assertEqual(code, 0)
+        self.assertIn("1 numbers ok", text)
+
+    def benchmark(self, arithmetic, quad):
+        """A program that prints times of two cases, ns; the document states 2 Gop/s, 100 ns and a ratio of 200."""
+        cases = [{"name": "machine_arithmetic", "times": [arithmetic], "extras": {}},
+                 {"name": "quad", "times": [quad, 1.1 * quad], "extras": {"error": 1e-15}}]
+        self.write("build/apothem", "#!/bin/sh\ncat <<END\n" + json.dumps({"cases": cases}, indent=1) + "\nEND\n")
+        self.write("README.md", "`apothem lever`: arithmetic 2 to 2 G/s, pair 100 to 110 ns, error 1e-15, 200 times.\n")
+        machine = "scaled(bench('machine_arithmetic', 'rate', 'lever'), 1e-9)"
+        ratio = "ratio(bench('quad', 'time', 'lever'), bench('machine_arithmetic', 'time', 'lever'))"
+        self.entries = [{"in": "README.md", "text": text, "values": [value], "within": "x1.2"} for text, value in (
+            ("arithmetic {2 to 2} G/s", machine), ("pair {100 to 110} ns", "bench('quad', 'time', 'lever')"),
+            ("error {1e-15},", "bench('quad', 'error', 'lever')"), ("{200} times", ratio))]
+        return machine
+
+    def test_times_are_compared_as_if_on_the_machine_of_the_document(self):
+        machine = self.benchmark(.5, 100)
+        self.assertEqual(self.check(machine=machine)[0], 0)
+        machine = self.benchmark(1.5, 300)  # a machine of a third of the speed
+        code, text = self.check(machine=machine)
+        self.assertEqual(code, 0, text)
+        self.assertRegex(text, r"stated 100 to 110 +now 100 to 110 \(as if there\) +ok")
+        machine = self.benchmark(.5, 300)  # the same machine, and the pair takes three times as long
+        code, text = self.check(machine=machine)
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"stated 100 to 110 +now 300 to 330 \(as if there\) +STALE")
+        self.assertRegex(self.check("--times", "x4", machine=machine)[1], r"now 300 to 330 \(as if there\) +ok")
+
+    def test_what_a_test_compares_is_a_number_of_the_document(self):
+        report = ("<Catch><TestCase>" + "".join(
+            f"<Expression><Original>{left} &lt; 1e-12</Original><Expanded>{value} &lt; 0.000000000001</Expanded>"
+            "</Expression>" for left, value in (
+                ("error / scale", "0.0000000000003"), ("error / scale", "0.0000000000005"), ("other", "1.0f")))
+            + "<Expression><Original>x == Approx( 2 )</Original><Expanded>2.002 == Approx( 2.0 )</Expanded></Expression>"
+            "</TestCase></Catch>")
+        self.write("report.xml", report)
+        self.write("build/apothem_tests", '#!/bin/sh\n[ "$1" = "a lever is in balance" ] || exit 4\n'
+                   'while [ "$1" != -o ]; do shift; done\ncp report.xml "$2"\n')
+        (self.root / "build/apothem_tests").chmod(0o755)
+        self.write("README.md", "Errors 5e-13, 3e-13, relative 0.001, twice.\n")
+        seen = "seen('a lever is in balance', '{}'{})"
+        self.entries = [{"in": "README.md", "text": "Errors {5e-13}, {3e-13}, relative {0.001},", "values": [
+            "max(" + seen.format("error / scale", "") + ")", seen.format("error / scale", ", 0"),
+            "max(" + seen.format("x", "") + ")"]},
+            {"in": "README.md", "text": "{2} times", "values": ["times_seen('a lever is in balance', 'error / scale')"]}]
+        self.write("README.md", "Errors 5e-13, 3e-13, relative 0.001, 2 times.\n")
+        code, text = self.check("--tests", "build")
+        self.assertEqual(code, 0, text)
+        self.assertIn("4 numbers ok", text)
+
+    def test_results_of_scenes_that_are_there_are_not_run_again(self):
+        self.write("data/scenes/fall.json", "{}")
+        (self.root / "there/fall").mkdir(parents=True)
+        self.write("there/fall/run.json", json.dumps({"expectations": [
+            {"quantity": "y", "take": "last", "value": 1.25, "expected": 1.0}]}))
+        self.write("README.md", "It falls to 1.25 m.\n")
+        self.entries = [{"in": "README.md", "text": "to {1.25} m", "values": ["expect('fall', 'y')"]}]
+        code, text = self.check("--scenes", str(self.root / "there"))
+        self.assertEqual(code, 0, text)
+        self.assertIn("1 numbers ok", text)
+
+    def test_what_is_found_by_hand_is_listed_with_its_source(self):
+        self.write("README.md", "It weighs 8.25 kg.\n")
+        self.entries = [{"in": "README.md", "by hand": "It weighs 8.25 kg.", "how": "kitchen scales"}]
+        self.assertIn("by hand: kitchen scales", self.check()[1])
+        self.assertNotIn("no entry covers", self.check()[1])
 
     def test_a_passage_a_row_or_a_test_that_is_gone_is_wrong_without_any_run(self):
         self.replace("error 3e-9", "error 4e-9")

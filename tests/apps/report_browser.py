@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""The report of `apothem reproduce` in a real browser without a network: on a desktop, on a phone and on paper nothing is
+cut off, pictures are there, and tables are tables where there is room. Called with the program; APOTHEM_SCREENSHOTS names a
+folder that keeps pictures of each figure and the printed pages."""
+
+import base64
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "player"))
+from webdriver import Browser  # noqa: E402
+
+FIGURES = ["fig-4", "fig-14", "fig-17"]
+TOO_WIDE = ("Array.from(document.querySelectorAll('body *')).filter(e => !e.closest('.picture') && "
+            "e.getBoundingClientRect().right > document.documentElement.clientWidth + 1).map(e => e.tagName + ' ' + "
+            "e.textContent.slice(0, 40)).join('; ')")
+# Words of numbers and units that a line breaks in: their text has more than one rectangle.
+BROKEN = ("Array.from(document.querySelectorAll('td.number')).filter(e => { const r = document.createRange(); "
+          "r.selectNodeContents(e); return new Set(Array.from(r.getClientRects()).map(b => b.top)).size > 1; }).length")
+
+
+def keep(name, png):
+    folder = os.environ.get("APOTHEM_SCREENSHOTS")
+    if folder:
+        (pathlib.Path(folder) / name).write_bytes(base64.b64decode(png))
+
+
+class Checks:
+    def __init__(self, browser, where):
+        self.browser, self.where, self.failed = browser, where, 0
+
+    def equal(self, expression, expected, what):
+        value = self.browser.evaluate(expression)
+        if value != expected:
+            print(f"{self.where}: {what}: {value!r} in place of {expected!r}")
+            self.failed += 1
+
+
+def look(report, width, phone):
+    with Browser(width, 900, phone=phone) as browser:
+        browser.cdp("Network.enable")
+        browser.cdp("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        browser.open(report.as_uri())
+        browser.wait("Array.from(document.images).every(i => i.complete)")
+        check = Checks(browser, f"{width} px")
+        check.equal("document.querySelectorAll('h2').length >= " + str(len(FIGURES) + 1), True, "headings")
+        check.equal("document.images.length", len(FIGURES), "pictures")
+        check.equal("Array.from(document.images).filter(i => !i.naturalWidth || !i.alt).length", 0,
+                    "pictures without pixels or text")
+        check.equal("document.documentElement.scrollWidth <= innerWidth", True, "the page fits")
+        check.equal(TOO_WIDE, "", "what is cut off")
+        check.equal(BROKEN, 0, "numbers that are broken")
+        check.equal("getComputedStyle(document.querySelector('td')).display", "block" if phone else "table-cell", "cells")
+        check.equal("Array.from(document.querySelectorAll('a[href^=\"#\"]')).filter(a => "
+                    "!document.getElementById(a.getAttribute('href').slice(1))).length", 0, "links to nowhere")
+        if browser.console():
+            print(f"{width} px: the console says {browser.console()}")
+            check.failed += 1
+        for name in FIGURES:
+            top = browser.evaluate(f"document.getElementById('{name}').getBoundingClientRect().top + scrollY")
+            keep(f"{name}-{width}.png", browser.cdp("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip={
+                "x": 0, "y": top, "width": width, "height": 3000, "scale": 1})["data"])
+        if not phone:  # a page of paper is narrower than the screens on which rows become lists
+            browser.cdp("Emulation.setEmulatedMedia", media="print")
+            browser.cdp("Emulation.setDeviceMetricsOverride", width=760, height=1000, deviceScaleFactor=1, mobile=False)
+            check.where = "paper"
+            check.equal("getComputedStyle(document.querySelector('td')).display", "table-cell", "cells")
+            check.equal(TOO_WIDE, "", "what is cut off")
+            keep("report.pdf", browser.cdp("Page.printToPDF", paperWidth=8.27, paperHeight=11.69)["data"])
+        return check.failed
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder).resolve()
+        subprocess.run([sys.argv[1], "reproduce", *FIGURES, "-o", str(out)], check=True, stdout=subprocess.DEVNULL)
+        failed = sum(look(out / "report.html", width, phone) for width, phone in ((1280, False), (400, True)))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
