@@ -164,12 +164,6 @@ APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, doub
   foot(first + 1).store(row + kFootFromEnd * kPack);
 }
 
-// A bit for each lane.
-APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
-  const MaskOf<4>::Vector b = mask.m & MaskOf<4>::Vector{1, 2, 4, 8};
-  return static_cast<unsigned>((b[0] | b[1]) | (b[2] | b[3]));
-}
-
 // Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
 bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   constexpr double kNear = 1e-9;  // phi

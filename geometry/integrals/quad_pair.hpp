@@ -46,7 +46,7 @@ struct QuadHeights {
     for (int v = 0; v < 4; ++v) {
       of[v] = gx * (Four(x.x[v] + dx) - yx) + gy * (Four(x.y[v] + dy) - yy);
       of[v].store(rows[first + v]);
-      beyond[v] = lanes_where(of[v] < least);
+      beyond[v] = bits(of[v] < least);
     }
     of[0].store(rows[first + 4]);
     edges = unsigned{(beyond[0] & beyond[1]) == 0} | unsigned{(beyond[1] & beyond[2]) == 0} << 1 |

@@ -116,7 +116,7 @@ APOTHEM_INLINE bool any(const MaskOf<4>& mask) {
 }
 APOTHEM_INLINE bool any(bool mask) { return mask; }
 /// Bit k is set where lane k of the mask is true.
-APOTHEM_INLINE unsigned lanes_where(const MaskOf<4>& mask) {
+APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
 #if defined(__x86_64__)
   using Pair = double __attribute__((vector_size(16)));
   const auto low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
@@ -127,21 +127,6 @@ APOTHEM_INLINE unsigned lanes_where(const MaskOf<4>& mask) {
   unsigned bits = 0;
   for (int k = 0; k < 4; ++k) bits |= static_cast<unsigned>(mask.m[k] & 1) << k;
   return bits;
-#endif
-}
-
-/// One bit for each lane, the lowest one for the first.
-APOTHEM_INLINE unsigned bits(const MaskOf<4>& mask) {
-#if defined(__x86_64__)
-  using Pair = double __attribute__((vector_size(16)));
-  const auto low = __builtin_shufflevector(mask.m, mask.m, 0, 1);
-  const auto high = __builtin_shufflevector(mask.m, mask.m, 2, 3);
-  return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<Pair>(low)) |
-                               __builtin_ia32_movmskpd(reinterpret_cast<Pair>(high)) << 2);
-#else
-  unsigned all = 0;
-  for (int i = 0; i < 4; ++i) all |= (mask.m[i] != 0 ? 1U : 0U) << i;
-  return all;
 #endif
 }
 
