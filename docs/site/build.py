@@ -68,7 +68,9 @@ def copy_pages(root, stage, mathjax):
     shutil.rmtree(stage, ignore_errors=True)
     stage.mkdir(parents=True)
     pages = stage / "docs"
-    shutil.copytree(root / "docs", pages, ignore=shutil.ignore_patterns("site", "*.py", "numbers.json", "*.gnuplot"))
+    shutil.copytree(root / "docs", pages, ignore=shutil.ignore_patterns(
+        "site", "scene_reference.py", "check_numbers.py", "fresh_numbers.py", "number_forms.py", "__pycache__", "numbers.json",
+        "*.gnuplot"))
     for entry in root.iterdir():
         if entry.name not in ("docs", "build") and not entry.name.startswith("."):
             (stage / entry.name).symlink_to(entry)

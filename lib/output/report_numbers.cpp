@@ -70,6 +70,7 @@ std::string row(const ReportNumber& n, bool with_scene) {
 
 std::vector<GroupCount> count_groups(const std::vector<ReportNumber>& numbers) {
   std::vector<GroupCount> counts;
+  counts.reserve(kGroups.size());
   for (const GroupText& group : kGroups) counts.push_back({group.column});
   for (const ReportNumber& n : numbers) {
     GroupCount& count = counts[text_of(n).group];

@@ -95,7 +95,7 @@ TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
   const Result r = run(all, folder);
   INFO(r.out << r.err);
   REQUIRE(r.code == 0);
-  CHECK(r.out.find("MISSED fall: max of stone.vy") != std::string::npos);
+  CHECK(r.out.find("MISSED fall: largest stone.vy") != std::string::npos);
   CHECK(r.out.find("1 of 2 numbers") != std::string::npos);
 
   const HistoryTable history = read_history(folder / "out/runs/fall/history.csv");
