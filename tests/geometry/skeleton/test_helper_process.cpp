@@ -12,6 +12,7 @@
 
 #include "apothem/geometry/skeleton/skeleton.hpp"
 #include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "geometry/nonconvex_pairs.hpp"
 #include "geometry/skeleton/faults.hpp"
 #include "shapes.hpp"
 
