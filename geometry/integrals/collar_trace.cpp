@@ -322,7 +322,8 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
 bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
   runs_.clear();
   // A cell has one piece, and so has the sector of each of its two vertices.
-  if (const size_t most = 3 * kPack * windows_.size(); pieces_.size() < most) pieces_.resize(most);
+  if (const size_t most = size_t{3} * kPack * windows_.size(); pieces_.size() < most)
+    pieces_.resize(most);
   if (const size_t all = 2 * kRows * kPack * windows_.size(); rows_.size() < all) rows_.resize(all);
   bool done = true;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
