@@ -48,9 +48,14 @@ constexpr double kListed[16][4] = {
 }  // namespace
 
 void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                       std::uint64_t near_x, std::uint64_t near_y) {
+                       std::uint64_t near_x, std::uint64_t near_y, bool use) {
   distance_ = y.distance != nullptr;
   list_edges(x, y, dx, dy, near_x);
+  if (!use) {
+    runs_.clear();
+    for (Edge& edge : edges_) edge.deep = true, edge.runs_end = 0;
+    return;
+  }
   list_windows(x, y, dx, dy, near_y);
   while (!trace(x, y, dx, dy)) {
   }

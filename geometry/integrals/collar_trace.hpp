@@ -38,9 +38,9 @@ class CollarTrace {
 
   /// Finds the runs of x in y, whose coordinates are finite. The arguments are those of walk_runs
   /// (edge_trace.hpp). What is found of an edge depends on the polygons alone, and not on near_x
-  /// and near_y.
+  /// and near_y. Without `use` all edges are as if they left the collar.
   void find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-            std::uint64_t near_x, std::uint64_t near_y);
+            std::uint64_t near_x, std::uint64_t near_y, bool use = true);
   /// The edges that may enter, in ascending order.
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
   /// The runs of all of them, along each edge.

@@ -24,8 +24,6 @@ class Splitter {
   /// Finds all runs and returns what pair_integral returns.
   PairIntegral find_runs(NearEdges& near) {
     runs_.clear();
-    work_.halves.clear();
-    work_.crossed.clear();
     const double dx = offset_.x();
     const double dy = offset_.y();
     const HeightRows height = height_rows(a_, b_, work_.edge.values);
@@ -36,12 +34,18 @@ class Splitter {
         separated(heights(b_, a_, -dx, -dy, height.of_b), a_, b_, a_.steepest, near)) {
       return {};
     }
-    RunEnds ends(work_.edge.ends);
-    const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
-    of_a_ = size();
-    const size_t middle = ends.used();
-    const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
-    return edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle);
+    return with_collars(a_, b_, work_.edge, [&] {
+      runs_.clear();
+      work_.halves.clear();
+      work_.crossed.clear();
+      RunEnds ends(work_.edge.ends);
+      const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
+      of_a_ = size();
+      const size_t middle = ends.used();
+      const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
+      return std::pair(edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle),
+                       ends.closed());
+    });
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }

@@ -51,15 +51,18 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
     return {};
   }
-  RunEnds ends(workspace.ends);
-  const Half of_a =  // in the frame of b
-      integrate_runs(a, b, dx, dy, near.of_a, near.of_b, height.of_a, height.spare, workspace,
-                     ends);
-  const size_t middle = ends.used();
-  const Half of_b =  // in the frame of a
-      integrate_runs(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b, height.spare, workspace,
-                     ends);
-  return join(a, b, offset, of_a, of_b, ends, middle);
+  const auto integrate = [&] {
+    RunEnds ends(workspace.ends);
+    const Half of_a =  // in the frame of b
+        integrate_runs(a, b, dx, dy, near.of_a, near.of_b, height.of_a, height.spare, workspace,
+                       ends);
+    const size_t middle = ends.used();
+    const Half of_b =  // in the frame of a
+        integrate_runs(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b, height.spare, workspace,
+                       ends);
+    return std::pair(join(a, b, offset, of_a, of_b, ends, middle), ends.closed());
+  };
+  return with_collars(a, b, workspace, integrate);
 }
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,

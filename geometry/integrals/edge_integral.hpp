@@ -68,6 +68,7 @@ struct EdgeWorkspace {
   RoofNodes nodes;             ///< the nodes of a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
   CollarTrace collar;              ///< memory for both
+  bool collars = true;             ///< whether edges in the collar of a polygon go by it alone
 };
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "apothem/execution/pack.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
@@ -350,7 +351,7 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
   if (!y.convex()) {
     if (const double finite = all_finite(x, y, dx, dy, near, near_y); !(finite == 0)) return finite;
     CollarTrace& collar = workspace.collar;
-    collar.find(x, y, dx, dy, near, near_y);
+    collar.find(x, y, dx, dy, near, near_y, workspace.collars);
     size_t r = 0;
     bool nodes = false;  // whether they are placed
     for (const CollarTrace::Edge& edge : collar.edges()) {
@@ -406,12 +407,37 @@ class RunEnds {
   }
   /// Number of coordinates.
   [[nodiscard]] size_t used() const { return used_; }
+  /// True if the runs are the sides of closed polygons, as the boundary of an overlap is, so that
+  /// none is missing. Runs that lie on each other may count twice; then it is false.
+  [[nodiscard]] bool closed() const {
+    constexpr double kOpen = 1e-9;  // of the length of all runs
+    double x = 0, y = 0, length = 0;
+    for (size_t i = 0; i < used_; i += 4) {
+      const double ex = buffer_[i + 2] - buffer_[i], ey = buffer_[i + 3] - buffer_[i + 1];
+      x += ex, y += ey;
+      length += std::abs(ex) + std::abs(ey);
+    }
+    return std::abs(x) + std::abs(y) <= kOpen * length;
+  }
   [[nodiscard]] const double* data() const { return buffer_.data(); }
 
  private:
   std::vector<double>& buffer_;
   size_t used_ = 0;
 };
+
+/// What integrate() finds, a result and whether its runs are closed. If they are not, features of
+/// the polygons coincide up to round-off, and it is done again by the whole potentials in place of
+/// their collars.
+template <class Integrate>
+PairIntegral with_collars(const PlacedPotential& a, const PlacedPotential& b,
+                          EdgeWorkspace& workspace, const Integrate& integrate) {
+  workspace.collars = true;
+  const auto [pair, closed] = integrate();
+  if (closed || std::isnan(pair.weight) || (a.convex() && b.convex())) return pair;
+  workspace.collars = false;
+  return integrate().first;
+}
 
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
 /// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.

@@ -5,6 +5,8 @@
 //   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
