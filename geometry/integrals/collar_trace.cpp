@@ -286,7 +286,7 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
   };
   int placed = -1;  // the vertex of x in `to`
   // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
-  // a border, in a cell that need not be listed.
+  // a border, in a cell that need not be listed, or need not be so deep.
   int ended = -1, last = -1;
   bool first_begins = false;
   for (Edge& listed : edges_) {
@@ -316,11 +316,18 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
       if (pieces_[i].end1 == kEdge) ends = pieces_[i].cell;
     }
     if (e == 0) first_begins = begins;
-    if (last + 1 == e && ended >= 0 && !begins && add_neighbours(y, ended)) return false;
+    if (last + 1 == e && ended >= 0 && !begins) {
+      if (add_neighbours(y, ended)) return false;
+      listed.deep = encloses(y, edge.px, edge.py);
+    }
     last = e, ended = ends;
   }
   const bool round = last == x.size - 1 && edges_[0].index == 0;
-  return !(round && ended >= 0 && !first_begins && add_neighbours(y, ended));
+  if (round && ended >= 0 && !first_begins) {
+    if (add_neighbours(y, ended)) return false;
+    edges_[0].deep = encloses(y, edges_[0].placed.px, edges_[0].placed.py);
+  }
+  return true;
 }
 
 // False if there are more cells than were known.
