@@ -17,6 +17,8 @@ namespace {
 constexpr double kPolygonSkin = 0.1;  // of the size of a rigid body
 constexpr double kMeshSkin = 0.25;    // of the shortest reference length
 constexpr double kStrideTime = 2;     // of a body, ns
+// A corner that has closed may open again before the run fails for it.
+constexpr int kLooksKept = 8;
 
 // How far the boundary of a body may move between two searches, twice over, m. Small bodies have
 // small boxes. One that stays in its place needs no room.
@@ -72,11 +74,10 @@ Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& do
   Surfaces surfaces(common_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
                     outlines);
   for (const RigidBody& body : model.bodies) {
-    surfaces.add_polygon(body.potential,
-                         {.inverse_mass = body.inverse_mass(),
-                          .inradius = body.inradius,
-                          .moves = body.can_move(),
-                          .skin = own_skin(body)});
+    surfaces.add_polygon(body.potential, {.inverse_mass = body.inverse_mass(),
+                                          .inradius = body.inradius,
+                                          .moves = body.can_move(),
+                                          .skin = own_skin(body)});
   }
   const PotentialChoice& choice = model.contact.potential;
   std::optional<double> reference;
@@ -189,10 +190,13 @@ void ContactTerm::check_drift(const State& state, double dt) {
 
 void ContactTerm::watch(const State& state) {
   if (!touches_itself(model_)) return;
-  closed_notch_.clear();
   const Outlines& outlines = contacts_.surfaces().outlines();
   const std::optional<Outlines::Notch> notch = outlines.closed_notch();
-  if (!notch) return;
+  if (!notch) {
+    if (++looks_without_notch_ >= kLooksKept) closed_notch_.clear();
+    return;
+  }
+  looks_without_notch_ = 0;
   const Vec2 world = outlines.point(notch->vertex) + model_.origin;
   closed_notch_ = fmt::format(
       "the inner corner at ({:.6g}, {:.6g}) m of \"{}\" had closed to {:.2g} degrees {}, where "

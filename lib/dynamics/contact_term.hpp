@@ -66,6 +66,7 @@ class ContactTerm final : public Term {
 
   /// What was wrong with the contact of a body with itself when it was last looked at, in words.
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
+  int looks_without_notch_ = 0;  // since then
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// The largest slope of the potential of each body, rigid ones first, 1/m.
