@@ -32,7 +32,8 @@ nlohmann::json contacts_of(const nlohmann::json& simulation) {
                             {"damping_loss", 0}};
   }
   if (!contacts.contains("tangential")) {
-    contacts["tangential"] = {{"pairs", none}, {"runs", none}, {"dampers", none}, {"damping", none}};
+    contacts["tangential"] = {
+        {"pairs", none}, {"runs", none}, {"dampers", none}, {"damping", none}};
   }
   return contacts;
 }

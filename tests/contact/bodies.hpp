@@ -75,7 +75,9 @@ struct Bodies {
   BodyIndex add_rigid(const Potential& potential, const std::array<double, 3>& place = {},
                       const std::array<double, 3>& inverse_mass = {}, MaterialIndex material = 0) {
     potentials.push_back(potential);
-    surfaces->add_polygon(potentials.back(), {.inverse_mass = inverse_mass, .inradius = 1 / potential.steepest, .moves = true});
+    surfaces->add_polygon(
+        potentials.back(),
+        {.inverse_mass = inverse_mass, .inradius = 1 / potential.steepest, .moves = true});
     pose.insert(pose.end(), place.begin(), place.end());
     return add(material);
   }
