@@ -80,7 +80,7 @@ int Contacts::count() const {
 
 std::optional<ContactFault> Contacts::fault() const {
   const auto is_out = [](const Contact& contact) {
-    return contact.share >= 1 && contact.kernel != outline_kernel;
+    return !(contact.share < 1) && contact.kernel != outline_kernel;  // also if it is NaN
   };
   bool late = false;
   each([&](const Kernel& kernel) { late = late || kernel.summary().share >= 1; });

@@ -2,6 +2,7 @@
 // own mathematics; what surrounds them exists once, in Contacts.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -40,12 +41,13 @@ struct ContactSummary {
 
   void include(double depth, double of_range) {
     ++count;
-    deepest = depth > deepest ? depth : deepest;
-    share = of_range > share ? of_range : share;
+    deepest = std::max(deepest, depth);
+    share = std::max(share, of_range);
   }
   void include(const ContactSummary& other) {
-    count += other.count - 1;
-    include(other.deepest, other.share);
+    count += other.count;
+    deepest = std::max(deepest, other.deepest);
+    share = std::max(share, other.share);
   }
 };
 

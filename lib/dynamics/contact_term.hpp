@@ -64,9 +64,8 @@ class ContactTerm final : public Term {
   /// See Simulation::inherit.
   void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
 
-  /// What was wrong with the contact of a body with itself when it was last looked at, in words.
+  /// What was wrong with the contact of a body with itself in one of the last looks, in words.
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
-  int looks_without_notch_ = 0;  // since then
 
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// The largest slope of the potential of each body, rigid ones first, 1/m.
@@ -100,6 +99,7 @@ class ContactTerm final : public Term {
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
   std::string closed_notch_;
+  int looks_without_notch_ = 0;  // since then
 };
 
 /// The smallest inradius of elements at the boundaries of all meshes, m.
