@@ -17,8 +17,9 @@ docs/numbers.json lists the numbers. An entry is one of:
       `text` lists in the same way what the section states outside of tables.
   {"in": DOCUMENT, "name": "Fig. 13"}
       Digits that are part of a name, or a choice of ours; nothing prints them.
-  {"in": DOCUMENT, "by hand": "200 MB to download", "how": "apt-get --print-uris, by hand"}
-      What no command of this list finds, and how it was found.
+  {"in": DOCUMENT, "columns": ["check", "reference"]}
+      Columns of tables that say what is done, and what should come out: conditions of ours, values of theory or of a
+      source. The first column of every table and the titles of columns are such.
 
 Expressions may use the methods of `Fresh` in docs/fresh_numbers.py: `out` for what a command prints, `expect`,
 `summary` and `history` for the run of a scene, `bench` for a case of the benchmark, `csv`, `total` and `crashes` for
@@ -39,7 +40,8 @@ again, up to twice, before they count as stale.
 With --write, stale numbers are replaced by fresh ones, with as many digits, here and in docs/numbers.json; so are all
 times that a whole run gives (without --quick), that those of a page are of one machine.
 
-Exit code 1: a number is stale and not replaced, a passage is gone, or a test does not exist.
+Exit code 1: a number is stale and not replaced, a passage is gone, a test does not exist, or a number of README.md or
+docs/verification.md stands in no entry.
 """
 import argparse
 import json
@@ -66,6 +68,7 @@ class Document:
         self.text = (root / name).read_text()
         self.lines = self.text.split("\n")
         self.covered = []
+        self.given = set()  # titles of columns that say what is done
         self.replacements = []  # (start, end, text)
 
     def line(self, position):
@@ -110,10 +113,27 @@ class Document:
             if line.startswith("|") and not line.startswith("| ---") and not ruled:
                 yield i, [cell.strip() for cell in line.strip("|").split("|")]
 
+    def conditions(self):
+        """Where tables say what is done: titles, first columns, and the columns that an entry names."""
+        titles, start = None, 0
+        for line in self.lines:
+            if not line.startswith("|"):
+                titles = None
+            elif titles is None:
+                titles = [cell.strip() for cell in line.strip("|").split("|")]
+                yield start, start + len(line)
+            else:
+                bars = [m.start() for m in re.finditer(r"\|", line)]
+                for column, (begin, end) in enumerate(zip(bars, bars[1:])):
+                    if column == 0 or titles[column] in self.given:
+                        yield start + begin, start + end
+            start += len(line) + 1
+
     def uncovered(self):
-        """Numbers that stand neither in an entry nor in code, links and addresses."""
-        hidden = list(self.covered)
-        for pattern in (r"```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"<[^>]*>", r"\n\d+\. "):
+        """Numbers that stand neither in an entry nor in code, links, headings, conditions and numbers of figures."""
+        hidden = list(self.covered) + list(self.conditions())
+        for pattern in (r"```.*?```", r"`[^`]*`", r"\[[^\]]*\]\([^)]*\)", r"<[^>]*>", r"\n\d+\. ", r"\n#[^\n]*",
+                        r"\b(?:Figs?|Secs?|Eqs?)\.\s+[\d.]+(?:-\d+|(?:,| and| to)\s+\d+)*"):
             hidden += [m.span() for m in re.finditer(pattern, self.text, re.DOTALL)]
         for match in re.finditer(r"(?<![\w.])[-+]?\.?\d[\d.,]*(?:e[-+]?\d+)?", self.text):
             if not any(a <= match.start() < b for a, b in hidden):
@@ -142,7 +162,7 @@ class Checker:
         self.documents = {}
         self.machine = self.speed_of_the_documents(data.get("machine"))
         self.repeated = {}  # how often commands were run again because of their times
-        self.table, self.problems, self.asserted, self.by_hand = [], [], [], []
+        self.table, self.problems, self.asserted = [], [], []
 
     def speed_of_the_documents(self, expression):
         """Least and largest speed of the machine that the documents state by an entry with this expression."""
@@ -344,16 +364,17 @@ class Checker:
         for text in names:
             document.covered.append(document.find(text))
 
-    def found_by_hand(self, entry):
+    def columns(self, entry):
         document = self.document(entry["in"])
-        start, end = document.find(entry["by hand"])
-        document.covered.append((start, end))
-        self.by_hand.append((document.name, document.line(start), entry["by hand"], entry["how"]))
+        for title in entry["columns"]:
+            if not any(re.match(rf"\|.*\| {re.escape(title)} \|", line) for line in document.lines):
+                raise Problem(f"no table of {document.name} has a column {title}")
+        document.given.update(entry["columns"])
 
     def check(self):
         # Sections last: their rows may be covered by tables and passages.
         for kind, method in (("text", self.passage), ("table", self.whole_table), ("name", self.name),
-                             ("by hand", self.found_by_hand), ("heading", self.section)):
+                             ("columns", self.columns), ("heading", self.section)):
             for entry in self.entries:
                 if kind not in entry or (kind == "text" and "heading" in entry):
                     continue
@@ -361,6 +382,9 @@ class Checker:
                     method(entry)
                 except Problem as problem:
                     self.problems.append(str(problem))
+        for name in ("README.md", CHECKS):
+            if (self.root / name).exists():
+                self.problems += [f"{name}:{line}: no entry covers {text}" for line, text in self.document(name).uncovered()]
         self.report()
         if self.options.write:
             self.write()
@@ -395,9 +419,7 @@ class Checker:
         if not self.options.texts and not self.options.brief:
             for name, line, what, test, file in sorted(self.asserted):
                 print(f"{name + ':' + str(line):<26} {what[:48]:<48} asserted by the test '{test}' ({file})")
-            for name, line, what, how in sorted(self.by_hand):
-                print(f"{name + ':' + str(line):<26} {what[:48]:<48} by hand: {how}")
-        for shown in ["README.md"] + self.options.uncovered:
+        for shown in self.options.uncovered:
             for line, text in self.document(shown).uncovered():
                 print(f"{shown}:{line}: no entry covers {text}")
         for problem in self.problems:
@@ -421,7 +443,7 @@ def main():
     parser.add_argument("--brief", action="store_true", help="print only what is wrong")
     parser.add_argument("--times", help="by how much times and their ratios may differ, like x4")
     parser.add_argument("--keep", help="folder for the results; what is there already is not run again")
-    parser.add_argument("--uncovered", nargs="*", default=[], help="list numbers without entry of these too")
+    parser.add_argument("--uncovered", nargs="*", default=[], help="list numbers without entry of these documents")
     return Checker(*(lambda o: (o.root, o))(parser.parse_args())).check()
 
 
