@@ -85,14 +85,14 @@ class Numbers(unittest.TestCase):
 
     def test_a_fresh_number_may_differ_by_what_the_entry_says(self):
         self.replace("force 12.5 N", "force 12.7 N", "build/apothem")
-        self.entries = self.entries[:1]
+        self.entries = [self.entries[0], {"in": "README.md", "columns": ["force"]}]
         for within, code in (("2%", 0), ("1%", 1), ("x1.1", 0), ("0.3", 0), ("0.1", 1), ("below", 1)):
             self.entries[0]["within"] = [within, None, None]
             self.assertEqual(self.check()[0], code, within)
 
     def test_round_off_may_be_larger_by_the_factor_that_the_entry_says(self):
         self.replace("error 3e-9", "error 2.9e-8", "build/apothem")
-        self.entries = self.entries[:1]
+        self.entries = [self.entries[0], {"in": "README.md", "columns": ["force"]}]
         for within, code in (("below", 1), ("below x10", 0), ("below x9", 1)):
             self.entries[0]["within"] = [None, within, None]
             self.assertEqual(self.check()[0], code, within)
@@ -185,12 +185,6 @@ class Numbers(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertIn("1 numbers ok", text)
 
-    def test_what_is_found_by_hand_is_listed_with_its_source(self):
-        self.write("README.md", "It weighs 8.25 kg.\n")
-        self.entries = [{"in": "README.md", "by hand": "It weighs 8.25 kg.", "how": "kitchen scales"}]
-        self.assertIn("by hand: kitchen scales", self.check()[1])
-        self.assertNotIn("no entry covers", self.check()[1])
-
     def test_a_passage_a_row_or_a_test_that_is_gone_is_wrong_without_any_run(self):
         self.replace("error 3e-9", "error 4e-9")
         code, text = self.check("--texts")
@@ -220,12 +214,23 @@ class Numbers(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("'apothem lever' ended with exit code 3", text)
 
-    def test_numbers_of_the_readme_without_an_entry_are_listed(self):
-        self.replace("## Levers", "Fig. 5 weighs 8.25 kg.\n\n## Levers")
-        self.entries.append({"in": "README.md", "name": "Fig. 5"})
-        text = self.check()[1]
-        self.assertIn("README.md:8: no entry covers 8.25", text)
+    def test_a_number_of_the_readme_without_an_entry_is_wrong(self):
+        self.replace("## Levers", "Apples cost 5 and weigh 8.25 kg (Fig. 7).\n\n## Levers")
+        self.entries.append({"in": "README.md", "name": "cost 5"})
+        code, text = self.check("--texts")
+        self.assertEqual(code, 1)
+        self.assertIn("WRONG README.md:8: no entry covers 8.25", text)
         self.assertNotIn("no entry covers 5", text)
+        self.assertNotIn("no entry covers 7", text)
+
+    def test_first_and_named_columns_of_tables_are_conditions_and_others_are_results(self):
+        self.write("README.md", "| check | target | result |\n| --- | --- | --- |\n| 3 m | 1e-6 | 4e-8 |\n")
+        self.entries = [{"in": "README.md", "columns": ["target"]}]
+        text = self.check("--texts")[1]
+        self.assertIn("no entry covers 4e-8", text)
+        self.assertIn("1 entries wrong", text)
+        self.entries[0]["columns"] = ["aim"]
+        self.assertIn("no table of README.md has a column aim", self.check("--texts")[1])
 
     def test_a_program_that_is_not_built_leaves_its_numbers_out(self):
         (self.root / "build/apothem").unlink()

@@ -224,7 +224,7 @@ void check_fold(const char* name, Model (*make)(double, ElementShape, double), d
       CHECK(coarse.error / coarse.total < 1e-3);  // on the way, as velocity Verlet has it
       // Where the parts of the body have come apart again; those of the wire are still pressed.
       CHECK(coarse.last / coarse.total < (model.bodies.empty() ? 1e-4 : 5e-4));
-      CHECK(fine.error < coarse.error / 6);
+      CHECK(coarse.error / fine.error > 6);
       CHECK(coarse.momentum < 1e-9);
     }
   }
