@@ -11,6 +11,7 @@
 #include "apothem/output/files.hpp"
 #include "apothem/output/report.hpp"
 #include "apothem/player/player.hpp"
+#include "apothem/sweep/csv.hpp"
 #include "commands.hpp"
 #include "data_folder.hpp"
 #include "figure.hpp"
@@ -83,6 +84,21 @@ std::string in_words(const nlohmann::json& expectation) {
   return label.empty() ? column : fmt::format("{} ({})", label, column);
 }
 
+// All numbers of a report as a table for other programs, with all digits.
+std::string numbers_table(const std::vector<ReportFigure>& figures) {
+  std::string text = csv_row({"figure", "run", "number", "unit", "value", "reference", "tolerance",
+                              "within", "basis", "source"});
+  for (const ReportFigure& figure : figures) {
+    for (const ReportNumber& n : figure.numbers) {
+      const std::string_view basis = n.basis ? kBases[static_cast<size_t>(*n.basis)] : "";
+      text += csv_row({figure.name, n.scene, n.what, n.unit, fmt::format("{}", n.value),
+                       fmt::format("{}", n.reference), fmt::format("{}", n.tolerance),
+                       n.met ? "true" : "false", std::string(basis), n.source});
+    }
+  }
+  return text;
+}
+
 class Reproduction {
  public:
   Reproduction(const ReproduceOptions& options, std::string data)
@@ -112,6 +128,7 @@ class Reproduction {
                  {"Figures of the distance-potential FEM-DEM paper", kAboutReport,
                   fmt::format("apothem {} reproduce", kVersion), kFiguresLeftOut},
                  reports_);
+    write_file(options_.folder + "/numbers.csv", numbers_table(reports_));
     fmt::print("{} of {} numbers within their tolerance; {}\n", numbers_ - missed_, numbers_,
                report);
     if (interrupted) return exit_code::interrupted;

@@ -71,7 +71,7 @@ class Flow:
         self.emptied = row["emptied"] == "true"
         self.discharged = int(float(row["discharged"]))
         self.outside = int(float(row.get("outside") or 0))
-        self.cpu = float(row["wall_time [s]"])
+        self.cpu = float(row.get("processor_time [s]") or row["wall_time [s]"])  # older tables: only the latter
         self.fallen = float(row["potential energy"])  # J, what was set free
         self.error = float(row["energy error"])
         self.times, self.counts = discharge
@@ -128,8 +128,8 @@ def record(args):
         row["version"] = run["version"]
     with open(table, "w", newline="", encoding="utf-8") as file:
         out = csv.DictWriter(file, ["D/d", "fill.0.seed", "status", "jammed", "emptied", "discharged", "outside", "energy error",
-                                    "potential energy", "time [s]", "wall_time [s]", "scene_hash", "final_state_hash",
-                                    "stopped_by", "version"], restval="", extrasaction="ignore", lineterminator="\n")
+                                    "potential energy", "time [s]", "wall_time [s]", "processor_time [s]", "scene_hash",
+                                    "final_state_hash", "stopped_by", "version"], restval="", extrasaction="ignore", lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
     with open(discharge_of(table), "w", newline="", encoding="utf-8") as file:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/output/files.hpp"
@@ -21,6 +22,13 @@ constexpr std::int64_t kLookEvery = 64;  // steps between looks at the clock
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Of all threads of this process.
+double processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace
@@ -42,6 +50,7 @@ Run::Run(Scene scene, const RunSettings& settings)
       Schedule(scene_.output.history_interval.value_or(scene_.time.end / 1000), progress_.next_row);
   pictures_ = Schedule(scene_.time.end / std::max(scene_.output.frames, 1), progress_.next_frame);
   start_ = last_checkpoint_ = Clock::now();
+  processor_start_ = processor_time();
   if (folder.empty()) return;
   HistoryWriter::Sizes sizes{};
   std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
@@ -94,6 +103,8 @@ void Run::go_on(const std::string& file) {
 }
 
 double Run::seconds() const { return seconds_since(start_); }
+
+double Run::processor_seconds() const { return processor_time() - processor_start_; }
 
 bool Run::reached(double time) const {
   if (scene_.time.statics) return state().time >= time * (1 - 1e-12);

@@ -123,6 +123,8 @@ class Run {
   /// Seconds of wall clock: in all, and for output.
   [[nodiscard]] double seconds() const;
   [[nodiscard]] double output_seconds() const { return output_seconds_; }
+  /// Seconds of processors that this process has used since the run began.
+  [[nodiscard]] double processor_seconds() const;
 
  private:
   void start();
@@ -169,6 +171,7 @@ class Run {
   std::string stopped_by_;
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_, last_checkpoint_;
+  double processor_start_ = 0;
   double output_seconds_ = 0;
 };
 

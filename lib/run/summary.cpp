@@ -171,6 +171,7 @@ std::string summary_text(const Run& run) {
             {"dt_changes", step_changes(run)},
             {"steps_per_second", static_cast<double>(simulation.own_steps()) / wall},
             {"wall_time", wall_time(run, wall)},
+            {"processor_time", run.processor_seconds()},
             {"pairs_per_step",
              {{"candidates", static_cast<double>(counts.candidate_pairs) / steps},
               {"touching", static_cast<double>(counts.touching_pairs) / steps}}},

@@ -46,6 +46,10 @@ void parse_record(const std::string& text, RunRecord& record) {
     record.stopped_by = text_at(json, "stopped_by");
     record.time = json.at("time").get<double>();
     record.wall_time = json.at("wall_time").at("total").get<double>();
+    // A folder may be of an earlier program, which did not write it.
+    if (const auto at = json.find("processor_time"); at != json.end()) {
+      record.processor_time = at->get<double>();
+    }
     record.scene_hash = json.at("scene_hash");
     record.final_state_hash = json.at("final_state_hash");
     if (record.message.empty()) record.message = text_at(json, "message");

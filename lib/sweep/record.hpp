@@ -17,9 +17,10 @@ using MeasuredValue = std::variant<std::monostate, bool, double>;
 /// A row of the table of runs.
 struct RunRecord {
   RunState state = RunState::missing;
-  std::string stopped_by;           ///< name of the criterion that has stopped it; or empty
-  std::optional<double> time;       ///< reached, s
-  std::optional<double> wall_time;  ///< of its last process, s
+  std::string stopped_by;                ///< name of the criterion that has stopped it; or empty
+  std::optional<double> time;            ///< reached, s
+  std::optional<double> wall_time;       ///< of its last process, s
+  std::optional<double> processor_time;  ///< of all threads of its last process, s
   std::string scene_hash, final_state_hash;
   std::string message;  ///< why it has failed
   /// The `measures` of run.json, then the values of the expectations by their quantity. A name that

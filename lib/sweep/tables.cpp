@@ -86,8 +86,8 @@ std::string runs_csv(const Plan& plan, const std::vector<RunRecord>& records) {
   const std::vector<MeasureName> measures = measure_names(records);
   std::vector<std::string> header{"run"};
   header.insert(header.end(), plan.paths.begin(), plan.paths.end());
-  for (const char* name :
-       {"status", "stopped_by", "time [s]", "wall_time [s]", "scene_hash", "final_state_hash"}) {
+  for (const char* name : {"status", "stopped_by", "time [s]", "wall_time [s]",
+                           "processor_time [s]", "scene_hash", "final_state_hash"}) {
     header.emplace_back(name);
   }
   for (const MeasureName& m : measures) header.push_back(m.name);
@@ -99,7 +99,7 @@ std::string runs_csv(const Plan& plan, const std::vector<RunRecord>& records) {
     const std::vector<std::string> values = cells_of(plan.runs[i].values);
     row.insert(row.end(), values.begin(), values.end());
     row.insert(row.end(), {name_of(r.state), r.stopped_by, cell_of(r.time), cell_of(r.wall_time),
-                           r.scene_hash, r.final_state_hash});
+                           cell_of(r.processor_time), r.scene_hash, r.final_state_hash});
     for (const MeasureName& m : measures) {
       MeasuredValue found;
       for (const auto& [name, value] : r.measures) {

@@ -83,7 +83,7 @@ TEST_CASE("a run writes what the interface promises", "[program]") {
   const Json json = Json::parse(content(out + "/run.json"));
   for (const char* key :
        {"scene_hash", "version", "threads", "steps", "dt", "dt_limited_by", "wall_time",
-        "pairs_per_step", "largest_penetration", "largest_energy_error"}) {
+        "processor_time", "pairs_per_step", "largest_penetration", "largest_energy_error"}) {
     INFO(key);
     CHECK(json.contains(key));
   }

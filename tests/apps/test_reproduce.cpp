@@ -109,6 +109,9 @@ TEST_CASE("a figure becomes curves, a picture and a report", "[reproduce]") {
   CHECK(content(folder / "out/fig-7/curve-1-2.csv") == content(folder / "data/reference/fall.csv"));
   CHECK(content(folder / "out/fig-7/curve-1-3.csv") == "time [ms],speed [mm/s]\n0,500\n10,600\n");
 
+  const std::string numbers = content(folder / "out/numbers.csv");
+  CHECK(numbers.find("figure,run,number,unit,value,reference,tolerance,within,basis,source\n") ==
+        0);
   const std::string report = content(folder / "out/report.html");
   for (const char* text :
        {"Free fall &amp; more", "A stone.", "speed &lt;at the end&gt; (last stone.vy)",

@@ -15,7 +15,8 @@ using Words = std::vector<std::string>;
 namespace {
 
 std::string run_json(const std::string& more, const std::string& expectations = "[]") {
-  return R"({ "status": "done", "time": 0.5, "wall_time": { "total": 1.25 }, "scene_hash": "s",
+  return R"({ "status": "done", "time": 0.5, "wall_time": { "total": 1.25 },
+              "processor_time": 2.25, "scene_hash": "s",
               "final_state_hash": "f", )" +
          more + R"( "expectations": )" + expectations + " }";
 }
@@ -59,6 +60,7 @@ TEST_CASE("run.json may have measures, and has the values of expectations", "[sw
   const RunRecord bare = parsed_record(run_json(""));
   CHECK(bare.time == 0.5);
   CHECK(bare.wall_time == 1.25);
+  CHECK(bare.processor_time == 2.25);
   CHECK(bare.stopped_by.empty());
   CHECK(bare.measures.empty());
   const RunRecord full = parsed_record(
@@ -86,13 +88,13 @@ TEST_CASE("runs.csv has a row for every run", "[sweep]") {
       read_csv(folder.write("runs.csv", runs_csv(study.plan, study.records)));
   REQUIRE(rows.size() == 7);
   CHECK(rows[0].cells == Words{"run", "fill.0.diameter", "fill.0.seed", "status", "stopped_by",
-                               "time [s]", "wall_time [s]", "scene_hash", "final_state_hash",
-                               "discharged", "jam", "message"});
+                               "time [s]", "wall_time [s]", "processor_time [s]", "scene_hash",
+                               "final_state_hash", "discharged", "jam", "message"});
   CHECK(rows[1].cells == Words{"diameter=0.5,seed=1", "0.5", "1", "done", "jammed", "0.5", "1.25",
-                               "s", "f", "10", "true", ""});
+                               "2.25", "s", "f", "10", "true", ""});
   CHECK(rows[3].cells == Words{"diameter=0.5,seed=3", "0.5", "3", "crashed", "", "", "", "", "", "",
-                               "", "ended by signal 11, \"quoted\""});
-  CHECK(rows[6].cells[9].empty());
+                               "", "", "ended by signal 11, \"quoted\""});
+  CHECK(rows[6].cells[10].empty());
 }
 
 TEST_CASE("the summary takes seeds together and counts what is missing", "[sweep]") {
