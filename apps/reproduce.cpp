@@ -53,7 +53,7 @@ constexpr const char* kAboutReport =
     "results of this program, which show changes but prove nothing.</p>";
 
 constexpr const char* kFiguresLeftOut =
-    "<h2>Figures of the paper that are not here</h2>\n"
+    "<h2 id=\"left-out\">Figures of the paper that are not here</h2>\n"
     "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
     "of a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) "
     "hold the models.</p>\n";

@@ -129,7 +129,8 @@ def record(args):
     with open(table, "w", newline="", encoding="utf-8") as file:
         out = csv.DictWriter(file, ["D/d", "fill.0.seed", "status", "jammed", "emptied", "discharged", "outside", "energy error",
                                     "potential energy", "time [s]", "wall_time [s]", "processor_time [s]", "scene_hash",
-                                    "final_state_hash", "stopped_by", "version"], restval="", extrasaction="ignore", lineterminator="\n")
+                                    "final_state_hash", "stopped_by", "version"],
+                             restval="", extrasaction="ignore", lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
     with open(discharge_of(table), "w", newline="", encoding="utf-8") as file:

@@ -58,7 +58,7 @@ std::string badge(const ReportFigure& figure) {
   return fmt::format("<span class=\"badge {}\">{}</span>", text.style, text.words);
 }
 
-std::string summary(const std::vector<ReportFigure>& figures) {
+std::string summary(const std::vector<ReportFigure>& figures, bool left_out) {
   std::string rows;
   std::string heads = "<th>figure</th><th>verdict</th>";
   for (const GroupCount& group : count_groups({})) heads += "<th>" + group.name + "</th>";
@@ -78,8 +78,9 @@ std::string summary(const std::vector<ReportFigure>& figures) {
       "<h2 id=\"figures\">Figures</h2>\n<p>Numbers within their tolerance, of all that are stated: "
       "against the paper, against theory or an independent code, and internal checks (balances, "
       "symmetry, energy, and results of this program that are kept to notice changes).</p>\n"
-      "<table>\n<thead><tr>{}</tr></thead>\n{}</table>\n",
-      heads, rows);
+      "<table>\n<thead><tr>{}</tr></thead>\n{}</table>\n{}",
+      heads, rows,
+      left_out ? "<p><a href=\"#left-out\">Figures of the paper that are not here</a></p>\n" : "");
 }
 
 std::string picture(const std::string& file, const std::string& title) {
@@ -154,7 +155,8 @@ void write_report(const std::string& file, const ReportHead& head,
   }
   write_file(file, fmt::format(kHead, escaped(head.title), kReportStyle, head.about,
                                escaped(head.made_by), figures.size(), numbers, missing) +
-                       summary(figures) + sections + head.left_out + "</body>\n</html>\n");
+                       summary(figures, !head.left_out.empty()) + sections + head.left_out +
+                       "</body>\n</html>\n");
 }
 
 }  // namespace apothem

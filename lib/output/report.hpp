@@ -68,7 +68,7 @@ struct ReportHead {
   std::string title;
   std::string about;     ///< HTML that stands below the title
   std::string made_by;   ///< names the program
-  std::string left_out;  ///< HTML about figures that are not in the report; may be empty
+  std::string left_out;  ///< HTML about figures that are not there, with the anchor left-out
 };
 
 /// Writes the report to `file`: a table with a line for each figure, then the figures, each with
