@@ -81,12 +81,17 @@ std::vector<GroupCount> count_groups(const std::vector<ReportNumber>& numbers) {
 }
 
 std::string table_cell(const char* head, const std::string& text, const char* kind) {
-  // Lines may also break within paths.
+  // Lines may also break within paths, which are long words.
   constexpr size_t kLong = 20;
+  const std::string plain = escaped(text);
   std::string shown;
-  for (const char c : escaped(text)) {
-    shown += c;
-    if (text.size() > kLong && (c == '/' || c == '_')) shown += "<wbr>";
+  for (size_t begin = 0, end = 0; begin < plain.size(); begin = end + 1) {
+    end = std::min(plain.find(' ', begin), plain.size());
+    for (size_t i = begin; i < end; ++i) {
+      shown += plain[i];
+      if (end - begin > kLong && (plain[i] == '/' || plain[i] == '_')) shown += "<wbr>";
+    }
+    if (end < plain.size()) shown += ' ';
   }
   return fmt::format("<td class=\"{}{}\" data-head=\"{}\">{}</td>", kind,
                      text.empty() || text == "-" ? " none" : "", head, shown);
