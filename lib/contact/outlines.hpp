@@ -45,13 +45,13 @@ class Outlines {
     int first, end;
     BodyIndex body;
   };
-  std::vector<Loop> loops;      ///< ascending
-  std::vector<double> x, y;     ///< present place of each vertex, m
-  std::vector<double> mx, my;   ///< direction of the bisector at each vertex
-  std::vector<double> tx, ty;   ///< unit tangent of each edge
-  std::vector<double> length;   ///< of each edge, m
-  std::vector<double> depth;    ///< of the collar at each edge: that of the body, m
-  std::vector<double> plain;    ///< of each face (geometry/integrals/collar.hpp), m
+  std::vector<Loop> loops;     ///< ascending
+  std::vector<double> x, y;    ///< present place of each vertex, m
+  std::vector<double> mx, my;  ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;  ///< unit tangent of each edge
+  std::vector<double> length;  ///< of each edge, m
+  std::vector<double> depth;   ///< of the collar at each edge: that of the body, m
+  std::vector<double> plain;   ///< of each face (geometry/integrals/collar.hpp), m
   std::vector<Box> edge_boxes;  ///< of the edges at the last search, grown by half the skin
   std::vector<Box> face_boxes;  ///< of the faces, likewise
   std::vector<Box> body_boxes;  ///< of the edges and faces of each body, likewise
@@ -139,6 +139,7 @@ class Outlines {
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
   bool move(Body& body, const Kinematics& now, const PlacedShapes& polygons);
+  [[nodiscard]] std::span<const BodyIndex> active(BodyIndex first, BodyIndex end) const;
   void require_finite() const;
   void find_edges(std::span<const BodyIndex> of);
   [[nodiscard]] bool have_tops_strayed(std::span<const BodyIndex> among) const;
