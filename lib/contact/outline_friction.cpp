@@ -145,15 +145,16 @@ APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUn
                                               Worker& worker) const {
   constexpr std::array<double, 4> kNone{};
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
-  std::array<std::array<double, 4>, kBlock> sums;
+  FourOf<PackOf<kBlock>> rows, sums;
   SlipMemory memory;
   SlipSprings springs;
+  EdgeFaceBlock::Numbers stiffness;
   double energy = 0;
   for (size_t first = 0; first < groups.size(); first += kBlock) {
     const size_t count = std::min<size_t>(kBlock, groups.size() - first);
     for (size_t l = 0; l < kBlock; ++l) {
       if (l >= count) {
-        sums[l] = kNone, memory.coefficient[l] = memory.time[l] = memory.force[l] = 0;
+        rows[l] = PackOf<kBlock>(0.), memory.coefficient[l] = memory.time[l] = memory.force[l] = 0;
         memory.stiffness[l] = 1;
         continue;
       }
@@ -162,11 +163,9 @@ APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUn
       const std::array<double, 4>* const addends =
           &worker.addends[static_cast<size_t>(group.first)];
       const std::int32_t contacts = group.end - group.first;
-      const std::array<double, 4>& second = contacts > 1 ? addends[1] : kNone;
-      for (size_t k = 0; k < 4; ++k) sums[l][k] = addends[0][k] + second[k];
-      for (std::int32_t i = 2; i < contacts; ++i) {
-        for (size_t k = 0; k < 4; ++k) sums[l][k] += addends[i][k];
-      }
+      rows[l] = PackOf<4>::load(addends[0].data()) +
+                PackOf<4>::load(contacts > 1 ? addends[1].data() : kNone.data());
+      for (std::int32_t i = 2; i < contacts; ++i) rows[l] += PackOf<4>::load(addends[i].data());
       const SpringKey key = key_of(group);
       const std::span<const Spring> before = step.before;
       while (worker.next < before.size() && is_before(before[worker.next].key, key)) ++worker.next;
@@ -177,23 +176,27 @@ APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUn
       memory.coefficient[l] = step.blocks.laws()[static_cast<size_t>(group.law)].friction;
       memory.time[l] = law_times_[static_cast<size_t>(group.law)].tangential;
       if (step.finite && !is_old) {
-        sums[l][SlipSums::rate] = damped_rate(step, unit, group, worker, sums[l]);
+        std::array<double, 4> row;
+        rows[l].store(row.data());
+        row[SlipSums::rate] = damped_rate(step, unit, group, worker, row);
+        rows[l] = PackOf<4>::load(row.data());
       }
     }
-    FourOf<PackOf<kBlock>> packs;
-    read_rows([&](int l) APOTHEM_LAMBDA { return sums[static_cast<size_t>(l)].data(); }, packs);
-    find_springs(packs, memory, step.dt, springs);
+    transpose(rows, sums);
+    sums[SlipSums::stiffness].store(stiffness.data());
+    find_springs(sums, memory, step.dt, springs);
     for (size_t l = 0; l < count; ++l) {
       const EdgeFaceGroup& group = groups[first + l];
       energy += springs.energy[l];
-      for (std::int32_t i = group.first; i < group.end; ++i) {
+      const auto share = [&](std::int32_t i) APOTHEM_LAMBDA {
         worker.friction[static_cast<size_t>(i)] = springs.friction[l];
         worker.dashpots[static_cast<size_t>(i)] = springs.dashpot[l];
-      }
+      };
+      share(group.first), share(group.end - 1);
+      for (std::int32_t i = group.first + 1; i < group.end - 1; ++i) share(i);
       if ((springs.lanes >> l & 1U) == 0) continue;
-      worker.springs.push_back({.key = key_of(group),
-                                .force = springs.force[l],
-                                .stiffness = sums[l][SlipSums::stiffness]});
+      worker.springs.push_back(
+          {.key = key_of(group), .force = springs.force[l], .stiffness = stiffness[l]});
     }
   }
   return energy;
@@ -223,22 +226,22 @@ APOTHEM_INLINE OutlineFriction::Powers OutlineFriction::pull(const Step& step,
     const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
     ((spring + dashpot) * normal).store(drag.along.data());
     drag.push = slip.push;
-    find_drags(step.blocks.touches()[i], slip, spring, dashpot, worker.forces);
+    SlipForces forces;
+    find_drags(step.blocks.touches()[i], slip, spring, dashpot, forces);
     const EdgeFaceBlock& block = step.blocks.blocks()[i];
-    const auto add_at_once = [&](std::int32_t vertex, const VertexDrag& force)
+    const auto add_at_once = [&](std::int32_t vertex, const PackOf<4>& force)
                                  APOTHEM_LAMBDA { add(force, drags_[vertex]); };
     if (!divided || !step.blocks.has_shared(i)) {
-      each_drag(block, worker.forces, add_at_once);
+      each_drag(block, forces, add_at_once);
       continue;
     }
-    each_drag(block, worker.forces,
-              [&](std::int32_t vertex, const VertexDrag& force) APOTHEM_LAMBDA {
-                if (step.blocks.is_shared(vertex)) {
-                  worker.late.emplace_back(vertex, force);
-                } else {
-                  add_at_once(vertex, force);
-                }
-              });
+    each_drag(block, forces, [&](std::int32_t vertex, const PackOf<4>& force) APOTHEM_LAMBDA {
+      if (step.blocks.is_shared(vertex)) {
+        force.store(worker.late.emplace_back(vertex, VertexDrag{}).second.data());
+      } else {
+        add_at_once(vertex, force);
+      }
+    });
   }
   return powers;
 }
@@ -302,7 +305,9 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   });
   // In the order of the units, as if one thread had worked on them.
   for (const Worker& worker : workers_) {
-    for (const auto& [vertex, force] : worker.late) add(force, drags_[vertex]);
+    for (const auto& [vertex, force] : worker.late) {
+      add(PackOf<4>::load(force.data()), drags_[vertex]);
+    }
   }
   Powers powers;
   for (const Powers& of_body : body_powers_) {

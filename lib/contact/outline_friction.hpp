@@ -84,7 +84,6 @@ class OutlineFriction {
     std::vector<double> friction, dashpots;      // likewise: forces over the normal force
     std::vector<Spring> springs;                 // of all units, ascending
     size_t next = 0;                             // among the springs of the step before
-    SlipForces forces;
     /// On vertices that other threads have forces for as well.
     std::vector<std::pair<std::int32_t, VertexDrag>> late;
   };

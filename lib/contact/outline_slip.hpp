@@ -157,8 +157,10 @@ APOTHEM_INLINE void find_springs(const FourOf<PackOf<kBlock>>& sums, const SlipM
   springs.lanes = bits(exists);
 }
 
-/// The forces of a block on its vertices, of each lane on p, q, a and b.
-using SlipForces = std::array<std::array<VertexDrag, kBlock>, 4>;
+/// The forces of a block on its vertices p, q, a and b: a pack is the VertexDrag of a lane.
+struct SlipForces {
+  FourOf<PackOf<4>> p, q, a, b;
+};
 
 /// The force along a face times the coefficients of the slip rate acts on the vertices. `friction`
 /// and `dashpot`: forces along the tangent over the normal force.
@@ -171,42 +173,40 @@ APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& sl
   const Pack tx = load(touch.tx), ty = load(touch.ty);
   const Pack friction_x = friction * tx, friction_y = friction * ty;
   const Pack dashpot_x = dashpot * tx, dashpot_y = dashpot * ty;
-  const auto put = [&](size_t vertex, const Pack& fx, const Pack& fy, const Pack& dx,
-                       const Pack& dy) APOTHEM_LAMBDA {
-    write_rows({fx, fy, dx, dy},
-               [&](int l) APOTHEM_LAMBDA { return forces[vertex][static_cast<size_t>(l)].data(); });
-  };
   const Pack at_p = load(slip.at_p), at_q = load(slip.at_q), at_b = load(slip.at_b);
   const Pack turn = load(slip.turn), push = load(slip.push), on_q = load(slip.push_at_q);
   const Pack on_p = push - on_q;
-  put(0, friction_x * at_p, friction_y * at_p, dashpot_x * at_p + on_p * ty,
-      dashpot_y * at_p - on_p * tx);
-  put(1, friction_x * at_q, friction_y * at_q, dashpot_x * at_q + on_q * ty,
-      dashpot_y * at_q - on_q * tx);
+  transpose({friction_x * at_p, friction_y * at_p, dashpot_x * at_p + on_p * ty,
+             dashpot_y * at_p - on_p * tx},
+            forces.p);
+  transpose({friction_x * at_q, friction_y * at_q, dashpot_x * at_q + on_q * ty,
+             dashpot_y * at_q - on_q * tx},
+            forces.q);
   const Pack on_b = load(touch.start) * push + load(touch.rise) * on_q;
   const Pack on_a = on_b - push, at_a = at_b - (at_p + at_q);
-  put(2, friction_x * at_a + friction_y * turn, friction_y * at_a - friction_x * turn,
-      dashpot_x * at_a + (dashpot_y * turn + on_a * ty),
-      dashpot_y * at_a - (dashpot_x * turn + on_a * tx));
-  put(3, -(friction_x * at_b + friction_y * turn), friction_x * turn - friction_y * at_b,
-      -(dashpot_x * at_b + (dashpot_y * turn + on_b * ty)),
-      dashpot_x * turn - dashpot_y * at_b + on_b * tx);
+  transpose({friction_x * at_a + friction_y * turn, friction_y * at_a - friction_x * turn,
+             dashpot_x * at_a + (dashpot_y * turn + on_a * ty),
+             dashpot_y * at_a - (dashpot_x * turn + on_a * tx)},
+            forces.a);
+  transpose({-(friction_x * at_b + friction_y * turn), friction_x * turn - friction_y * at_b,
+             -(dashpot_x * at_b + (dashpot_y * turn + on_b * ty)),
+             dashpot_x * turn - dashpot_y * at_b + on_b * tx},
+            forces.b);
 }
 
-APOTHEM_INLINE void add(const VertexDrag& force, VertexDrag& to) {
-  using Vector = PackOf<4>;
-  (Vector::load(to.data()) + Vector::load(force.data())).store(to.data());
+APOTHEM_INLINE void add(const PackOf<4>& force, VertexDrag& to) {
+  (PackOf<4>::load(to.data()) + force).store(to.data());
 }
 
-/// Calls f(vertex, VertexDrag) for each of them, one after the other because they may share
+/// Calls f(vertex, force) for each of them, one after the other because they may share
 /// vertices.
 template <class F>
 APOTHEM_INLINE void each_drag(const EdgeFaceBlock& block, const SlipForces& forces, const F& f) {
   for (size_t l = 0; l < kBlock; ++l) {
-    f(block.p[l], forces[0][l]);
-    f(block.q[l], forces[1][l]);
-    f(block.a[l], forces[2][l]);
-    f(block.b[l], forces[3][l]);
+    f(block.p[l], forces.p[l]);
+    f(block.q[l], forces.q[l]);
+    f(block.a[l], forces.a[l]);
+    f(block.b[l], forces.b[l]);
   }
 }
 
