@@ -252,7 +252,7 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
   Unit& found = units_[index] = {};
   if (unit.touching == 0) return;
   // The last block may have lanes without a spring.
-  const auto lanes = static_cast<size_t>(kBlock * (unit.end - unit.first));
+  const size_t lanes = kBlock * static_cast<size_t>(unit.end - unit.first);
   for (size_t l = lanes - kBlock; l < lanes; ++l) worker.friction[l] = worker.dashpots[l] = 0;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     find_slips(step, unit, worker);

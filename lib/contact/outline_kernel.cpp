@@ -217,7 +217,8 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
     CollarPiece<double> piece;
     CollarCrossings<double> top;
     collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
-    EdgeFaceContact& contact = edge_faces_.emplace_back(p, a, block.slope[lane], piece);
+    EdgeFaceContact& contact =
+        edge_faces_.emplace_back(EdgeFaceContact{p, a, block.slope[lane], piece});
     if (!friction_ || i >= friction_->drags().size()) return;
     contact.along = friction_->drags()[i].along[lane];
     contact.push = friction_->drags()[i].push[lane];
