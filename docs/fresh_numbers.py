@@ -53,6 +53,7 @@ class Fresh:
         self.root, self.commands, self.slow, self.options = root, commands, slow, options
         self.folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="numbers-"))
         self.done, self.files, self.speed = {}, {}, None
+        self.asked = set()  # commands that the expressions since the last `asked.clear()` have used
 
     def program(self, word):
         if word == "python3":
@@ -65,6 +66,7 @@ class Fresh:
 
     def run(self, name):
         """The output folder of a command, and what it printed."""
+        self.asked.add(name)
         if name not in self.done:
             try:
                 self.done[name] = self.execute(name)
@@ -73,6 +75,15 @@ class Fresh:
         if isinstance(self.done[name], Exception):
             raise self.done[name]
         return self.done[name]
+
+    def forget(self, names):
+        """Lets these commands run again when they are asked for, if nothing is kept."""
+        if names and not self.options.keep:
+            self.speed = None
+        for name in [] if self.options.keep else names:
+            self.done.pop(name, None)
+            self.files = {path: data for path, data in self.files.items()
+                          if not isinstance(path, pathlib.Path) or path.parent != self.folder / name}
 
     def execute(self, name):
         if name in self.commands:
