@@ -45,13 +45,13 @@ class Outlines {
     int first, end;
     BodyIndex body;
   };
-  std::vector<Loop> loops;     ///< ascending
-  std::vector<double> x, y;    ///< present place of each vertex, m
-  std::vector<double> mx, my;  ///< direction of the bisector at each vertex
-  std::vector<double> tx, ty;  ///< unit tangent of each edge
-  std::vector<double> length;  ///< of each edge, m
-  std::vector<double> depth;   ///< of the collar at each edge: that of the body, m
-  std::vector<double> plain;   ///< of each face (geometry/integrals/collar.hpp), m
+  std::vector<Loop> loops;      ///< ascending
+  std::vector<double> x, y;     ///< present place of each vertex, m
+  std::vector<double> mx, my;   ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;   ///< unit tangent of each edge
+  std::vector<double> length;   ///< of each edge, m
+  std::vector<double> depth;    ///< of the collar at each edge: that of the body, m
+  std::vector<double> plain;    ///< of each face (geometry/integrals/collar.hpp), m
   std::vector<Box> edge_boxes;  ///< of the edges at the last search, grown by half the skin
   std::vector<Box> face_boxes;  ///< of the faces, likewise
   std::vector<Box> body_boxes;  ///< of the edges and faces of each body, likewise
