@@ -53,6 +53,34 @@ void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const 
   lengths_.assign(laws_.size(), 0);
 }
 
+void EdgeFaceBlocks::divide(const Threads& threads) {
+  owners_.assign(static_cast<size_t>(outlines_.size()), kNobody);
+  has_shared_.assign(blocks_.size(), 0);
+  if (threads.count() == 1) return;
+  const auto vertices = [](const EdgeFaceBlock& block) {
+    return std::array{&block.p, &block.q, &block.a, &block.b};
+  };
+  const auto units = static_cast<int>(units_.size());
+  for (int worker = 0; worker < threads.count(); ++worker) {
+    for (int u = threads.first_of(units, worker); u < threads.first_of(units, worker + 1); ++u) {
+      for (std::int32_t i = units_[u].first; i < units_[u].end; ++i) {
+        for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
+          for (const std::int32_t v : *of) {
+            int& owner = owners_[static_cast<size_t>(v)];
+            owner = owner == kNobody || owner == worker ? worker : kSeveral;
+          }
+        }
+      }
+    }
+  }
+  for (size_t i = 0; i < blocks_.size(); ++i) {
+    for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
+      if (std::ranges::any_of(*of, [&](std::int32_t v) { return is_shared(v); }))
+        has_shared_[i] = 1;
+    }
+  }
+}
+
 void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                               std::span<const EdgeFaceLaw> laws) {
   const Outlines& o = outlines_;
@@ -60,7 +88,6 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
   EdgeFaceUnit unit{};
   unit.first = size(blocks_), unit.first_law = size(laws_), unit.first_group = size(groups_);
   unit.first_candidate = first, unit.candidates = size(candidates);
-  unit.first_vertex = o.size();
   for (size_t i = 0; i < candidates.size(); i += kBlock) {
     EdgeFaceBlock& block = blocks_.emplace_back();
     block.lanes = 0;
@@ -83,10 +110,6 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
       block.nothing[l] = repeated ? HUGE_VAL : law.self ? kNothing * o.depth[c.face] : 0;
       if (repeated) continue;
       block.lanes |= 1U << l;
-      for (const std::int32_t v : {block.p[l], block.q[l], block.a[l], block.b[l]}) {
-        unit.first_vertex = std::min(unit.first_vertex, v);
-        unit.end_vertex = std::max(unit.end_vertex, v + 1);
-      }
       const Key key = key_of(c);
       const auto lane = static_cast<std::int32_t>(i + l);
       if (size(groups_) > unit.first_group &&

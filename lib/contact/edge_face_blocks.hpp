@@ -16,6 +16,7 @@
 #include "apothem/contact/edge_face.hpp"
 #include "apothem/contact/outlines.hpp"
 #include "apothem/execution/pack.hpp"
+#include "apothem/execution/parallel.hpp"
 
 namespace apothem {
 
@@ -60,7 +61,6 @@ struct EdgeFaceUnit {
   std::int32_t candidates;
   std::int32_t first_law, end_law;
   std::int32_t first_group, end_group;
-  std::int32_t first_vertex, end_vertex;  ///< all its vertices are among these
   // Found by an evaluation:
   std::int32_t touching = 0;  ///< contacts
   double deepest = 0;         ///< square of a depth that no contact exceeds, m^2
@@ -72,10 +72,19 @@ class EdgeFaceBlocks {
 
   /// `candidates` ascend; their pairs are indices of `laws`.
   void take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws);
+  /// Finds the vertices that units of several workers have, if these divide the units.
+  void divide(const Threads& threads);
 
   [[nodiscard]] std::span<EdgeFaceUnit> units() { return units_; }
   [[nodiscard]] std::span<const EdgeFaceUnit> units() const { return units_; }
   [[nodiscard]] std::span<const EdgeFaceBlock> blocks() const { return blocks_; }
+  /// True if units of several workers have the vertex, or any vertex of a block.
+  [[nodiscard]] bool is_shared(std::int32_t vertex) const {
+    return owners_[static_cast<size_t>(vertex)] == kSeveral;
+  }
+  [[nodiscard]] bool has_shared(std::int32_t block) const {
+    return has_shared_[static_cast<size_t>(block)] != 0;
+  }
   [[nodiscard]] std::span<const EdgeFaceGroup> groups(const EdgeFaceUnit& unit) const {
     return std::span(groups_).subspan(static_cast<size_t>(unit.first_group),
                                       static_cast<size_t>(unit.end_group - unit.first_group));
@@ -124,6 +133,9 @@ class EdgeFaceBlocks {
   std::vector<EdgeFaceTouch> touches_;
   std::vector<std::uint8_t> met_;
   std::vector<double> lengths_;
+  static constexpr int kNobody = -1, kSeveral = -2;
+  std::vector<int> owners_;                  // workers, of each vertex
+  std::vector<std::uint8_t> has_shared_;     // of each block
   std::vector<std::int32_t> number_of_law_;  // of the laws of candidates, in the unit at hand
   int most_blocks_ = 0;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,21 +19,21 @@ namespace apothem {
 /// edge, then of its face. 0 where they do not meet.
 using EdgeFacePushes = std::array<FourOf<double>, kBlock>;
 
-/// Adds them to the forces on the two ends of edges, of those from `first` to `last` - 1.
+/// The forces on the two ends of an edge.
 using EndForces = std::array<double, 2>;
-APOTHEM_INLINE void add_pushes(const EdgeFaceBlock& block, const EdgeFacePushes& pushes,
-                               EndForces* ends, std::int32_t first = 0,
-                               std::int32_t last = std::numeric_limits<std::int32_t>::max()) {
+APOTHEM_INLINE void add(const EndForces& force, EndForces& to) {
   using Pair = double __attribute__((vector_size(16)));
-  const auto add = [&](std::int32_t edge, double start, double end) APOTHEM_LAMBDA {
-    if (edge < first || edge >= last) return;
-    EndForces& on = ends[edge];
-    const Pair sum = Pair{on[0], on[1]} + Pair{start, end};
-    on[0] = sum[0], on[1] = sum[1];
-  };
+  const Pair sum = Pair{to[0], to[1]} + Pair{force[0], force[1]};
+  to[0] = sum[0], to[1] = sum[1];
+}
+
+/// Calls f(edge, EndForces) for the edges of a block and the bases of its faces.
+template <class F>
+APOTHEM_INLINE void each_push(const EdgeFaceBlock& block, const EdgeFacePushes& pushes,
+                              const F& f) {
   for (size_t l = 0; l < kBlock; ++l) {
-    add(block.p[l], pushes[l][0], pushes[l][1]);
-    add(block.a[l], pushes[l][2], pushes[l][3]);
+    f(block.p[l], EndForces{pushes[l][0], pushes[l][1]});
+    f(block.a[l], EndForces{pushes[l][2], pushes[l][3]});
   }
 }
 

@@ -119,9 +119,14 @@ class FrictionMemory {
     energy_ += spring.energy();
     if (!spring.accounted) balanced_ += spring.energy();
   }
-  /// Keeps springs that are not accounted and store `energy` together, J; in ascending order.
-  void keep(std::span<const Spring> springs, double energy) {
-    now_.insert(now_.end(), springs.begin(), springs.end());
+  /// Keeps springs that are not accounted and store `energy` together, J; in ascending order. What
+  /// the list holds afterwards is of no use.
+  void keep(std::vector<Spring>& springs, double energy) {
+    if (now_.empty()) {
+      now_.swap(springs);
+    } else {
+      now_.insert(now_.end(), springs.begin(), springs.end());
+    }
     energy_ += energy;
     balanced_ += energy;
   }

@@ -11,10 +11,18 @@
 namespace apothem {
 namespace {
 
-constexpr double kSlipTime = 100, kDragTime = 30, kVelocityTime = 5;  // ns
+constexpr double kSlipTime = 100, kVelocityTime = 5;  // ns
 
-SpringKey key_of(const EdgeFaceGroup& group) {
+APOTHEM_INLINE SpringKey key_of(const EdgeFaceGroup& group) {
   return {outline_kernel, group.edge, group.partner, 0};
+}
+
+// Of two keys of this law.
+APOTHEM_INLINE bool is_before(const SpringKey& one, const SpringKey& other) {
+  const auto number = [](const SpringKey& key) APOTHEM_LAMBDA {
+    return static_cast<std::uint64_t>(key.a) << 32 | static_cast<std::uint32_t>(key.b);
+  };
+  return number(one) < number(other);
 }
 
 }  // namespace
@@ -94,116 +102,162 @@ void OutlineFriction::find_times(const Step& step) {
   }
 }
 
-// Finds the spring and the dashpot along the face of the contacts of a spring.
-void OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, const EdgeFaceGroup& group,
-                             Worker& worker, Unit& found) {
-  const EdgeFaceLaw& law = step.blocks.laws()[static_cast<size_t>(group.law)];
-  // Most springs have one contact or two: these are summed without a branch.
-  constexpr std::array<double, 4> kNone{};
-  const std::array<double, 4>* const addends = &worker.addends[static_cast<size_t>(group.first)];
-  const std::int32_t count = group.end - group.first;
-  const std::array<double, 4>& second = count > 1 ? addends[1] : kNone;
-  std::array<double, 4> sums;
-  for (size_t k = 0; k < 4; ++k) sums[k] = addends[0][k] + second[k];
-  for (std::int32_t i = 2; i < count; ++i) {
-    for (size_t k = 0; k < 4; ++k) sums[k] += addends[i][k];
+// The slip rate of contact that has closed within a long step, N m/s: what came before is no slip.
+double OutlineFriction::damped_rate(const Step& step, const EdgeFaceUnit& unit,
+                                    const EdgeFaceGroup& group, const Worker& worker,
+                                    const std::array<double, 4>& sums) {
+  double approach = 0, width = 0, depth = 0;
+  for (std::int32_t i = group.first; i < group.end; ++i) {
+    const std::int32_t block = unit.first + i / kBlock;
+    const auto lane = static_cast<size_t>(i % kBlock);
+    if ((step.blocks.met()[block] >> lane & 1U) == 0) continue;
+    const EdgeFaceTouch& touch = step.blocks.touches()[block];
+    approach += worker.slips[static_cast<size_t>(i / kBlock)].approach[lane];
+    width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
+    depth += touch.sum[lane] * touch.edge_length[lane];
   }
-  const double normal = sums[SlipSums::normal];
-  if (!(law.friction > 0 && normal > 0)) return;
-  const SpringKey key = key_of(group);
-  while (worker.next < step.before.size() && step.before[worker.next].key < key) ++worker.next;
-  const bool is_old = worker.next < step.before.size() && step.before[worker.next].key == key;
-  const Spring* const before = is_old ? &step.before[worker.next] : nullptr;
-
-  double rate = sums[SlipSums::rate];
-  if (step.finite && !before) {
-    // Contact that has closed within a long step: what came before is no slip.
-    double approach = 0, width = 0, depth = 0;
-    for (std::int32_t i = group.first; i < group.end; ++i) {
-      const EdgeFaceTouch& touch = step.blocks.touches()[unit.first + i / kBlock];
-      const size_t lane = static_cast<size_t>(i % kBlock);
-      approach += worker.slips[static_cast<size_t>(i / kBlock)].approach[lane];
-      width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
-      depth += touch.sum[lane] * touch.edge_length[lane];
-    }
-    if (approach / normal * step.dt > depth / width) {
-      rate *= depth / width / (approach / normal * step.dt);
-    }
-  }
-  Spring& spring = worker.springs.emplace_back(Spring{.key = key});
-  spring.stiffness = sums[SlipSums::stiffness];
-  // New contact joins without a slip of its own; contact that ends takes its share along.
-  const double force =
-      before ? before->force * std::min(1., spring.stiffness / before->stiffness) : 0;
-  const double limit = law.friction * std::max(normal + sums[SlipSums::push], 0.);
-  const double per_normal = 1 / normal, slip = rate * per_normal;  // m/s
-  spring.force = apothem::slide(force, slip * step.dt, spring.stiffness, limit);
-  found.energy += spring.energy();
-  double dashpot = 0;
-  const double time = law_times_[static_cast<size_t>(group.law)].tangential;
-  if (time > 0) {
-    const double resists = spring.force - time * spring.stiffness * slip;
-    dashpot = std::clamp(resists, -limit, limit) - spring.force;
-  }
-  const std::array<double, 2> share{spring.force * per_normal, dashpot * per_normal};
-  std::array<double, 2>* const shares = &worker.shares[static_cast<size_t>(group.first)];
-  shares[0] = shares[count - 1] = share;
-  for (std::int32_t i = 1; i < count - 1; ++i) shares[i] = share;
+  const double closed = approach / sums[SlipSums::normal] * step.dt;
+  return sums[SlipSums::rate] * (closed > depth / width ? depth / width / closed : 1);
 }
 
-// `keep_forces`: several threads work, and the forces are added to those on the vertices later.
-void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool keep_forces) {
+// What does not depend on springs.
+APOTHEM_INLINE void OutlineFriction::find_slips(const Step& step, const EdgeFaceUnit& unit,
+                                                Worker& worker) const {
+  for (std::int32_t i = unit.first; i < unit.end; ++i) {
+    const auto k = static_cast<size_t>(i - unit.first);
+    if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) {
+      std::fill_n(&worker.addends[kBlock * k], kBlock, std::array<double, 4>{});
+      continue;
+    }
+    const EdgeFaceBlock& block = step.blocks.blocks()[i];
+    std::array<double, kBlock> times;
+    for (size_t l = 0; step.dashpots && l < kBlock; ++l) {
+      times[l] = law_times_[static_cast<size_t>(block.law[l])].normal;
+    }
+    find_slip(block, step.blocks.touches()[i], velocities_, step.dashpots ? &times : nullptr,
+              worker.slips[k], &worker.addends[kBlock * k]);
+  }
+}
+
+// Finds the springs and the dashpots along faces, four at a time. Returns the energy of the
+// springs, J.
+APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
+                                              Worker& worker) const {
+  constexpr std::array<double, 4> kNone{};
+  const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
+  FourOf<PackOf<kBlock>> rows, sums;
+  SlipMemory memory;
+  SlipSprings springs;
+  EdgeFaceBlock::Numbers stiffness;
+  double energy = 0;
+  for (size_t first = 0; first < groups.size(); first += kBlock) {
+    const size_t count = std::min<size_t>(kBlock, groups.size() - first);
+    for (size_t l = 0; l < kBlock; ++l) {
+      if (l >= count) {
+        rows[l] = PackOf<kBlock>(0.), memory.coefficient[l] = memory.time[l] = memory.force[l] = 0;
+        memory.stiffness[l] = 1;
+        continue;
+      }
+      const EdgeFaceGroup& group = groups[first + l];
+      // Most springs have one contact or two: these are summed without a branch.
+      const std::array<double, 4>* const addends =
+          &worker.addends[static_cast<size_t>(group.first)];
+      const std::int32_t contacts = group.end - group.first;
+      rows[l] = PackOf<4>::load(addends[0].data()) +
+                PackOf<4>::load(contacts > 1 ? addends[1].data() : kNone.data());
+      for (std::int32_t i = 2; i < contacts; ++i) rows[l] += PackOf<4>::load(addends[i].data());
+      const SpringKey key = key_of(group);
+      const std::span<const Spring> before = step.before;
+      while (worker.next < before.size() && is_before(before[worker.next].key, key)) ++worker.next;
+      const bool is_old = worker.next < before.size() && before[worker.next].key.a == key.a &&
+                          before[worker.next].key.b == key.b;
+      memory.force[l] = is_old ? before[worker.next].force : 0;
+      memory.stiffness[l] = is_old ? before[worker.next].stiffness : 1;
+      memory.coefficient[l] = step.blocks.laws()[static_cast<size_t>(group.law)].friction;
+      memory.time[l] = law_times_[static_cast<size_t>(group.law)].tangential;
+      if (step.finite && !is_old) {
+        std::array<double, 4> row;
+        rows[l].store(row.data());
+        row[SlipSums::rate] = damped_rate(step, unit, group, worker, row);
+        rows[l] = PackOf<4>::load(row.data());
+      }
+    }
+    transpose(rows, sums);
+    sums[SlipSums::stiffness].store(stiffness.data());
+    find_springs(sums, memory, step.dt, springs);
+    for (size_t l = 0; l < count; ++l) {
+      const EdgeFaceGroup& group = groups[first + l];
+      energy += springs.energy[l];
+      const auto share = [&](std::int32_t i) APOTHEM_LAMBDA {
+        worker.friction[static_cast<size_t>(i)] = springs.friction[l];
+        worker.dashpots[static_cast<size_t>(i)] = springs.dashpot[l];
+      };
+      share(group.first), share(group.end - 1);
+      for (std::int32_t i = group.first + 1; i < group.end - 1; ++i) share(i);
+      if ((springs.lanes >> l & 1U) == 0) continue;
+      worker.springs.push_back(
+          {.key = key_of(group), .force = springs.force[l], .stiffness = stiffness[l]});
+    }
+  }
+  return energy;
+}
+
+// Adds the forces on the vertices. Returns the powers of these forces.
+APOTHEM_INLINE OutlineFriction::Powers OutlineFriction::pull(const Step& step,
+                                                             const EdgeFaceUnit& unit,
+                                                             Worker& worker, bool divided) {
+  using Pack = PackOf<kBlock>;
+  Powers powers;
+  for (std::int32_t i = unit.first; i < unit.end; ++i) {
+    if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
+    const auto k = static_cast<size_t>(i - unit.first);
+    const OutlineSlip& slip = worker.slips[k];
+    const Pack spring = Pack::load(&worker.friction[kBlock * k]);
+    const Pack dashpot = Pack::load(&worker.dashpots[kBlock * k]);
+    const Pack rate = Pack::load(slip.rate.data());
+    EdgeFaceBlock::Numbers friction, damping;  // W
+    (spring * rate).store(friction.data());
+    (dashpot * rate + Pack::load(slip.push_power.data())).store(damping.data());
+    for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+      powers.friction += friction[l];
+      powers.damping += damping[l];
+    }
+    BlockDrag& drag = block_drags_[static_cast<size_t>(i)];
+    const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
+    ((spring + dashpot) * normal).store(drag.along.data());
+    drag.push = slip.push;
+    SlipForces forces;
+    find_drags(step.blocks.touches()[i], slip, spring, dashpot, forces);
+    const EdgeFaceBlock& block = step.blocks.blocks()[i];
+    const auto add_at_once = [&](std::int32_t vertex, const PackOf<4>& force)
+                                 APOTHEM_LAMBDA { add(force, drags_[vertex]); };
+    if (!divided || !step.blocks.has_shared(i)) {
+      each_drag(block, forces, add_at_once);
+      continue;
+    }
+    each_drag(block, forces, [&](std::int32_t vertex, const PackOf<4>& force) APOTHEM_LAMBDA {
+      if (step.blocks.is_shared(vertex)) {
+        force.store(worker.late.emplace_back(vertex, VertexDrag{}).second.data());
+      } else {
+        add_at_once(vertex, force);
+      }
+    });
+  }
+  return powers;
+}
+
+// `divided`: several threads work. Forces on vertices that two of them have are added later.
+void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool divided) {
   const EdgeFaceUnit& unit = step.blocks.units()[index];
   Unit& found = units_[index] = {};
   if (unit.touching == 0) return;
-  const auto blocks = static_cast<size_t>(unit.end - unit.first);
-  worker.addends.assign(kBlock * blocks, {});
-  worker.shares.assign(kBlock * blocks, {});
-  const auto touches = [&](size_t i) {
-    return (step.blocks.met()[unit.first + i] & EdgeFaceBlocks::kContacts) != 0;
-  };
+  // The last block may have lanes without a spring.
+  const size_t lanes = kBlock * static_cast<size_t>(unit.end - unit.first);
+  for (size_t l = lanes - kBlock; l < lanes; ++l) worker.friction[l] = worker.dashpots[l] = 0;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    for (size_t i = 0; i < blocks; ++i) {
-      if (!touches(i)) continue;
-      const EdgeFaceBlock& block = step.blocks.blocks()[unit.first + i];
-      std::array<double, kBlock> times;
-      for (size_t l = 0; step.dashpots && l < kBlock; ++l) {
-        times[l] = law_times_[static_cast<size_t>(block.law[l])].normal;
-      }
-      find_slip(block, step.blocks.touches()[unit.first + i], velocities_,
-                step.dashpots ? &times : nullptr, worker.slips[i], &worker.addends[kBlock * i]);
-    }
-    return 0.;
-  });
-  for (const EdgeFaceGroup& group : step.blocks.groups(unit)) {
-    follow(step, unit, group, worker, found);
-  }
-  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    using Pack = PackOf<kBlock>;
-    for (size_t i = 0; i < blocks; ++i) {
-      if (!touches(i)) continue;
-      const auto at = static_cast<size_t>(unit.first) + i;
-      const OutlineSlip& slip = worker.slips[i];
-      const auto share = [&](size_t number) APOTHEM_LAMBDA {
-        return pack_of<kBlock>(
-            [&](size_t l) APOTHEM_LAMBDA { return worker.shares[kBlock * i + l][number]; });
-      };
-      const Pack spring = share(0), dashpot = share(1), rate = Pack::load(slip.rate.data());
-      EdgeFaceBlock::Numbers friction, damping;  // W
-      (spring * rate).store(friction.data());
-      (dashpot * rate + Pack::load(slip.push_power.data())).store(damping.data());
-      for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
-        found.powers.friction += friction[l];
-        found.powers.damping += damping[l];
-      }
-      BlockDrag& drag = block_drags_[at];
-      const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
-      ((spring + dashpot) * normal).store(drag.along.data());
-      drag.push = slip.push;
-      SlipForces& forces = keep_forces ? forces_[at] : worker.forces;
-      find_drags(step.blocks.touches()[at], slip, spring, dashpot, forces);
-      if (!keep_forces) add_drags(step.blocks.blocks()[at], forces, drags_.data());
-    }
+    find_slips(step, unit, worker);
+    found.energy = follow(step, unit, worker);
+    found.powers = pull(step, unit, worker, divided);
     return 0.;
   });
 }
@@ -231,13 +285,15 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   block_drags_.resize(blocks.blocks().size());
   for (Worker& worker : workers_) {
     const auto most = static_cast<size_t>(blocks.most_blocks());
-    if (worker.slips.size() < most) worker.slips.resize(most);
-    worker.springs.clear();
+    if (worker.slips.size() < most) {
+      worker.slips.resize(most), worker.addends.resize(kBlock * most);
+      worker.friction.resize(kBlock * most), worker.dashpots.resize(kBlock * most);
+    }
+    worker.springs.clear(), worker.late.clear();
   }
   const auto units = static_cast<int>(blocks.units().size());
   const double per_unit = static_cast<double>(blocks.blocks().size()) / std::max(units, 1);
-  const bool shared = threads_.worth(units, kSlipTime * per_unit);
-  if (shared) forces_.resize(blocks.blocks().size());
+  const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
     Worker& worker = workers_[static_cast<size_t>(number)];
     if (first == end) return;
@@ -245,21 +301,13 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
     const auto place =
         std::ranges::lower_bound(step.before, key_of(groups.front()), {}, &Spring::key);
     worker.next = static_cast<size_t>(place - step.before.begin());
-    for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, shared);
+    for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, divided);
   });
-  if (shared) {
-    threads_.chunks(
-        o.size(), kDragTime * per_unit * units / o.size(), [&](int first, int end, int) {
-          for (const EdgeFaceUnit& unit : blocks.units()) {
-            if (unit.end_vertex <= first || unit.first_vertex >= end || unit.touching == 0)
-              continue;
-            for (std::int32_t i = unit.first; i < unit.end; ++i) {
-              if ((blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
-              add_drags(blocks.blocks()[i], forces_[static_cast<size_t>(i)], drags_.data(), first,
-                        end);
-            }
-          }
-        });
+  // In the order of the units, as if one thread had worked on them.
+  for (const Worker& worker : workers_) {
+    for (const auto& [vertex, force] : worker.late) {
+      add(PackOf<4>::load(force.data()), drags_[vertex]);
+    }
   }
   Powers powers;
   for (const Powers& of_body : body_powers_) {
@@ -272,7 +320,7 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
     powers.damping += unit.powers.damping;
     energy += unit.energy;
   }
-  for (const Worker& worker : workers_) {
+  for (Worker& worker : workers_) {
     memory.keep(worker.springs, energy);
     energy = 0;
   }

@@ -81,17 +81,23 @@ class OutlineFriction {
   struct Worker {
     std::vector<OutlineSlip> slips;              // of the blocks of a unit
     std::vector<std::array<double, 4>> addends;  // of its lanes: see SlipSums
-    std::vector<std::array<double, 2>> shares;   // likewise: of friction and dashpots
+    std::vector<double> friction, dashpots;      // likewise: forces over the normal force
     std::vector<Spring> springs;                 // of all units, ascending
     size_t next = 0;                             // among the springs of the step before
-    SlipForces forces;
+    /// On vertices that other threads have forces for as well.
+    std::vector<std::pair<std::int32_t, VertexDrag>> late;
   };
 
   Powers begin(BodyIndex body, const Kinematics& now, const Step& step);
   void find_times(const Step& step);
-  void slide_unit(const Step& step, size_t index, Worker& worker, bool keep_forces);
-  void follow(const Step& step, const EdgeFaceUnit& unit, const EdgeFaceGroup& group,
-              Worker& worker, Unit& found);
+  void slide_unit(const Step& step, size_t index, Worker& worker, bool divided);
+  [[nodiscard]] static double damped_rate(const Step& step, const EdgeFaceUnit& unit,
+                                          const EdgeFaceGroup& group, const Worker& worker,
+                                          const std::array<double, 4>& sums);
+  void find_slips(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const;
+  [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const;
+  [[nodiscard]] Powers pull(const Step& step, const EdgeFaceUnit& unit, Worker& worker,
+                            bool divided);
 
   const Outlines& outlines_;
   bool damped_;
@@ -111,7 +117,6 @@ class OutlineFriction {
   std::vector<Powers> body_powers_;  // of the forces of the step before
   std::vector<Unit> units_;
   std::vector<Worker> workers_;
-  std::vector<SlipForces> forces_;  // of each block, where several threads work
 };
 
 }  // namespace apothem

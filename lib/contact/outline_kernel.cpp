@@ -9,9 +9,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kMeetTime = 80, kPushTime = 20, kForceTime = 4;  // ns
-constexpr double kInsideTop = 2;     // share of a contact that is not with a face
-constexpr double kAbove = 1 + 1e-9;  // of bounds
+constexpr double kMeetTime = 80, kForceTime = 4;  // ns
+constexpr double kInsideTop = 2;                  // share of a contact that is not with a face
+constexpr double kAbove = 1 + 1e-9;               // of bounds
 
 }  // namespace
 
@@ -23,7 +23,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       slopes_{outlines, table, thickness},
       threads_(threads),
       blocks_(outlines),
-      crossings_(static_cast<size_t>(threads_.count())),
+      workers_(static_cast<size_t>(threads_.count())),
       plateaus_(outlines),
       depths_(outlines),
       onset_(outlines, slopes_) {
@@ -44,6 +44,7 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
   }
   std::sort(candidates_.begin(), candidates_.end());
   blocks_.take(candidates_, laws_);
+  blocks_.divide(threads_);
   plateaus_.take(pairs);
 }
 
@@ -111,53 +112,43 @@ void OutlineKernel::evaluate(std::vector<Contact>& /*contacts*/) {
   depths_.forget();
   o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
   plateaus_.begin();
-  for (EdgeFaceCrossings& crossings : crossings_) crossings.clear();
-  if (threads_.worth(static_cast<int>(blocks_.blocks().size()), kMeetTime)) {
-    meet_on_threads();
-  } else {
+  for (Worker& worker : workers_) worker.crossings.clear(), worker.late.clear();
+  const std::span<EdgeFaceUnit> units = blocks_.units();
+  const auto count = static_cast<int>(units.size());
+  const double of_unit =
+      kMeetTime * static_cast<double>(blocks_.blocks().size()) / std::max(count, 1);
+  const bool divided = threads_.worth(count, of_unit);
+  threads_.chunks(count, of_unit, [&](int first, int end, int number) {
+    Worker& worker = workers_[static_cast<size_t>(number)];
+    const auto push = [&](std::int32_t i, const EdgeFacePushes& pushes) APOTHEM_LAMBDA {
+      const EdgeFaceBlock& block = blocks_.blocks()[i];
+      const auto add_at_once = [&](std::int32_t edge, const EndForces& force)
+                                   APOTHEM_LAMBDA { add(force, ends_[edge]); };
+      if (!divided || !blocks_.has_shared(i)) {
+        each_push(block, pushes, add_at_once);
+        return;
+      }
+      each_push(block, pushes, [&](std::int32_t edge, const EndForces& force) APOTHEM_LAMBDA {
+        if (blocks_.is_shared(edge)) {
+          worker.late.emplace_back(edge, force);
+        } else {
+          add_at_once(edge, force);
+        }
+      });
+    };
     with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-      for (EdgeFaceUnit& unit : blocks_.units()) {
-        find_meetings(o, blocks_, unit, crossings_[0],
-                      [&](std::int32_t i, const EdgeFacePushes& pushes) APOTHEM_LAMBDA {
-                        add_pushes(blocks_.blocks()[i], pushes, ends_.data());
-                      });
+      for (int u = first; u < end; ++u) {
+        find_meetings(o, blocks_, units[static_cast<size_t>(u)], worker.crossings, push);
       }
       return 0.;
     });
-  }
-  for (const EdgeFaceCrossings& of_thread : crossings_) {
-    for (const auto& [pair, top] : of_thread) plateaus_.add(pair, top);
+  });
+  // In the order of the units, as if one thread had worked on them.
+  for (const Worker& worker : workers_) {
+    for (const auto& [edge, force] : worker.late) add(force, ends_[edge]);
+    for (const auto& [pair, top] : worker.crossings) plateaus_.add(pair, top);
   }
   add_plateaus();
-}
-
-// Every thread adds the forces on some vertices, for each of them in the order of the candidates.
-void OutlineKernel::meet_on_threads() {
-  const Outlines& o = outlines_;
-  const std::span<EdgeFaceUnit> units = blocks_.units();
-  const double blocks = static_cast<double>(blocks_.blocks().size());  // of a unit, and a vertex
-  pushes_.resize(blocks_.blocks().size());
-  threads_.chunks(static_cast<int>(units.size()),
-                  kMeetTime * blocks / static_cast<double>(units.size()),
-                  [&](int first, int end, int worker) {
-                    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-                      for (int u = first; u < end; ++u) {
-                        find_meetings(o, blocks_, units[u], crossings_[static_cast<size_t>(worker)],
-                                      [&](std::int32_t i, const EdgeFacePushes& pushes)
-                                          APOTHEM_LAMBDA { pushes_[i] = pushes; });
-                      }
-                      return 0.;
-                    });
-                  });
-  threads_.chunks(o.size(), kPushTime * blocks / o.size(), [&](int first, int end, int) {
-    for (const EdgeFaceUnit& unit : units) {
-      if (unit.end_vertex <= first || unit.first_vertex >= end) continue;
-      for (std::int32_t i = unit.first; i < unit.end; ++i) {
-        if (blocks_.met()[i] == 0) continue;
-        add_pushes(blocks_.blocks()[i], pushes_[i], ends_.data(), first, end);
-      }
-    }
-  });
 }
 
 // An edge inside the top of a body is a contact with that body.
@@ -226,7 +217,8 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
     CollarPiece<double> piece;
     CollarCrossings<double> top;
     collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
-    EdgeFaceContact& contact = edge_faces_.emplace_back(p, a, block.slope[lane], piece);
+    EdgeFaceContact& contact =
+        edge_faces_.emplace_back(EdgeFaceContact{p, a, block.slope[lane], piece});
     if (!friction_ || i >= friction_->drags().size()) return;
     contact.along = friction_->drags()[i].along[lane];
     contact.push = friction_->drags()[i].push[lane];

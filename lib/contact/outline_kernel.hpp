@@ -80,7 +80,6 @@ class OutlineKernel final : public Kernel {
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
-  void meet_on_threads();
   void add_plateaus();
   [[nodiscard]] Vec2 normal_force(int vertex) const;
   [[nodiscard]] Vec2 force(int vertex) const;
@@ -95,9 +94,13 @@ class OutlineKernel final : public Kernel {
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // of these
   std::vector<int> near_edges_, near_faces_;
-  EdgeFaceBlocks blocks_;                            // of the candidates
-  std::vector<EdgeFaceCrossings> crossings_;         // that each thread has found
-  std::vector<EdgeFacePushes> pushes_;               // of each block, where several threads work
+  EdgeFaceBlocks blocks_;  // of the candidates
+  /// What a thread finds, and its forces on edges that other threads have forces for as well.
+  struct Worker {
+    EdgeFaceCrossings crossings;
+    std::vector<std::pair<std::int32_t, EndForces>> late;
+  };
+  std::vector<Worker> workers_;
   mutable std::vector<EdgeFaceContact> edge_faces_;  // if they have been asked for
   mutable bool listed_ = false;                      // whether they have
   std::vector<EndForces> ends_;  // force of each edge on its two ends, along its inward normal, N

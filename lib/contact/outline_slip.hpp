@@ -113,8 +113,54 @@ APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& t
              [&](int l) APOTHEM_LAMBDA { return addends[l].data(); });
 }
 
-/// The forces of a block on its vertices, of each lane on p, q, a and b.
-using SlipForces = std::array<std::array<VertexDrag, kBlock>, 4>;
+/// Springs and dashpots along faces, and the forces in them over the normal force.
+struct SlipSprings {
+  using Numbers = EdgeFaceBlock::Numbers;
+  Numbers force, energy;      ///< of the springs, N and J
+  Numbers friction, dashpot;  ///< forces over the normal force
+  unsigned lanes;             ///< one bit for each that has a spring
+};
+
+/// What is known of springs before a step, four at a time.
+struct SlipMemory {
+  using Numbers = EdgeFaceBlock::Numbers;
+  Numbers force, stiffness;  ///< in the step before, N and N/m; of new ones 0 and 1
+  Numbers coefficient;       ///< of friction
+  Numbers time;              ///< strength of the dashpots along the face, s
+};
+
+/// Finds springs and dashpots after a slip of dt (s). `sums` are SlipSums.
+APOTHEM_INLINE void find_springs(const FourOf<PackOf<kBlock>>& sums, const SlipMemory& memory,
+                                 double dt, SlipSprings& springs) {
+  using Pack = PackOf<kBlock>;
+  const Pack zero(0.), one(1.);
+  const Pack &normal = sums[SlipSums::normal], &stiffness = sums[SlipSums::stiffness];
+  const Pack mu = Pack::load(memory.coefficient.data()), time = Pack::load(memory.time.data());
+  const auto exists = (mu > zero) & (normal > zero);
+  const Pack above = normal + sums[SlipSums::push];
+  const Pack limit = mu * select(above < zero, zero, above);
+  const auto clamped = [&](const Pack& force) APOTHEM_LAMBDA {
+    return select(force < -limit, -limit, select(limit < force, limit, force));
+  };
+  // New contact joins without a slip of its own; contact that ends takes its share along.
+  const Pack ratio = stiffness / Pack::load(memory.stiffness.data());
+  const Pack before = Pack::load(memory.force.data()) * select(ratio < one, ratio, one);
+  const Pack per_normal = one / normal, slip = sums[SlipSums::rate] * per_normal;  // m/s
+  const Pack force = clamped(before - stiffness * (slip * Pack(dt)));
+  const Pack resisting = clamped(force - time * stiffness * slip) - force;
+  const Pack dashpot = select(time > zero, resisting, zero);
+  const Pack energy = select(stiffness > zero, force * force / (Pack(2.) * stiffness), zero);
+  const auto put = [&](OutlineSlip::Numbers& numbers, const Pack& number)
+                       APOTHEM_LAMBDA { select(exists, number, zero).store(numbers.data()); };
+  put(springs.force, force), put(springs.energy, energy);
+  put(springs.friction, force * per_normal), put(springs.dashpot, dashpot * per_normal);
+  springs.lanes = bits(exists);
+}
+
+/// The forces of a block on its vertices p, q, a and b: a pack is the VertexDrag of a lane.
+struct SlipForces {
+  FourOf<PackOf<4>> p, q, a, b;
+};
 
 /// The force along a face times the coefficients of the slip rate acts on the vertices. `friction`
 /// and `dashpot`: forces along the tangent over the normal force.
@@ -127,44 +173,40 @@ APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& sl
   const Pack tx = load(touch.tx), ty = load(touch.ty);
   const Pack friction_x = friction * tx, friction_y = friction * ty;
   const Pack dashpot_x = dashpot * tx, dashpot_y = dashpot * ty;
-  const auto put = [&](size_t vertex, const Pack& fx, const Pack& fy, const Pack& dx,
-                       const Pack& dy) APOTHEM_LAMBDA {
-    write_rows({fx, fy, dx, dy},
-               [&](int l) APOTHEM_LAMBDA { return forces[vertex][static_cast<size_t>(l)].data(); });
-  };
   const Pack at_p = load(slip.at_p), at_q = load(slip.at_q), at_b = load(slip.at_b);
   const Pack turn = load(slip.turn), push = load(slip.push), on_q = load(slip.push_at_q);
   const Pack on_p = push - on_q;
-  put(0, friction_x * at_p, friction_y * at_p, dashpot_x * at_p + on_p * ty,
-      dashpot_y * at_p - on_p * tx);
-  put(1, friction_x * at_q, friction_y * at_q, dashpot_x * at_q + on_q * ty,
-      dashpot_y * at_q - on_q * tx);
+  transpose({friction_x * at_p, friction_y * at_p, dashpot_x * at_p + on_p * ty,
+             dashpot_y * at_p - on_p * tx},
+            forces.p);
+  transpose({friction_x * at_q, friction_y * at_q, dashpot_x * at_q + on_q * ty,
+             dashpot_y * at_q - on_q * tx},
+            forces.q);
   const Pack on_b = load(touch.start) * push + load(touch.rise) * on_q;
   const Pack on_a = on_b - push, at_a = at_b - (at_p + at_q);
-  put(2, friction_x * at_a + friction_y * turn, friction_y * at_a - friction_x * turn,
-      dashpot_x * at_a + (dashpot_y * turn + on_a * ty),
-      dashpot_y * at_a - (dashpot_x * turn + on_a * tx));
-  put(3, -(friction_x * at_b + friction_y * turn), friction_x * turn - friction_y * at_b,
-      -(dashpot_x * at_b + (dashpot_y * turn + on_b * ty)),
-      dashpot_x * turn - dashpot_y * at_b + on_b * tx);
+  transpose({friction_x * at_a + friction_y * turn, friction_y * at_a - friction_x * turn,
+             dashpot_x * at_a + (dashpot_y * turn + on_a * ty),
+             dashpot_y * at_a - (dashpot_x * turn + on_a * tx)},
+            forces.a);
+  transpose({-(friction_x * at_b + friction_y * turn), friction_x * turn - friction_y * at_b,
+             -(dashpot_x * at_b + (dashpot_y * turn + on_b * ty)),
+             dashpot_x * turn - dashpot_y * at_b + on_b * tx},
+            forces.b);
 }
 
-/// Adds them to those of the vertices from `first` to `last` - 1, one after the other because they
-/// may share vertices.
-APOTHEM_INLINE void add_drags(const EdgeFaceBlock& block, const SlipForces& forces,
-                              VertexDrag* drags, std::int32_t first = 0,
-                              std::int32_t last = std::numeric_limits<std::int32_t>::max()) {
-  const auto add = [&](std::int32_t vertex, const VertexDrag& force) APOTHEM_LAMBDA {
-    if (vertex < first || vertex >= last) return;
-    using Vector = PackOf<4>;
-    double* const to = drags[vertex].data();
-    (Vector::load(to) + Vector::load(force.data())).store(to);
-  };
+APOTHEM_INLINE void add(const PackOf<4>& force, VertexDrag& to) {
+  (PackOf<4>::load(to.data()) + force).store(to.data());
+}
+
+/// Calls f(vertex, force) for each of them, one after the other because they may share
+/// vertices.
+template <class F>
+APOTHEM_INLINE void each_drag(const EdgeFaceBlock& block, const SlipForces& forces, const F& f) {
   for (size_t l = 0; l < kBlock; ++l) {
-    add(block.p[l], forces[0][l]);
-    add(block.q[l], forces[1][l]);
-    add(block.a[l], forces[2][l]);
-    add(block.b[l], forces[3][l]);
+    f(block.p[l], forces.p[l]);
+    f(block.q[l], forces.q[l]);
+    f(block.a[l], forces.a[l]);
+    f(block.b[l], forces.b[l]);
   }
 }
 

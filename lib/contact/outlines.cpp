@@ -14,6 +14,7 @@ namespace apothem {
 namespace {
 
 constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
+constexpr int kTogether = 16;    // bodies, so that what is known of them stays in the cache
 constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
 
 void include(Box& box, const Box& other) {
@@ -192,19 +193,25 @@ void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const 
   std::atomic<bool> strayed = kept_.x.empty();
   const int count = static_cast<int>(bodies.size());
   const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
-  threads.chunks(count, kMoveTime * vertices, [&](int first, int end, int) {
-    for (int b = first; b < end; ++b) {
+  const auto place_some = [&](BodyIndex first, BodyIndex end) {
+    for (BodyIndex b = first; b < end; ++b) {
       if (!move(bodies[b], now, polygons)) strayed = true;
     }
+    const std::span<const BodyIndex> part = active(first, end);
+    find_edges(part);
+    if (!strayed && have_tops_strayed(part)) strayed = true;
+  };
+  threads.chunks(count, (kMoveTime + kEdgeTime) * vertices, [&](int first, int end, int) {
+    for (int b = first; b < end; b += kTogether) place_some(b, std::min(b + kTogether, end));
   });
   if (strayed) require_finite();
-  threads.chunks(static_cast<int>(active_.size()), kEdgeTime * vertices,
-                 [&](int first, int end, int) {
-                   const std::span part = active().subspan(first, end - first);
-                   find_edges(part);
-                   if (!strayed && have_tops_strayed(part)) strayed = true;
-                 });
   strayed_ = strayed;
+}
+
+// The active bodies from `first` to `end` - 1.
+std::span<const BodyIndex> Outlines::active(BodyIndex first, BodyIndex end) const {
+  const auto from = std::ranges::lower_bound(active_, first);
+  return {from, std::lower_bound(from, active_.end(), end)};
 }
 
 // False if a vertex is not near where it was at the last search, or not at a finite place.

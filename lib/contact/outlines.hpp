@@ -139,6 +139,7 @@ class Outlines {
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
   void close_body(const Body& body);
   bool move(Body& body, const Kinematics& now, const PlacedShapes& polygons);
+  [[nodiscard]] std::span<const BodyIndex> active(BodyIndex first, BodyIndex end) const;
   void require_finite() const;
   void find_edges(std::span<const BodyIndex> of);
   [[nodiscard]] bool have_tops_strayed(std::span<const BodyIndex> among) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apothem/execution/dispatch.hpp"
 #include "apothem/model/rotation.hpp"
 
 namespace apothem {
@@ -198,12 +199,15 @@ void DegreesOfFreedom::kick(State& state, double h) const {
     double* __restrict v = state.v.data() + first;
     const double* __restrict f = state.f.data() + first;
     const double* __restrict w = inverse_mass_.data() + first;
-    if (acceleration_.empty()) {
-      for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c]);
-    } else {
-      const double* __restrict g = acceleration_.data() + first;
-      for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c] + g[c]);
-    }
+    const double* __restrict g = acceleration_.empty() ? nullptr : acceleration_.data() + first;
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      if (g) {
+        for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c] + g[c]);
+      } else {
+        for (size_t c = 0; c < n; ++c) v[c] += time * (w[c] * f[c]);
+      }
+      return 0.;
+    });
   });
 }
 
@@ -248,11 +252,14 @@ void DegreesOfFreedom::drift(State& state, double dt) const {
   });
   const int nodes = static_cast<int>(layout_.size()) - rigid;
   threads_.chunks(nodes, kDriftTime, [&](int first, int end, int) {
-    double* __restrict x = state.x.data();
-    const double* __restrict v = state.v.data();
+    const auto n = static_cast<size_t>(end - first);
+    double* __restrict x = state.x.data() + rigid + first;
+    const double* __restrict v = state.v.data() + rigid + first;
     const double time = dt;
-    const auto last = static_cast<size_t>(rigid + end);
-    for (auto c = static_cast<size_t>(rigid + first); c < last; ++c) x[c] += time * v[c];
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      for (size_t c = 0; c < n; ++c) x[c] += time * v[c];
+      return 0.;
+    });
   });
   for (const Driven& d : driven_) {
     if (d.coordinate < layout_.node(0)) state.x[d.coordinate] += d.move;
@@ -351,19 +358,27 @@ Impulse DegreesOfFreedom::weight_sum(const State& state) const {
     sum.angular += x[c] * weight_[c + 1] - x[c + 1] * weight_[c];
   }
   if (n == rigid) return sum;
-  // What displacements add, in four sums, so that none waits for the one before.
-  std::array<double, 4> part{};
-  const size_t whole = n - (n - rigid) % 8;
-  for (size_t c = rigid; c < whole; c += 8) {
-    for (size_t k = 0; k < 4; ++k) {
-      const size_t i = c + 2 * k;
-      part[k] += x[i] * weight_[i + 1] - x[i + 1] * weight_[i];
+  // What displacements add, in many sums, so that none waits for the one before.
+  constexpr size_t kNumbers = 16;
+  const double* weight = weight_.data();
+  const size_t whole = n - (n - rigid) % kNumbers;
+  sum.angular += with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    using Pack = PackOf<kLanes>;
+    std::array<Pack, 2> part{Pack(0.), Pack(0.)};
+    const auto product = [&](size_t c) APOTHEM_LAMBDA {
+      const auto w = Pack::load(weight + c).v;
+      return Pack::load(x + c) * Pack(__builtin_shufflevector(w, w, 1, 0, 3, 2, 5, 4, 7, 6));
+    };
+    for (size_t c = rigid; c < whole; c += kNumbers) {
+      part[0] += product(c);
+      part[1] += product(c + kLanes);
     }
-  }
-  for (size_t i = whole; i < n; i += 2) {
-    part[0] += x[i] * weight_[i + 1] - x[i + 1] * weight_[i];
-  }
-  sum.angular += (part[0] + part[1]) + (part[2] + part[3]);
+    const Pack both = part[0] + part[1];
+    double torque = 0;
+    for (int k = 0; k < kLanes; k += 2) torque += both.v[k] - both.v[k + 1];
+    for (size_t i = whole; i < n; i += 2) torque += x[i] * weight[i + 1] - x[i + 1] * weight[i];
+    return torque;
+  });
   return sum;
 }
 

@@ -11,7 +11,7 @@
 namespace apothem {
 namespace {
 
-using Work = void (*)(void* task, int worker, int workers);
+using Work = void (*)(void* task, int worker);
 
 // Loops of a step follow each other closely: a thread that is done looks for the next one for this
 // long before it sleeps. It lets others have its core meanwhile.
@@ -40,7 +40,7 @@ class Pool {
   void run(Work work, void* task, int workers) {
     const std::unique_lock busy(busy_, std::try_to_lock);
     if (!busy || !start(workers)) {  // a loop within a loop, or the system gives no threads
-      for (int worker = 0; worker < workers; ++worker) work(task, worker, workers);
+      for (int worker = 0; worker < workers; ++worker) work(task, worker);
       return;
     }
     const Ticket next{ticket_.load().round + 1, static_cast<std::uint16_t>(workers), 0};
@@ -95,7 +95,7 @@ class Pool {
       Ticket next = ticket;
       ++next.worker;
       if (!ticket_.compare_exchange_weak(ticket, next)) continue;
-      work_(task_, ticket.worker, ticket.workers);
+      work_(task_, ticket.worker);
       if (left_.fetch_sub(1) == 1) {
         const std::scoped_lock lock(mutex_);
         done_.notify_one();

@@ -12,7 +12,7 @@
 namespace apothem {
 
 /// Work, in nanoseconds on one thread, below which waking the others costs more than it gives.
-inline constexpr double kWorthThreads = 1e5;
+inline constexpr double kWorthThreads = 1e4;
 
 class Threads {
  public:
@@ -25,6 +25,11 @@ class Threads {
     return count_ > 1 && items * each >= kWorthThreads;
   }
 
+  /// Where the chunk of a worker begins if work is divided; where the last one ends for count().
+  [[nodiscard]] int first_of(int items, int worker) const {
+    return static_cast<int>(std::int64_t{items} * worker / count_);
+  }
+
   /// f(first, end, worker) for chunks of [0, items), with worker in [0, count()) different for
   /// chunks that run at the same time; see worth(). f must not throw.
   template <class F>
@@ -34,14 +39,11 @@ class Threads {
       return;
     }
     using Function = std::remove_reference_t<F>;
-    Task<Function> task{&f, items};
+    Task<Function> task{&f, this, items};
     run(
-        [](void* data, int worker, int workers) {
-          const auto& work = *static_cast<Task<Function>*>(data);
-          const auto edge = [&](int w) {
-            return static_cast<int>(std::int64_t{work.items} * w / workers);
-          };
-          (*work.function)(edge(worker), edge(worker + 1), worker);
+        [](void* data, int worker) {
+          const auto& [function, threads, all] = *static_cast<Task<Function>*>(data);
+          (*function)(threads->first_of(all, worker), threads->first_of(all, worker + 1), worker);
         },
         &task);
   }
@@ -50,9 +52,10 @@ class Threads {
   template <class F>
   struct Task {
     F* function;
+    const Threads* threads;
     int items;
   };
-  void run(void (*work)(void* task, int worker, int workers), void* task) const;
+  void run(void (*work)(void* task, int worker), void* task) const;
 
   int count_;
 };
