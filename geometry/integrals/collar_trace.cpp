@@ -190,71 +190,33 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
-// The part of an edge that is left, in several cells at once.
-struct CollarTrace::Parts {
-  Pack::Mask there;
-  Pack s0{0.}, s1{1.}, end0{double(kEdge)}, end1{double(kEdge)};
-  // Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
-  APOTHEM_INLINE void cut(const Pack& a, const Pack& b, const Pack::Mask& a_inside,
-                          const Pack::Mask& b_inside, End by) {
-    there = there & (a_inside | b_inside);
-    const Pack s = a / (a - b);
-    const Pack::Mask ends = a_inside & (!b_inside) & (s < s1);
-    const Pack::Mask begins = (!a_inside) & b_inside & (s > s0);
-    s1 = select(ends, s, s1);
-    end1 = select(ends, Pack(double(by)), end1);
-    s0 = select(begins, s, s0);
-    end0 = select(begins, Pack(double(by)), end0);
-  }
-};
-
 // The pieces of an edge in the cells of a window.
 APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
                                                            const Window& window, const double* from,
                                                            const double* to) {
   const auto row = [](const double* of, Row k)
                        APOTHEM_LAMBDA { return Pack::load(of + k * kPack); };
-  const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
-  Parts parts;
-  const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
-  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
+  const auto heights = [&](const double* of) APOTHEM_LAMBDA {
+    return CellHeights{row(of, kHeight), row(of, kHeightBefore), row(of, kHeightAfter),
+                       row(of, kFoot), row(of, kFootFromEnd)};
+  };
+  const Pack zero(0.);
+  const CellShapes cells{Pack::load(y.cells->depth.data() + window.first),
+                         Pack::load(y.cells->side.data() + window.first),
+                         Pack::load(y.cells->side.data() + window.first + 1)};
   const Pack::Mask listed = Pack::load(kListed[window.cells]) > zero;
-  for (unsigned rest = bits(listed & (depth == zero)); rest != 0; rest &= rest - 1) {
+  for (unsigned rest = bits(listed & (cells.depth == zero)); rest != 0; rest &= rest - 1) {
     if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
   }
-  parts.there = (a_inside | b_inside) & listed & (depth > zero);
-  if (!any(parts.there)) return Found::all;
-  parts.cut(a, b, a_inside, b_inside, kOwn);
-  const Pack side_before = Pack::load(y.cells->side.data() + window.first);
-  const Pack side_after = Pack::load(y.cells->side.data() + window.first + 1);
-  Pack fa = side_before * (row(from, kHeightBefore) - a),
-       fb = side_before * (row(to, kHeightBefore) - b);
-  if (distance_) {
-    fa = select(side_before < zero, row(from, kFoot), fa);
-    fb = select(side_before < zero, row(to, kFoot), fb);
+  CellParts parts;
+  if (!find_parts(heights(from), heights(to), cells, listed & (cells.depth > zero), distance_,
+                  parts)) {
+    return Found::all;
   }
-  parts.cut(fa, fb, fa >= zero, fb >= zero, kBorderBefore);
-  fa = side_after * (row(from, kHeightAfter) - a), fb = side_after * (row(to, kHeightAfter) - b);
-  if (distance_) {
-    fa = select(side_after < zero, -row(from, kFootFromEnd), fa);
-    fb = select(side_after < zero, -row(to, kFootFromEnd), fb);
-  }
-  parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
-  parts.there = parts.there & (parts.s0 < parts.s1);
-  if (!any(parts.there)) return Found::all;
-  const Pack::Mask a_below = a < depth, b_below = b < depth;
-  if (any(parts.there & !(a_below & b_below))) {
-    parts.cut(depth - a, depth - b, a_below, b_below, kTop);
-    parts.there = parts.there & (parts.s0 < parts.s1);
-    if (!any(parts.there)) return Found::all;
-  }
-  const Pack v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
-  const Pack at_end = select(parts.s1 == Pack(1.), b, a + parts.s1 * (b - a));
-  const Pack v1 = select(parts.end1 == zero, zero, at_end);
   enum { s0_, s1_, v0_, v1_, end0_, end1_, kNumbers };
   double numbers[kNumbers][kPack];
   parts.s0.store(numbers[s0_]), parts.s1.store(numbers[s1_]);
-  v0.store(numbers[v0_]), v1.store(numbers[v1_]);
+  parts.v0.store(numbers[v0_]), parts.v1.store(numbers[v1_]);
   parts.end0.store(numbers[end0_]), parts.end1.store(numbers[end1_]);
   for (unsigned rest = bits(parts.there); rest != 0; rest &= rest - 1) {
     const int k = std::countr_zero(rest);
