@@ -45,8 +45,8 @@ struct CellParts {
 /// Finds the parts of edges, whose ends are at `from` and `to`, in those cells that are `listed`.
 /// False if there is none. The depths of listed cells are positive.
 APOTHEM_INLINE bool find_parts(const CellHeights& from, const CellHeights& to,
-                               const CellShapes& cells, const CellPack::Mask& listed,
-                               bool distance, CellParts& parts) {
+                               const CellShapes& cells, const CellPack::Mask& listed, bool distance,
+                               CellParts& parts) {
   const CellPack zero(0.), &a = from.own, &b = to.own;
   const CellPack::Mask a_inside = a >= zero, b_inside = b >= zero;
   parts.there = (a_inside | b_inside) & listed;

@@ -1,10 +1,11 @@
 #include "apothem/geometry/integrals/collar_pair.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "apothem/execution/dispatch.hpp"
-#include "apothem/geometry/integrals/edge_trace.hpp"
+#include "apothem/geometry/integrals/listed_lanes.hpp"
 
 namespace apothem {
 
@@ -29,22 +30,25 @@ bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const 
   constexpr double kShort = 3.9;  // edge <= 2 radii; shortened beyond 8 of the other's
   if (!a.cells || !b.cells || (a.distance == nullptr) != (b.distance == nullptr)) return false;
   if (!(a.radius < kShort * b.radius && b.radius < kShort * a.radius)) return false;
-  const int products = std::popcount(near.of_a) * std::popcount(near.of_b);
-  if (products > kMost / 2 || a.size > 64 || b.size > 64) return false;
+  if (near.margin == 0 || a.size > 64 || b.size > 64) return false;
   int n = 0;
   bool usable = true;
-  const auto add = [&](bool of_a, const PlacedPotential& y, std::uint64_t edges,
-                       std::uint64_t cells) {
+  const auto add = [&](bool of_a, const double* depth, std::uint64_t edges, std::uint64_t cells) {
     for (std::uint64_t e = edges; e != 0; e &= e - 1) {
+      const int edge = std::countr_zero(e);
       for (std::uint64_t c = cells; c != 0; c &= c - 1) {
+        if (n == kMost) {
+          usable = false;
+          return;
+        }
         const int cell = std::countr_zero(c);
-        usable = usable && y.cells->depth[cell] > 0;
-        lane_[n++] = {of_a, std::countr_zero(e), cell};
+        usable = usable && depth[cell] > 0;
+        lane_[n++] = {of_a, edge, cell};
       }
     }
   };
-  add(true, b, near.of_a, near.of_b);
-  add(false, a, near.of_b, near.of_a);
+  add(true, b.cells->depth.data(), near.of_a, near.of_b);
+  add(false, a.cells->depth.data(), near.of_b, near.of_a);
   if (n == 0 || !usable) return false;
   listed_ = n == kMost ? ~Bits{0} : (Bits{1} << n) - 1;
   while (n % kPack != 0) lane_[n++] = lane_[0];
@@ -54,21 +58,14 @@ bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const 
 
 APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const PlacedPotential& b,
                                            const Vec2& offset) {
-  static constexpr double kListed[16][4] = {
-      {-1, -1, -1, -1}, {1, -1, -1, -1}, {-1, 1, -1, -1}, {1, 1, -1, -1},
-      {-1, -1, 1, -1},  {1, -1, 1, -1},  {-1, 1, 1, -1},  {1, 1, 1, -1},
-      {-1, -1, -1, 1},  {1, -1, -1, 1},  {-1, 1, -1, 1},  {1, 1, -1, 1},
-      {-1, -1, 1, 1},   {1, -1, 1, 1},   {-1, 1, 1, 1},   {1, 1, 1, 1}};
   const bool distance = a.distance != nullptr;
   const Pack zero(0.);
   for (int first = 0; first < lanes_; first += kPack) {
     const Lane* const lanes = lane_.data() + first;
-    const auto x = [&](int k) APOTHEM_LAMBDA -> const PlacedPotential& {
-      return lanes[k].of_a ? a : b;
-    };
-    const auto y = [&](int k) APOTHEM_LAMBDA -> const PlacedPotential& {
-      return lanes[k].of_a ? b : a;
-    };
+    const auto x = [&](int k)
+                       APOTHEM_LAMBDA -> const PlacedPotential& { return lanes[k].of_a ? a : b; };
+    const auto y = [&](int k)
+                       APOTHEM_LAMBDA -> const PlacedPotential& { return lanes[k].of_a ? b : a; };
     const auto of_y = [&](const auto& value) APOTHEM_LAMBDA {
       return pack_of<kPack>([&](int k) APOTHEM_LAMBDA { return value(y(k), lanes[k]); });
     };
@@ -97,14 +94,13 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
       }
       return h;
     };
-    const CellShapes cells{
-        of_y([](const PlacedPotential& p, const Lane& lane)
-                 APOTHEM_LAMBDA { return p.cells->depth[lane.cell]; }),
-        of_y([](const PlacedPotential& p, const Lane& lane)
-                 APOTHEM_LAMBDA { return p.cells->side[lane.cell]; }),
-        of_y([](const PlacedPotential& p, const Lane& lane)
-                 APOTHEM_LAMBDA { return p.cells->side[lane.cell + 1]; })};
-    const Pack::Mask listed = Pack::load(kListed[listed_ >> first & 15]) > zero;
+    const CellShapes cells{of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->depth[lane.cell]; }),
+                           of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->side[lane.cell]; }),
+                           of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->side[lane.cell + 1]; })};
+    const Pack::Mask listed = listed_lanes(listed_ >> first);
     CellParts parts;
     if (!edge_detail::find_parts(heights(px, py), heights(end_x, end_y), cells, listed, distance,
                                  parts)) {
@@ -125,8 +121,7 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
     const Pack &s0 = parts.s0, &s1 = parts.s1, &v0 = parts.v0, &v1 = parts.v1;
     const Pack h = s1 - s0;
     const Pack sum = h * (v0 + v1) / Pack(2.);
-    const Pack moment =
-        h * (v0 * (Pack(2.) * s0 + s1) + v1 * (s0 + Pack(2.) * s1)) / Pack(6.);
+    const Pack moment = h * (v0 * (Pack(2.) * s0 + s1) + v1 * (s0 + Pack(2.) * s1)) / Pack(6.);
     const Pack larger = select(v0 < v1, v1, v0);
     const Pack largest = select(zero < larger, larger, zero);
     const Pack qx = px - of_y([](const PlacedPotential& p, const Lane&)
@@ -151,9 +146,9 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
                 zero - ((qx * ex + qy * ey) * sum + (ex * ex + ey * ey) * moment), length * sum},
                rows(integrals_));
     const auto second = rows(integrals_);
-    write_rows({length * (qx * sum + ex * moment), length * (qy * sum + ey * moment), length * h,
-                largest},
-               [&](int k) APOTHEM_LAMBDA { return second(k) + 4; });
+    write_rows(
+        {length * (qx * sum + ex * moment), length * (qy * sum + ey * moment), length * h, largest},
+        [&](int k) APOTHEM_LAMBDA { return second(k) + 4; });
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "apothem/execution/dispatch.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
+#include "apothem/geometry/integrals/listed_lanes.hpp"
 
 namespace apothem {
 
@@ -20,11 +21,21 @@ Box reach_of(const PlacedPotential& p, double dx, double dy) {
   return box.grown(kFarAway * box.extent());
 }
 
-Box edge_box(const PlacedPotential& p, int e, double dx, double dy) {
-  Box box;
-  box.include(p.x[e] + dx, p.y[e] + dy);
-  box.include(p.x[e + 1] + dx, p.y[e + 1] + dy);
-  return box;
+// The sides of a box beyond which a point lies: a bit for each of the four.
+unsigned beyond(const Box& box, double x, double y) {
+  return unsigned{x < box.x0} | unsigned{x > box.x1} << 1 | unsigned{y < box.y0} << 2 |
+         unsigned{y > box.y1} << 3;
+}
+
+// Calls f(edge) for the edges whose boxes are not apart from another one.
+template <class F>
+void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& reach, const F& f) {
+  unsigned start = beyond(reach, p.x[0] + dx, p.y[0] + dy);
+  for (int e = 0; e < p.size; ++e) {
+    const unsigned end = beyond(reach, p.x[e + 1] + dx, p.y[e + 1] + dy);
+    if ((start & end) == 0) f(e);
+    start = end;
+  }
 }
 
 // Even-odd rule.
@@ -38,12 +49,6 @@ bool encloses(const PlacedPotential& y, double px, double py) {
   }
   return inside;
 }
-
-constexpr double kListed[16][4] = {
-    {-1, -1, -1, -1}, {1, -1, -1, -1}, {-1, 1, -1, -1}, {1, 1, -1, -1},
-    {-1, -1, 1, -1},  {1, -1, 1, -1},  {-1, 1, 1, -1},  {1, 1, 1, -1},
-    {-1, -1, -1, 1},  {1, -1, -1, 1},  {-1, 1, -1, 1},  {1, 1, -1, 1},
-    {-1, -1, 1, 1},   {1, -1, 1, 1},   {-1, 1, 1, 1},   {1, 1, 1, 1}};
 
 }  // namespace
 
@@ -72,11 +77,9 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
     });
     return;
   }
-  const Box reach = reach_of(y, 0, 0);
-  for (int e = 0; e < x.size; ++e) {
-    if (apart(edge_box(x, e, dx, dy), reach)) continue;
+  for_each_edge(x, dx, dy, reach_of(y, 0, 0), [&](int e) {
     edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
-  }
+  });
 }
 
 // Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
@@ -117,10 +120,7 @@ void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& 
     for_each_edge(near, y.size, add);
     return;
   }
-  const Box reach = reach_of(x, dx, dy);
-  for (int c = 0; c < y.size; ++c) {
-    if (!apart(edge_box(y, c, 0, 0), reach)) add(c);
-  }
+  for_each_edge(y, 0, 0, reach_of(x, dx, dy), add);
 }
 
 // The last window that begins with the cell or before it, or null.
@@ -204,7 +204,7 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   const CellShapes cells{Pack::load(y.cells->depth.data() + window.first),
                          Pack::load(y.cells->side.data() + window.first),
                          Pack::load(y.cells->side.data() + window.first + 1)};
-  const Pack::Mask listed = Pack::load(kListed[window.cells]) > zero;
+  const Pack::Mask listed = listed_lanes(window.cells);
   for (unsigned rest = bits(listed & (cells.depth == zero)); rest != 0; rest &= rest - 1) {
     if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
   }
