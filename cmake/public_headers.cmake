@@ -26,7 +26,10 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/exact/exact_integral.hpp
   geometry/exact/overlap.hpp
   geometry/exact/pair_methods.hpp
+  geometry/integrals/cell_parts.hpp
+  geometry/integrals/collar_pair.hpp
   geometry/integrals/collar_trace.hpp
+  geometry/integrals/edge_sums.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp

@@ -6,6 +6,7 @@
 
 #include "apothem/execution/dispatch.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
+#include "apothem/geometry/integrals/listed_lanes.hpp"
 
 namespace apothem {
 
@@ -20,11 +21,21 @@ Box reach_of(const PlacedPotential& p, double dx, double dy) {
   return box.grown(kFarAway * box.extent());
 }
 
-Box edge_box(const PlacedPotential& p, int e, double dx, double dy) {
-  Box box;
-  box.include(p.x[e] + dx, p.y[e] + dy);
-  box.include(p.x[e + 1] + dx, p.y[e + 1] + dy);
-  return box;
+// The sides of a box beyond which a point lies: a bit for each of the four.
+unsigned beyond(const Box& box, double x, double y) {
+  return unsigned{x < box.x0} | unsigned{x > box.x1} << 1 | unsigned{y < box.y0} << 2 |
+         unsigned{y > box.y1} << 3;
+}
+
+// Calls f(edge) for the edges whose boxes are not apart from another one.
+template <class F>
+void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& reach, const F& f) {
+  unsigned start = beyond(reach, p.x[0] + dx, p.y[0] + dy);
+  for (int e = 0; e < p.size; ++e) {
+    const unsigned end = beyond(reach, p.x[e + 1] + dx, p.y[e + 1] + dy);
+    if ((start & end) == 0) f(e);
+    start = end;
+  }
 }
 
 // Even-odd rule.
@@ -38,12 +49,6 @@ bool encloses(const PlacedPotential& y, double px, double py) {
   }
   return inside;
 }
-
-constexpr double kListed[16][4] = {
-    {-1, -1, -1, -1}, {1, -1, -1, -1}, {-1, 1, -1, -1}, {1, 1, -1, -1},
-    {-1, -1, 1, -1},  {1, -1, 1, -1},  {-1, 1, 1, -1},  {1, 1, 1, -1},
-    {-1, -1, -1, 1},  {1, -1, -1, 1},  {-1, 1, -1, 1},  {1, 1, -1, 1},
-    {-1, -1, 1, 1},   {1, -1, 1, 1},   {-1, 1, 1, 1},   {1, 1, 1, 1}};
 
 }  // namespace
 
@@ -72,11 +77,9 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
     });
     return;
   }
-  const Box reach = reach_of(y, 0, 0);
-  for (int e = 0; e < x.size; ++e) {
-    if (apart(edge_box(x, e, dx, dy), reach)) continue;
+  for_each_edge(x, dx, dy, reach_of(y, 0, 0), [&](int e) {
     edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
-  }
+  });
 }
 
 // Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
@@ -117,10 +120,7 @@ void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& 
     for_each_edge(near, y.size, add);
     return;
   }
-  const Box reach = reach_of(x, dx, dy);
-  for (int c = 0; c < y.size; ++c) {
-    if (!apart(edge_box(y, c, 0, 0), reach)) add(c);
-  }
+  for_each_edge(y, 0, 0, reach_of(x, dx, dy), add);
 }
 
 // The last window that begins with the cell or before it, or null.
@@ -190,71 +190,33 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
-// The part of an edge that is left, in several cells at once.
-struct CollarTrace::Parts {
-  Pack::Mask there;
-  Pack s0{0.}, s1{1.}, end0{double(kEdge)}, end1{double(kEdge)};
-  // Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
-  APOTHEM_INLINE void cut(const Pack& a, const Pack& b, const Pack::Mask& a_inside,
-                          const Pack::Mask& b_inside, End by) {
-    there = there & (a_inside | b_inside);
-    const Pack s = a / (a - b);
-    const Pack::Mask ends = a_inside & (!b_inside) & (s < s1);
-    const Pack::Mask begins = (!a_inside) & b_inside & (s > s0);
-    s1 = select(ends, s, s1);
-    end1 = select(ends, Pack(double(by)), end1);
-    s0 = select(begins, s, s0);
-    end0 = select(begins, Pack(double(by)), end0);
-  }
-};
-
 // The pieces of an edge in the cells of a window.
 APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
                                                            const Window& window, const double* from,
                                                            const double* to) {
   const auto row = [](const double* of, Row k)
                        APOTHEM_LAMBDA { return Pack::load(of + k * kPack); };
-  const Pack zero(0.), a = row(from, kHeight), b = row(to, kHeight);
-  Parts parts;
-  const Pack::Mask a_inside = a >= zero, b_inside = b >= zero;
-  const Pack depth = Pack::load(y.cells->depth.data() + window.first);
-  const Pack::Mask listed = Pack::load(kListed[window.cells]) > zero;
-  for (unsigned rest = bits(listed & (depth == zero)); rest != 0; rest &= rest - 1) {
+  const auto heights = [&](const double* of) APOTHEM_LAMBDA {
+    return CellHeights{row(of, kHeight), row(of, kHeightBefore), row(of, kHeightAfter),
+                       row(of, kFoot), row(of, kFootFromEnd)};
+  };
+  const Pack zero(0.);
+  const CellShapes cells{Pack::load(y.cells->depth.data() + window.first),
+                         Pack::load(y.cells->side.data() + window.first),
+                         Pack::load(y.cells->side.data() + window.first + 1)};
+  const Pack::Mask listed = listed_lanes(window.cells);
+  for (unsigned rest = bits(listed & (cells.depth == zero)); rest != 0; rest &= rest - 1) {
     if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
   }
-  parts.there = (a_inside | b_inside) & listed & (depth > zero);
-  if (!any(parts.there)) return Found::all;
-  parts.cut(a, b, a_inside, b_inside, kOwn);
-  const Pack side_before = Pack::load(y.cells->side.data() + window.first);
-  const Pack side_after = Pack::load(y.cells->side.data() + window.first + 1);
-  Pack fa = side_before * (row(from, kHeightBefore) - a),
-       fb = side_before * (row(to, kHeightBefore) - b);
-  if (distance_) {
-    fa = select(side_before < zero, row(from, kFoot), fa);
-    fb = select(side_before < zero, row(to, kFoot), fb);
+  CellParts parts;
+  if (!find_parts(heights(from), heights(to), cells, listed & (cells.depth > zero), distance_,
+                  parts)) {
+    return Found::all;
   }
-  parts.cut(fa, fb, fa >= zero, fb >= zero, kBorderBefore);
-  fa = side_after * (row(from, kHeightAfter) - a), fb = side_after * (row(to, kHeightAfter) - b);
-  if (distance_) {
-    fa = select(side_after < zero, -row(from, kFootFromEnd), fa);
-    fb = select(side_after < zero, -row(to, kFootFromEnd), fb);
-  }
-  parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
-  parts.there = parts.there & (parts.s0 < parts.s1);
-  if (!any(parts.there)) return Found::all;
-  const Pack::Mask a_below = a < depth, b_below = b < depth;
-  if (any(parts.there & !(a_below & b_below))) {
-    parts.cut(depth - a, depth - b, a_below, b_below, kTop);
-    parts.there = parts.there & (parts.s0 < parts.s1);
-    if (!any(parts.there)) return Found::all;
-  }
-  const Pack v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
-  const Pack at_end = select(parts.s1 == Pack(1.), b, a + parts.s1 * (b - a));
-  const Pack v1 = select(parts.end1 == zero, zero, at_end);
   enum { s0_, s1_, v0_, v1_, end0_, end1_, kNumbers };
   double numbers[kNumbers][kPack];
   parts.s0.store(numbers[s0_]), parts.s1.store(numbers[s1_]);
-  v0.store(numbers[v0_]), v1.store(numbers[v1_]);
+  parts.v0.store(numbers[v0_]), parts.v1.store(numbers[v1_]);
   parts.end0.store(numbers[end0_]), parts.end1.store(numbers[end1_]);
   for (unsigned rest = bits(parts.there); rest != 0; rest &= rest - 1) {
     const int k = std::countr_zero(rest);

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "apothem/execution/pack.hpp"
+#include "apothem/geometry/integrals/cell_parts.hpp"
 #include "apothem/geometry/integrals/placed_edge.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
 
@@ -48,11 +48,9 @@ class CollarTrace {
 
  private:
   static constexpr int kPack = kComparedLanes;
-  using Pack = PackOf<kPack>;
+  using Pack = edge_detail::CellPack;
+  using End = edge_detail::CellEnd;
   enum class Found { all, neighbour, deep };
-  // Where a part of an edge in a cell ends: on the cell's own edge, with the edge itself, at the
-  // border to the cell before or after, or at the depth of the cell.
-  enum End { kOwn, kEdge, kBorderBefore, kBorderAfter, kTop };
   // A part of an edge in the cell of an edge, or, of an arc, in the sector of a vertex.
   struct Piece {
     double s0, s1, v0, v1;  // its ends, and phi there
@@ -69,7 +67,6 @@ class CollarTrace {
   // What a point is compared with in a window: heights over the edges, those before and those
   // after; of a distance field also where its foot is, from both ends of the edges. So many packs.
   enum Row : size_t { kHeight, kHeightBefore, kHeightAfter, kFoot, kFootFromEnd, kRows };
-  struct Parts;
   [[nodiscard]] bool sector_at(const PlacedPotential& y, int vertex) const {
     return distance_ && y.cells->reflex(vertex);
   }

@@ -34,10 +34,28 @@ class Splitter {
         separated(heights(b_, a_, -dx, -dy, height.of_b), a_, b_, a_.steepest, near)) {
       return {};
     }
-    return with_collars(a_, b_, work_.edge, [&] {
+    const auto begin = [&] {
       runs_.clear();
       work_.halves.clear();
       work_.crossed.clear();
+    };
+    const auto by_pair = [&](std::span<const CollarPair::Run> runs) {
+      begin();
+      RunEnds ends(work_.edge.ends);
+      Half half_a, half_b;
+      size_t middle = 0;
+      for (const CollarPair::Run& run : runs) {
+        add(run.of_a, run.edge, *run.placed, {run.s0, run.edge0, run.s1, run.edge1}, *run.integrals,
+            run.of_a ? half_a : half_b, ends);
+        if (!run.of_a) continue;
+        of_a_ = size();
+        middle = ends.used();
+      }
+      return std::pair(edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle),
+                       ends.closed());
+    };
+    const auto by_edges = [&] {
+      begin();
       RunEnds ends(work_.edge.ends);
       const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
       of_a_ = size();
@@ -45,7 +63,8 @@ class Splitter {
       const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
       return std::pair(edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle),
                        ends.closed());
-    });
+    };
+    return with_collars(a_, b_, offset_, near, work_.edge, by_pair, by_edges);
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
@@ -106,30 +125,50 @@ class Splitter {
     sum.weight += walk_runs<true>(x, y, dx, dy, near, near_y, rows, spare, work_.edge,
                                   [&](int e, const PlacedEdge& edge, double s0, int edge0,
                                       double s1, int edge1, const SegmentMoments<double>& moments) {
-                                    Half& half = work_.halves.emplace_back();
+                                    Half half;
                                     accumulate(edge, moments, s1 - s0, half);
-                                    sum.add(half);
-                                    if (s0 == 0 && edge.first == 0) sum.enter(e);
-                                    ends.add(edge, s0, s1);
-                                    add_run(of_a, e, edge, s0, s1, half);
-                                    work_.crossed.push_back(edge0);
-                                    work_.crossed.push_back(edge1);
+                                    add(of_a, e, edge, {s0, edge0, s1, edge1}, half, sum, ends);
                                   });
     return sum;
   }
 
+  // The ends of a run, as of walk_runs.
+  struct Ends {
+    double s0;
+    int edge0;
+    double s1;
+    int edge1;
+  };
+
+  // Adds a run of edge e, which is long as a whole or in part.
+  template <class Edge>
+  void add(bool of_a, int e, const Edge& edge, const Ends& run, const Half& half, Half& sum,
+           RunEnds& ends) {
+    double from = run.s0, to = run.s1;
+    if constexpr (requires { edge.shortened; }) from = edge.share(from), to = edge.share(to);
+    work_.halves.push_back(half);
+    sum.add(half);
+    if (from == 0) sum.enter(e);
+    ends.add(edge, run.s0, run.s1);
+    add_run(of_a, e, edge, run, from, to, half);
+    work_.crossed.push_back(run.edge0);
+    work_.crossed.push_back(run.edge1);
+  }
+
   // The integrals are those that `combine` makes of one run.
-  void add_run(bool of_a, int e, const PlacedEdge& edge, double s0, double s1, const Half& half) {
+  template <class Edge>
+  void add_run(bool of_a, int e, const Edge& edge, const Ends& ends, double from, double to,
+               const Half& half) {
     const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
     const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
     const double x = edge.qx - shift_x, y = edge.qy - shift_y;  // about a's reference point
     BoundaryRun& run = runs_.emplace_back();
     run.of_a = of_a;
     run.edge = e;
-    run.from = edge.share(s0);
-    run.to = edge.share(s1);
-    run.start = {x + s0 * edge.ex, y + s0 * edge.ey};
-    run.end = {x + s1 * edge.ex, y + s1 * edge.ey};
+    run.from = from;
+    run.to = to;
+    run.start = {x + ends.s0 * edge.ex, y + ends.s0 * edge.ey};
+    run.end = {x + ends.s1 * edge.ex, y + ends.s1 * edge.ey};
     if (of_a) {
       run.force = {-half.fx, -half.fy};
       run.moment_a = turn - half.moment;

@@ -51,7 +51,20 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
   if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
     return {};
   }
-  const auto integrate = [&] {
+  const auto by_pair = [&](std::span<const CollarPair::Run> runs) {
+    RunEnds ends(workspace.ends);
+    Half of_a, of_b;
+    size_t middle = 0;
+    for (const CollarPair::Run& run : runs) {
+      Half& half = run.of_a ? of_a : of_b;
+      half.add(*run.integrals);
+      if (run.s0 == 0) half.enter(run.edge);
+      ends.add(*run.placed, run.s0, run.s1);
+      if (run.of_a) middle = ends.used();
+    }
+    return std::pair(join(a, b, offset, of_a, of_b, ends, middle), ends.closed());
+  };
+  const auto by_edges = [&] {
     RunEnds ends(workspace.ends);
     const Half of_a =  // in the frame of b
         integrate_runs(a, b, dx, dy, near.of_a, near.of_b, height.of_a, height.spare, workspace,
@@ -62,7 +75,7 @@ PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, c
                        ends);
     return std::pair(join(a, b, offset, of_a, of_b, ends, middle), ends.closed());
   };
-  return with_collars(a, b, workspace, integrate);
+  return with_collars(a, b, offset, near, workspace, by_pair, by_edges);
 }
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "apothem/geometry/integrals/collar_pair.hpp"
 #include "apothem/geometry/integrals/collar_trace.hpp"
 #include "apothem/geometry/integrals/near_edges.hpp"
 #include "apothem/geometry/integrals/placed_potential.hpp"
@@ -68,6 +69,7 @@ struct EdgeWorkspace {
   RoofNodes nodes;             ///< the nodes of a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
   CollarTrace collar;              ///< memory for both
+  CollarPair pair;                 ///< memory for pairs with few near edges
   bool collars = true;             ///< whether edges in the collar of a polygon go by it alone
 };
 

@@ -10,6 +10,7 @@
 
 #include "apothem/execution/pack.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
+#include "apothem/geometry/integrals/edge_sums.hpp"
 #include "apothem/geometry/integrals/placed_edge.hpp"
 #include "apothem/geometry/polygon/segment_moments.hpp"
 
@@ -161,27 +162,6 @@ inline double heights(const PlacedPotential& x, const PlacedPotential& y, double
   return gap;
 }
 
-// The integrals of phi of y along the edges of x, in the frame of y, without the sign of Eq. 7.
-// Positions and moments are relative to y's reference point.
-struct Half {
-  double fx = 0, fy = 0;              // SUM n INT phi ds, m
-  double moment = 0;                  // SUM INT phi (x cross n) ds, m^2
-  double weight = 0, wx = 0, wy = 0;  // SUM INT phi ds, m, and SUM INT phi x ds, m^2
-  double length = 0;                  // length of the edges of x inside y, m
-  double largest = 0;                 // largest phi along the edges
-  std::uint64_t inside = 0;           // vertices of x inside y: see PairIntegral
-
-  // Counts vertex i as inside.
-  void enter(int i) { inside ^= std::uint64_t{1} << (i % 64); }
-  void add(const Half& other) {
-    fx += other.fx, fy += other.fy;
-    moment += other.moment;
-    weight += other.weight, wx += other.wx, wy += other.wy;
-    length += other.length;
-    largest = std::max(largest, other.largest);
-  }
-};
-
 // Adds a linear piece of phi, limited to 1.
 inline void add_capped(double u1, double v1, double u2, double v2,
                        SegmentMoments<double>& moments) {
@@ -192,22 +172,6 @@ inline void add_capped(double u1, double v1, double u2, double v2,
   const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
   moments.add(u1, std::min(v1, 1.0), u, 1);
   moments.add(u, 1, u2, std::min(v2, 1.0));
-}
-
-// Adds the integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
-// `inside` is the share of the edge that lies inside the other polygon.
-inline void accumulate(const PlacedEdge& edge, const SegmentMoments<double>& m, double inside,
-                       Half& half) {
-  const double qx = edge.qx, qy = edge.qy, ex = edge.ex, ey = edge.ey;
-  const double length = std::sqrt(ex * ex + ey * ey);
-  half.fx += ey * m.sum;
-  half.fy -= ex * m.sum;
-  half.moment -= (qx * ex + qy * ey) * m.sum + (ex * ex + ey * ey) * m.first;
-  half.weight += length * m.sum;
-  half.wx += length * (qx * m.sum + ex * m.first);
-  half.wy += length * (qy * m.sum + ey * m.first);
-  half.length += length * inside;
-  half.largest = std::max(half.largest, m.largest);
 }
 
 /// 0, or NaN if a coordinate of two polygons is not finite. If edges are known to be near each
@@ -398,7 +362,8 @@ struct Extent {
 class RunEnds {
  public:
   explicit RunEnds(std::vector<double>& buffer) : buffer_(buffer) {}
-  void add(const PlacedEdge& e, double s0, double s1) {
+  template <class Edge>
+  void add(const Edge& e, double s0, double s1) {
     if (buffer_.size() < used_ + 4) buffer_.resize(2 * (used_ + 4));
     double* const end = buffer_.data() + used_;
     end[0] = e.qx + s0 * e.ex, end[1] = e.qy + s0 * e.ey;
@@ -426,17 +391,23 @@ class RunEnds {
   size_t used_ = 0;
 };
 
-/// What integrate() finds, a result and whether its runs are closed. If they are not, features of
-/// the polygons coincide up to round-off, and it is done again by the whole potentials in place of
-/// their collars.
-template <class Integrate>
-PairIntegral with_collars(const PlacedPotential& a, const PlacedPotential& b,
-                          EdgeWorkspace& workspace, const Integrate& integrate) {
+/// The integrals of a pair by those ways that are known, the fastest first. Each tells the result
+/// and whether its runs are closed. If they are not, features of the polygons coincide up to
+/// round-off, and the next way is taken: of a few near edges `by_pair`, after CollarPair has found
+/// the runs; by collars; at last by the whole potentials, both of them `by_edges`.
+template <class ByPair, class ByEdges>
+PairIntegral with_collars(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                          const NearEdges& near, EdgeWorkspace& workspace, const ByPair& by_pair,
+                          const ByEdges& by_edges) {
+  if (workspace.pair.find(a, b, offset, near)) {
+    const auto [pair, closed] = by_pair(workspace.pair.runs());
+    if (closed) return pair;
+  }
   workspace.collars = true;
-  const auto [pair, closed] = integrate();
+  const auto [pair, closed] = by_edges();
   if (closed || std::isnan(pair.weight) || (a.convex() && b.convex())) return pair;
   workspace.collars = false;
-  return integrate().first;
+  return by_edges().first;
 }
 
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`

@@ -126,12 +126,14 @@ PairIntegral PairIntegrals::integrate(size_t p, const Vec2& between, Worker& wor
     near_[p].angle_b = surfaces_.pose(b)[2];
   }
   if (!split) return integral;
-  result.first_patch = static_cast<int>(worker.patches.size());
   result.patches = static_cast<int>(worker.pair_patches.size());
+  if (result.patches != 1) {  // the only one is the whole pair
+    result.first_patch = static_cast<int>(worker.patches.size());
+    worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
+                          worker.pair_patches.end());
+  }
   result.first_run = static_cast<int>(worker.runs.size());
   result.runs = static_cast<int>(worker.pair_runs.size());
-  worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
-                        worker.pair_patches.end());
   worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
   return integral;
 }
@@ -171,10 +173,13 @@ bool PairIntegrals::too_deep(const PairInTouch& result) const {
   const SurfaceIndex a = result.a, b = result.b;
   const PairIntegral& pair = *result.integral;
   if (!(pair.largest_phi <= kDeepestPhi)) return true;
-  if (pair.own_length_a + pair.own_length_b <
-      std::min(surfaces_.inradius(a), surfaces_.inradius(b))) {
-    return false;
-  }
+  // The boundary of an overlap around the top of a polygon lies outside a circle about it: the
+  // polygon's own boundary is as far away as the radius of its incircle, and the other one's is
+  // nearer by no more than the depth. The top of a shape that deforms is another point.
+  const double inradius = std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  const bool rigid = surfaces_.is_rigid(a) && surfaces_.is_rigid(b);
+  const double shortest = rigid ? 6 * (inradius - deepest(result)) : inradius;
+  if (pair.own_length_a + pair.own_length_b < shortest) return false;
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 offset = surfaces_.between(a, b);
   const double away2 = offset.squaredNorm();

@@ -1,0 +1,81 @@
+// The part of an edge of one polygon in a cell of another one's collar (collar_cells.hpp), for four
+// pairs of an edge and a cell at a time. This header is private to the integrals.
+#pragma once
+
+#include "apothem/execution/pack.hpp"
+
+namespace apothem::edge_detail {
+
+/// Where the part of an edge in a cell ends: on the cell's own edge, with the edge itself, at the
+/// border to the cell before or after, or at the depth of the cell.
+enum CellEnd { kOwn, kEdge, kBorderBefore, kBorderAfter, kTop };
+
+using CellPack = PackOf<kComparedLanes>;
+
+/// What tells where a point is: its heights (phi) over the edges of the cells, those before and
+/// those after; of a distance field also its foot from the start and from the end of the edges.
+struct CellHeights {
+  CellPack own, before, after, foot, foot_from_end;
+};
+
+/// Cells: their depths, and the sides of the vertices at their starts and ends.
+struct CellShapes {
+  CellPack depth, side_before, side_after;
+};
+
+/// Parts of edges: where they are, the ends, phi there, and which CellEnd these are.
+struct CellParts {
+  CellPack::Mask there;
+  CellPack s0{0.}, s1{1.}, v0, v1, end0{double(kEdge)}, end1{double(kEdge)};
+
+  /// Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
+  APOTHEM_INLINE void cut(const CellPack& a, const CellPack& b, const CellPack::Mask& a_inside,
+                          const CellPack::Mask& b_inside, CellEnd by) {
+    there = there & (a_inside | b_inside);
+    const CellPack s = a / (a - b);
+    const CellPack::Mask ends = a_inside & (!b_inside) & (s < s1);
+    const CellPack::Mask begins = (!a_inside) & b_inside & (s > s0);
+    s1 = select(ends, s, s1);
+    end1 = select(ends, CellPack(double(by)), end1);
+    s0 = select(begins, s, s0);
+    end0 = select(begins, CellPack(double(by)), end0);
+  }
+};
+
+/// Finds the parts of edges, whose ends are at `from` and `to`, in those cells that are `listed`.
+/// False if there is none. The depths of listed cells are positive.
+APOTHEM_INLINE bool find_parts(const CellHeights& from, const CellHeights& to,
+                               const CellShapes& cells, const CellPack::Mask& listed, bool distance,
+                               CellParts& parts) {
+  const CellPack zero(0.), &a = from.own, &b = to.own;
+  const CellPack::Mask a_inside = a >= zero, b_inside = b >= zero;
+  parts.there = (a_inside | b_inside) & listed;
+  if (!any(parts.there)) return false;
+  parts.cut(a, b, a_inside, b_inside, kOwn);
+  CellPack fa = cells.side_before * (from.before - a), fb = cells.side_before * (to.before - b);
+  if (distance) {
+    fa = select(cells.side_before < zero, from.foot, fa);
+    fb = select(cells.side_before < zero, to.foot, fb);
+  }
+  parts.cut(fa, fb, fa >= zero, fb >= zero, kBorderBefore);
+  fa = cells.side_after * (from.after - a), fb = cells.side_after * (to.after - b);
+  if (distance) {
+    fa = select(cells.side_after < zero, -from.foot_from_end, fa);
+    fb = select(cells.side_after < zero, -to.foot_from_end, fb);
+  }
+  parts.cut(fa, fb, fa > zero, fb > zero, kBorderAfter);
+  parts.there = parts.there & (parts.s0 < parts.s1);
+  if (!any(parts.there)) return false;
+  const CellPack::Mask a_below = a < cells.depth, b_below = b < cells.depth;
+  if (any(parts.there & !(a_below & b_below))) {
+    parts.cut(cells.depth - a, cells.depth - b, a_below, b_below, kTop);
+    parts.there = parts.there & (parts.s0 < parts.s1);
+    if (!any(parts.there)) return false;
+  }
+  parts.v0 = select(parts.end0 == zero, zero, a + parts.s0 * (b - a));
+  const CellPack at_end = select(parts.s1 == CellPack(1.), b, a + parts.s1 * (b - a));
+  parts.v1 = select(parts.end1 == zero, zero, at_end);
+  return true;
+}
+
+}  // namespace apothem::edge_detail

@@ -1,0 +1,221 @@
+#include "apothem/geometry/integrals/collar_pair.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "apothem/execution/dispatch.hpp"
+#include "apothem/geometry/integrals/listed_lanes.hpp"
+
+namespace apothem {
+
+using namespace edge_detail;
+
+bool CollarPair::find(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                      const NearEdges& near) {
+  count_ = 0;
+  if (!list(a, b, near)) return false;
+  there_ = own0_ = own1_ = border0_ = border1_ = 0;
+  deep_ = false;
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    find_parts(a, b, offset);
+    return 0.;
+  });
+  return !deep_ && join_parts();
+}
+
+// Lists the pairs of near edges. False if they are many or unknown, if an edge may be so long that
+// PlacedEdge shortens it, or if a cell is not to be used.
+bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const NearEdges& near) {
+  constexpr double kShort = 3.9;  // edge <= 2 radii; shortened beyond 8 of the other's
+  if (!a.cells || !b.cells || (a.distance == nullptr) != (b.distance == nullptr)) return false;
+  if (!(a.radius < kShort * b.radius && b.radius < kShort * a.radius)) return false;
+  if (near.margin == 0 || a.size > 64 || b.size > 64) return false;
+  int n = 0;
+  bool usable = true;
+  const auto add = [&](bool of_a, const double* depth, std::uint64_t edges, std::uint64_t cells) {
+    for (std::uint64_t e = edges; e != 0; e &= e - 1) {
+      const int edge = std::countr_zero(e);
+      for (std::uint64_t c = cells; c != 0; c &= c - 1) {
+        if (n == kMost) {
+          usable = false;
+          return;
+        }
+        const int cell = std::countr_zero(c);
+        usable = usable && depth[cell] > 0;
+        lane_[n++] = {of_a, edge, cell};
+      }
+    }
+  };
+  add(true, b.cells->depth.data(), near.of_a, near.of_b);
+  add(false, a.cells->depth.data(), near.of_b, near.of_a);
+  if (n == 0 || !usable) return false;
+  listed_ = n == kMost ? ~Bits{0} : (Bits{1} << n) - 1;
+  while (n % kPack != 0) lane_[n++] = lane_[0];
+  lanes_ = n;
+  return true;
+}
+
+APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const PlacedPotential& b,
+                                           const Vec2& offset) {
+  const bool distance = a.distance != nullptr;
+  const Pack zero(0.);
+  for (int first = 0; first < lanes_; first += kPack) {
+    const Lane* const lanes = lane_.data() + first;
+    const auto x = [&](int k)
+                       APOTHEM_LAMBDA -> const PlacedPotential& { return lanes[k].of_a ? a : b; };
+    const auto y = [&](int k)
+                       APOTHEM_LAMBDA -> const PlacedPotential& { return lanes[k].of_a ? b : a; };
+    const auto of_y = [&](const auto& value) APOTHEM_LAMBDA {
+      return pack_of<kPack>([&](int k) APOTHEM_LAMBDA { return value(y(k), lanes[k]); });
+    };
+    const Pack dx = pack_of<kPack>(
+        [&](int k) APOTHEM_LAMBDA { return lanes[k].of_a ? offset.x() : -offset.x(); });
+    const Pack dy = pack_of<kPack>(
+        [&](int k) APOTHEM_LAMBDA { return lanes[k].of_a ? offset.y() : -offset.y(); });
+    // The edges: their starts and ends.
+    FourOf<Pack> vx, vy;
+    read_rows([&](int k) APOTHEM_LAMBDA { return x(k).x + lanes[k].edge; }, vx);
+    read_rows([&](int k) APOTHEM_LAMBDA { return x(k).y + lanes[k].edge; }, vy);
+    const Pack px = vx[0] + dx, py = vy[0] + dy, end_x = vx[1] + dx, end_y = vy[1] + dy;
+    // The edge before a cell's own, this one and the one after it.
+    FourOf<Pack> cx, cy, gx, gy;
+    read_rows([&](int k) APOTHEM_LAMBDA { return y(k).x + (lanes[k].cell - 1); }, cx);
+    read_rows([&](int k) APOTHEM_LAMBDA { return y(k).y + (lanes[k].cell - 1); }, cy);
+    read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gx + (lanes[k].cell - 1); }, gx);
+    read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gy + (lanes[k].cell - 1); }, gy);
+    const auto heights = [&](const Pack& qx, const Pack& qy) APOTHEM_LAMBDA {
+      const auto over = [&](size_t i)
+                            APOTHEM_LAMBDA { return gx[i] * (qx - cx[i]) + gy[i] * (qy - cy[i]); };
+      CellHeights h{over(1), over(0), over(2), zero, zero};
+      if (distance) {
+        h.foot = gy[1] * (qx - cx[1]) - gx[1] * (qy - cy[1]);
+        h.foot_from_end = gy[1] * (qx - cx[2]) - gx[1] * (qy - cy[2]);
+      }
+      return h;
+    };
+    const CellShapes cells{of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->depth[lane.cell]; }),
+                           of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->side[lane.cell]; }),
+                           of_y([](const PlacedPotential& p, const Lane& lane)
+                                    APOTHEM_LAMBDA { return p.cells->side[lane.cell + 1]; })};
+    const Pack::Mask listed = listed_lanes(listed_ >> first);
+    CellParts parts;
+    if (!edge_detail::find_parts(heights(px, py), heights(end_x, end_y), cells, listed, distance,
+                                 parts)) {
+      continue;
+    }
+    const Pack top{double(kTop)}, edge_end{double(kEdge)};
+    if (any(parts.there & ((parts.end0 == top) | (parts.end1 == top)))) {
+      deep_ = true;
+      return;
+    }
+    const auto note = [&](Bits& lanes_with, const Pack::Mask& mask)
+                          APOTHEM_LAMBDA { lanes_with |= bits(parts.there & mask) << first; };
+    there_ |= bits(parts.there) << first;
+    note(own0_, parts.end0 == zero), note(own1_, parts.end1 == zero);
+    note(border0_, parts.end0 > edge_end), note(border1_, parts.end1 > edge_end);
+    parts.s0.store(s0_.data() + first), parts.s1.store(s1_.data() + first);
+    // The moments of SegmentMoments, and the integrals of `accumulate`.
+    const Pack &s0 = parts.s0, &s1 = parts.s1, &v0 = parts.v0, &v1 = parts.v1;
+    const Pack h = s1 - s0;
+    const Pack sum = h * (v0 + v1) / Pack(2.);
+    const Pack moment = h * (v0 * (Pack(2.) * s0 + s1) + v1 * (s0 + Pack(2.) * s1)) / Pack(6.);
+    const Pack larger = select(v0 < v1, v1, v0);
+    const Pack largest = select(zero < larger, larger, zero);
+    const Pack qx = px - of_y([](const PlacedPotential& p, const Lane&)
+                                  APOTHEM_LAMBDA { return p.reference.x(); });
+    const Pack qy = py - of_y([](const PlacedPotential& p, const Lane&)
+                                  APOTHEM_LAMBDA { return p.reference.y(); });
+    const Pack ex = vx[1] - vx[0], ey = vy[1] - vy[0];
+    const Pack length = square_root(ex * ex + ey * ey);
+    const auto rows = [&](auto& of) APOTHEM_LAMBDA {
+      return [&of, first](int k) APOTHEM_LAMBDA {
+        return reinterpret_cast<double*>(&of[static_cast<size_t>(first + k)]);
+      };
+    };
+    write_rows({qx, qy, ex, ey}, rows(edge_));
+    // Of those that are parts of a run.
+    if (any(parts.there & ((parts.end0 > edge_end) | (parts.end1 > edge_end)))) {
+      double sums[kPack], firsts[kPack], most[kPack];
+      sum.store(sums), moment.store(firsts), largest.store(most);
+      for (int k = 0; k < kPack; ++k) moments_[first + k] = {sums[k], firsts[k], most[k]};
+    }
+    write_rows({ey * sum, zero - ex * sum,
+                zero - ((qx * ex + qy * ey) * sum + (ex * ex + ey * ey) * moment), length * sum},
+               rows(integrals_));
+    const auto second = rows(integrals_);
+    write_rows(
+        {length * (qx * sum + ex * moment), length * (qy * sum + ey * moment), length * h, largest},
+        [&](int k) APOTHEM_LAMBDA { return second(k) + 4; });
+  }
+}
+
+// Puts the parts of each edge together to runs. False if an edge goes on in a cell that is not
+// listed, or in the sector of a vertex.
+bool CollarPair::join_parts() {
+  for (Bits rest = there_; rest != 0;) {
+    const Lane& lane = lane_[std::countr_zero(rest)];
+    Bits parts = 0;  // of the same edge
+    do {
+      parts |= rest & -rest;
+      rest &= rest - 1;
+      if (rest == 0) break;
+    } while (lane_[std::countr_zero(rest)].edge == lane.edge &&
+             lane_[std::countr_zero(rest)].of_a == lane.of_a);
+    if (!join_parts_of_edge(parts)) return false;
+  }
+  return true;
+}
+
+bool CollarPair::join_parts_of_edge(Bits parts) {
+  if (((border0_ | border1_) & parts) == 0 && std::has_single_bit(parts)) {
+    const int i = std::countr_zero(parts);
+    add_run(i, i);
+    return true;
+  }
+  // In the order along the edge.
+  std::array<int, kMost> order;
+  int n = 0;
+  for (; parts != 0; parts &= parts - 1) {
+    const int i = std::countr_zero(parts);
+    int at = n++;
+    for (; at > 0 && s0_[order[at - 1]] > s0_[i]; --at) order[at] = order[at - 1];
+    order[at] = i;
+  }
+  for (int k = 0; k < n; ++k) {
+    const int first = order[k];
+    if (has(border0_, first)) return false;
+    int last = first;
+    Moments moments = moments_[first];
+    while (has(border1_, last)) {
+      if (++k == n) return false;
+      const int next = order[k];
+      if (!has(border0_, next) || s0_[next] != s1_[last]) return false;
+      moments.sum += moments_[next].sum;
+      moments.first += moments_[next].first;
+      moments.largest = std::max(moments.largest, moments_[next].largest);
+      last = next;
+    }
+    if (last != first) {
+      integrals_[first] = {};
+      accumulate(edge_[first], moments, s1_[last] - s0_[first], integrals_[first]);
+    }
+    add_run(first, last);
+  }
+  return true;
+}
+
+void CollarPair::add_run(int first, int last) {
+  runs_[count_++] = {lane_[first].of_a,
+                     lane_[first].edge,
+                     has(own0_, first) ? lane_[first].cell : -1,
+                     has(own1_, last) ? lane_[last].cell : -1,
+                     s0_[first],
+                     s1_[last],
+                     &edge_[first],
+                     &integrals_[first]};
+}
+
+}  // namespace apothem
