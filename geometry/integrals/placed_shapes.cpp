@@ -17,6 +17,13 @@ Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
 
 }  // namespace
 
+void PlacedShapes::reserve(size_t shapes, size_t vertices) {
+  shapes_.reserve(shapes);
+  boxes_.reserve(shapes);
+  body_.reserve(4 * vertices);
+  placed_.reserve(4 * (vertices + shapes));
+}
+
 int PlacedShapes::add(const Potential& potential) {
   const int n = potential.size();
   const bool convex = !potential.cells;

@@ -12,6 +12,8 @@ namespace apothem {
 
 class PlacedShapes {
  public:
+  /// Makes room for so many shapes with so many vertices in all, if they are convex.
+  void reserve(size_t shapes, size_t vertices);
   /// Adds a shape given in its body frame (reference point = mass centre) and returns its index.
   /// The potential must outlive this object.
   int add(const Potential& potential);

@@ -15,6 +15,15 @@ double angle_of(const Kinematics& now, RigidIndex i) {
 
 }  // namespace
 
+void Surfaces::reserve_polygons(size_t polygons, size_t vertices) {
+  shapes_.reserve(polygons, vertices);
+  kinds_.reserve(polygons);
+  bodies_.reserve(polygons);
+  pose_.reserve(polygons);
+  rigid_.reserve(polygons);
+  inverse_mass_.reserve(polygons);
+}
+
 void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   const SurfaceIndex i = shapes_.add(potential);
   kinds_.push_back(SurfaceKind::polygon);

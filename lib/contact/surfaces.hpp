@@ -45,6 +45,8 @@ class Surfaces {
     /// How far its boundary may move between two searches, twice over, m: no more than this.
     double skin = HUGE_VAL;
   };
+  /// Makes room for so many polygons with so many vertices in all, and no more than that.
+  void reserve_polygons(size_t polygons, size_t vertices);
   /// Adds the polygon of the next rigid body. The potential is about its mass centre and must
   /// outlive this object.
   void add_polygon(const Potential& potential, const Rigid& rigid);

@@ -73,6 +73,9 @@ Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& do
   const bool outlines = meshes && model.contact.surface == ContactSurface::body;
   Surfaces surfaces(common_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
                     outlines);
+  size_t vertices = 0;
+  for (const RigidBody& body : model.bodies) vertices += body.potential.vertices.size();
+  surfaces.reserve_polygons(model.bodies.size(), vertices);
   for (const RigidBody& body : model.bodies) {
     surfaces.add_polygon(body.potential, {.inverse_mass = body.inverse_mass(),
                                           .inradius = body.inradius,

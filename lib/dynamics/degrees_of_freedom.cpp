@@ -18,6 +18,9 @@ DegreesOfFreedom::DegreesOfFreedom(const Model& model, std::span<const double> n
     : model_(model),
       threads_(threads),
       layout_{static_cast<int>(model.bodies.size()), static_cast<int>(node_mass.size())} {
+  for (auto* const of_coordinates : {&inverse_mass_, &mass_, &acceleration_, &start_}) {
+    of_coordinates->reserve(layout_.size());
+  }
   for (const RigidBody& body : model.bodies) add_rigid(body);
   for (const DeformableBody& body : model.deformables) {
     add_nodes(body, node_mass.subspan(static_cast<size_t>(body.first_node)));
