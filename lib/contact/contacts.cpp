@@ -8,6 +8,15 @@
 #include "apothem/contact/polygon_kernel.hpp"
 
 namespace apothem {
+namespace {
+
+// No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
+double least_of(const Penetrations& floors, double shortest) {
+  constexpr double kRoundOff = 1 - 1e-12;
+  return std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
+}
+
+}  // namespace
 
 Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, PairTable table,
                    int threads)
@@ -55,24 +64,20 @@ bool Contacts::search_if_stale() {
 
 void Contacts::evaluate() {
   contacts_.clear();
-  all_listed_ = false;
   each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
 }
 
-const std::vector<Contact>& Contacts::contacts() const {
-  if (all_listed_) return contacts_;
-  all_listed_ = true;
-  const auto others = static_cast<std::ptrdiff_t>(contacts_.size());
-  each([&](const Kernel& kernel) { kernel.add_contacts(contacts_); });
-  if (others > 0) {
-    std::rotate(contacts_.begin(), contacts_.begin() + others, contacts_.end());
-    std::ranges::stable_sort(contacts_, {}, &Contact::kernel);
+const std::vector<Contact>& Contacts::list(double least) const {
+  listed_.clear();
+  each([&](const Kernel& kernel) { kernel.add_contacts(least, listed_); });
+  if (!contacts_.empty()) {
+    listed_.insert(listed_.end(), contacts_.begin(), contacts_.end());
+    std::ranges::stable_sort(listed_, {}, &Contact::kernel);
   }
-  return contacts_;
+  return listed_;
 }
 
 int Contacts::count() const {
-  if (all_listed_) return static_cast<int>(contacts_.size());
   int late = 0;
   each([&](const Kernel& kernel) { late += kernel.summary().count; });
   return late + static_cast<int>(contacts_.size());
@@ -154,7 +159,7 @@ size_t Contacts::candidates() const {
   return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }
 
-// First by what is known of all contacts; then exactly of the few that may be deeper than that.
+// First by what is known of the contacts; then exactly of the few that may be deeper than that.
 Penetrations Contacts::penetrations(std::span<const double> lengths,
                                     const Penetrations& floors) const {
   constexpr double kKnown = 1 + 1e-6;
@@ -168,11 +173,12 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     const auto [a, b] = bodies(c);
     peak = {depth, a, b};
   };
-  for (const Contact& c : contacts()) {
+  const std::vector<Contact>& deep = list(least_of(floors, *std::ranges::min_element(lengths)));
+  for (const Contact& c : deep) {
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   }
-  for (const Contact& c : contacts()) {
+  for (const Contact& c : deep) {
     if (c.at_most <= kKnown * c.depth) continue;
     const double known = std::min(found.largest.value, found.relative.value * length(c));
     if (!(c.at_most > known)) continue;
@@ -185,8 +191,7 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
 }
 
 bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const {
-  constexpr double kRoundOff = 1 - 1e-12;
-  const double least = std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
+  const double least = least_of(floors, shortest);
   const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
   bool late = false;
   each([&](const Kernel& kernel) { late = late || kernel.summary().deepest > least; });

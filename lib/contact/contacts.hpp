@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -60,8 +61,8 @@ class Contacts {
   void drop_trial();
   void add_forces(const ForceViews& forces);
 
-  /// Ascending within a kernel. Not for every step.
-  [[nodiscard]] const std::vector<Contact>& contacts() const;
+  /// Ascending within a kernel, until they are listed again. Not for every step.
+  [[nodiscard]] const std::vector<Contact>& contacts() const { return list(-HUGE_VAL); }
   /// How many there are.
   [[nodiscard]] int count() const;
   /// The bodies of a contact, and of a spring.
@@ -124,6 +125,7 @@ class Contacts {
   void inherit(const ContactMemory& memory);
 
  private:
+  [[nodiscard]] const std::vector<Contact>& list(double least) const;
   template <class F>
   void each(F&& f) const {
     for (const auto& kernel : kernels_) {
@@ -144,10 +146,9 @@ class Contacts {
   Search search_;
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_;
-  bool tangential_;  // there is friction or damping
-  mutable std::vector<Contact> contacts_;
-  // Without those that kernels add when they are asked for.
-  mutable bool all_listed_ = true;
+  bool tangential_;                      // there is friction or damping
+  std::vector<Contact> contacts_;        // without those that kernels add when they are asked for
+  mutable std::vector<Contact> listed_;  // those that list() has found
   FrictionMemory memory_;
   bool tried_ = false;  // the last slide was a trial
   std::int64_t searches_ = 0;

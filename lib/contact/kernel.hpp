@@ -64,8 +64,8 @@ class Kernel {
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
   /// What a step asks of contacts that `evaluate` has not appended.
   [[nodiscard]] virtual ContactSummary summary() const { return {}; }
-  /// Appends them.
-  virtual void add_contacts(std::vector<Contact>& /*contacts*/) const {}
+  /// Appends those of them that may be deeper than `least`, m.
+  virtual void add_contacts(double /*least*/, std::vector<Contact>& /*contacts*/) const {}
   /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.

@@ -183,7 +183,7 @@ ContactSummary OutlineKernel::summary() const {
 }
 
 // A plateau has the first face, or the first edge, of its body for its partner.
-void OutlineKernel::add_contacts(std::vector<Contact>& contacts) const {
+void OutlineKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
   const Outlines& o = outlines_;
   for (const EdgeFaceContact& c : edge_faces()) {
     const CollarFace<double> face = o.face(c.face);
@@ -194,6 +194,7 @@ void OutlineKernel::add_contacts(std::vector<Contact>& contacts) const {
     const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
     const bool known = o.body[c.edge] == o.body[c.face] && surely > 0;
     const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
+    if (at_most <= least) continue;
     contacts.push_back({outline_kernel, c.edge, c.face, surely, at_most, std::min(share, 1.),
                         c.slope * o.length[c.edge] * (c.piece.to - c.piece.from)});
   }
@@ -202,6 +203,7 @@ void OutlineKernel::add_contacts(std::vector<Contact>& contacts) const {
         {outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
   }
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    if (least >= 0) break;
     contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }

@@ -70,8 +70,8 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
 }
 
 template <class Real>
-APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, PatchStep<Real>& p,
-                                DamperOf<Real>& damper) {
+APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bool damped,
+                                PatchStep<Real>& p, DamperOf<Real>& damper) {
   const auto last = [&](int k) APOTHEM_LAMBDA -> const PairDamping& {
     return work[k].last ? *work[k].last : kNoDamping;
   };
@@ -93,10 +93,16 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
   rate(p.rate.y, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[1] - b[1]; });
   rate(p.rate.a, [](const double* a, const double*) APOTHEM_LAMBDA { return a[2]; });
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
-  read_lanes(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).rate; });
-  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].touched ? 1. : 0.; });
   read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].begins ? 1. : 0.; });
   read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].spring; });
+  if (!damped) {  // what only dampers need
+    p.rate_before = {};
+    p.touched = Real(0.) > Real(0.);
+    damper = {};
+    return;
+  }
+  read_lanes(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).rate; });
+  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].touched ? 1. : 0.; });
   read_lanes(damper.elastic,
              [&](int k) APOTHEM_LAMBDA -> const PairForce& { return dashpot(k).elastic; });
   read_lanes(damper.damping,
@@ -105,16 +111,13 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
 }
 
 template <class Real>
-APOTHEM_INLINE void hold(const PairScene& scene, const PairWork* work, const PatchStep<Real>& p,
-                         BodyStiffnessOf<Real>& a, BodyStiffnessOf<Real>& b) {
+APOTHEM_INLINE void hold(const PairWork* work, const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
+                         BodyStiffnessOf<Real>& b) {
   FourOf<Real> four;
   read_rows([&](int k)
                 APOTHEM_LAMBDA { return integral_numbers(*work[k].integral) + kBreadthNumbers; },
             four);
-  ContactStrip<Real> strip{four[0], four[1], {}};
-  read_lanes(strip.times, [&](int k) APOTHEM_LAMBDA {
-    return scene.surfaces.responsive(work[k].a) && scene.surfaces.responsive(work[k].b) ? 2. : 1.;
-  });
+  const ContactStrip<Real> strip{four[0], four[1]};
   strip.hold(p, a, b);
 }
 
@@ -145,7 +148,7 @@ PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tan
                                PatchDamper& damper) {
   PatchStep<double> p;
   read_pair(scene, &work, p);
-  read_memory(scene, &work, p, damper);
+  read_memory(scene, &work, kind.damped, p, damper);
   return step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper);
 }
 
@@ -154,7 +157,7 @@ void load_pair(const PairScene& scene, const PairWork& work, const PairForce& be
   PatchStep<double> p;
   read_pair(scene, &work, p);
   BodyStiffness a = held_a, b = held_b;
-  hold(scene, &work, p, a, b);
+  hold(&work, p, a, b);
   const PairForce f = whole_force(p, beside);
   load = {{f.x, f.y, f.a, a}, {-f.x, -f.y, f.b, b}, p.normal_stiffness * p.size, work.a, work.b};
 }
@@ -168,7 +171,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   PatchForces<Pack> forces{};
   if (kind_.any()) {
     DamperOf<Pack> damper;
-    read_memory(scene, work, p, damper);
+    read_memory(scene, work, kind_.damped, p, damper);
     forces = step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper);
     write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return *to[k].tangential; });
     for (int k = 0; k < kAtOnce; ++k) *to[k].book = {};
@@ -216,7 +219,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
       }
     }
   }
-  hold(scene, work, p, forces.held_a, forces.held_b);
+  hold(work, p, forces.held_a, forces.held_b);
   const PairVectorOf<Pack> f = whole_force(p, forces.all);
   write_load(f.x, f.y, f.a, forces.held_a,
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return to[k].load->on_a; });

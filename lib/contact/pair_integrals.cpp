@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace apothem {
 namespace {
@@ -92,6 +93,7 @@ bool PairIntegrals::evaluate_pair(size_t p, int index) {
     return false;
   }
   result.integral = &integral;
+  result.deepest = bound_depth(a, b, integral);
   make_room(results_of(index));
   results_of(index).push_back(result);
   return true;
@@ -140,20 +142,23 @@ PairIntegral PairIntegrals::integrate(size_t p, const Vec2& between, Worker& wor
 
 double PairIntegrals::energy(const PairTable& table) const {
   const PlacedShapes& shapes = surfaces_.shapes();
-  double energy = 0;
-  for (const PairInTouch& pair : touching_) {
-    const SurfaceIndex a = pair.a, b = pair.b;
-    const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
-    energy += k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
-  }
-  return energy;
+  energies_.resize(touching_.size());
+  threads_.chunks(static_cast<int>(touching_.size()), kPairTime, [&](int first, int end, int) {
+    for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+      const SurfaceIndex a = touching_[i].a, b = touching_[i].b;
+      const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
+      energies_[i] =
+          k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
+    }
+  });
+  return std::accumulate(energies_.begin(), energies_.end(), 0.);
 }
 
 // phi may be limited to 1.
-double PairIntegrals::deepest(const PairInTouch& result) const {
+double PairIntegrals::bound_depth(SurfaceIndex a, SurfaceIndex b, const PairIntegral& pair) const {
   const PlacedShapes& shapes = surfaces_.shapes();
-  const double ratio = std::max(shapes.depth_ratio(result.a), shapes.depth_ratio(result.b));
-  return result.integral->largest_phi < 1 ? ratio * result.integral->depth : HUGE_VAL;
+  const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
+  return pair.largest_phi < 1 ? ratio * pair.depth : HUGE_VAL;
 }
 
 Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, double k) const {
@@ -164,7 +169,7 @@ Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, dou
           a,
           b,
           pair.depth,
-          deepest(result),
+          result.deepest,
           pair.largest_phi,
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }
@@ -178,7 +183,7 @@ bool PairIntegrals::too_deep(const PairInTouch& result) const {
   // nearer by no more than the depth. The top of a shape that deforms is another point.
   const double inradius = std::min(surfaces_.inradius(a), surfaces_.inradius(b));
   const bool rigid = surfaces_.is_rigid(a) && surfaces_.is_rigid(b);
-  const double shortest = rigid ? 6 * (inradius - deepest(result)) : inradius;
+  const double shortest = rigid ? 6 * (inradius - result.deepest) : inradius;
   if (pair.own_length_a + pair.own_length_b < shortest) return false;
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 offset = surfaces_.between(a, b);

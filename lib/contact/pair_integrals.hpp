@@ -21,6 +21,7 @@ struct PairInTouch {
   SurfaceIndex a, b;
   const PairIntegral* integral;  ///< of the whole pair, for unit stiffness; force on a, moments
                                  ///< about the reference points
+  double deepest = 0;            ///< a bound of the penetration, m
   int patches = 1;               ///< contact patches: one if it is not split
   int runs = 0;                  ///< runs of the boundaries; none if it is not split
   // Where these are, among those that a thread has found.
@@ -73,8 +74,6 @@ class PairIntegrals {
 
   /// The record of a pair; k is the normal stiffness times the thickness, N/m.
   [[nodiscard]] Contact contact(KernelKind kernel, const PairInTouch& pair, double k) const;
-  /// A bound of its penetration, m.
-  [[nodiscard]] double deepest(const PairInTouch& pair) const;
   /// If the pair is so deep that its potentials are about to fall again.
   [[nodiscard]] bool too_deep(const PairInTouch& pair) const;
 
@@ -106,6 +105,7 @@ class PairIntegrals {
   void begin();
   bool evaluate_pair(size_t pair, int worker);
   void collect();
+  [[nodiscard]] double bound_depth(SurfaceIndex a, SurfaceIndex b, const PairIntegral& pair) const;
   [[nodiscard]] PairIntegral integrate(size_t pair, const Vec2& between, Worker& worker,
                                        PairInTouch& result);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
@@ -119,6 +119,7 @@ class PairIntegrals {
   std::vector<BoxPair> pairs_;
   std::vector<Near> near_;  // of each pair
   std::vector<PairInTouch> touching_;
+  mutable std::vector<double> energies_;  // of each of these, when they are asked for, N
   std::vector<Worker> workers_;
 };
 

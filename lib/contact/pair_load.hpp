@@ -34,7 +34,6 @@ struct PairLoad {
 template <class Real>
 struct ContactStrip {
   Real breadth, middle;  // across the force: see PairIntegral
-  Real times;            // 2 where both bodies can move, else 1
 
   /// Adds to `springs`, how friction springs hold a body, how the contact does. The displacements
   /// of both bodies add where both can move: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
@@ -53,6 +52,9 @@ struct ContactStrip {
     // other.
     const VectorOf<Real> at = middle * tangent;
     const Real spread = stiffness * breadth * breadth / Real(12.);
+    const auto moves = [&](const std::array<Real, 3>& w)
+                           APOTHEM_LAMBDA { return w[0] + w[1] + w[2] > zero; };
+    const Real times = select(moves(p.inverse_mass_a) & moves(p.inverse_mass_b), Real(2.), one);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
       BodyStiffnessOf<Real> sum;

@@ -38,14 +38,16 @@ void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
   for (Found& found : found_) found.summary = {};
   pairs_.evaluate([&](const PairInTouch& pair, int worker) {
     found_[static_cast<size_t>(worker)].summary.include(
-        pairs_.deepest(pair), pairs_.too_deep(pair) ? 1 : pair.integral->largest_phi);
+        pair.deepest, pairs_.too_deep(pair) ? 1 : pair.integral->largest_phi);
   });
   summary_ = {};
   for (const Found& found : found_) summary_.include(found.summary);
 }
 
-void PolygonKernel::add_contacts(std::vector<Contact>& contacts) const {
-  for (const PairInTouch& pair : pairs_.touching()) contacts.push_back(contact_of(pair));
+void PolygonKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
+  for (const PairInTouch& pair : pairs_.touching()) {
+    if (!(pair.deepest <= least)) contacts.push_back(contact_of(pair));
+  }
 }
 
 Contact PolygonKernel::contact_of(const PairInTouch& pair) const {

@@ -63,10 +63,6 @@ void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {
   }
 }
 
-double Surfaces::inradius(SurfaceIndex i) const {
-  return is_rigid(i) ? rigid_[i].inradius : 1 / shapes_.slope(i);
-}
-
 bool Surfaces::place_polygon(RigidIndex i, const Kinematics& now, const SineCosine& angle) {
   const double* x = &now.pose[3 * static_cast<size_t>(i)];
   if (0 * x[0] + 0 * x[1] + 0 * x[2] != 0) return false;

@@ -84,7 +84,9 @@ class Surfaces {
   /// Of each body against a force through its mass centre, 1/kg; 0 where forces cannot move it.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   /// Largest inscribed circle of a polygon, or smallest length r of an element's potential, m.
-  [[nodiscard]] double inradius(SurfaceIndex i) const;
+  [[nodiscard]] double inradius(SurfaceIndex i) const {
+    return is_rigid(i) ? rigid_[static_cast<size_t>(i)].inradius : 1 / shapes_.slope(i);
+  }
   /// How far the box of a surface grows for the search, m.
   [[nodiscard]] double growth(SurfaceIndex i) const {
     if (!is_rigid(i)) return mesh_skin_ / 2;
