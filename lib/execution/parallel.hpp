@@ -12,7 +12,7 @@
 namespace apothem {
 
 /// Work, in nanoseconds on one thread, below which waking the others costs more than it gives.
-inline constexpr double kWorthThreads = 1e4;
+inline constexpr double kWorthThreads = 4e4;
 
 class Threads {
  public:
