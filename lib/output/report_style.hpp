@@ -24,17 +24,18 @@ dd { margin: 0 0 .6em 1.2em; }
 .contradicted, .missing { background: #fde2dd; color: #801c10; }
 .own { background: #e6e9f2; color: #2c3a66; }
 p.top { font-size: 14px; }
-/* On a narrow screen every row is a list of its cells, each behind the head of its column, and
-   pictures stay large enough to read: they scroll. */
+/* On a narrow screen every row is a list of its cells, each behind the head of its column, numbers
+   two in a line, and pictures stay large enough to read: they scroll. */
 @media screen and (max-width: 800px) {
   body { margin: 1em auto; padding: 0 .7em; }
   h1 { font-size: 1.5em; }
   .picture img { max-width: none; width: 680px; }
-  table, tbody, tr, td { display: block; }
+  table, tbody, td { display: block; }
   thead { display: none; }
-  tr { border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
-  td, td.number { text-align: left; border: 0; padding: .1em 0 .1em 8.5em; position: relative; min-height: 1.4em; }
-  td.number, td.verdict { white-space: normal; }
+  tr { display: flex; flex-wrap: wrap; border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
+  td, td.number { flex: 0 0 100%; box-sizing: border-box; text-align: left; border: 0; padding: .1em 0 .1em 5.6em;
+    position: relative; min-height: 1.4em; }
+  td.number, td.verdict { flex-basis: 50%; white-space: normal; }
   td.none { display: none; }
   td::before { content: attr(data-head); position: absolute; left: 0; color: #666; font-weight: normal; }
 }
