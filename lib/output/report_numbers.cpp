@@ -112,7 +112,7 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
     text += fmt::format(
         "<h3>{}</h3>\n<table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
         "<th>reference</th><th>result</th><th>error</th><th>relative</th><th>tolerance</th>"
-        "<th></th><th>rests on</th><th>source</th></tr></thead>\n{}</table>\n",
+        "<th>verdict</th><th>rests on</th><th>source</th></tr></thead>\n{}</table>\n",
         kGroups[group].heading, with_scenes ? "<th>scene</th>" : "", rows);
   }
   return text;
