@@ -36,6 +36,7 @@ void PairIntegrals::begin() {
   touching_.clear();
   for (Worker& worker : workers_) {
     worker.integrals.clear();
+    worker.room = worker.integrals.capacity();
     worker.results.clear();
     worker.runs.clear();
     worker.patches.clear();
@@ -99,12 +100,16 @@ bool PairIntegrals::evaluate_pair(size_t p, int index) {
   return true;
 }
 
-// Puts the lists together. Those of the integrals may have moved while they grew.
+// Puts the lists together. One of integrals may have moved while it grew.
 void PairIntegrals::collect() {
   size_t done = 0;
   for (const Worker& worker : workers_) {
     touching_.insert(touching_.end(), worker.results.begin(), worker.results.end());
-    for (const PairIntegral& integral : worker.integrals) touching_[done++].integral = &integral;
+    if (worker.integrals.capacity() != worker.room) {
+      size_t next = done;
+      for (const PairIntegral& integral : worker.integrals) touching_[next++].integral = &integral;
+    }
+    done += worker.integrals.size();
   }
 }
 
