@@ -149,7 +149,9 @@ PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tan
   PatchStep<double> p;
   read_pair(scene, &work, p);
   read_memory(scene, &work, kind.damped, p, damper);
-  return step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper);
+  PatchForces<double> forces;
+  step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper, forces);
+  return forces;
 }
 
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
@@ -172,7 +174,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   if (kind_.any()) {
     DamperOf<Pack> damper;
     read_memory(scene, work, kind_.damped, p, damper);
-    forces = step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper);
+    step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper, forces);
     write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return *to[k].tangential; });
     for (int k = 0; k < kAtOnce; ++k) *to[k].book = {};
     if (kind_.damped) {

@@ -147,9 +147,9 @@ struct PatchForces {
 /// The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
 /// number along the tangent it turns with the contact by itself (Eq. 13). Friction on a opposes a's
 /// slip against b: the sign of Eq. 12 is a misprint. It slips in the part `share` of the step dt
-/// (s). The dashpot beside the spring acts up to Coulomb's limit.
+/// (s). If `damped`, the dashpot beside the spring acts up to Coulomb's limit.
 template <class Real>
-APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, const Real& share,
+APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const Real& share,
                         DamperOf<Real>& damper, PatchForces<Real>& forces) {
   const Real& k = p.tangential_stiffness;
   const VectorOf<Real> tangent = p.normal.turned();
@@ -178,6 +178,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, const Real& share,
                     select(p.has_direction, p.point.cross(tangent), Real(0.)));
   forces.held_b.add(held, forces.tangent.x, forces.tangent.y,
                     select(p.has_direction, (p.point + p.between).cross(tangent), Real(0.)));
+  if (!damped) return;
   // A first look, perhaps with the memory of another run, keeps the force of the dashpot.
   if (dt > 0) {
     const Real time = p.damping_time(p.tangential_ratio, k, tangent);
@@ -192,19 +193,18 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, const Real& share,
 }
 
 /// A step of dt (s) of a patch with friction or damping or both, whose direction has been found.
-/// `finite`: the bodies may move by more than a patch that is new is deep.
+/// `finite`: the bodies may move by more than a patch that is new is deep. `forces` are zero
+/// before.
 template <class Real>
-APOTHEM_INLINE PatchForces<Real> step_patch(const PatchStep<Real>& p, bool rough, bool damped,
-                                            double dt, bool finite, DamperOf<Real>& damper) {
-  PatchForces<Real> forces;
+APOTHEM_INLINE void step_patch(const PatchStep<Real>& p, bool rough, bool damped, double dt,
+                               bool finite, DamperOf<Real>& damper, PatchForces<Real>& forces) {
   if (damped) {
     damp(p, dt, damper);
     forces.all = forces.damping = damper.damping;
   } else {
     damper = {};
   }
-  if (rough) rub(p, dt, finite ? closed_share(p, dt) : Real(1.), damper, forces);
-  return forces;
+  if (rough) rub(p, damped, dt, finite ? closed_share(p, dt) : Real(1.), damper, forces);
 }
 
 /// The damping of a pair at the end of a step, and what the ledger needs of it.
