@@ -35,7 +35,7 @@ p.top { font-size: 14px; }
   tr { display: flex; flex-wrap: wrap; border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
   td, td.number { flex: 0 0 100%; box-sizing: border-box; text-align: left; border: 0; padding: .1em 0 .1em 5.6em;
     position: relative; min-height: 1.4em; }
-  td.number, td.verdict { flex-basis: 50%; white-space: normal; }
+  td.number, td.verdict { flex-basis: 50%; }
   td.none { display: none; }
   td::before { content: attr(data-head); position: absolute; left: 0; color: #666; font-weight: normal; }
 }
