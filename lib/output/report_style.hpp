@@ -33,7 +33,7 @@ p.top { font-size: 14px; }
   table, tbody, td { display: block; }
   thead { display: none; }
   tr { display: flex; flex-wrap: wrap; border: 1px solid #ccc; margin-bottom: .8em; padding: .3em; }
-  td, td.number { flex: 0 0 100%; box-sizing: border-box; text-align: left; border: 0; padding: .1em 0 .1em 5.6em;
+  td, td.number { flex: 0 0 100%; box-sizing: border-box; text-align: left; border: 0; padding: .1em 0 .1em 5.2em;
     position: relative; min-height: 1.4em; }
   td.number, td.verdict { flex-basis: 50%; }
   td.none { display: none; }
