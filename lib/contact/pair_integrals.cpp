@@ -123,10 +123,10 @@ PairIntegral PairIntegrals::integrate(size_t p, const Vec2& between, Worker& wor
   const bool split = split_ == Split::all ||
                      (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
   const double margin = near.margin;
-  const PairIntegral integral =
-      split ? contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
-                              worker.pair_patches, near)
-            : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+  PairIntegral integral = split
+                              ? contact_patches(view_a, view_b, between, worker.workspace,
+                                                worker.pair_runs, worker.pair_patches, near)
+                              : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
   if (near.margin > margin) {  // they are apart by it where they are now
     near_[p].between = between;
     near_[p].angle_a = surfaces_.pose(a)[2];

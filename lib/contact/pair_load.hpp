@@ -54,7 +54,8 @@ struct ContactStrip {
     const Real spread = stiffness * breadth * breadth / Real(12.);
     const auto moves = [&](const std::array<Real, 3>& w)
                            APOTHEM_LAMBDA { return w[0] + w[1] + w[2] > zero; };
-    const Real times = select(moves(p.inverse_mass_a) & moves(p.inverse_mass_b), Real(2.), one);
+    const Truth<Real> a_moves = moves(p.inverse_mass_a), b_moves = moves(p.inverse_mass_b);
+    const Real times = select(a_moves & b_moves, Real(2.), one);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
       BodyStiffnessOf<Real> sum;
