@@ -202,8 +202,8 @@ void OutlineKernel::add_contacts(double least, std::vector<Contact>& contacts) c
     contacts.push_back(
         {outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
   }
+  if (least >= 0) return;  // the others have no depth
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    if (least >= 0) break;
     contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
