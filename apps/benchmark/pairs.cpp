@@ -86,33 +86,42 @@ Work by_method(Pairs made, const Method& method) {
   return {.once = once, .extras = extras};
 }
 
-// The kernel as the step loop calls it: shapes placed, memory at hand.
-Work by_edges(const Pairs& pairs) {
-  struct Prepared {
-    PlacedShapes shapes;
-    std::vector<Vec2> offsets;
-    EdgeWorkspace workspace;
-    [[nodiscard]] PairIntegral integral(int i) {
-      return pair_integral(shapes.view(2 * i), shapes.view(2 * i + 1), offsets[i], workspace);
+// The kernel as the step loop calls it: shapes placed, memory at hand, many pairs at a time.
+struct ConvexCases {
+  PlacedShapes shapes;
+  std::vector<Vec2> offsets;
+  std::vector<NearEdges> near;
+  ConvexPairs kernel;
+  // Calls found(number, integral) for each pair.
+  template <class F>
+  void evaluate(const F& found) {
+    near.assign(offsets.size(), {});
+    size_t done = 0;
+    for (size_t i = 0; i < offsets.size(); ++i) {
+      const int a = 2 * static_cast<int>(i);
+      kernel.add(shapes.view(a), shapes.view(a + 1), offsets[i], near[i]);
+      if (!kernel.full() && i + 1 < offsets.size()) continue;
+      for (const PairIntegral& integral : kernel.evaluate()) found(done++, integral);
     }
-  };
-  const auto prepared = std::make_shared<Prepared>();
+  }
+};
+
+Work by_edges(const Pairs& pairs) {
+  const auto cases = std::make_shared<ConvexCases>();
   for (const Pair& pair : pairs) {
     for (const Potential* potential : {&pair.potential_a, &pair.potential_b}) {
-      prepared->shapes.place(prepared->shapes.add(*potential), 0, 0, 0);
+      cases->shapes.place(cases->shapes.add(*potential), 0, 0, 0);
     }
-    prepared->offsets.emplace_back(pair.a.origin() - pair.b.origin());
+    cases->offsets.emplace_back(pair.a.origin() - pair.b.origin());
   }
   double worst = 0;
-  for (size_t i = 0; i < pairs.size(); ++i) {
+  cases->evaluate([&](size_t i, const PairIntegral& integral) {
     const PairIntegral& exact = pairs[i].exact.integral;
-    const Vec2 error = prepared->integral(static_cast<int>(i)).force - exact.force;
-    worst = std::max(worst, error.norm() / exact.weight);
-  }
-  const int count = static_cast<int>(pairs.size());
-  const auto once = [prepared, count] {
-    for (int i = 0; i < count; ++i) keep(prepared->integral(i));
-    return static_cast<double>(count);
+    worst = std::max(worst, (integral.force - exact.force).norm() / exact.weight);
+  });
+  const auto once = [cases] {
+    cases->evaluate([](size_t, const PairIntegral& integral) { keep(integral); });
+    return static_cast<double>(cases->offsets.size());
   };
   return {.once = once, .extras = [worst] {
             return std::vector<Extra>{{"error", worst}, {"failures", 0}};

@@ -5,7 +5,6 @@
 #include "apothem/geometry/integrals/distance_volume.hpp"
 #include "apothem/geometry/integrals/edge_trace.hpp"
 #include "apothem/geometry/integrals/placement.hpp"
-#include "apothem/geometry/integrals/quad_pair.hpp"
 #include "apothem/geometry/polygon/boundary_inside.hpp"
 #include "apothem/geometry/potential/lower_envelope.hpp"
 
@@ -34,13 +33,9 @@ Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double d
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near) {
-  if (are_quads(a, b) && near.of_a == NearEdges::kAll && near.of_b == NearEdges::kAll) {
-    PairIntegral pair;
-    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-      quad_integral(a, b, offset, near, pair);
-      return 0.;
-    });
-    return pair;
+  if (ConvexPairs::serves(a) && ConvexPairs::serves(b)) {
+    workspace.convex.add(a, b, offset, near);
+    return workspace.convex.evaluate()[0];
   }
   const HeightRows height = height_rows(a, b, workspace.values);
   const double dx = offset.x();
@@ -115,22 +110,30 @@ Parts convex_parts(const PlacedPotential& p, const Vec2& shift) {
   return lower_envelope::fan(ring(p, shift));
 }
 
-// INT phi_p dA over the overlap of p with the other polygon, which is given by its convex parts.
-double volume_under(const PlacedPotential& p, const Vec2& shift, const Parts& others) {
-  const auto planes = lines(p, shift);
+// INT phi_p dA over the overlap of p with the other polygon, which is given by its ring and its
+// convex parts.
+double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& other,
+                    const Parts& parts) {
+  std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
   if (p.roof) {
+    // Parts reach beyond their polygon; faces that it does not meet need not be summed up to 0.
+    const lower_envelope::Bounds<double> reach(other);
     std::vector<Ring> faces;
+    std::vector<lower_envelope::Line<double>> of_faces;
     RoofNodes placed;
     placed.place(p);
-    for (const std::vector<int>& nodes : p.roof->faces) {
-      Ring& face = faces.emplace_back();
-      for (const int i : nodes) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
+    for (size_t e = 0; e < p.roof->faces.size(); ++e) {
+      Ring face;
+      for (const int i : p.roof->faces[e]) face.push_back(Vec2(placed.x[i], placed.y[i]) + shift);
+      if (reach.apart(lower_envelope::Bounds<double>(face))) continue;
+      faces.push_back(std::move(face));
+      of_faces.push_back(planes[e]);
     }
-    return lower_envelope::volume_under_faces(faces, planes, p.capped, others);
+    return lower_envelope::volume_under_faces(faces, of_faces, p.capped, parts);
   }
   const Ring outline = ring(p, shift);
   double volume = 0;
-  for (const auto& part : others) {
+  for (const auto& part : parts) {
     volume += part.sign * lower_envelope::volume_under(planes, p.capped,
                                                        lower_envelope::inside(part.ring, outline));
   }
@@ -151,22 +154,54 @@ double volume_under_distance(const PlacedPotential& p, const PlacedPotential& ot
 
 }  // namespace
 
-PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
-  const Parts parts_a = convex_parts(a, offset);
-  const Parts parts_b = convex_parts(b, Vec2::Zero());
-  PairVolume volume;
-  volume.energy =
-      (a.distance ? volume_under_distance(a, b, -offset) : volume_under(a, offset, parts_b)) +
-      (b.distance ? volume_under_distance(b, a, offset) : volume_under(b, Vec2::Zero(), parts_a));
-  const lower_envelope::Line<double> one{Vec2::Zero(), 1};
-  for (const auto& part_a : parts_a) {
-    for (const auto& part_b : parts_b) {
-      volume.overlap_area +=
-          part_a.sign * part_b.sign *
-          lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);
-    }
+namespace {
+
+// A pair in the frame of b.
+struct ClippedPair {
+  ClippedPair(const PlacedPotential& placed_a, const PlacedPotential& placed_b, const Vec2& shift)
+      : a(placed_a),
+        b(placed_b),
+        offset(shift),
+        ring_a(ring(a, offset)),
+        ring_b(ring(b, Vec2::Zero())),
+        parts_a(convex_parts(a, offset)),
+        parts_b(convex_parts(b, Vec2::Zero())) {}
+
+  [[nodiscard]] double energy() const {
+    return (a.distance ? volume_under_distance(a, b, -offset)
+                       : volume_under(a, offset, ring_b, parts_b)) +
+           (b.distance ? volume_under_distance(b, a, offset)
+                       : volume_under(b, Vec2::Zero(), ring_a, parts_a));
   }
-  return volume;
+  [[nodiscard]] double overlap_area() const {
+    const lower_envelope::Line<double> one{Vec2::Zero(), 1};
+    double area = 0;
+    for (const auto& part_a : parts_a) {
+      for (const auto& part_b : parts_b) {
+        area +=
+            part_a.sign * part_b.sign *
+            lower_envelope::area_integral(lower_envelope::inside(part_a.ring, part_b.ring), one);
+      }
+    }
+    return area;
+  }
+
+ private:
+  const PlacedPotential &a, &b;
+  Vec2 offset;
+  Ring ring_a, ring_b;
+  Parts parts_a, parts_b;
+};
+
+}  // namespace
+
+PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+  const ClippedPair pair(a, b, offset);
+  return {pair.energy(), pair.overlap_area()};
+}
+
+double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset) {
+  return ClippedPair(a, b, offset).energy();
 }
 
 Vec2 loading_point(const PairIntegral& pair) {

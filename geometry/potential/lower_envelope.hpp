@@ -138,6 +138,25 @@ std::vector<SignedRing<Real>> fan(const std::vector<Vec<Real>>& polygon) {
   return triangles;
 }
 
+/// The smallest and the largest coordinates of a polygon, which has a corner.
+template <class Real>
+struct Bounds {
+  explicit Bounds(const std::vector<Vec<Real>>& polygon) : low(polygon[0]), high(polygon[0]) {
+    for (const Vec<Real>& p : polygon) {
+      for (int i = 0; i < 2; ++i) {
+        if (p[i] < low[i]) low[i] = p[i];
+        if (p[i] > high[i]) high[i] = p[i];
+      }
+    }
+  }
+  /// True if these two polygons have no area in common.
+  [[nodiscard]] bool apart(const Bounds& other) const {
+    return high[0] < other.low[0] || other.high[0] < low[0] || high[1] < other.low[1] ||
+           other.high[1] < low[1];
+  }
+  Vec<Real> low, high;
+};
+
 /// INT phi dA over the signed sum of convex polygons `parts`. phi is given by its faces, which are
 /// polygons, and by the linear function of each face. If `capped`, phi is limited to 1.
 template <class Real>
@@ -146,8 +165,11 @@ Real volume_under_faces(const std::vector<std::vector<Vec<Real>>>& faces,
                         const std::vector<SignedRing<Real>>& parts) {
   const Line<Real> one{Vec<Real>(0, 0), 1};
   Real volume = 0;
+  const std::vector<Bounds<Real>> of_faces(faces.begin(), faces.end());
   for (const SignedRing<Real>& part : parts) {
+    const Bounds<Real> of_part(part.ring);
     for (size_t e = 0; e < faces.size(); ++e) {
+      if (of_part.apart(of_faces[e])) continue;
       const std::vector<Vec<Real>> face = inside(faces[e], part.ring);
       const Line<Real>& plane = planes[e];
       if (!capped) {

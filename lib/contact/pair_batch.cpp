@@ -170,7 +170,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   const PairTarget* const to = targets_.data();
   PatchStep<Pack> p;
   read_pair(scene, work, p);
-  PatchForces<Pack> forces{};
+  PatchForces<Pack> forces;
   if (kind_.any()) {
     DamperOf<Pack> damper;
     read_memory(scene, work, kind_.damped, p, damper);

@@ -73,31 +73,66 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
-// True if the pair touches.
-bool PairIntegrals::evaluate_pair(size_t p, int index) {
-  const auto [a, b] = pairs_[p];
-  const std::vector<Box>& boxes = surfaces_.shapes().boxes();
-  if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) return false;
+// Evaluates pairs from `first` on, as many as go together. Returns where the next ones begin.
+size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const std::vector<Box>& boxes = shapes.boxes();
   Worker& worker = workers_[static_cast<size_t>(index)];
-  const Vec2 between = surfaces_.between(a, b);
-  find_near(p, between, worker.near_edges);
-  if (near_[p].edges.none()) return false;
+  size_t p = first;
+  for (; p < end && !worker.convex.full(); ++p) {
+    const auto [a, b] = pairs_[p];
+    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) continue;
+    const Vec2 between = surfaces_.between(a, b);
+    find_near(p, between, worker.near_edges);
+    if (near_[p].edges.none()) continue;
+    const PlacedPotential view_a = shapes.view(a);
+    const PlacedPotential view_b = shapes.view(b);
+    if (split_ != Split::all && ConvexPairs::serves(view_a) && ConvexPairs::serves(view_b)) {
+      worker.convex_pairs[static_cast<size_t>(worker.convex.count())] = p;
+      worker.convex.add(view_a, view_b, between, near_[p].edges);
+    } else {
+      evaluate_convex(index);  // those before it
+      evaluate_alone(p, view_a, view_b, index);
+    }
+  }
+  evaluate_convex(index);
+  return p;
+}
+
+void PairIntegrals::evaluate_convex(int index) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  if (worker.convex.count() == 0) return;
+  const size_t* pair = worker.convex_pairs.data();
+  for (const PairIntegral& integral : worker.convex.evaluate()) {
+    const size_t p = *pair++;
+    const auto [a, b] = pairs_[p];
+    if (integral.touching()) {
+      add(integral, {.a = a, .b = b, .deepest = bound_depth(a, b, integral), .worker = index});
+    } else if (near_[p].edges.margin > 0) {
+      note_margin(p, surfaces_.between(a, b));
+    }
+  }
+}
+
+// The pair is apart by its margin where its bodies are now.
+void PairIntegrals::note_margin(size_t p, const Vec2& between) {
+  near_[p].between = between;
+  near_[p].angle_a = surfaces_.pose(pairs_[p].first)[2];
+  near_[p].angle_b = surfaces_.pose(pairs_[p].second)[2];
+}
+
+void PairIntegrals::add(const PairIntegral& integral, const PairInTouch& pair) {
   const auto make_room = [](auto& list) {
     // Large scenes need the memory.
     if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
   };
-  PairInTouch result{.a = a, .b = b, .integral = nullptr, .worker = index};
-  make_room(worker.integrals);
-  PairIntegral& integral = worker.integrals.emplace_back(integrate(p, between, worker, result));
-  if (!integral.touching()) {
-    worker.integrals.pop_back();
-    return false;
-  }
-  result.integral = &integral;
-  result.deepest = bound_depth(a, b, integral);
-  make_room(results_of(index));
-  results_of(index).push_back(result);
-  return true;
+  std::vector<PairIntegral>& integrals = workers_[static_cast<size_t>(pair.worker)].integrals;
+  std::vector<PairInTouch>& results = results_of(pair.worker);
+  make_room(integrals);
+  make_room(results);
+  integrals.push_back(integral);
+  results.push_back(pair);
+  results.back().integral = &integrals.back();
 }
 
 // Puts the lists together. One of integrals may have moved while it grew.
@@ -113,36 +148,34 @@ void PairIntegrals::collect() {
   }
 }
 
-PairIntegral PairIntegrals::integrate(size_t p, const Vec2& between, Worker& worker,
-                                      PairInTouch& result) {
+void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
+                                   const PlacedPotential& view_b, int index) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
   const auto [a, b] = pairs_[p];
-  const PlacedShapes& shapes = surfaces_.shapes();
+  const Vec2 between = surfaces_.between(a, b);
   NearEdges& near = near_[p].edges;
-  const PlacedPotential view_a = shapes.view(a);
-  const PlacedPotential view_b = shapes.view(b);
   const bool split = split_ == Split::all ||
                      (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
   const double margin = near.margin;
-  PairIntegral integral = split
-                              ? contact_patches(view_a, view_b, between, worker.workspace,
-                                                worker.pair_runs, worker.pair_patches, near)
-                              : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
-  if (near.margin > margin) {  // they are apart by it where they are now
-    near_[p].between = between;
-    near_[p].angle_a = surfaces_.pose(a)[2];
-    near_[p].angle_b = surfaces_.pose(b)[2];
+  const PairIntegral integral =
+      split ? contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
+                              worker.pair_patches, near)
+            : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+  if (near.margin > margin) note_margin(p, between);
+  if (!integral.touching()) return;
+  PairInTouch result{.a = a, .b = b, .deepest = bound_depth(a, b, integral), .worker = index};
+  if (split) {
+    result.patches = static_cast<int>(worker.pair_patches.size());
+    if (result.patches != 1) {  // the only one is the whole pair
+      result.first_patch = static_cast<int>(worker.patches.size());
+      worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
+                            worker.pair_patches.end());
+    }
+    result.first_run = static_cast<int>(worker.runs.size());
+    result.runs = static_cast<int>(worker.pair_runs.size());
+    worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
   }
-  if (!split) return integral;
-  result.patches = static_cast<int>(worker.pair_patches.size());
-  if (result.patches != 1) {  // the only one is the whole pair
-    result.first_patch = static_cast<int>(worker.patches.size());
-    worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
-                          worker.pair_patches.end());
-  }
-  result.first_run = static_cast<int>(worker.runs.size());
-  result.runs = static_cast<int>(worker.pair_runs.size());
-  worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
-  return integral;
+  add(integral, result);
 }
 
 double PairIntegrals::energy(const PairTable& table) const {
@@ -152,8 +185,7 @@ double PairIntegrals::energy(const PairTable& table) const {
     for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
       const SurfaceIndex a = touching_[i].a, b = touching_[i].b;
       const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
-      energies_[i] =
-          k * pair_volume(shapes.view(a), shapes.view(b), surfaces_.between(a, b)).energy;
+      energies_[i] = k * pair_energy(shapes.view(a), shapes.view(b), surfaces_.between(a, b));
     }
   });
   return std::accumulate(energies_.begin(), energies_.end(), 0.);

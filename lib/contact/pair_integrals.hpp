@@ -2,6 +2,7 @@
 // (geometry/integrals/edge_integral.hpp).
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -19,11 +20,11 @@ inline constexpr double kDeepestPhi = 0.95;
 /// A pair that touches, and what has been found of it.
 struct PairInTouch {
   SurfaceIndex a, b;
-  const PairIntegral* integral;  ///< of the whole pair, for unit stiffness; force on a, moments
-                                 ///< about the reference points
-  double deepest = 0;            ///< a bound of the penetration, m
-  int patches = 1;               ///< contact patches: one if it is not split
-  int runs = 0;                  ///< runs of the boundaries; none if it is not split
+  const PairIntegral* integral = nullptr;  ///< of the whole pair, for unit stiffness; force on a,
+                                           ///< moments about the reference points
+  double deepest = 0;  ///< a bound of the penetration, m
+  int patches = 1;     ///< contact patches: one if it is not split
+  int runs = 0;        ///< runs of the boundaries; none if it is not split
   // Where these are, among those that a thread has found.
   int worker = 0, first_patch = -1, first_run = 0;
 };
@@ -45,10 +46,11 @@ class PairIntegrals {
     begin();
     threads_.chunks(static_cast<int>(pairs_.size()), kPairTime,
                     [&](int first, int end, int worker) {
-                      for (int p = first; p < end; ++p) {
-                        if (evaluate_pair(static_cast<size_t>(p), worker)) {
-                          found(results_of(worker).back(), worker);
-                        }
+                      const std::vector<PairInTouch>& results = results_of(worker);
+                      for (auto p = static_cast<size_t>(first); p < static_cast<size_t>(end);) {
+                        const size_t before = results.size();
+                        p = evaluate_some(p, static_cast<size_t>(end), worker);
+                        for (size_t i = before; i < results.size(); ++i) found(results[i], worker);
                       }
                     });
     collect();
@@ -92,6 +94,8 @@ class PairIntegrals {
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
+    ConvexPairs convex;
+    std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // the numbers of these
     // Of the touching pairs that it has found. The first worker's results begin the list of all.
     std::vector<PairIntegral> integrals;
     std::vector<PairInTouch> results;
@@ -104,11 +108,14 @@ class PairIntegrals {
     std::vector<PairIntegral> pair_patches;
   };
   void begin();
-  bool evaluate_pair(size_t pair, int worker);
+  size_t evaluate_some(size_t first, size_t end, int worker);
+  void evaluate_convex(int worker);
+  void note_margin(size_t pair, const Vec2& between);
+  void add(const PairIntegral& integral, const PairInTouch& pair);
   void collect();
   [[nodiscard]] double bound_depth(SurfaceIndex a, SurfaceIndex b, const PairIntegral& pair) const;
-  [[nodiscard]] PairIntegral integrate(size_t pair, const Vec2& between, Worker& worker,
-                                       PairInTouch& result);
+  void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,
+                      int worker);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
     return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
   }

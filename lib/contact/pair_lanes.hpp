@@ -63,21 +63,4 @@ APOTHEM_INLINE void read_between(const Surfaces& surfaces, const Lane* lanes,
   });
 }
 
-// The numbers of an integral come in fours: force and moments; weight, one that means nothing, and
-// centre; both own lengths and two more; breadth, middle and two that are no numbers.
-inline constexpr int kForceNumbers = 0, kCentreNumbers = 4, kLengthNumbers = 8,
-                     kBreadthNumbers = 12;
-static_assert(offsetof(PairIntegral, moment_a) == 2 * sizeof(double) &&
-              offsetof(PairIntegral, moment_b) == 3 * sizeof(double) &&
-              offsetof(PairIntegral, weight) == 4 * sizeof(double) &&
-              offsetof(PairIntegral, centre) == 6 * sizeof(double) &&
-              offsetof(PairIntegral, own_length_a) == 8 * sizeof(double) &&
-              offsetof(PairIntegral, own_length_b) == 9 * sizeof(double) &&
-              offsetof(PairIntegral, breadth) == 12 * sizeof(double) &&
-              offsetof(PairIntegral, middle) == 13 * sizeof(double) &&
-              sizeof(PairIntegral) == 16 * sizeof(double));
-APOTHEM_INLINE const double* integral_numbers(const PairIntegral& pair) {
-  return reinterpret_cast<const double*>(&pair);  // NOLINT: see above
-}
-
 }  // namespace apothem

@@ -21,7 +21,7 @@ inline Vec2 tangent_of(const Vec2& normal_force) {
 /// A vector of the plane.
 template <class Real>
 struct VectorOf {
-  Real x{}, y{};
+  Real x = Real(0.), y = Real(0.);
 
   friend APOTHEM_INLINE VectorOf operator+(const VectorOf& a, const VectorOf& b) {
     return {a.x + b.x, a.y + b.y};
@@ -40,7 +40,7 @@ struct VectorOf {
 /// velocity of the first mass centre against the second one with both spins, m/s and rad/s.
 template <class Real>
 struct PairVectorOf {
-  Real x{}, y{}, a{}, b{};
+  Real x = Real(0.), y = Real(0.), a = Real(0.), b = Real(0.);
 
   friend APOTHEM_INLINE PairVectorOf operator+(const PairVectorOf& p, const PairVectorOf& q) {
     return {p.x + q.x, p.y + q.y, p.a + q.a, p.b + q.b};

@@ -15,7 +15,7 @@ template <class Real>
 struct DamperOf {
   PairVectorOf<Real> elastic;  ///< the normal force
   PairVectorOf<Real> damping;  ///< along the normal, its own force
-  Real tangential{};           ///< and that beside the friction spring, along the tangent, N
+  Real tangential = Real(0.);  ///< and that beside the friction spring, along the tangent, N
 
   void fields(Archive& archive) {
     archive("elastic", elastic)("damping", damping)("tangential", tangential);
@@ -138,10 +138,10 @@ APOTHEM_INLINE Real closed_share(const PatchStep<Real>& p, double dt) {
 /// What acts in a patch beside the normal force.
 template <class Real>
 struct PatchForces {
-  PairVectorOf<Real> all, damping;       ///< everything; the damping of it
-  Real spring{}, lost{};                 ///< force of the friction spring, N; what it loses, J
-  VectorOf<Real> tangent;                ///< along which it acts; zero without a direction
-  BodyStiffnessOf<Real> held_a, held_b;  ///< how the spring holds the bodies
+  PairVectorOf<Real> all, damping;          ///< everything; the damping of it
+  Real spring = Real(0.), lost = Real(0.);  ///< force of the friction spring, N; what it loses, J
+  VectorOf<Real> tangent;                   ///< along which it acts; zero without a direction
+  BodyStiffnessOf<Real> held_a, held_b;     ///< how the spring holds the bodies
 };
 
 /// The paper's law (Eqs. 10-14): one spring per patch, at right angles to its normal force. As a
@@ -213,7 +213,7 @@ struct PairDampingOf {
   PairVectorOf<Real> damping{};            ///< the force of all its patches
   PairVectorOf<Real> change_of_damping{};  ///< in the last step
   PairVectorOf<Real> rate{};               ///< of the bodies in the last half step
-  Real power_before{};                     ///< of the change at the rate before that one, W
+  Real power_before = Real(0.);            ///< of the change at the rate before that one, W
 
   void fields(Archive& archive) {
     archive("damping", damping)("change_of_damping", change_of_damping)("rate", rate)(

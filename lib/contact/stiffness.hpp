@@ -27,7 +27,7 @@ inline double strip_mobility(const std::array<double, 3>& inverse_mass, double a
 /// How the contacts of a rigid body resist its displacement (x, y) and rotation, N/m, N and N m.
 template <class Real>
 struct BodyStiffnessOf {
-  Real xx{}, xy{}, yy{}, xt{}, yt{}, tt{};
+  Real xx = Real(0.), xy = Real(0.), yy = Real(0.), xt = Real(0.), yt = Real(0.), tt = Real(0.);
 
   /// A spring of the stiffness `k` (N/m) along the unit vector (nx, ny) that has the lever `arm`
   /// (m).
