@@ -31,8 +31,10 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/integrals/collar_trace.hpp
   geometry/integrals/edge_sums.hpp
   geometry/integrals/contact_patches.hpp
+  geometry/integrals/convex_pairs.hpp
   geometry/integrals/edge_integral.hpp
   geometry/integrals/near_edges.hpp
+  geometry/integrals/pair_integral.hpp
   geometry/integrals/placed_edge.hpp
   geometry/integrals/placed_potential.hpp
   geometry/integrals/edge_trace.hpp

@@ -83,17 +83,16 @@ void PlacedShapes::place(int i, double x, double y, const SineCosine& angle) {
   boxes_[i] = {x + box.x0, y + box.y0, x + box.x1, y + box.y1};
 }
 
-PlacedPotential PlacedShapes::turn(int i, double angle, Turned& turned) const {
+PlacedPotential PlacedShapes::turn(int i, const SineCosine& angle, Turned& turned) const {
   const Shape& shape = shapes_[i];
   const size_t size = 1 + 4 * static_cast<size_t>(shape.stride) + kReadBehind;
   if (turned.numbers.size() < size) turned.numbers.resize(size);
   const Coordinates to = coordinates(turned.numbers.data() + 1, shape.stride);
-  const SineCosine at = sine_cosine(angle);
-  rotate(shape, at, to);
+  rotate(shape, angle, to);
   PlacedPotential result = view(i);
   result.x = to.x, result.y = to.y;
   result.gx = to.gx, result.gy = to.gy;
-  result.cosine = at.cosine, result.sine = at.sine;
+  result.cosine = angle.cosine, result.sine = angle.sine;
   return result;
 }
 

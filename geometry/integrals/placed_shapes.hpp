@@ -28,7 +28,7 @@ class PlacedShapes {
   };
   /// Shape i at an angle, in the memory of `turned`, which must live as long as the result is used.
   /// For shapes that do not deform.
-  PlacedPotential turn(int i, double angle, Turned& turned) const;
+  PlacedPotential turn(int i, const SineCosine& angle, Turned& turned) const;
 
   /// Adds a convex shape whose vertices will move by themselves. The inverse lengths of its edges
   /// stay those of `potential`.

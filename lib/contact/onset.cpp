@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
+
 namespace apothem {
 namespace {
 
-constexpr double kSudden = .03;    // change of the boundary inside, of an inradius
-constexpr double kAtFirst = 1e-9;  // a potential that is round-off where a run starts
+constexpr double kSudden = .03;     // change of the boundary inside, of an inradius
+constexpr double kAtFirst = 1e-9;   // a potential that is round-off where a run starts
+constexpr double kPairTime = 2000;  // ns
 
 }  // namespace
 
@@ -35,42 +38,76 @@ bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynami
     now_touching.push_back(
         {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
   }
-  impulses_.clear();
+  changed_.clear(), impulses_.clear();
   if (!(dt > 0)) return false;
   watch_.compare(
       [&](RigidIndex a, RigidIndex b) {
         return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
       },
-      [&](RigidIndex a, RigidIndex b, int panels) { find_pair(a, b, panels, now, dynamics, dt); });
+      [&](RigidIndex a, RigidIndex b, int panels) {
+        changed_.push_back({a, b, panels});
+      });
+  impulses_.resize(changed_.size());
+  threads_.chunks(
+      static_cast<int>(changed_.size()), kPairTime, [&](int first, int end, int worker) {
+        for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+          impulses_[i] =
+              find_pair(changed_[i], now, dynamics, dt, workers_[static_cast<size_t>(worker)]);
+        }
+      });
   return !impulses_.empty();
 }
 
-std::array<double, 4> Onset::load(const Path& path, double theta) {
-  const PlacedPotential a = surfaces_.shapes().turn(path.a, path.turn_a(theta), turned_a_);
-  const PlacedPotential b = surfaces_.shapes().turn(path.b, path.turn_b(theta), turned_b_);
-  const PairIntegral pair = pair_integral(a, b, path.offset(theta), workspace_);
+// The loads at all samples, those of convex polygons together.
+void Onset::find_loads(const Path& path, Worker& worker) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
-  return {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b};
+  worker.loads.clear();
+  const auto add = [&](const PairIntegral& pair) {
+    worker.loads.push_back(
+        {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b});
+  };
+  ConvexPairs& together = worker.edges.convex;
+  const auto evaluate = [&] {
+    for (const PairIntegral& pair : together.evaluate()) add(pair);
+  };
+  for (const OnsetSample& sample : worker.samples) {
+    const auto at = static_cast<size_t>(together.count());
+    const auto [turn_a, turn_b] =
+        sine_cosine({path.turn_a(sample.theta), path.turn_b(sample.theta)});
+    const PlacedPotential a = shapes.turn(path.a, turn_a, worker.turned[2 * at]);
+    const PlacedPotential b = shapes.turn(path.b, turn_b, worker.turned[2 * at + 1]);
+    const Vec2 offset = path.offset(sample.theta);
+    if (!ConvexPairs::serves(a) || !ConvexPairs::serves(b)) {
+      add(pair_integral(a, b, offset, worker.edges));
+      continue;
+    }
+    worker.near[at] = {};
+    together.add(a, b, offset, worker.near[at]);
+    if (together.full()) evaluate();
+  }
+  evaluate();
 }
 
 // Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
 // for the rotation of a step.
-void Onset::find_events(const Path& path) {
-  events_.clear();
+void Onset::find_events(const Path& path, Worker& worker) const {
+  worker.events.clear();
   const PlacedShapes& shapes = surfaces_.shapes();
-  const PlacedPotential a0 = shapes.turn(path.a, path.turn_a(0), start_a_);
-  const PlacedPotential b0 = shapes.turn(path.b, path.turn_b(0), start_b_);
+  const auto [turn_a, turn_b] = sine_cosine({path.turn_a(0), path.turn_b(0)});
+  const PlacedPotential a0 = shapes.turn(path.a, turn_a, worker.start_a);
+  const PlacedPotential b0 = shapes.turn(path.b, turn_b, worker.start_b);
   const PlacedPotential a1 = shapes.view(path.a);
   const PlacedPotential b1 = shapes.view(path.b);
-  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1));
-  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1));
-  std::sort(events_.begin(), events_.end());
+  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.events);
+  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
+  std::ranges::sort(worker.events);
 }
 
 // Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
 void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                            const PlacedPotential& y0, const PlacedPotential& y1,
-                           const Vec2& offset0, const Vec2& offset1) {
+                           const Vec2& offset0, const Vec2& offset1, std::vector<double>& events) {
   constexpr double kRound = 1e-9;
   Box all;
   for (int j = 0; j < y1.size; ++j) {
@@ -96,31 +133,34 @@ void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
       const Vec2 from(at(y0.x, y1.x, j), at(y0.y, y1.y, j));
       const Vec2 edge = Vec2(at(y0.x, y1.x, j + 1), at(y0.y, y1.y, j + 1)) - from;
       const double along = edge.dot(p - from) / edge.squaredNorm();
-      if (along > -kRound && along < 1 + kRound) events_.push_back(theta);
+      if (along > -kRound && along < 1 + kRound) events.push_back(theta);
     }
   }
 }
 
-void Onset::find_pair(RigidIndex a, RigidIndex b, int panels, const Kinematics& now,
-                      const Dynamics& dynamics, double dt) {
+Onset::Impulse Onset::find_pair(const Changed& pair, const Kinematics& now,
+                                const Dynamics& dynamics, double dt, Worker& worker) const {
+  const RigidIndex a = pair.a, b = pair.b;
   const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
   const auto step = [&](RigidIndex i) {
     return std::array{dt * rate(i)[0], dt * rate(i)[1], dt * rate(i)[2]};
   };
   const Path path{
       a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
-  find_events(path);
-  const int inside = find_onset_samples(events_, panels, samples_);
-  std::array<OnsetForces, 4> forces;  // Fx and Fy on a, moments on a and b
-  for (int i = 0; i < static_cast<int>(samples_.size()); ++i) {
-    const std::array<double, 4> f = load(path, samples_[i].theta);
+  find_events(path, worker);
+  const auto inside =
+      static_cast<size_t>(find_onset_samples(worker.events, pair.panels, worker.samples));
+  find_loads(path, worker);
+  std::array<OnsetForces, 4> forces;
+  for (size_t i = 0; i < worker.samples.size(); ++i) {
+    const Load& load = worker.loads[i];
     for (size_t k = 0; k < 4; ++k) {
-      forces[k].add(samples_[i], f[k]);
-      if (i == 0) forces[k].first = f[k];
-      if (i + 1 == inside) forces[k].last = f[k];
+      forces[k].add(worker.samples[i], load[k]);
+      if (i == 0) forces[k].first = load[k];
+      if (i + 1 == inside) forces[k].last = load[k];
     }
   }
-  std::array<double, 4> missing;
+  Load missing;
   const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
     OnsetRest rest(dt);
     for (const size_t axis : {0, 1, 2}) {
@@ -145,7 +185,7 @@ void Onset::find_pair(RigidIndex a, RigidIndex b, int panels, const Kinematics& 
       cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
   missing[2] -= couple / 2;
   missing[3] -= couple / 2;
-  impulses_.push_back({a, b, missing});
+  return {a, b, missing};
 }
 
 void Onset::add(double scale, std::span<double> forces) const {

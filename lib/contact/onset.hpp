@@ -10,14 +10,19 @@
 #include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/execution/parallel.hpp"
 
 namespace apothem {
 
 class Onset {
  public:
   /// `thickness` in m. All must outlive this object.
-  Onset(const Surfaces& surfaces, const PairTable& table, double thickness)
-      : surfaces_(surfaces), table_(table), thickness_(thickness) {}
+  Onset(const Surfaces& surfaces, const PairTable& table, double thickness, int threads)
+      : surfaces_(surfaces),
+        table_(table),
+        thickness_(thickness),
+        threads_(threads),
+        workers_(static_cast<size_t>(threads_.count())) {}
 
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs whose vertices inside each other are not those of the step before, or of which much more
@@ -30,32 +35,45 @@ class Onset {
   void fields(Archive& archive) { watch_.fields(archive); }
 
  private:
+  /// Force on a, and the moments on a and b about their mass centres, N and N m.
+  using Load = std::array<double, 4>;
   struct Impulse {
     int a, b;
-    std::array<double, 4> mean;  ///< J / dt, as `load`
+    Load mean;  ///< J / dt
+  };
+  struct Changed {
+    RigidIndex a, b;
+    int panels;
   };
   /// Where the two polygons of a pair are within a step.
   struct Path;
+  /// What a thread needs.
+  struct Worker {
+    std::vector<double> events;
+    std::vector<OnsetSample> samples;
+    std::vector<Load> loads;  // of the samples
+    PlacedShapes::Turned start_a, start_b;
+    std::array<PlacedShapes::Turned, 2 * ConvexPairs::kAtOnce> turned;
+    std::array<NearEdges, ConvexPairs::kAtOnce> near;
+    EdgeWorkspace edges;
+  };
 
-  void find_pair(RigidIndex a, RigidIndex b, int panels, const Kinematics& now,
-                 const Dynamics& dynamics, double dt);
-  void find_events(const Path& path);
-  void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
-                      const PlacedPotential& y0, const PlacedPotential& y1, const Vec2& offset0,
-                      const Vec2& offset1);
-  /// Force on a, and the moments on a and b about their mass centres.
-  std::array<double, 4> load(const Path& path, double theta);
+  [[nodiscard]] Impulse find_pair(const Changed& pair, const Kinematics& now,
+                                  const Dynamics& dynamics, double dt, Worker& worker) const;
+  void find_events(const Path& path, Worker& worker) const;
+  static void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+                             const PlacedPotential& y0, const PlacedPotential& y1,
+                             const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);
+  void find_loads(const Path& path, Worker& worker) const;
 
   const Surfaces& surfaces_;
   const PairTable& table_;
   double thickness_;
+  Threads threads_;
   OnsetWatch watch_;
-  std::vector<Impulse> impulses_;
-  // Memory.
-  std::vector<double> events_;
-  std::vector<OnsetSample> samples_;
-  PlacedShapes::Turned turned_a_, turned_b_, start_a_, start_b_;
-  EdgeWorkspace workspace_;
+  std::vector<Changed> changed_;
+  std::vector<Impulse> impulses_;  // of these
+  std::vector<Worker> workers_;
 };
 
 }  // namespace apothem

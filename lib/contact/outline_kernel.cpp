@@ -26,7 +26,7 @@ OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const P
       workers_(static_cast<size_t>(threads_.count())),
       plateaus_(outlines),
       depths_(outlines),
-      onset_(outlines, slopes_) {
+      onset_(outlines, slopes_, threads) {
   ends_.resize(static_cast<size_t>(outlines.size()));
   if (table.rough() || table.damped()) {
     friction_.emplace(outlines, table, inverse_mass, threads);

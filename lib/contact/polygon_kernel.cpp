@@ -25,7 +25,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       table_(table),
       thickness_(thickness),
       pairs_(surfaces, threads, split(law, table)),
-      onset_(surfaces, table, thickness),
+      onset_(surfaces, table, thickness, threads),
       threads_(threads),
       found_(static_cast<size_t>(threads_.count())),
       loads_(surfaces, threads) {

@@ -35,9 +35,10 @@ struct MaskOf {
   friend APOTHEM_INLINE MaskOf operator!(const MaskOf& a) { return {~a.m}; }
 };
 
-/// Doubles with elementwise arithmetic. A default-constructed pack is not initialised.
+/// Doubles with elementwise arithmetic. A default-constructed pack is not initialised. Compiled for
+/// wide registers, code relies on the alignment, which the vector type alone has there only.
 template <int lanes>
-struct PackOf {
+struct alignas(8 * lanes) PackOf {
   typedef double Vector __attribute__((vector_size(8 * lanes)));  // NOLINT(modernize-use-using)
   using Mask = MaskOf<lanes>;
   Vector v;
