@@ -185,19 +185,22 @@ ContactSummary OutlineKernel::summary() const {
 // A plateau has the first face, or the first edge, of its body for its partner.
 void OutlineKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
   const Outlines& o = outlines_;
-  for (const EdgeFaceContact& c : edge_faces()) {
-    const CollarFace<double> face = o.face(c.face);
-    const double deepest = c.piece.deepest, share = deepest / face.depth;
+  blocks_.each_contact([&](size_t i, size_t lane) {
+    const EdgeFaceBlock& block = blocks_.blocks()[i];
+    const EdgeFaceTouch& touch = blocks_.touches()[i];
+    const std::int32_t edge = block.p[lane], a = block.a[lane];
+    const CollarFace<double> face = o.face(a);
+    const double deepest = touch.deepest[lane], share = deepest / face.depth;
     const double surely = deepest <= sure_depth(face.plain, face.depth) ? deepest : 0;
     // The distance from the boundary over the height in a face is more than 1 where the face
     // reaches beyond the end of its edge, at a reflex vertex.
     const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
-    const bool known = o.body[c.edge] == o.body[c.face] && surely > 0;
+    const bool known = o.body[edge] == o.body[a] && surely > 0;
     const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
-    if (at_most <= least) continue;
-    contacts.push_back({outline_kernel, c.edge, c.face, surely, at_most, std::min(share, 1.),
-                        c.slope * o.length[c.edge] * (c.piece.to - c.piece.from)});
-  }
+    if (at_most <= least) return;
+    contacts.push_back({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
+                        block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
+  });
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
     contacts.push_back(
         {outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
@@ -229,17 +232,14 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
   return edge_faces_;
 }
 
-const EdgeFaceContact& OutlineKernel::edge_face(const Contact& c) const {
-  const std::vector<EdgeFaceContact>& contacts = edge_faces();
-  return *std::lower_bound(contacts.begin(), contacts.end(), std::pair(c.a, c.b),
-                           [](const EdgeFaceContact& k, const std::pair<int, int>& key) {
-                             return std::pair(k.edge, k.face) < key;
-                           });
-}
-
 double OutlineKernel::penetration(const Contact& c, double floor) {
-  return c.share <= 1 ? depths_.of_piece(c.a, c.b, edge_face(c).piece, floor)
-                      : depths_.of_edge(c.a, outlines_.body[c.b], floor);
+  const Outlines& o = outlines_;
+  if (c.share > 1) return depths_.of_edge(c.a, o.body[c.b], floor);
+  const int q = o.next[c.a];
+  CollarPiece<double> piece;
+  CollarCrossings<double> top;
+  collar_piece(o.face(c.b), o.x[c.a], o.y[c.a], o.x[q], o.y[q], piece, top);
+  return depths_.of_piece(c.a, c.b, piece, floor);
 }
 
 double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {

@@ -75,7 +75,6 @@ class OutlineKernel final : public Kernel {
  private:
   /// All contacts of edges with faces, ascending.
   [[nodiscard]] const std::vector<EdgeFaceContact>& edge_faces() const;
-  [[nodiscard]] const EdgeFaceContact& edge_face(const Contact& contact) const;
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
