@@ -57,6 +57,17 @@ class PlacedShapes {
             .sine = s.sine,
             .shift = Vec2::Zero()};
   }
+  /// Begins to bring shape i to the cache: first itself, then, when it is there, its coordinates.
+  void fetch(int i) const {
+    __builtin_prefetch(&boxes_[i]);
+    __builtin_prefetch(&shapes_[i]);
+    __builtin_prefetch(reinterpret_cast<const char*>(&shapes_[i] + 1) - 1);
+  }
+  void fetch_coordinates(int i) const {
+    constexpr int kLine = 8;  // numbers
+    const double* const first = placed_.data() + shapes_[i].placed;
+    for (int k = 0; k < 4 * shapes_[i].stride; k += kLine) __builtin_prefetch(first + k);
+  }
   /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
   /// `offset` is i's reference point minus j's.
   [[nodiscard]] bool top_inside(int i, int j, const Vec2& offset) const;

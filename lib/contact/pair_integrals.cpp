@@ -13,6 +13,7 @@ constexpr double kMoved = .99;  // of the margin, beyond which near edges are fo
 constexpr double kSmallestMargin = 1. / 1024;
 constexpr double kLargestMargin = 1. / 8;
 constexpr int kSoon = 32;
+constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
 constexpr int kLate = 256;
 
 }  // namespace
@@ -80,6 +81,11 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
   Worker& worker = workers_[static_cast<size_t>(index)];
   size_t p = first;
   for (; p < end && !worker.convex.full(); ++p) {
+    if (p + kPairsAhead < end) {
+      surfaces_.fetch(pairs_[p + kPairsAhead].second);
+      __builtin_prefetch(&near_[p + kPairsAhead]);
+      shapes.fetch_coordinates(pairs_[p + kPairsAhead / 2].second);
+    }
     const auto [a, b] = pairs_[p];
     if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) continue;
     const Vec2 between = surfaces_.between(a, b);

@@ -22,9 +22,9 @@ struct PairInTouch {
   SurfaceIndex a, b;
   const PairIntegral* integral = nullptr;  ///< of the whole pair, for unit stiffness; force on a,
                                            ///< moments about the reference points
-  double deepest = 0;  ///< a bound of the penetration, m
-  int patches = 1;     ///< contact patches: one if it is not split
-  int runs = 0;        ///< runs of the boundaries; none if it is not split
+  double deepest = 0;                      ///< a bound of the penetration, m
+  int patches = 1;                         ///< contact patches: one if it is not split
+  int runs = 0;                            ///< runs of the boundaries; none if it is not split
   // Where these are, among those that a thread has found.
   int worker = 0, first_patch = -1, first_run = 0;
 };

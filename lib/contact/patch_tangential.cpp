@@ -7,6 +7,8 @@
 namespace apothem {
 namespace {
 
+constexpr size_t kPairsAheadOfStep = 8;  // that are fetched, for large scenes
+
 // The force of a spring after a slip in m: never beyond Coulomb's limit in N. What it loses is the
 // mean force times the slip that it does not follow.
 double follow(double force, double slip, double stiffness, double limit, PairBook& book) {
@@ -139,6 +141,13 @@ void PatchTangential::Range::step_block(int first, int end, PairBook& book) {
   Place to = all_.places_[static_cast<size_t>(first / kBlock)];
   for (size_t k = 0; k < count; ++k) {
     const auto i = static_cast<size_t>(first) + k;
+    if (i + kPairsAheadOfStep < touching.size()) {
+      const PairInTouch& ahead = touching[i + kPairsAheadOfStep];
+      all_.surfaces_.fetch_inertia(ahead.b);
+      __builtin_prefetch(ahead.integral);
+      __builtin_prefetch(reinterpret_cast<const char*>(ahead.integral + 1) - 1);
+      __builtin_prefetch(&all_.kinematics_.pose_rate[3 * static_cast<size_t>(ahead.b)]);
+    }
     step_pair(touching[i], i, to, loads[k], books_[k]);
   }
   batch_.flush(all_.scene_);

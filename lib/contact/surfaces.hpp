@@ -101,6 +101,16 @@ class Surfaces {
   [[nodiscard]] Vec2 between(SurfaceIndex a, SurfaceIndex b) const {
     return {pose_[a][0] - pose_[b][0], pose_[a][1] - pose_[b][1]};
   }
+  /// Begins to bring a polygon or an element to the cache, but for its coordinates.
+  void fetch(SurfaceIndex i) const {
+    shapes_.fetch(i);
+    __builtin_prefetch(&pose_[i]);
+  }
+  /// The same of a rigid body's place and inertia.
+  void fetch_inertia(RigidIndex i) const {
+    __builtin_prefetch(&pose_[i]);
+    __builtin_prefetch(&rigid_[i]);
+  }
   /// Elements; number e of these has the surface rigid_count() + e.
   [[nodiscard]] const ElementSurfaces& elements() const { return elements_; }
   /// Outlines of all bodies, with the numbers of their surfaces.
