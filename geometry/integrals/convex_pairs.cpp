@@ -101,7 +101,7 @@ void ConvexPairs::make_room() {
   const auto sides = static_cast<size_t>(most_sides_), groups = (sides + kLanes - 1) / kLanes;
   const size_t edges = 2 * sides * kAtOnce;
   rows_.resize(2 * (sides + 1 + 2 * sides) * groups * kAtOnce);  // some edges may be shortened
-  copies_.resize(2 * 4 * groups * kAtOnce);
+  copies_.resize(8 * groups * kAtOnce);
   parts_.resize(edges + 1);
   for (size_t g = 0; g < groups; ++g) edges_[g].resize(edges + kLanes);
   room_ = most_sides_;
@@ -197,7 +197,7 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
     return true;
   };
   Numbers* const of_a = rows;
-  Numbers* const of_b = of_a + (a.size + 1) * b.groups;
+  Numbers* const of_b = of_a + std::ptrdiff_t{a.size + 1} * b.groups;
   const double margin_a = a_is_long ? kRoundOff * a.radius * b.steepest : 0;
   const double margin_b = b_is_long ? kRoundOff * b.radius * a.steepest : 0;
   unsigned edges_a, edges_b;
@@ -212,7 +212,7 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
                    a.steepest)) {
     return;
   }
-  rows = of_b + (b.size + 1) * a.groups;
+  rows = of_b + std::ptrdiff_t{b.size + 1} * a.groups;
   pair.of_a = std::popcount(edges_a);
   pair.of_b = std::popcount(edges_b);
   list_edges(a, b, pair.dx, pair.dy, edges_a, of_a, a_is_long, rows);
@@ -227,7 +227,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
   Edge* const first = edges_[group].data() + listed_[group];
   Edge* next = first;
   const auto put = [&](int e) APOTHEM_LAMBDA {
-    next->from = heights + e * y.groups;
+    next->from = heights + std::ptrdiff_t{e} * y.groups;
     next->until = next->from + y.groups;
     // Written at once, as it will be read.
     Four(Four::Vector{x.x[e] + dx - y.reference_x, x.y[e] + dy - y.reference_y, x.x[e + 1] - x.x[e],

@@ -55,7 +55,7 @@ int PlacedShapes::add(const Potential& potential) {
 }
 
 Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const {
-  const auto [s, c] = angle;
+  const double s = angle.sine, c = angle.cosine;
   const int n = shape.size;
   const auto turn = [&](const double* from, double* to_x, double* to_y) {
     for (int k = 0; k < n; ++k) {
@@ -70,7 +70,7 @@ Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coor
   };
   const double* const body = body_.data() + 4 * shape.edges;
   turn(body, to.x, to.y);
-  turn(body + 2 * n, to.gx, to.gy);
+  turn(body + std::ptrdiff_t{2} * n, to.gx, to.gy);
   Box box;
   for (int k = 0; k < n; ++k) box.include(to.x[k], to.y[k]);
   return box;

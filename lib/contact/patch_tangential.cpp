@@ -292,7 +292,7 @@ void PatchTangential::Range::step_patches(const Pair& pair) {
     std::ranges::copy(dampers_, all_.now_.dampers.begin() + pair.to.damper);
     *pair.damping = {};
   }
-  if (pair.kind.damped) {
+  if (pair.damping && pair.kind.damped) {
     *pair.damping = {.damping = sum.damping, .rate = sum.rate};
     const PairDamping none{.rate = sum.rate};
     pair.book.damping_loss = close_damping(pair.last ? *pair.last : none, scene.dt, *pair.damping);
