@@ -272,11 +272,11 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
 
 // Four edges over polygons with so many groups of edges: their parts inside, and phi along
 // these, as `accumulate` does it one by one.
-template <bool is_quad>
+template <bool one_group>
 APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
-  std::array<Four, is_quad ? 4 : kMostSides> from, until;
+  std::array<Four, one_group ? 4 : kMostSides> from, until;
   FourOf<Four> rows, frame;
-  for (int g = 0; g < (is_quad ? 1 : groups); ++g) {
+  for (int g = 0; g < (one_group ? 1 : groups); ++g) {
     const auto put = [&](auto& to) APOTHEM_LAMBDA {
       for (size_t i = 0; i < 4; ++i) to[static_cast<size_t>(kLanes * g) + i] = rows[i];
     };
@@ -287,13 +287,13 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   }
   read_rows([&](int k) APOTHEM_LAMBDA { return edges[k].frame.v.data(); }, frame);
   const Four &qx = frame[0], &qy = frame[1], &ex = frame[2], &ey = frame[3], zero(0.);
-  const int lines = is_quad ? 4 : kLanes * groups;
+  const int lines = one_group ? 4 : kLanes * groups;
   const Row<Four> row{from.data(), until.data(), lines, lines};
   Four s0, s1;
   const Four::Mask inside = clip(row, s0, s1);
   EnvelopeMoments<Four> moments;
   if (any(inside)) {
-    if constexpr (is_quad) {
+    if constexpr (one_group) {
       integrate_envelope(row, s0, s1, inside, moments);
     } else {
       walk_envelope(row, s0, s1, inside,

@@ -105,7 +105,7 @@ class ConvexPairs {
                              Numbers* rows, unsigned& edges);
   void list_edges(const Side& x, const Side& y, double dx, double dy, unsigned edges,
                   const Numbers* heights, bool is_long, Numbers*& rows);
-  template <bool is_quad>
+  template <bool one_group>
   void integrate(const Edge* edges, int groups);
   template <class F>
   static void each_part(const Part* from, const Part* until, const F& f);
