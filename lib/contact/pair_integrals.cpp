@@ -80,7 +80,7 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
   const std::vector<Box>& boxes = shapes.boxes();
   Worker& worker = workers_[static_cast<size_t>(index)];
   size_t p = first;
-  for (; p < end && !worker.convex.full(); ++p) {
+  for (; p < end && !worker.workspace.edge.convex.full(); ++p) {
     if (p + kPairsAhead < end) {
       surfaces_.fetch(pairs_[p + kPairsAhead].second);
       __builtin_prefetch(&near_[p + kPairsAhead]);
@@ -94,8 +94,8 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
     const PlacedPotential view_a = shapes.view(a);
     const PlacedPotential view_b = shapes.view(b);
     if (split_ != Split::all && ConvexPairs::serves(view_a) && ConvexPairs::serves(view_b)) {
-      worker.convex_pairs[static_cast<size_t>(worker.convex.count())] = p;
-      worker.convex.add(view_a, view_b, between, near_[p].edges);
+      worker.convex_pairs[static_cast<size_t>(worker.workspace.edge.convex.count())] = p;
+      worker.workspace.edge.convex.add(view_a, view_b, between, near_[p].edges);
     } else {
       evaluate_convex(index);  // those before it
       evaluate_alone(p, view_a, view_b, index);
@@ -107,9 +107,9 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
 
 void PairIntegrals::evaluate_convex(int index) {
   Worker& worker = workers_[static_cast<size_t>(index)];
-  if (worker.convex.count() == 0) return;
+  if (worker.workspace.edge.convex.count() == 0) return;
   const size_t* pair = worker.convex_pairs.data();
-  for (const PairIntegral& integral : worker.convex.evaluate()) {
+  for (const PairIntegral& integral : worker.workspace.edge.convex.evaluate()) {
     const size_t p = *pair++;
     const auto [a, b] = pairs_[p];
     if (integral.touching()) {

@@ -94,8 +94,7 @@ class PairIntegrals {
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
-    ConvexPairs convex;
-    std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // the numbers of these
+    std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // numbers of those collected
     // Of the touching pairs that it has found. The first worker's results begin the list of all.
     std::vector<PairIntegral> integrals;
     std::vector<PairInTouch> results;
