@@ -37,7 +37,6 @@ void PairIntegrals::begin() {
   touching_.clear();
   for (Worker& worker : workers_) {
     worker.integrals.clear();
-    worker.room = worker.integrals.capacity();
     worker.results.clear();
     worker.runs.clear();
     worker.patches.clear();
@@ -128,29 +127,25 @@ void PairIntegrals::note_margin(size_t p, const Vec2& between) {
 }
 
 void PairIntegrals::add(const PairIntegral& integral, const PairInTouch& pair) {
-  const auto make_room = [](auto& list) {
-    // Large scenes need the memory.
-    if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
-  };
+  // Large scenes need the memory.
+  const auto larger = [](const auto& list) { return list.size() * 9 / 8 + 16; };
   std::vector<PairIntegral>& integrals = workers_[static_cast<size_t>(pair.worker)].integrals;
   std::vector<PairInTouch>& results = results_of(pair.worker);
-  make_room(integrals);
-  make_room(results);
+  if (results.size() == results.capacity()) results.reserve(larger(results));
+  if (integrals.size() == integrals.capacity()) {
+    integrals.reserve(larger(integrals));
+    // They have moved.
+    for (size_t i = 0; i < results.size(); ++i) results[i].integral = &integrals[i];
+  }
   integrals.push_back(integral);
   results.push_back(pair);
   results.back().integral = &integrals.back();
 }
 
-// Puts the lists together. One of integrals may have moved while it grew.
+// Puts the lists of the workers together.
 void PairIntegrals::collect() {
-  size_t done = 0;
   for (const Worker& worker : workers_) {
     touching_.insert(touching_.end(), worker.results.begin(), worker.results.end());
-    if (worker.integrals.capacity() != worker.room) {
-      size_t next = done;
-      for (const PairIntegral& integral : worker.integrals) touching_[next++].integral = &integral;
-    }
-    done += worker.integrals.size();
   }
 }
 

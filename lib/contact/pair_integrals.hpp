@@ -98,7 +98,6 @@ class PairIntegrals {
     // Of the touching pairs that it has found. The first worker's results begin the list of all.
     std::vector<PairIntegral> integrals;
     std::vector<PairInTouch> results;
-    size_t room = 0;  // for integrals, before the first was found
     // Of those that it has split.
     std::vector<BoundaryRun> runs;
     std::vector<PairIntegral> patches;

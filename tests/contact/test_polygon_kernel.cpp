@@ -296,6 +296,30 @@ TEST_CASE("a body that stands on two feet has two patches, each with its own spr
   }
 }
 
+TEST_CASE("pairs are told with the integrals that are kept, also while their lists grow",
+          "[polygon_kernel][contact]") {
+  samples::Random random(57);
+  Bodies bodies = random_heap(random, rough_law(FrictionLaw::resultant, 0), 16);
+  bodies.place();
+  std::vector<BoxPair> neighbours;
+  for (int i = 0; i < 256; ++i) {
+    for (const int j : {i + 1, i + 16}) {
+      if (j < 256) neighbours.push_back({i, j});
+    }
+  }
+  PairIntegrals pairs(bodies.contacts->surfaces(), 1, PairIntegrals::Split::not_convex);
+  pairs.take(neighbours);
+  std::vector<PairIntegral> told;
+  pairs.evaluate([&](const PairInTouch& pair, int) { told.push_back(*pair.integral); });
+  REQUIRE(told.size() > 300);
+  REQUIRE(told.size() == pairs.touching().size());
+  for (size_t i = 0; i < told.size(); ++i) {
+    const PairIntegral& kept = *pairs.touching()[i].integral;
+    CHECK(told[i].force == kept.force);
+    CHECK(told[i].largest_phi == kept.largest_phi);
+  }
+}
+
 TEST_CASE("a pair of convex polygons is one patch", "[polygon_kernel][contact]") {
   Bodies bodies(law_of(3));
   bodies.add_polygon(quad_q(), {1, 1, 1});
