@@ -24,6 +24,9 @@ class Archive {
  public:
   virtual ~Archive() = default;
 
+  /// True if it reads what a struct consists of, false if it writes that.
+  [[nodiscard]] virtual bool loads() const = 0;
+
   /// Writes a member, or reads it: a number, a text, a list of numbers, a struct with `fields` or a
   /// list of such structs.
   template <class T>

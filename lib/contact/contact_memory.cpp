@@ -127,17 +127,18 @@ std::vector<Pair> renumbered(const History& history, const Renumbering& to) {
 ContactMemory hand_over(const ContactMemory& memory, const ContactNumbers& from,
                         const ContactNumbers& to, std::span<const BodyIndex> heirs) {
   const Renumbering numbers(from, to, heirs);
-  const bool same_law = from.law == to.law;
-  std::vector<Spring> springs;
-  for (const Spring& spring : memory.friction.springs()) {
-    if (spring.key.law == polygon_kernel && !same_law) continue;
-    if (auto heir = renumbered(spring, numbers, from.law)) springs.push_back(*heir);
-  }
-  std::sort(springs.begin(), springs.end(),
-            [](const Spring& s, const Spring& t) { return s.key < t.key; });
+  const auto heirs_of = [&](std::span<const Spring> springs) {
+    std::vector<Spring> result;
+    for (const Spring& spring : springs) {
+      if (auto heir = renumbered(spring, numbers, from.law)) result.push_back(*heir);
+    }
+    std::ranges::sort(result, {}, &Spring::key);
+    return result;
+  };
   ContactMemory result;
-  result.friction.inherit(std::move(springs));
-  if (!same_law) return result;
+  result.friction.inherit(heirs_of(memory.friction.springs()));
+  if (from.law != to.law) return result;
+  result.patches.springs = heirs_of(memory.patches.springs);
   for (Pair& pair : renumbered(memory.patches, numbers)) {
     result.patches.pairs.push_back(pair.pair);
     result.patches.runs.insert(result.patches.runs.end(), pair.runs.begin(), pair.runs.end());

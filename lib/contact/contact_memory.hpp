@@ -34,8 +34,8 @@ struct ContactNumbers {
   }
 };
 
-/// The friction springs of all contacts, and what patches of rigid bodies are recognised by. The
-/// names are those of Contacts::fields().
+/// The friction springs of meshes, and what pairs of rigid bodies remember. The names are those of
+/// Contacts::fields().
 struct ContactMemory {
   FrictionMemory friction;
   PatchTangential::History patches;

@@ -110,6 +110,7 @@ void Contacts::slide(const Kinematics& now, double dt) {
 
 void Contacts::try_slide(const Kinematics& now, double dt) {
   drop_trial();
+  each([](Kernel& kernel) { kernel.remember(); });
   slide(now, dt);
   tried_ = tangential_;
 }
@@ -224,7 +225,7 @@ void Contacts::add_force_sizes(std::span<double> of_bodies) const {
 
 std::vector<double> Contacts::friction_sizes() const {
   std::vector<double> sizes(static_cast<size_t>(surfaces_.body_count()));
-  for (const Spring& spring : memory_.springs()) {
+  for (const Spring& spring : springs()) {
     const auto [a, b] = bodies(spring.key);
     sizes[a] += std::abs(spring.force);
     sizes[b] += std::abs(spring.force);
@@ -234,8 +235,15 @@ std::vector<double> Contacts::friction_sizes() const {
 
 std::vector<ContactRecord> Contacts::records() const {
   std::vector<ContactRecord> records;
-  each([&](const Kernel& kernel) { kernel.add_records(memory_, records); });
+  each([&](const Kernel& kernel) { kernel.add_records(records); });
   return records;
+}
+
+std::vector<Spring> Contacts::springs() const {
+  std::vector<Spring> springs;
+  each([&](const Kernel& kernel) { kernel.add_springs(springs); });
+  springs.insert(springs.end(), memory_.springs().begin(), memory_.springs().end());
+  return springs;
 }
 
 std::vector<SurfaceRecord> Contacts::surface_records() const {

@@ -110,6 +110,8 @@ class Contacts {
   [[nodiscard]] std::vector<double> friction_sizes() const;
   /// One for each contact patch.
   [[nodiscard]] std::vector<ContactRecord> records() const;
+  /// The friction springs of all contacts, in ascending order of their keys.
+  [[nodiscard]] std::vector<Spring> springs() const;
   /// The boundary edges that take part in contact with meshes.
   [[nodiscard]] std::vector<SurfaceRecord> surface_records() const;
 

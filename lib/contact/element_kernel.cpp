@@ -42,7 +42,8 @@ bool ElementKernel::convex(SurfaceIndex i) const {
 }
 
 void ElementKernel::evaluate(std::vector<Contact>& contacts) {
-  pairs_.evaluate([](const PairInTouch&, int) {});
+  pairs_.evaluate([](const PairInTouch&, const PairIntegral&, int) {});
+  pairs_.forget_ended();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   touches_.clear();
   for (const PairInTouch& pair : pairs_.touching()) {
@@ -50,7 +51,7 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
     contacts.push_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
     // The potential measures the depth below borders that are not part of the body's boundary.
     contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
-    if (!convex(a) || !convex(b) || pairs_.too_deep(pair)) {
+    if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
       contacts.back().share = 1;  // nothing beyond is to be trusted
       return;
     }
@@ -121,7 +122,7 @@ ContactFault ElementKernel::fault(const Contact& c) const {
 }
 
 void ElementKernel::add_touch(const PairInTouch& result) {
-  const PairIntegral& pair = *result.integral;
+  const PairIntegral& pair = pairs_.integral(result);
   const SurfaceIndex a = result.a, b = result.b;
   const double k = stiffness(a, b);
   const Vec2 force = k * pair.force;
@@ -373,8 +374,7 @@ std::vector<int> ElementKernel::patches() const {
   return groups.numbers(keys);
 }
 
-void ElementKernel::add_records(const FrictionMemory& /*memory*/,
-                                std::vector<ContactRecord>& records) const {
+void ElementKernel::add_records(std::vector<ContactRecord>& records) const {
   const std::vector<int> patch = patches();
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<ContactRecord> found(static_cast<size_t>(count));
@@ -382,7 +382,7 @@ void ElementKernel::add_records(const FrictionMemory& /*memory*/,
   Depths depths;
   for (size_t i = 0; i < touches_.size(); ++i) {
     const Touch& t = touches_[i];
-    const PairIntegral& pair = *pairs_.touching()[i].integral;
+    const PairIntegral& pair = pairs_.integral(pairs_.touching()[i]);
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
     sum.normal += t.force;

@@ -46,8 +46,7 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
     return normal_.sums[body].force + tangential_.sums[body].force + damping_.sums[body].force;
   }
-  void add_records(const FrictionMemory& memory,
-                   std::vector<ContactRecord>& records) const override;
+  void add_records(std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:

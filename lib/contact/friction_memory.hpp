@@ -37,14 +37,12 @@ struct Spring {
   double force = 0;             ///< along the tangent of its contact, N
   double stiffness = 0;         ///< N/m
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
-  bool accounted = false;       ///< its law says itself what it loses, by lose()
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? force * force / (2 * stiffness) : 0;
   }
   void fields(Archive& archive) {
-    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent)("accounted",
-                                                                                    accounted);
+    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent);
   }
 };
 
@@ -67,25 +65,6 @@ struct PairBook {
   }
 };
 
-/// The springs of the step before, for a range of pairs that one thread works on. What contacts
-/// lose that are over is a list, so that sums do not depend on how pairs are divided.
-class SpringRange {
- public:
-  /// Begins a step with the springs `before`, from `next` on.
-  void begin(const std::vector<Spring>& before, size_t next);
-  /// As the member of FrictionMemory.
-  [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
-  /// Of a contact that is over, J.
-  void lose(double energy) { losses_.push_back(energy); }
-  void damp(double energy) { damping_losses_.push_back(energy); }
-
- private:
-  friend class FrictionMemory;
-  const std::vector<Spring>* before_ = nullptr;
-  size_t next_ = 0;
-  std::vector<double> losses_, damping_losses_;
-};
-
 class FrictionMemory {
  public:
   /// The springs of this step become those of the step before.
@@ -98,16 +77,6 @@ class FrictionMemory {
   /// All springs that a law had in the step before. The next law to be asked for must be a later
   /// one.
   [[nodiscard]] std::span<const Spring> before(int law);
-  /// Makes room for the springs of the first law, which are put there in ascending order of their
-  /// keys. All of them must be accounted.
-  [[nodiscard]] std::span<Spring> make_room(size_t springs) {
-    now_.resize(springs);
-    return now_;
-  }
-  /// Has a range begin behind all springs of a pair in the step before.
-  void begin(SpringRange& range, const std::pair<int, int>& behind);
-  /// Takes what a range has booked. Ranges are added in ascending order.
-  void add(const SpringRange& range);
   void add(const PairBook& book) {
     energy_ += book.energy;
     loss_ += book.loss;
@@ -117,10 +86,10 @@ class FrictionMemory {
   void keep(const Spring& spring) {
     now_.push_back(spring);
     energy_ += spring.energy();
-    if (!spring.accounted) balanced_ += spring.energy();
+    balanced_ += spring.energy();
   }
-  /// Keeps springs that are not accounted and store `energy` together, J; in ascending order. What
-  /// the list holds afterwards is of no use.
+  /// Keeps springs that store `energy` together, J; in ascending order. What the list holds
+  /// afterwards is of no use.
   void keep(std::vector<Spring>& springs, double energy) {
     if (now_.empty()) {
       now_.swap(springs);
@@ -130,16 +99,13 @@ class FrictionMemory {
     energy_ += energy;
     balanced_ += energy;
   }
-  /// What an accounted spring has lost, J. Those of contacts that are over lose all they store, and
-  /// need not be told of.
+  /// What a spring has lost that is not kept here, J.
   void lose(double energy) { loss_ += energy; }
-  /// Closes the step. `work`: what friction has done on the bodies since the step before by springs
-  /// that are not accounted, J. What they have lost and the springs do not store is dissipated.
+  /// Closes the step. `work`: what the springs that are kept here have done on the bodies since the
+  /// step before, J. What the bodies have lost and the springs do not store is dissipated.
   void end_step(double work);
 
   [[nodiscard]] std::span<const Spring> springs() const { return now_; }
-  /// The springs of a pair in this step.
-  [[nodiscard]] std::span<const Spring> springs_of(int law, int a, int b) const;
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
@@ -161,7 +127,7 @@ class FrictionMemory {
   std::vector<Spring> now_, before_;
   size_t next_ = 0;                            // of the springs before
   double energy_ = 0;                          // of all springs, J
-  double balanced_ = 0, balanced_before_ = 0;  // of those that are not accounted, J
+  double balanced_ = 0, balanced_before_ = 0;  // of those that are kept here, J
   double loss_ = 0, damping_loss_ = 0;         // J
   struct Sums {
     double energy = 0, balanced = 0, loss = 0, damping_loss = 0;

@@ -33,7 +33,7 @@ bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynami
                  double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
   for (const PairInTouch& result : pairs.touching()) {
-    const PairIntegral& pair = *result.integral;
+    const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
     now_touching.push_back(
         {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});

@@ -64,8 +64,7 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] size_t candidates() const override { return candidates_.size(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override { return resultant(body).force; }
   void add_force_sizes(std::span<double> of_bodies) const override;
-  void add_records(const FrictionMemory& /*memory*/,
-                   std::vector<ContactRecord>& records) const override {
+  void add_records(std::vector<ContactRecord>& records) const override {
     add_patch_records(state(), records);
   }
   void add_surfaces(std::vector<SurfaceRecord>& records) const override {

@@ -13,9 +13,6 @@ namespace {
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
 
-const PairDamping kNoDamping;
-const PatchDamper kNoDamper;
-
 template <class Real>
 APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<Real>& p) {
   bool same = true;
@@ -72,12 +69,6 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
 template <class Real>
 APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bool damped,
                                 PatchStep<Real>& p, DamperOf<Real>& damper) {
-  const auto last = [&](int k) APOTHEM_LAMBDA -> const PairDamping& {
-    return work[k].last ? *work[k].last : kNoDamping;
-  };
-  const auto dashpot = [&](int k) APOTHEM_LAMBDA -> const PatchDamper& {
-    return work[k].damper ? *work[k].damper : kNoDamper;
-  };
   Real radii;
   read_lanes(radii, [&](int k) APOTHEM_LAMBDA {
     return scene.surfaces.rigid(work[k].a).radius + scene.surfaces.rigid(work[k].b).radius;
@@ -93,21 +84,23 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   rate(p.rate.y, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[1] - b[1]; });
   rate(p.rate.a, [](const double* a, const double*) APOTHEM_LAMBDA { return a[2]; });
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
-  read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].begins ? 1. : 0.; });
-  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].spring; });
+  read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].memory->patches > 0 ? 0. : 1.; });
+  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].memory->spring; });
   if (!damped) {  // what only dampers need
     p.rate_before = {};
     p.touched = Real(0.) > Real(0.);
     damper = {};
     return;
   }
-  read_lanes(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).rate; });
-  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].touched ? 1. : 0.; });
+  const auto last = [&](int k) APOTHEM_LAMBDA -> const DampingMemory& { return *work[k].damping; };
+  read_lanes(p.rate_before,
+             [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).pair.rate; });
+  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].memory->touched() ? 1. : 0.; });
   read_lanes(damper.elastic,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return dashpot(k).elastic; });
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.elastic; });
   read_lanes(damper.damping,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return dashpot(k).damping; });
-  read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return dashpot(k).tangential; });
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.damping; });
+  read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return last(k).patch.tangential; });
 }
 
 template <class Real>
@@ -155,19 +148,19 @@ PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tan
 }
 
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
-               const BodyStiffness& held_a, const BodyStiffness& held_b, PairLoad& load) {
+               const BodyStiffness& held_a, const BodyStiffness& held_b) {
   PatchStep<double> p;
   read_pair(scene, &work, p);
   BodyStiffness a = held_a, b = held_b;
   hold(&work, p, a, b);
   const PairForce f = whole_force(p, beside);
-  load = {{f.x, f.y, f.a, a}, {-f.x, -f.y, f.b, b}, p.normal_stiffness * p.size, work.a, work.b};
+  *work.load = {
+      {f.x, f.y, f.a, a}, {-f.x, -f.y, f.b, b}, p.normal_stiffness * p.size, work.a, work.b};
 }
 
 APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   using Pack = PackOf<kAtOnce>;
   const PairWork* const work = work_.data();
-  const PairTarget* const to = targets_.data();
   PatchStep<Pack> p;
   read_pair(scene, work, p);
   PatchForces<Pack> forces;
@@ -175,73 +168,73 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
     DamperOf<Pack> damper;
     read_memory(scene, work, kind_.damped, p, damper);
     step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper, forces);
-    write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return *to[k].tangential; });
-    for (int k = 0; k < kAtOnce; ++k) *to[k].book = {};
+    const auto memory = [&](int k) APOTHEM_LAMBDA -> PairMemory& { return *work[k].memory; };
+    write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
     if (kind_.damped) {
+      const auto damping = [&](int k) APOTHEM_LAMBDA -> DampingMemory& { return *work[k].damping; };
+      const auto pair = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return damping(k).pair; };
       PairDampingOf<Pack> before, now;
       now.damping = forces.damping;
       now.rate = p.rate;
-      const auto last = [&](int k) APOTHEM_LAMBDA -> const PairDamping& {
-        return work[k].last ? *work[k].last : kNoDamping;
-      };
       read_lanes(before.damping,
-                 [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).damping; });
+                 [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
       read_lanes(before.change_of_damping, [&](int k) APOTHEM_LAMBDA -> const PairForce& {
-        return last(k).change_of_damping;
+        return pair(k).change_of_damping;
       });
-      read_lanes(before.power_before, [&](int k) APOTHEM_LAMBDA { return last(k).power_before; });
+      read_lanes(before.power_before, [&](int k) APOTHEM_LAMBDA { return pair(k).power_before; });
       before.rate = {select(p.touched, p.rate_before.x, p.rate.x),
                      select(p.touched, p.rate_before.y, p.rate.y),
                      select(p.touched, p.rate_before.a, p.rate.a),
                      select(p.touched, p.rate_before.b, p.rate.b)};
       const Pack lost = close_damping(before, scene.dt, now);
-      const auto target = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return *to[k].damping; };
-      write_lanes(now.damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).damping; });
+      write_lanes(now.damping, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).damping; });
       write_lanes(now.change_of_damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).change_of_damping; });
-      write_lanes(now.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return target(k).rate; });
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).change_of_damping; });
+      write_lanes(now.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).rate; });
       write_lanes(damper.elastic,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->elastic; });
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.elastic; });
       write_lanes(damper.damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return to[k].damper->damping; });
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.damping; });
       for (int k = 0; k < kAtOnce; ++k) {
-        target(k).power_before = now.power_before.v[k];
-        to[k].damper->tangential = damper.tangential.v[k];
-        to[k].book->damping_loss = lost.v[k];
+        pair(k).power_before = now.power_before.v[k];
+        damping(k).patch.tangential = damper.tangential.v[k];
+        work[k].book->damping_loss = lost.v[k];
       }
     }
     if (kind_.rough) {
       const Pack energy = forces.spring * forces.spring / (Pack(2.) * p.tangential_stiffness);
-      write_rows({forces.spring, p.tangential_stiffness, forces.tangent.x, forces.tangent.y},
-                 [&](int k) APOTHEM_LAMBDA { return &to[k].spring->force; });
       for (int k = 0; k < kAtOnce; ++k) {
-        to[k].book->energy = energy.v[k];
-        to[k].book->loss = forces.lost.v[k];
+        memory(k).spring = forces.spring.v[k];
+        memory(k).tangent = {forces.tangent.x.v[k], forces.tangent.y.v[k]};
+        work[k].book->energy = energy.v[k];
+        work[k].book->loss = forces.lost.v[k];
       }
     }
+    for (int k = 0; k < kAtOnce; ++k) memory(k).patches = 1;
   }
   hold(work, p, forces.held_a, forces.held_b);
   const PairVectorOf<Pack> f = whole_force(p, forces.all);
   write_load(f.x, f.y, f.a, forces.held_a,
-             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return to[k].load->on_a; });
+             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_a; });
   write_load(-f.x, -f.y, f.b, forces.held_b,
-             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return to[k].load->on_b; });
+             [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_b; });
   const Pack normal = p.normal_stiffness * p.size;
   for (int k = 0; k < kAtOnce; ++k) {
-    to[k].load->normal = normal.v[k];
-    to[k].load->a = work[k].a;
-    to[k].load->b = work[k].b;
+    work[k].load->normal = normal.v[k];
+    work[k].load->a = work[k].a;
+    work[k].load->b = work[k].b;
   }
 }
 
 void PairBatch::flush(const PairScene& scene) {
   if (count_ == 0) return;
   // Lanes that are left over do the last pair again, for nobody.
-  const PairTarget nobody{&spare_.load,   &spare_.tangential, &spare_.damping,
-                          &spare_.damper, &spare_.spring,     &spare_.book};
-  std::fill(work_.begin() + count_, work_.end(), work_[static_cast<size_t>(count_ - 1)]);
-  std::fill(targets_.begin() + count_, targets_.end(), nobody);
+  PairWork again = work_[static_cast<size_t>(count_ - 1)];
+  again.load = &spare_.load;
+  again.memory = &spare_.memory;
+  again.damping = &spare_.damping;
+  again.book = &spare_.book;
+  std::fill(work_.begin() + count_, work_.end(), again);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     step(scene);
     return 0.;

@@ -38,45 +38,49 @@ struct Tangential {
   bool operator==(const Tangential&) const = default;
 };
 
-/// A pair, or one of its contact patches, and what it remembers of the step before.
+/// What a pair remembers from step to step. Its patches and edges have more, if it has several.
+struct PairMemory {
+  PairForce force = {};           ///< friction and damping; moments about the mass centres
+  double spring = 0;              ///< force of the friction spring of the only patch, N
+  VectorOf<double> tangent = {};  ///< along which it acts
+  int patches = -1;               ///< in the last step; -1 if the bodies did not touch
+  int split = -1;                 ///< number among the pairs that are split, or -1
+
+  [[nodiscard]] bool touched() const { return patches >= 0; }
+};
+
+/// The same where any pair is damped.
+struct DampingMemory {
+  PairDamping pair;
+  PatchDamper patch;  ///< of the only patch
+};
+
+/// A pair, or one of its contact patches, what it remembers, and where its results go.
 struct PairWork {
   RigidIndex a, b;
   const PairIntegral* integral;
   const PairLaw* law;
-  bool touched = false;                 ///< the bodies touched in the step before
-  bool begins = true;                   ///< the pair had no patch then
-  const PairDamping* last = nullptr;    ///< null if there was none
-  const PatchDamper* damper = nullptr;  ///< null if there was none
-  double spring = 0;                    ///< force of the friction spring, N
-};
-
-/// Where the results of a pair go.
-struct PairTarget {
   PairLoad* load;
-  PairForce* tangential = nullptr;  ///< friction and damping; null where there are none
-  PairDamping* damping = nullptr;   ///< null without damping
-  PatchDamper* damper = nullptr;    ///< the same
-  Spring* spring = nullptr;         ///< null without friction
-  PairBook* book = nullptr;         ///< null without friction and damping
+  PairMemory* memory = nullptr;      ///< null without friction and damping
+  DampingMemory* damping = nullptr;  ///< null without damping
+  PairBook* book = nullptr;          ///< null without friction and damping
 };
 
-/// Friction and damping of one contact patch.
+/// Friction and damping of one contact patch. `work` is read only.
 PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tangential kind,
                                PatchDamper& damper);
 /// The load of a pair with these forces beside the normal one. `held_a`, `held_b`: how its friction
 /// springs hold the bodies.
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
-               const BodyStiffness& held_a, const BodyStiffness& held_b, PairLoad& load);
+               const BodyStiffness& held_a, const BodyStiffness& held_b);
 
 /// Pairs of at most one contact patch, collected until there are enough of them.
 class PairBatch {
  public:
-  void add(const PairScene& scene, Tangential kind, const PairWork& work,
-           const PairTarget& target) {
+  void add(const PairScene& scene, Tangential kind, const PairWork& work) {
     if (!(kind == kind_)) flush(scene);
     kind_ = kind;
     work_[static_cast<size_t>(count_)] = work;
-    targets_[static_cast<size_t>(count_)] = target;
     if (++count_ == kAtOnce) flush(scene);
   }
   /// Takes all pairs that have been added a step further.
@@ -90,13 +94,10 @@ class PairBatch {
   int count_ = 0;
   Tangential kind_;
   std::array<PairWork, kAtOnce> work_{};
-  std::array<PairTarget, kAtOnce> targets_{};
   struct {
     PairLoad load;
-    PairForce tangential;
-    PairDamping damping;
-    PatchDamper damper;
-    Spring spring;
+    PairMemory memory;
+    DampingMemory damping;
     PairBook book;
   } spare_ = {};
 };

@@ -16,28 +16,53 @@ constexpr int kSoon = 32;
 constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
 constexpr int kLate = 256;
 
+// For one more. Large scenes need the memory.
+template <class T>
+void make_room(std::vector<T>& list) {
+  if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
+}
+
 }  // namespace
 
-// Pairs that were there before keep what is known of their edges. The lists of before are not kept:
-// searches are rare, and large scenes need the memory.
-void PairIntegrals::take(std::span<const BoxPair> pairs) {
+// Pairs that were there before keep what is known of their edges, and their slots. The lists of
+// before are not kept: searches are rare, and large scenes need the memory.
+SlotOrder& PairIntegrals::take(std::span<const BoxPair> pairs) {
   const std::vector<BoxPair> pairs_before = std::move(pairs_);
   const std::vector<Near> near_before = std::move(near_);
+  const std::vector<int> slots_before = std::move(slots_);
   pairs_.assign(pairs.begin(), pairs.end());
   near_.assign(pairs_.size(), {});
+  slots_.assign(pairs_.size(), -1);
+  order_.begin(integrals_.size());
   size_t old = 0;
+  const auto pass = [&] {  // a pair that is not in reach any more
+    if (slots_before[old] >= 0) end_now(pairs_before[old], slots_before[old]);
+    ++old;
+  };
   for (size_t p = 0; p < pairs_.size(); ++p) {
-    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) ++old;
+    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) pass();
     if (old == pairs_before.size()) break;
-    if (pairs_before[old] == pairs_[p]) near_[p] = near_before[old];
+    if (pairs_before[old] != pairs_[p]) continue;
+    near_[p] = near_before[old];
+    if (slots_before[old] >= 0) slots_[p] = order_.add(slots_before[old]);
+    ++old;
   }
+  while (old < pairs_before.size()) pass();
+  for (PairInTouch& pair : ended_) pair.slot = order_.add(pair.slot);
+  order_.end();
+  order_.apply(integrals_);
+  free_.clear();
+  touching_.clear();
+  return order_;
 }
 
 void PairIntegrals::begin() {
   touching_.clear();
   for (Worker& worker : workers_) {
-    worker.integrals.clear();
     worker.results.clear();
+    worker.fresh.clear();
+    worker.ended.clear();
+    worker.parts.clear();
     worker.runs.clear();
     worker.patches.clear();
   }
@@ -86,10 +111,16 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
       shapes.fetch_coordinates(pairs_[p + kPairsAhead / 2].second);
     }
     const auto [a, b] = pairs_[p];
-    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) continue;
+    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) {
+      note_end(p, worker);
+      continue;
+    }
     const Vec2 between = surfaces_.between(a, b);
     find_near(p, between, worker.near_edges);
-    if (near_[p].edges.none()) continue;
+    if (near_[p].edges.none()) {
+      note_end(p, worker);
+      continue;
+    }
     const PlacedPotential view_a = shapes.view(a);
     const PlacedPotential view_b = shapes.view(b);
     if (split_ != Split::all && ConvexPairs::serves(view_a) && ConvexPairs::serves(view_b)) {
@@ -110,11 +141,13 @@ void PairIntegrals::evaluate_convex(int index) {
   const size_t* pair = worker.convex_pairs.data();
   for (const PairIntegral& integral : worker.workspace.edge.convex.evaluate()) {
     const size_t p = *pair++;
-    const auto [a, b] = pairs_[p];
     if (integral.touching()) {
-      add(integral, {.a = a, .b = b, .deepest = bound_depth(a, b, integral), .worker = index});
-    } else if (near_[p].edges.margin > 0) {
-      note_margin(p, surfaces_.between(a, b));
+      add(p, integral, index, -1);
+      continue;
+    }
+    note_end(p, worker);
+    if (near_[p].edges.margin > 0) {
+      note_margin(p, surfaces_.between(pairs_[p].first, pairs_[p].second));
     }
   }
 }
@@ -126,27 +159,64 @@ void PairIntegrals::note_margin(size_t p, const Vec2& between) {
   near_[p].angle_b = surfaces_.pose(pairs_[p].second)[2];
 }
 
-void PairIntegrals::add(const PairIntegral& integral, const PairInTouch& pair) {
-  // Large scenes need the memory.
-  const auto larger = [](const auto& list) { return list.size() * 9 / 8 + 16; };
-  std::vector<PairIntegral>& integrals = workers_[static_cast<size_t>(pair.worker)].integrals;
-  std::vector<PairInTouch>& results = results_of(pair.worker);
-  if (results.size() == results.capacity()) results.reserve(larger(results));
-  if (integrals.size() == integrals.capacity()) {
-    integrals.reserve(larger(integrals));
-    // They have moved.
-    for (size_t i = 0; i < results.size(); ++i) results[i].integral = &integrals[i];
+void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int split) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  std::vector<PairInTouch>& results = results_of(index);
+  int slot = slots_[p];
+  if (slot >= 0) {
+    integrals_[static_cast<size_t>(slot)] = integral;
+  } else {
+    slot = ~static_cast<int>(worker.fresh.size());
+    worker.fresh.push_back({p, results.size(), integral});
   }
-  integrals.push_back(integral);
-  results.push_back(pair);
-  results.back().integral = &integrals.back();
+  make_room(results);
+  results.push_back({pairs_[p].first, pairs_[p].second, slot, split});
 }
 
 // Puts the lists of the workers together.
 void PairIntegrals::collect() {
+  parts_.clear();
   for (const Worker& worker : workers_) {
-    touching_.insert(touching_.end(), worker.results.begin(), worker.results.end());
+    const size_t first = &worker == workers_.data() ? 0 : touching_.size();
+    const auto split = static_cast<int>(parts_.size());
+    for (PairInTouch pair : worker.results) {
+      if (pair.split >= 0) pair.split += split;
+      make_room(touching_);
+      touching_.push_back(pair);
+    }
+    parts_.insert(parts_.end(), worker.parts.begin(), worker.parts.end());
+    for (const size_t p : worker.ended) {
+      end_now(pairs_[p], slots_[p]);
+      slots_[p] = -1;
+    }
+    give_slots(worker, first);
   }
+  // Those that have ended before the last search come in between.
+  std::ranges::sort(ended_, [](const PairInTouch& p, const PairInTouch& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  });
+}
+
+// To the pairs that are new, of a worker whose results begin there in the list of all.
+void PairIntegrals::give_slots(const Worker& worker, size_t first) {
+  for (const Fresh& fresh : worker.fresh) {
+    int& slot = slots_[fresh.pair];
+    if (free_.empty()) {
+      slot = static_cast<int>(integrals_.size());
+      make_room(integrals_);
+      integrals_.push_back(fresh.integral);
+    } else {
+      slot = free_.back();
+      free_.pop_back();
+      integrals_[static_cast<size_t>(slot)] = fresh.integral;
+    }
+    touching_[first + fresh.result].slot = slot;
+  }
+}
+
+void PairIntegrals::forget_ended() {
+  for (const PairInTouch& pair : ended_) free_.push_back(pair.slot);
+  ended_.clear();
 }
 
 void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
@@ -163,20 +233,25 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
                               worker.pair_patches, near)
             : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
   if (near.margin > margin) note_margin(p, between);
-  if (!integral.touching()) return;
-  PairInTouch result{.a = a, .b = b, .deepest = bound_depth(a, b, integral), .worker = index};
-  if (split) {
-    result.patches = static_cast<int>(worker.pair_patches.size());
-    if (result.patches != 1) {  // the only one is the whole pair
-      result.first_patch = static_cast<int>(worker.patches.size());
-      worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
-                            worker.pair_patches.end());
-    }
-    result.first_run = static_cast<int>(worker.runs.size());
-    result.runs = static_cast<int>(worker.pair_runs.size());
-    worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+  if (!integral.touching()) {
+    note_end(p, worker);
+    return;
   }
-  add(integral, result);
+  if (!split) {
+    add(p, integral, index, -1);
+    return;
+  }
+  Parts parts{static_cast<int>(worker.pair_patches.size()),
+              static_cast<int>(worker.pair_runs.size()), index, -1,
+              static_cast<int>(worker.runs.size())};
+  worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+  if (parts.patches != 1) {  // the only one is the whole pair
+    parts.first_patch = static_cast<int>(worker.patches.size());
+    worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
+                          worker.pair_patches.end());
+  }
+  add(p, integral, index, static_cast<int>(worker.parts.size()));
+  worker.parts.push_back(parts);
 }
 
 double PairIntegrals::energy(const PairTable& table) const {
@@ -193,35 +268,34 @@ double PairIntegrals::energy(const PairTable& table) const {
 }
 
 // phi may be limited to 1.
-double PairIntegrals::bound_depth(SurfaceIndex a, SurfaceIndex b, const PairIntegral& pair) const {
+double PairIntegrals::deepest(const PairInTouch& pair, const PairIntegral& integral) const {
   const PlacedShapes& shapes = surfaces_.shapes();
-  const double ratio = std::max(shapes.depth_ratio(a), shapes.depth_ratio(b));
-  return pair.largest_phi < 1 ? ratio * pair.depth : HUGE_VAL;
+  const double ratio = std::max(shapes.depth_ratio(pair.a), shapes.depth_ratio(pair.b));
+  return integral.largest_phi < 1 ? ratio * integral.depth : HUGE_VAL;
 }
 
 Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, double k) const {
   const SurfaceIndex a = result.a, b = result.b;
-  const PairIntegral& pair = *result.integral;
+  const PairIntegral& pair = integral(result);
   const PlacedShapes& shapes = surfaces_.shapes();
   return {kernel,
           a,
           b,
           pair.depth,
-          result.deepest,
+          deepest(result, pair),
           pair.largest_phi,
           k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
 }
 
-bool PairIntegrals::too_deep(const PairInTouch& result) const {
+bool PairIntegrals::too_deep(const PairInTouch& result, const PairIntegral& pair) const {
   const SurfaceIndex a = result.a, b = result.b;
-  const PairIntegral& pair = *result.integral;
   if (!(pair.largest_phi <= kDeepestPhi)) return true;
   // The boundary of an overlap around the top of a polygon lies outside a circle about it: the
   // polygon's own boundary is as far away as the radius of its incircle, and the other one's is
   // nearer by no more than the depth. The top of a shape that deforms is another point.
   const double inradius = std::min(surfaces_.inradius(a), surfaces_.inradius(b));
   const bool rigid = surfaces_.is_rigid(a) && surfaces_.is_rigid(b);
-  const double shortest = rigid ? 6 * (inradius - result.deepest) : inradius;
+  const double shortest = rigid ? 6 * (inradius - deepest(result, pair)) : inradius;
   if (pair.own_length_a + pair.own_length_b < shortest) return false;
   const PlacedShapes& shapes = surfaces_.shapes();
   const Vec2 offset = surfaces_.between(a, b);

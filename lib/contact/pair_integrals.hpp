@@ -8,6 +8,7 @@
 
 #include "apothem/contact/kernel.hpp"
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/contact/slot_order.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/contact_patches.hpp"
 
@@ -17,18 +18,16 @@ namespace apothem {
 /// potential falls again.
 inline constexpr double kDeepestPhi = 0.95;
 
-/// A pair that touches, and what has been found of it.
+/// A pair that touches.
 struct PairInTouch {
   SurfaceIndex a, b;
-  const PairIntegral* integral = nullptr;  ///< of the whole pair, for unit stiffness; force on a,
-                                           ///< moments about the reference points
-  double deepest = 0;                      ///< a bound of the penetration, m
-  int patches = 1;                         ///< contact patches: one if it is not split
-  int runs = 0;                            ///< runs of the boundaries; none if it is not split
-  // Where these are, among those that a thread has found.
-  int worker = 0, first_patch = -1, first_run = 0;
+  int slot;        ///< where what is known of it is kept for as long as it touches
+  int split = -1;  ///< number among the pairs that are split into contact patches; -1 if it is not
 };
 
+/// The pairs of a list that touch, and their integrals. A pair keeps its slot from one evaluation
+/// to the next, so that nothing has to be moved or looked for while the same pairs touch; after a
+/// search slots are in the order of the pairs again.
 class PairIntegrals {
  public:
   /// Which touching pairs are split into contact patches.
@@ -37,10 +36,11 @@ class PairIntegrals {
   PairIntegrals(const Surfaces& surfaces, int threads, Split split = Split::none)
       : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
 
-  void take(std::span<const BoxPair> pairs);
-  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls found(result,
-  /// worker) for each that touches, in ascending order within each thread; the lower worker has the
-  /// lower pairs.
+  /// What is kept in slots elsewhere has to follow the order that this returns.
+  SlotOrder& take(std::span<const BoxPair> pairs);
+  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls found(pair,
+  /// integral, worker) for each that touches, in ascending order within each thread; the lower
+  /// worker has the lower pairs. Slots of new pairs are not known before the end.
   template <class F>
   void evaluate(const F& found) {
     begin();
@@ -50,7 +50,9 @@ class PairIntegrals {
                       for (auto p = static_cast<size_t>(first); p < static_cast<size_t>(end);) {
                         const size_t before = results.size();
                         p = evaluate_some(p, static_cast<size_t>(end), worker);
-                        for (size_t i = before; i < results.size(); ++i) found(results[i], worker);
+                        for (size_t i = before; i < results.size(); ++i) {
+                          found(results[i], result(results[i], worker), worker);
+                        }
                       }
                     });
     collect();
@@ -60,24 +62,43 @@ class PairIntegrals {
   [[nodiscard]] size_t candidates() const { return pairs_.size(); }
   /// The pairs that touch, ascending.
   [[nodiscard]] const std::vector<PairInTouch>& touching() const { return touching_; }
+  /// Of the whole pair, for unit stiffness: force on a, moments about the reference points.
+  [[nodiscard]] const PairIntegral& integral(const PairInTouch& pair) const {
+    return integrals_[static_cast<size_t>(pair.slot)];
+  }
+  /// A bound of the penetration of a touching pair, m.
+  [[nodiscard]] double deepest(const PairInTouch& pair, const PairIntegral& integral) const;
   /// The patches of a pair: the whole pair if it is not split.
   [[nodiscard]] std::span<const PairIntegral> patches(const PairInTouch& pair) const {
-    if (pair.first_patch < 0) return {pair.integral, 1};
-    return std::span(workers_[static_cast<size_t>(pair.worker)].patches)
-        .subspan(static_cast<size_t>(pair.first_patch), static_cast<size_t>(pair.patches));
+    const Parts* const parts = parts_of(pair);
+    if (!parts || parts->first_patch < 0) return {&integral(pair), 1};
+    return std::span(workers_[static_cast<size_t>(parts->worker)].patches)
+        .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
   }
   /// The runs of a pair; none if it is not split.
   [[nodiscard]] std::span<const BoundaryRun> runs(const PairInTouch& pair) const {
-    return std::span(workers_[static_cast<size_t>(pair.worker)].runs)
-        .subspan(static_cast<size_t>(pair.first_run), static_cast<size_t>(pair.runs));
+    const Parts* const parts = parts_of(pair);
+    if (!parts) return {};
+    return std::span(workers_[static_cast<size_t>(parts->worker)].runs)
+        .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
   }
+  /// How many pairs are split.
+  [[nodiscard]] size_t split_pairs() const { return parts_.size(); }
+
+  /// How many slots there are, with those that are free.
+  [[nodiscard]] size_t slots() const { return integrals_.size(); }
+  /// Pairs that have touched and do so no more, ascending. Their slots are not free until they are
+  /// forgotten.
+  [[nodiscard]] const std::vector<PairInTouch>& ended() const { return ended_; }
+  void forget_ended();
+
   /// Energy of all pairs for unit thickness, N. Not for every step.
   [[nodiscard]] double energy(const PairTable& table) const;
 
   /// The record of a pair; k is the normal stiffness times the thickness, N/m.
   [[nodiscard]] Contact contact(KernelKind kernel, const PairInTouch& pair, double k) const;
   /// If the pair is so deep that its potentials are about to fall again.
-  [[nodiscard]] bool too_deep(const PairInTouch& pair) const;
+  [[nodiscard]] bool too_deep(const PairInTouch& pair, const PairIntegral& integral) const;
 
  private:
   static constexpr double kFirstMargin = 1. / 64;
@@ -91,14 +112,25 @@ class PairIntegrals {
     double share = kFirstMargin;  // the margin asked for, of the smaller inradius
     int age = 0;                  // evaluations since then
   };
+  // What a pair is split into, among what a thread has found.
+  struct Parts {
+    int patches, runs;
+    int worker, first_patch, first_run;  // first_patch < 0 if the only patch is the whole pair
+  };
+  struct Fresh {
+    size_t pair, result;
+    PairIntegral integral;
+  };
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
     std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // numbers of those collected
     // Of the touching pairs that it has found. The first worker's results begin the list of all.
-    std::vector<PairIntegral> integrals;
     std::vector<PairInTouch> results;
+    std::vector<Fresh> fresh;   // that have no slot yet
+    std::vector<size_t> ended;  // numbers of pairs
     // Of those that it has split.
+    std::vector<Parts> parts;
     std::vector<BoundaryRun> runs;
     std::vector<PairIntegral> patches;
     // Of the pair at hand.
@@ -109,13 +141,25 @@ class PairIntegrals {
   size_t evaluate_some(size_t first, size_t end, int worker);
   void evaluate_convex(int worker);
   void note_margin(size_t pair, const Vec2& between);
-  void add(const PairIntegral& integral, const PairInTouch& pair);
+  void add(size_t pair, const PairIntegral& integral, int worker, int split);
+  void note_end(size_t pair, Worker& worker) {
+    if (slots_[pair] >= 0) worker.ended.push_back(pair);
+  }
+  void end_now(const BoxPair& pair, int slot) { ended_.push_back({pair.first, pair.second, slot}); }
   void collect();
-  [[nodiscard]] double bound_depth(SurfaceIndex a, SurfaceIndex b, const PairIntegral& pair) const;
+  void give_slots(const Worker& worker, size_t first);
   void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,
                       int worker);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
     return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
+  }
+  // Of a pair that has perhaps no slot yet.
+  [[nodiscard]] const PairIntegral& result(const PairInTouch& pair, int worker) const {
+    if (pair.slot >= 0) return integral(pair);
+    return workers_[static_cast<size_t>(worker)].fresh[static_cast<size_t>(~pair.slot)].integral;
+  }
+  [[nodiscard]] const Parts* parts_of(const PairInTouch& pair) const {
+    return pair.split < 0 ? nullptr : &parts_[static_cast<size_t>(pair.split)];
   }
   void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
@@ -124,7 +168,12 @@ class PairIntegrals {
   Split split_;
   std::vector<BoxPair> pairs_;
   std::vector<Near> near_;  // of each pair
-  std::vector<PairInTouch> touching_;
+  std::vector<int> slots_;  // the same; -1 where it does not touch
+  std::vector<PairInTouch> touching_, ended_;
+  std::vector<Parts> parts_;             // of the pairs that are split
+  std::vector<PairIntegral> integrals_;  // of each slot
+  std::vector<int> free_;                // slots
+  SlotOrder order_;
   mutable std::vector<double> energies_;  // of each of these, when they are asked for, N
   std::vector<Worker> workers_;
 };

@@ -26,9 +26,11 @@ static void describe(Archive& archive, BoundaryRun& run) {
       "length", run.length);
 }
 
-PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law,
-                                 const PairTable& table, double thickness, int threads)
+PatchTangential::PatchTangential(const Surfaces& surfaces, const PairIntegrals& pairs,
+                                 const ContactLaw& law, const PairTable& table, double thickness,
+                                 int threads)
     : surfaces_(surfaces),
+      pairs_(pairs),
       per_edge_(law.friction_law == FrictionLaw::per_edge),
       table_(table),
       thickness_(thickness),
@@ -36,213 +38,189 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const ContactLaw& law
       ranges_(static_cast<size_t>(threads_.count()), Range(*this)),
       scene_{surfaces_, thickness_} {}
 
-void PatchTangential::begin_step(const PairIntegrals& pairs, const Kinematics& now, double dt,
-                                 FrictionMemory& memory) {
-  pairs_ = &pairs;
+std::span<const BoundaryRun> PatchTangential::Lists::runs_of(const PairMemory& pair) const {
+  if (pair.split < 0) return {};
+  const Place& place = places[static_cast<size_t>(pair.split)];
+  return {runs.data() + place.first_run, static_cast<size_t>(place.runs)};
+}
+
+std::span<const PatchDamper> PatchTangential::Lists::dampers_of(const PairMemory& pair) const {
+  if (pair.split < 0) return {};
+  const Place& place = places[static_cast<size_t>(pair.split)];
+  return {dampers.data() + place.first_damper, static_cast<size_t>(place.dampers)};
+}
+
+std::span<const Spring> PatchTangential::Lists::springs_of(const PairMemory& pair) const {
+  if (pair.split < 0) return {};
+  const Place& place = places[static_cast<size_t>(pair.split)];
+  return {springs.data() + place.first_spring, static_cast<size_t>(place.springs)};
+}
+
+void PatchTangential::put_in_order(SlotOrder& order) {
+  order.apply(memory_);
+  if (table_.damped()) order.apply(damping_);
+}
+
+void PatchTangential::begin_step(const Kinematics& now, double dt, FrictionMemory& memory) {
   kinematics_ = now;
   scene_.now = &kinematics_;
   scene_.dt = dt;
-  std::swap(now_, before_);
-  springs_ = memory.make_room(make_room());
-  for (Range& range : ranges_) memory.begin(range.springs, {-1, 0});
-}
-
-// Every pair has its place in the lists, so that threads do not wait for each other. Returns the
-// number of springs.
-size_t PatchTangential::make_room() {
-  const std::vector<PairInTouch>& touching = pairs_->touching();
-  places_.clear();
-  Place place;
-  for (size_t i = 0; i < touching.size(); ++i) {
-    if (i % kBlock == 0) places_.push_back(place);
-    const PairInTouch& pair = touching[i];
-    place.pass(pair.patches, pair.runs, kind_of(table_.between(pair.a, pair.b)), *this);
+  if (!adopt()) {
+    const auto grow = [&](auto& list) {  // large scenes need the memory
+      list.reserve(pairs_.slots());
+      list.resize(pairs_.slots());
+    };
+    grow(memory_);
+    if (table_.damped()) grow(damping_);
   }
-  now_.pairs.resize(touching.size());
-  now_.runs.resize(static_cast<size_t>(place.run));
-  now_.dampers.resize(static_cast<size_t>(place.damper));
-  now_.damping.resize(table_.damped() ? touching.size() : 0);
-  books_.assign(places_.size(), {});
-  return place.spring;
+  std::swap(now_, before_);
+  make_room();
+  release_ended(memory);
 }
 
-// What a pair has comes behind this place, and this place moves behind it.
-void PatchTangential::Place::pass(int patches, int runs, Tangential kind,
-                                  const PatchTangential& all) {
-  if (!kind.any()) return;
-  run += runs;
-  if (all.table_.damped()) damper += patches;
-  if (kind.rough) spring += static_cast<size_t>(all.per_edge_ ? runs : patches);
-}
-
-void PatchTangential::begin_range(Range& range, int first, FrictionMemory& memory) {
-  range.begin(0);
-  if (first == 0) return;
-  const PairInTouch& last = pairs_->touching()[static_cast<size_t>(first - 1)];
-  const BoxPair behind{last.a, last.b};
-  memory.begin(range.springs, {last.a, last.b});
-  const auto next = std::ranges::partition_point(before_.pairs, [&](const PairHistory& p) {
-    return BoxPair{p.a, p.b} <= behind;
-  });
-  range.begin(static_cast<size_t>(next - before_.pairs.begin()));
+// Every pair that is split has its place in the lists, so that threads do not wait for each other.
+void PatchTangential::make_room() {
+  const std::vector<PairInTouch>& touching = pairs_.touching();
+  books_.assign((touching.size() + kBlock - 1) / kBlock, {});
+  now_.places.resize(pairs_.split_pairs());
+  Place next;
+  for (size_t i = 0; i < touching.size() && !now_.places.empty(); ++i) {
+    const PairInTouch& pair = touching[i];
+    if (pair.split < 0) continue;
+    const Tangential kind = kind_of(table_.between(pair.a, pair.b));
+    const auto patches = static_cast<int>(pairs_.patches(pair).size());
+    const int listed = patches == 1 ? 0 : patches;
+    next.runs = kind.any() ? static_cast<int>(pairs_.runs(pair).size()) : 0;
+    next.dampers = kind.any() && table_.damped() ? listed : 0;
+    next.springs = 0;
+    if (kind.rough) next.springs = per_edge_ ? next.runs : listed;
+    now_.places[static_cast<size_t>(pair.split)] = next;
+    next.first_run += next.runs;
+    next.first_damper += next.dampers;
+    next.first_spring += next.springs;
+  }
+  now_.runs.resize(static_cast<size_t>(next.first_run));
+  now_.dampers.resize(static_cast<size_t>(next.first_damper));
+  now_.springs.resize(static_cast<size_t>(next.first_spring));
 }
 
 void PatchTangential::end_step(FrictionMemory& memory) {
-  for (const Range& range : ranges_) memory.add(range.springs);
   for (const PairBook& book : books_) memory.add(book);
 }
 
-void PatchTangential::inherit(History history) {
-  now_ = std::move(history);
-  now_.number();
-  now_.damping.assign(table_.damped() ? now_.pairs.size() : 0, {});
-}
-
-void PatchTangential::History::number() {
-  int run = 0, damper = 0;
-  for (PairHistory& pair : pairs) {
-    pair.first_run = run;
-    pair.first_damper = damper;
-    run += pair.runs;
-    damper += pair.patches;
-  }
-}
-
-void PatchTangential::History::fields(Archive& archive) {
-  archive("pairs", pairs)("runs", runs)("dampers", dampers)("damping", damping);
-  number();
-}
-
-void PatchTangential::Range::release_until(RigidIndex a, RigidIndex b) {
-  const std::vector<PairHistory>& before = all_.before_.pairs;
-  for (; next_ < before.size() && BoxPair{before[next_].a, before[next_].b} < BoxPair{a, b};
-       ++next_) {
-    release(before[next_], all_.damping_before(next_));
-  }
-}
-
 // Of a pair that touches no more: in the first half of this step its last force has still acted.
-void PatchTangential::Range::release(const PairHistory& last, const PairDamping* damping) {
-  const PairRate rate = pair_rate(*all_.scene_.now, last.a, last.b);
-  const double dt = all_.scene_.dt;
-  const PairForce damped = damping ? damping->damping : PairForce();
-  springs.lose(-dt / 2 * (last.force.power(rate) - damped.power(rate)));
-  if (!damping) return;
+void PatchTangential::release(const Left& last, FrictionMemory& memory) const {
+  const PairRate rate = pair_rate(kinematics_, last.a, last.b);
+  const double dt = scene_.dt;
+  memory.lose(last.energy - dt / 2 * (last.force.power(rate) - last.damping.damping.power(rate)));
+  if (!table_.damped()) return;
   PairDamping gone{.rate = rate}, over{.rate = rate};
-  springs.damp(close_damping(*damping, dt, gone));
-  springs.damp(close_damping(gone, dt, over));
+  memory.damp(close_damping(last.damping, dt, gone));
+  memory.damp(close_damping(gone, dt, over));
+}
+
+void PatchTangential::release_ended(FrictionMemory& memory) {
+  for (const Left& last : left_) release(last, memory);
+  left_.clear();
+  for (const PairInTouch& pair : pairs_.ended()) {
+    PairMemory& old = memory_[static_cast<size_t>(pair.slot)];
+    DampingMemory* const damping = damping_of(pair);
+    if (old.touched()) {
+      std::vector<Spring>& springs = ranges_[0].springs_before;
+      springs.clear();
+      add_springs(pair, old, before_, springs);
+      double energy = 0;
+      for (const Spring& spring : springs) energy += spring.energy();
+      release({pair.a, pair.b, old.force, damping ? damping->pair : PairDamping(), energy}, memory);
+    }
+    old = {};
+    if (damping) *damping = {};
+  }
 }
 
 void PatchTangential::Range::step_block(int first, int end, PairBook& book) {
-  const std::vector<PairInTouch>& touching = all_.pairs_->touching();
+  const std::vector<PairInTouch>& touching = all_.pairs_.touching();
   const size_t count = static_cast<size_t>(end - first);
   loads.resize(count);
   books_.resize(count);
-  Place to = all_.places_[static_cast<size_t>(first / kBlock)];
   for (size_t k = 0; k < count; ++k) {
     const auto i = static_cast<size_t>(first) + k;
-    if (i + kPairsAheadOfStep < touching.size()) {
-      const PairInTouch& ahead = touching[i + kPairsAheadOfStep];
-      all_.surfaces_.fetch_inertia(ahead.b);
-      __builtin_prefetch(ahead.integral);
-      __builtin_prefetch(reinterpret_cast<const char*>(ahead.integral + 1) - 1);
-      __builtin_prefetch(&all_.kinematics_.pose_rate[3 * static_cast<size_t>(ahead.b)]);
-    }
-    step_pair(touching[i], i, to, loads[k], books_[k]);
+    if (i + kPairsAheadOfStep < touching.size()) all_.fetch(touching[i + kPairsAheadOfStep]);
+    step_pair(touching[i], loads[k], books_[k]);
   }
   batch_.flush(all_.scene_);
   for (const PairBook& pair : books_) book.add(pair);
 }
 
-void PatchTangential::Range::step_pair(const PairInTouch& touching, size_t number, Place& to,
-                                       PairLoad& load, PairBook& book) {
-  const RigidIndex a = touching.a, b = touching.b;
-  release_until(a, b);
-  const std::vector<PairHistory>& all_before = all_.before_.pairs;
-  const PairHistory* before = nullptr;
-  const PairDamping* last = nullptr;
-  if (next_ < all_before.size() && all_before[next_].a == a && all_before[next_].b == b) {
-    before = &all_before[next_];
-    last = all_.damping_before(next_++);
-  }
-  const PairLaw& law = all_.table_.between(a, b);
-  const Pair pair{.a = a,
-                  .b = b,
-                  .integral = touching.integral,
-                  .law = law,
-                  .kind = all_.kind_of(law),
-                  .before = before,
-                  .last = last,
-                  // Also of pairs without friction: what has ended before them is booked by this
-                  // range.
-                  .springs = springs.before(polygon_kernel, a, b),
-                  .to = to,
-                  .now = all_.now_.pairs[number],
-                  .damping = all_.table_.damped() ? &all_.now_.damping[number] : nullptr,
-                  .load = load,
-                  .book = book};
-  to.pass(touching.patches, touching.runs, pair.kind, all_);
-  pair.now = {a, b, 0, 0, pair.to.run, pair.to.damper, {}};
-  if (!pair.kind.any()) {
-    if (pair.damping) *pair.damping = {};
-    book = {};
-    batch_.add(all_.scene_, {}, {a, b, touching.integral, &law}, {&load});
+// Begins to bring what a pair remembers to the cache.
+void PatchTangential::fetch(const PairInTouch& pair) const {
+  const auto fetch = [](const auto& object) {
+    const char* const first = reinterpret_cast<const char*>(&object);
+    for (size_t at = 0; at < sizeof(object); at += 64) __builtin_prefetch(first + at);
+    __builtin_prefetch(first + sizeof(object) - 1);
+  };
+  surfaces_.fetch_inertia(pair.b);
+  fetch(pairs_.integral(pair));
+  fetch(memory_[static_cast<size_t>(pair.slot)]);
+  if (table_.damped()) fetch(damping_[static_cast<size_t>(pair.slot)]);
+  __builtin_prefetch(&kinematics_.pose_rate[3 * static_cast<size_t>(pair.b)]);
+}
+
+void PatchTangential::Range::step_pair(const PairInTouch& touching, PairLoad& load,
+                                       PairBook& book) {
+  const PairLaw& law = all_.table_.between(touching.a, touching.b);
+  const Tangential kind = all_.kind_of(law);
+  PairMemory& memory = all_.memory_[static_cast<size_t>(touching.slot)];
+  PairWork work{.a = touching.a,
+                .b = touching.b,
+                .integral = &all_.pairs_.integral(touching),
+                .law = &law,
+                .load = &load};
+  book = {};
+  if (!kind.any()) {
+    memory = {.patches = 0};
+    if (DampingMemory* const damping = all_.damping_of(touching)) *damping = {};
+    batch_.add(all_.scene_, kind, work);
     return;
   }
-  runs_ = all_.pairs_->runs(touching);
-  patches_ = all_.pairs_->patches(touching);
-  pair.now.patches = static_cast<int>(patches_.size());
-  pair.now.runs = static_cast<int>(runs_.size());
-  std::ranges::copy(runs_, all_.now_.runs.begin() + pair.to.run);
-  ancestors_ = before ? static_cast<size_t>(before->patches) : 0;
-  if (patches_.size() == 1 && ancestors_ <= 1 && !all_.edgewise()) {
-    add_alone(pair);
-  } else {
-    step_patches(pair);
+  work.memory = &memory;
+  work.damping = all_.damping_of(touching);
+  work.book = &book;
+  const bool split = touching.split >= 0;
+  if (!split && memory.patches <= 1) {
+    if (work.damping && !kind.damped) *work.damping = {};
+    batch_.add(all_.scene_, kind, work);
+    return;
   }
+  runs_ = all_.pairs_.runs(touching);
+  patches_ = all_.pairs_.patches(touching);
+  Place to;
+  if (split) to = all_.now_.places[static_cast<size_t>(touching.split)];
+  std::ranges::copy(runs_, all_.now_.runs.begin() + to.first_run);
+  if (patches_.size() == 1 && memory.patches <= 1 && !all_.per_edge_) {
+    memory.split = touching.split;
+    if (work.damping && !kind.damped) *work.damping = {};
+    batch_.add(all_.scene_, kind, work);
+    return;
+  }
+  before_ = memory;
+  memory.split = touching.split;
+  step_patches(work, kind, to);
 }
 
-// What the patches of the step before have; nothing where the pair was not damped.
-std::span<const PatchDamper> PatchTangential::dampers_of(const PairHistory* pair) const {
-  if (!pair || before_.dampers.empty()) return {};
-  return std::span(before_.dampers)
-      .subspan(static_cast<size_t>(pair->first_damper), static_cast<size_t>(pair->patches));
-}
-
-// The one patch of a pair, which had one or none before.
-void PatchTangential::Range::add_alone(const Pair& pair) {
-  PairTarget to{.load = &pair.load, .tangential = &pair.now.force, .book = &pair.book};
-  if (pair.kind.rough) {
-    to.spring = &all_.springs_[pair.to.spring];
-    to.spring->key = {polygon_kernel, pair.a, pair.b, 0};
-    to.spring->accounted = true;
-  }
-  if (pair.damping) {
-    to.damping = pair.damping;
-    to.damper = &all_.now_.dampers[static_cast<size_t>(pair.to.damper)];
-    if (!pair.kind.damped) *to.damping = {}, *to.damper = {};
-  }
-  const std::span<const PatchDamper> dampers = all_.dampers_of(pair.before);
-  batch_.add(all_.scene_, pair.kind,
-             {.a = pair.a,
-              .b = pair.b,
-              .integral = pair.integral,
-              .law = &pair.law,
-              .touched = pair.before != nullptr,
-              .begins = ancestors_ == 0,
-              .last = pair.last,
-              .damper = dampers.empty() ? nullptr : &dampers[0],
-              .spring = pair.springs.empty() ? 0 : pair.springs[0].force},
-             to);
-}
-
-void PatchTangential::Range::step_patches(const Pair& pair) {
-  const bool one_each = pair.kind.rough && !all_.edgewise();
-  pair.book = {};
-  find_shares(pair.before);
+void PatchTangential::Range::step_patches(const PairWork& pair, Tangential kind, const Place& to) {
+  const bool one_each = kind.rough && !all_.per_edge_;
+  damping_before_ = pair.damping ? *pair.damping : DampingMemory();
+  ancestors_ = static_cast<size_t>(std::max(before_.patches, 0));
+  springs_before.clear();
+  all_.add_springs({pair.a, pair.b, 0}, before_, all_.before_, springs_before);
+  find_shares();
   dampers_.assign(patches_.size(), {});
-  if (pair.kind.damped) {
-    inherit(all_.dampers_of(pair.before), dampers_,
+  if (kind.damped) {
+    const std::span<const PatchDamper> before =
+        before_.patches == 1 ? std::span<const PatchDamper>(&damping_before_.patch, 1)
+                             : all_.before_.dampers_of(before_);
+    inherit(before, dampers_,
             [](PatchDamper& heir, double share, const PatchDamper& old, const PairIntegral&) {
               heir.elastic = heir.elastic + share * old.elastic;
               heir.damping = heir.damping + share * old.damping;
@@ -250,7 +228,7 @@ void PatchTangential::Range::step_patches(const Pair& pair) {
             });
   }
   if (one_each) {
-    inherit(pair.springs, patch_springs_,
+    inherit(std::span<const Spring>(springs_before), patch_springs_,
             [](Spring& heir, double share, const Spring& old, const PairIntegral& patch) {
               Vec2 tangent = tangent_of(patch.force);
               if (tangent == Vec2::Zero()) tangent = old.tangent;
@@ -258,57 +236,67 @@ void PatchTangential::Range::step_patches(const Pair& pair) {
             });
   }
   const PairScene& scene = all_.scene_;
+  PairMemory& now = *pair.memory;
+  now.patches = static_cast<int>(patches_.size());
+  now.spring = 0;
+  now.tangent = {};
   Sum sum{.rate = pair_rate(*scene.now, pair.a, pair.b)};
   for (size_t j = 0; j < patches_.size(); ++j) {
-    const PairWork work{.a = pair.a,
-                        .b = pair.b,
-                        .integral = &patches_[j],
-                        .law = &pair.law,
-                        .touched = pair.before != nullptr,
-                        .begins = ancestors_ == 0,
-                        .last = pair.last,
-                        .damper = &dampers_[j],
-                        .spring = one_each ? patch_springs_[j].force : 0};
+    PairMemory of_patch{.spring = one_each ? patch_springs_[j].force : 0,
+                        .patches = before_.patches};
+    DampingMemory of_damper{damping_before_.pair, dampers_[j]};
+    PairWork work = pair;
+    work.integral = &patches_[j];
+    work.memory = &of_patch;
+    work.damping = &of_damper;
     const PatchForces<double> forces =
-        step_patch(scene, work, {one_each, pair.kind.damped}, dampers_[j]);
+        step_patch(scene, work, {one_each, kind.damped}, dampers_[j]);
     sum.force = sum.force + forces.all;
     sum.damping = sum.damping + forces.damping;
     if (!one_each) continue;
     sum.held_a.add(forces.held_a, 1);
     sum.held_b.add(forces.held_b, 1);
-    Spring& spring = all_.springs_[pair.to.spring + j];
-    spring = {{polygon_kernel, pair.a, pair.b, static_cast<int>(j)},
-              forces.spring,
-              pair.law.friction.tangential_stiffness * scene.thickness,
-              {forces.tangent.x, forces.tangent.y},
-              true};
-    pair.book.energy += spring.energy();
-    pair.book.loss += forces.lost;
+    const Spring spring{{polygon_kernel, pair.a, pair.b, static_cast<int>(j)},
+                        forces.spring,
+                        pair.law->friction.tangential_stiffness * scene.thickness,
+                        {forces.tangent.x, forces.tangent.y}};
+    if (to.springs > 0) {
+      all_.now_.springs[static_cast<size_t>(to.first_spring) + j] = spring;
+    } else {
+      now.spring = spring.force;
+      now.tangent = {spring.tangent.x(), spring.tangent.y()};
+    }
+    pair.book->energy += spring.energy();
+    pair.book->loss += forces.lost;
   }
-  if (one_each && !inherit_whole()) pair.book.loss = lost_by_balance(pair, sum);
-  if (pair.kind.rough && all_.edgewise()) per_edge(pair, sum);
-  pair.now.force = sum.force;
+  if (one_each && !inherit_whole()) pair.book->loss = lost_by_balance(pair, sum);
+  if (kind.rough && all_.per_edge_) per_edge(pair, to, sum);
+  now.force = sum.force;
   if (pair.damping) {
-    std::ranges::copy(dampers_, all_.now_.dampers.begin() + pair.to.damper);
     *pair.damping = {};
+    if (patches_.size() == 1) {
+      pair.damping->patch = dampers_[0];
+    } else {
+      std::ranges::copy(dampers_, all_.now_.dampers.begin() + to.first_damper);
+    }
   }
-  if (pair.damping && pair.kind.damped) {
-    *pair.damping = {.damping = sum.damping, .rate = sum.rate};
+  if (pair.damping && kind.damped) {
+    pair.damping->pair = {.damping = sum.damping, .rate = sum.rate};
     const PairDamping none{.rate = sum.rate};
-    pair.book.damping_loss = close_damping(pair.last ? *pair.last : none, scene.dt, *pair.damping);
+    pair.book->damping_loss = close_damping(before_.touched() ? damping_before_.pair : none,
+                                            scene.dt, pair.damping->pair);
   }
-  load_pair(scene, {.a = pair.a, .b = pair.b, .integral = pair.integral, .law = &pair.law},
-            sum.force, sum.held_a, sum.held_b, pair.load);
+  load_pair(scene, pair, sum.force, sum.held_a, sum.held_b);
 }
 
 // What the patches before hand down to those of now: everything to the only heir, otherwise in
 // proportion to the normal forces of those that share boundary with it. Forces are neither invented
 // nor lost.
-void PatchTangential::Range::find_shares(const PairHistory* before) {
+void PatchTangential::Range::find_shares() {
   const size_t heirs = patches_.size();
   if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return;
-  shared_length({all_.before_.runs.data() + before->first_run, static_cast<size_t>(before->runs)},
-                before->patches, runs_, static_cast<int>(heirs), shares_);
+  shared_length(all_.before_.runs_of(before_), before_.patches, runs_, static_cast<int>(heirs),
+                shares_);
   for (size_t i = 0; i < ancestors_; ++i) {
     double* const share = &shares_[i * heirs];
     double sum = 0;
@@ -349,69 +337,212 @@ void PatchTangential::Range::inherit(std::span<const T> before, std::vector<T>& 
 
 // Where patches come, go, split or merge, springs do not know what they lose: what friction has
 // taken from the bodies and the springs do not store.
-double PatchTangential::Range::lost_by_balance(const Pair& pair, const Sum& sum) const {
+double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& sum) const {
   double power = (sum.force - sum.damping).power(sum.rate);
-  if (pair.before) {
-    const PairForce damping = pair.last ? pair.last->damping : PairForce();
-    power += (pair.before->force - damping).power(sum.rate);
+  if (before_.touched()) {
+    power += (before_.force - damping_before_.pair.damping).power(sum.rate);
   }
   double lost = -all_.scene_.dt / 2 * power;
-  for (const Spring& spring : pair.springs) lost += spring.energy();
-  return lost - pair.book.energy;
+  for (const Spring& spring : springs_before) lost += spring.energy();
+  return lost - pair.book->energy;
 }
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
-void PatchTangential::Range::per_edge(const Pair& pair, Sum& sum) {
+void PatchTangential::Range::per_edge(const PairWork& pair, const Place& to, Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
   const PairRate& rate = sum.rate;
-  const double stiffness = pair.law.friction.tangential_stiffness * all_.thickness_;
-  const double normal_stiffness = pair.law.normal_stiffness * all_.thickness_;
+  const double stiffness = pair.law->friction.tangential_stiffness * all_.thickness_;
+  const double normal_stiffness = pair.law->normal_stiffness * all_.thickness_;
   const int edges_of_a = all_.surfaces_.shapes().view(pair.a).size;
-  Spring* next = &all_.springs_[pair.to.spring];
-  auto old = pair.springs.begin();
-  const auto lost = [&] { pair.book.loss += (old++)->energy(); };  // of an edge that is free again
+  auto next = all_.now_.springs.begin() + to.first_spring;
+  auto old = springs_before.begin();
+  const auto lost = [&] { pair.book->loss += (old++)->energy(); };  // of an edge that is free again
   for (const BoundaryRun& run : runs_) {
     const SpringKey key{polygon_kernel, pair.a, pair.b,
                         run.of_a ? run.edge : edges_of_a + run.edge};
-    while (old != pair.springs.end() && old->key < key) lost();
+    while (old != springs_before.end() && old->key < key) lost();
     double before = 0;
-    if (old != pair.springs.end() && old->key == key) before = (old++)->force;
+    if (old != springs_before.end() && old->key == key) before = (old++)->force;
     const Vec2 tangent = tangent_of(run.force);
     const Vec2 behind = run.centre + between;
     const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, run.centre) - cross(rate.b, behind);
     const double force =
         follow(before, slip.dot(tangent) * all_.scene_.dt, stiffness,
-               pair.law.friction.coefficient * normal_stiffness * run.force.norm(), pair.book);
-    *next = {key, force, stiffness, tangent, true};
-    pair.book.energy += (next++)->energy();
+               pair.law->friction.coefficient * normal_stiffness * run.force.norm(), *pair.book);
+    *next = {key, force, stiffness, tangent};
+    pair.book->energy += (next++)->energy();
     const double arm_a = cross(run.centre, tangent), arm_b = cross(behind, tangent);
     sum.force = sum.force + force * PairForce{tangent.x(), tangent.y(), arm_a, -arm_b};
     sum.held_a.add(stiffness, tangent.x(), tangent.y(), arm_a);
     sum.held_b.add(stiffness, tangent.x(), tangent.y(), arm_b);
   }
-  while (old != pair.springs.end()) lost();
+  while (old != springs_before.end()) lost();
+}
+
+const PairMemory* PatchTangential::memory_of(const PairInTouch& pair) const {
+  const auto slot = static_cast<size_t>(pair.slot);
+  return slot < memory_.size() && memory_[slot].touched() ? &memory_[slot] : nullptr;
+}
+
+std::span<const PatchDamper> PatchTangential::dampers_of(const PairInTouch& pair,
+                                                         const PairMemory& memory) const {
+  if (!table_.damped()) return {};
+  if (memory.patches == 1) return {&damping_[static_cast<size_t>(pair.slot)].patch, 1};
+  return now_.dampers_of(memory);
 }
 
 void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
-                             std::span<const Spring> springs) const {
-  const BoxPair pair{patches[0].a, patches[0].b};
-  const auto found = std::ranges::partition_point(now_.pairs, [&](const PairHistory& p) {
-    return BoxPair{p.a, p.b} < pair;
-  });
-  if (found == now_.pairs.end() || BoxPair{found->a, found->b} != pair) return;
-  if (found->patches == 0) return;
-  for (size_t j = 0; table_.damped() && j < patches.size(); ++j) {
-    const PatchDamper& damper = now_.dampers[static_cast<size_t>(found->first_damper) + j];
+                             const PairInTouch& pair) const {
+  const PairMemory* const memory = memory_of(pair);
+  if (!memory || memory->patches == 0) return;
+  const std::span<const PatchDamper> dampers = dampers_of(pair, *memory);
+  for (size_t j = 0; j < std::min(dampers.size(), patches.size()); ++j) {
+    const PatchDamper& damper = dampers[j];
     patches[j].damping += Vec2(damper.damping.x, damper.damping.y);
     if (damper.tangential != 0) {
       patches[j].tangential += damper.tangential * tangent_of(patches[j].normal);
     }
   }
+  std::vector<Spring> springs;
+  add_springs(pair, *memory, now_, springs);
   for (size_t i = 0; i < springs.size(); ++i) {
-    const int patch = edgewise() ? runs[i].patch : springs[i].key.part;
+    const int patch = per_edge_ ? runs[i].patch : springs[i].key.part;
     patches[static_cast<size_t>(patch)].tangential += springs[i].force * springs[i].tangent;
   }
+}
+
+// Those of a pair; `lists` are those of the step that `memory` is of.
+void PatchTangential::add_springs(const PairInTouch& pair, const PairMemory& memory,
+                                  const Lists& lists, std::vector<Spring>& springs) const {
+  const PairLaw& law = table_.between(pair.a, pair.b);
+  if (!kind_of(law).rough) return;
+  if (memory.patches == 1 && !per_edge_) {
+    springs.push_back({{polygon_kernel, pair.a, pair.b, 0},
+                       memory.spring,
+                       law.friction.tangential_stiffness * thickness_,
+                       {memory.tangent.x, memory.tangent.y}});
+    return;
+  }
+  const std::span<const Spring> listed = lists.springs_of(memory);
+  springs.insert(springs.end(), listed.begin(), listed.end());
+}
+
+void PatchTangential::add_springs(std::vector<Spring>& springs) const {
+  if (inherited_) {
+    springs.insert(springs.end(), inherited_->springs.begin(), inherited_->springs.end());
+    return;
+  }
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const PairMemory* const memory = memory_of(pair);
+    if (memory) add_springs(pair, *memory, now_, springs);
+  }
+}
+
+void PatchTangential::History::fields(Archive& archive) {
+  archive("pairs", pairs)("runs", runs)("dampers", dampers)("damping", damping)("springs", springs);
+}
+
+void PatchTangential::fields(Archive& archive) {
+  if (archive.loads()) {
+    inherited_.emplace();
+    inherited_->fields(archive);
+  } else {
+    History now = inherited_ ? *inherited_ : history();
+    now.fields(archive);
+  }
+}
+
+// Also of pairs that have ended since the last step.
+PatchTangential::History PatchTangential::history() const {
+  History history;
+  const auto before = [](const PairInTouch& p, const PairInTouch& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  };
+  std::vector<PairInTouch> all;
+  std::ranges::merge(pairs_.touching(), pairs_.ended(), std::back_inserter(all), before);
+  for (const PairInTouch& pair : all) {
+    const PairMemory* const memory = memory_of(pair);
+    if (!memory) continue;
+    const std::span<const BoundaryRun> runs = now_.runs_of(*memory);
+    const std::span<const PatchDamper> dampers = dampers_of(pair, *memory);
+    history.pairs.push_back(
+        {pair.a, pair.b, memory->patches, static_cast<int>(runs.size()), memory->force});
+    history.runs.insert(history.runs.end(), runs.begin(), runs.end());
+    history.dampers.insert(history.dampers.end(), dampers.begin(), dampers.end());
+    if (table_.damped()) {
+      history.damping.push_back(damping_[static_cast<size_t>(pair.slot)].pair);
+    }
+    add_springs(pair, *memory, now_, history.springs);
+  }
+  return history;
+}
+
+bool PatchTangential::adopt() {
+  if (!inherited_) return false;
+  const History from = std::move(*inherited_);
+  inherited_.reset();
+  memory_.assign(pairs_.slots(), {});
+  damping_.assign(table_.damped() ? pairs_.slots() : 0, {});
+  now_.clear();
+  left_.clear();
+  auto touching = pairs_.touching().begin();
+  const auto touching_end = pairs_.touching().end();
+  size_t run = 0, damper = 0, spring = 0;
+  for (size_t i = 0; i < from.pairs.size(); ++i) {
+    const PairHistory& old = from.pairs[i];
+    const std::pair pair(old.a, old.b);
+    const auto pair_of = [](const Spring& s) { return std::pair(s.key.a, s.key.b); };
+    while (spring < from.springs.size() && pair_of(from.springs[spring]) < pair) ++spring;
+    size_t end = spring;
+    while (end < from.springs.size() && pair_of(from.springs[end]) == pair) ++end;
+    Inherited of_pair{old, {}};
+    of_pair.runs = std::span(from.runs).subspan(run, static_cast<size_t>(old.runs));
+    run += of_pair.runs.size();
+    if (!from.dampers.empty()) {
+      of_pair.dampers = std::span(from.dampers).subspan(damper, static_cast<size_t>(old.patches));
+      damper += of_pair.dampers.size();
+    }
+    of_pair.springs = std::span(from.springs).subspan(spring, end - spring);
+    if (i < from.damping.size()) of_pair.damping = from.damping[i];
+    while (touching != touching_end && std::pair(touching->a, touching->b) < pair) ++touching;
+    if (touching != touching_end && std::pair(touching->a, touching->b) == pair) {
+      take(*touching, of_pair);
+      continue;
+    }
+    double energy = 0;
+    for (const Spring& s : of_pair.springs) energy += s.energy();
+    left_.push_back({old.a, old.b, old.force, of_pair.damping, energy});
+  }
+  return true;
+}
+
+void PatchTangential::take(const PairInTouch& pair, const Inherited& from) {
+  PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
+  memory = {.force = from.old.force, .patches = from.old.patches};
+  const bool alone = from.old.patches == 1;
+  const bool own_spring = alone && !per_edge_;
+  if (own_spring && !from.springs.empty()) {
+    const Spring& spring = from.springs[0];
+    memory.spring = spring.force;
+    memory.tangent = {spring.tangent.x(), spring.tangent.y()};
+  }
+  if (DampingMemory* const damping = damping_of(pair)) {
+    damping->pair = from.damping;
+    if (alone && !from.dampers.empty()) damping->patch = from.dampers[0];
+  }
+  const auto append = [](auto& list, const auto& items, int& first, int& count) {
+    first = static_cast<int>(list.size());
+    count = static_cast<int>(items.size());
+    list.insert(list.end(), items.begin(), items.end());
+  };
+  Place place;
+  append(now_.runs, from.runs, place.first_run, place.runs);
+  if (!alone) append(now_.dampers, from.dampers, place.first_damper, place.dampers);
+  if (!own_spring) append(now_.springs, from.springs, place.first_spring, place.springs);
+  if (place.runs + place.dampers + place.springs == 0) return;
+  memory.split = static_cast<int>(now_.places.size());
+  now_.places.push_back(place);
 }
 
 }  // namespace apothem

@@ -30,29 +30,31 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       found_(static_cast<size_t>(threads_.count())),
       loads_(surfaces, threads) {
   if (table.rough() || table.damped()) {
-    tangential_.emplace(surfaces, law, table, thickness, threads);
+    tangential_.emplace(surfaces, pairs_, law, table, thickness, threads);
   }
 }
 
 void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
   for (Found& found : found_) found.summary = {};
-  pairs_.evaluate([&](const PairInTouch& pair, int worker) {
+  pairs_.evaluate([&](const PairInTouch& pair, const PairIntegral& integral, int worker) {
     found_[static_cast<size_t>(worker)].summary.include(
-        pair.deepest, pairs_.too_deep(pair) ? 1 : pair.integral->largest_phi);
+        pairs_.deepest(pair, integral), pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
   });
+  if (!tangential_) pairs_.forget_ended();
   summary_ = {};
   for (const Found& found : found_) summary_.include(found.summary);
 }
 
 void PolygonKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
   for (const PairInTouch& pair : pairs_.touching()) {
-    if (!(pair.deepest <= least)) contacts.push_back(contact_of(pair));
+    if (!(pairs_.deepest(pair, pairs_.integral(pair)) <= least))
+      contacts.push_back(contact_of(pair));
   }
 }
 
 Contact PolygonKernel::contact_of(const PairInTouch& pair) const {
   Contact contact = pairs_.contact(KernelKind::polygon_kernel, pair, stiffness(pair.a, pair.b));
-  if (pairs_.too_deep(pair)) contact.share = 1;
+  if (pairs_.too_deep(pair, pairs_.integral(pair))) contact.share = 1;
   return contact;
 }
 
@@ -69,26 +71,28 @@ double PolygonKernel::penetration(const Contact& c, double floor) {
 ContactFault PolygonKernel::fault(const Contact& c) const {
   const auto found = std::ranges::find_if(
       pairs_.touching(), [&](const PairInTouch& p) { return p.a == c.a && p.b == c.b; });
-  const PairIntegral& pair = *found->integral;
+  const PairIntegral& pair = pairs_.integral(*found);
   return {pair.largest_phi > kDeepestPhi ? ContactFault::Kind::singular_area
                                          : ContactFault::Kind::centre,
           c.a, c.b, surfaces_.reference(c.a) + loading_point(pair)};
 }
 
 void PolygonKernel::take(std::span<const BoxPair> pairs) {
-  pairs_.take(pairs);
+  SlotOrder& order = pairs_.take(pairs);
+  if (tangential_) tangential_->put_in_order(order);
   loads_.take(pairs);
 }
 
 double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!tangential_) return 0;
-  tangential_->begin_step(pairs_, now, dt, memory);
+  tangential_->begin_step(now, dt, memory);
+  pairs_.forget_ended();
   sum_loads([&](int first, int end, int worker) {
-    tangential_->step(first, end, worker, memory,
+    tangential_->step(first, end, worker,
                       [&](std::span<const PairLoad> loads) { add_block(loads, worker); });
   });
   tangential_->end_step(memory);
-  return 0;  // its springs are accounted
+  return 0;  // it books itself what its springs lose
 }
 
 void PolygonKernel::add_forces(const ForceViews& forces) {
@@ -131,9 +135,9 @@ void PolygonKernel::find_normal_loads(int first, int end, int worker) {
       found.batch.add(scene, {},
                       {.a = pair.a,
                        .b = pair.b,
-                       .integral = pair.integral,
-                       .law = &table_.between(pair.a, pair.b)},
-                      {.load = &found.loads[k]});
+                       .integral = &pairs_.integral(pair),
+                       .law = &table_.between(pair.a, pair.b),
+                       .load = &found.loads[k]});
     }
     found.batch.flush(scene);
     add_block(found.loads, worker);
@@ -151,14 +155,13 @@ void PolygonKernel::add_block(std::span<const PairLoad> loads, int worker) {
 
 void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
   for (const PairInTouch& pair : pairs_.touching()) {
-    const double size = stiffness(pair.a, pair.b) * pair.integral->force.norm();
+    const double size = stiffness(pair.a, pair.b) * pairs_.integral(pair).force.norm();
     of_bodies[static_cast<size_t>(pair.a)] += size;
     of_bodies[static_cast<size_t>(pair.b)] += size;
   }
 }
 
-void PolygonKernel::add_records(const FrictionMemory& memory,
-                                std::vector<ContactRecord>& records) const {
+void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
   PatchWorkspace workspace;
   PenetrationWorkspace penetration_workspace;
   std::vector<BoundaryRun> runs;
@@ -166,7 +169,6 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
   std::vector<double> deepest;
   for (const PairInTouch& pair : pairs_.touching()) {
     const RigidIndex a = pair.a, b = pair.b;
-    const std::span<const Spring> springs = memory.springs_of(polygon_kernel, a, b);
     const PlacedPotential view_a = surfaces_.shapes().view(a);
     const PlacedPotential view_b = surfaces_.shapes().view(b);
     const Vec2 between = surfaces_.between(a, b);
@@ -180,7 +182,7 @@ void PolygonKernel::add_records(const FrictionMemory& memory,
                          stiffness(a, b) * patch.force, Vec2::Zero(), deepest[i],
                          patch.largest_phi});
     }
-    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, springs);
+    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, pair);
   }
 }
 

@@ -28,10 +28,15 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void remember() override {
+    if (tangential_) tangential_->remember();
+  }
   void undo_slide() override {
     if (tangential_) tangential_->undo_step();
   }
-  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
+  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {
+    if (tangential_ && tangential_->adopt()) pairs_.forget_ended();
+  }
   void add_forces(const ForceViews& forces) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
     return onset_.find(pairs_, now, dynamics, dt);
@@ -44,11 +49,13 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
   void add_force_sizes(std::span<double> of_bodies) const override;
-  void add_records(const FrictionMemory& memory,
-                   std::vector<ContactRecord>& records) const override;
-  /// Takes over what the patches of another simulation remember.
-  void inherit(const PatchTangential::History& patches) {
-    if (tangential_) tangential_->inherit(patches);
+  void add_records(std::vector<ContactRecord>& records) const override;
+  void add_springs(std::vector<Spring>& springs) const override {
+    if (tangential_) tangential_->add_springs(springs);
+  }
+  /// Takes over what the pairs of another simulation remember.
+  void inherit(const PatchTangential::History& pairs) {
+    if (tangential_) tangential_->inherit(pairs);
   }
   void fields(Archive& archive) override {
     if (tangential_) archive("tangential", *tangential_);

@@ -29,6 +29,7 @@ class JsonWriter final : public Archive {
     text_ += '}';
     if (sink_) flush();
   }
+  [[nodiscard]] bool loads() const override { return false; }
   /// What has been collected, as JSON.
   [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(text_ + '}'); }
 
@@ -107,6 +108,7 @@ class JsonWriter final : public Archive {
 class JsonLoader final : public Archive {
  public:
   explicit JsonLoader(const nlohmann::json& root) : stack_{{&root, 0}} {}
+  [[nodiscard]] bool loads() const override { return true; }
 
  protected:
   void number(const char* name, double& value) override { value = to_double(at(name)); }
