@@ -10,6 +10,8 @@
 namespace apothem {
 namespace {
 
+constexpr size_t kManyContacts = 1024;
+
 // No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
 double least_of(const Penetrations& floors, double shortest) {
   constexpr double kRoundOff = 1 - 1e-12;
@@ -47,17 +49,17 @@ bool Contacts::search_if_stale() {
   if (!search_.stale(surfaces_, threads_)) return false;
   search_.search(surfaces_);
   ++searches_;
-  for (std::vector<BoxPair>& pairs : pairs_) pairs.clear();
+  std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
   for (const BoxPair& pair : search_.pairs()) {
-    pairs_[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
+    pairs_of[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
   }
   for (SurfaceIndex i = 0; table_.self() && i < surfaces_.size(); ++i) {
     if (surfaces_.kind(i) == SurfaceKind::outline && surfaces_.is_present(i))
-      pairs_[outline_kernel].push_back({i, i});
+      pairs_of[outline_kernel].push_back({i, i});
   }
-  if (surfaces_.has_outlines()) surfaces_.outlines().activate(pairs_[outline_kernel]);
+  if (surfaces_.has_outlines()) surfaces_.outlines().activate(pairs_of[outline_kernel]);
   for (size_t k = 0; k < kernels_.size(); ++k) {
-    if (kernels_[k]) kernels_[k]->take(pairs_[k]);
+    if (kernels_[k]) kernels_[k]->take(pairs_of[k]);
   }
   return true;
 }
@@ -68,6 +70,8 @@ void Contacts::evaluate() {
 }
 
 const std::vector<Contact>& Contacts::list(double least) const {
+  // At the start all of them are listed, and hardly any later: large scenes need the memory.
+  if (listed_.capacity() > kManyContacts) std::vector<Contact>().swap(listed_);
   listed_.clear();
   each([&](const Kernel& kernel) { kernel.add_contacts(least, listed_); });
   if (!contacts_.empty()) {

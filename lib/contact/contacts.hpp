@@ -147,7 +147,6 @@ class Contacts {
   FrictionLaw friction_law_;
   Search search_;
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
-  std::array<std::vector<BoxPair>, kernel_kinds> pairs_;
   bool tangential_;                      // there is friction or damping
   std::vector<Contact> contacts_;        // without those that kernels add when they are asked for
   mutable std::vector<Contact> listed_;  // those that list() has found

@@ -9,12 +9,14 @@ namespace {
 
 constexpr double kMoved = .99;  // of the margin, beyond which near edges are found again
 // The margin is larger where bodies move faster, so that near edges are found again after some tens
-// of evaluations, and smaller in packs at rest, where few edges are near. Of the smaller inradius:
-constexpr double kSmallestMargin = 1. / 1024;
-constexpr double kLargestMargin = 1. / 8;
+// of evaluations, and smaller in packs at rest, where few edges are near. These powers of two times
+// the smaller inradius:
+constexpr int kSmallestMargin = -10;
+constexpr int kLargestMargin = -3;
 constexpr int kSoon = 32;
 constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
 constexpr int kLate = 256;
+constexpr size_t kManyFresh = 1024;
 
 // For one more. Large scenes need the memory.
 template <class T>
@@ -83,18 +85,19 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
                        std::abs(turn_b - near.angle_b) * shapes.radius(b);
   const bool known = moved < kMoved * near.edges.margin;
   const bool narrow = near.edges.none() || near.share <= kSmallestMargin;
-  near.age = std::min(near.age + 1, kLate);
+  near.age = static_cast<std::int16_t>(std::min(near.age + 1, kLate));
   if (known && (narrow || near.age < kLate)) return;
   if (known) {
-    near.share /= 4;
+    near.share = static_cast<std::int16_t>(near.share - 2);
   } else if (near.edges.margin > 0 && !near.edges.none() && near.age < kSoon) {
-    near.share = std::min(2 * near.share, kLargestMargin);
+    near.share = static_cast<std::int16_t>(std::min(near.share + 1, kLargestMargin));
   }
   near = {{}, between, turn_a, turn_b, near.share, 0};
   if (convex || !surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);
-  const double margin = near.share * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  const double margin =
+      std::ldexp(std::min(surfaces_.inradius(a), surfaces_.inradius(b)), near.share);
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
@@ -176,7 +179,7 @@ void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int s
 // Puts the lists of the workers together.
 void PairIntegrals::collect() {
   parts_.clear();
-  for (const Worker& worker : workers_) {
+  for (Worker& worker : workers_) {
     const size_t first = &worker == workers_.data() ? 0 : touching_.size();
     const auto split = static_cast<int>(parts_.size());
     for (PairInTouch pair : worker.results) {
@@ -198,7 +201,7 @@ void PairIntegrals::collect() {
 }
 
 // To the pairs that are new, of a worker whose results begin there in the list of all.
-void PairIntegrals::give_slots(const Worker& worker, size_t first) {
+void PairIntegrals::give_slots(Worker& worker, size_t first) {
   for (const Fresh& fresh : worker.fresh) {
     int& slot = slots_[fresh.pair];
     if (free_.empty()) {
@@ -212,6 +215,8 @@ void PairIntegrals::give_slots(const Worker& worker, size_t first) {
     }
     touching_[first + fresh.result].slot = slot;
   }
+  // At the start all pairs are new, and hardly any later: large scenes need the memory.
+  if (worker.fresh.size() > kManyFresh) std::vector<Fresh>().swap(worker.fresh);
 }
 
 void PairIntegrals::forget_ended() {

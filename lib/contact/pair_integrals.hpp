@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -101,7 +102,7 @@ class PairIntegrals {
   [[nodiscard]] bool too_deep(const PairInTouch& pair, const PairIntegral& integral) const;
 
  private:
-  static constexpr double kFirstMargin = 1. / 64;
+  static constexpr int kFirstMargin = -6;
   static constexpr double kPairTime = 200;  // ns
 
   // Edges of a pair that are near the other body, and where the bodies were when they were found.
@@ -109,8 +110,8 @@ class PairIntegrals {
     NearEdges edges;
     Vec2 between = Vec2::Zero();
     double angle_a = 0, angle_b = 0;
-    double share = kFirstMargin;  // the margin asked for, of the smaller inradius
-    int age = 0;                  // evaluations since then
+    std::int16_t share = kFirstMargin;  // the margin asked for: this power of two inradii
+    std::int16_t age = 0;               // evaluations since then
   };
   // What a pair is split into, among what a thread has found.
   struct Parts {
@@ -147,7 +148,7 @@ class PairIntegrals {
   }
   void end_now(const BoxPair& pair, int slot) { ended_.push_back({pair.first, pair.second, slot}); }
   void collect();
-  void give_slots(const Worker& worker, size_t first);
+  void give_slots(Worker& worker, size_t first);
   void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,
                       int worker);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {

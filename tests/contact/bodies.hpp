@@ -188,7 +188,7 @@ inline Vec2 on_body(const std::vector<ContactRecord>& records, BodyIndex body,
 /// The sizes of the forces of all springs, N.
 inline double spring_sum(const Contacts& contacts) {
   double sum = 0;
-  for (const Spring& s : contacts.friction().springs()) sum += std::abs(s.force);
+  for (const Spring& s : contacts.springs()) sum += std::abs(s.force);
   return sum;
 }
 

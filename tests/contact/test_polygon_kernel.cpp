@@ -209,7 +209,7 @@ TEST_CASE("contact of rigid bodies has the same bits for any number of threads",
     REQUIRE(ended > 50);
     REQUIRE(Threads(2).worth(static_cast<int>(before.size()), 200));
     std::vector<double> now;
-    for (const Spring& s : contacts.friction().springs()) now.push_back(s.force);
+    for (const Spring& s : contacts.springs()) now.push_back(s.force);
     REQUIRE(now.size() > 500);
     Vec2 sum = Vec2::Zero();
     double sizes = 0;
@@ -319,6 +319,55 @@ TEST_CASE("pairs are told with the integrals that are kept, also while their lis
     CHECK(told[i].force == kept.force);
     CHECK(told[i].largest_phi == kept.largest_phi);
   }
+}
+
+TEST_CASE("what pairs remember follows them through every search",
+          "[polygon_kernel][friction][contact]") {
+  for (const FrictionLaw law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
+    samples::Random random(19), same(19);
+    Bodies bodies = random_heap(random, rough_law(law, .3), 8, 3);
+    Bodies other = random_heap(same, rough_law(law, .3), 8);
+    size_t ended = 0, before = 0;
+    for (int i = 0; i < 60; ++i) {
+      other.contacts->forget_search();  // slots have a new order in every step
+      step(bodies, .01);
+      step(other, .01);
+      REQUIRE(bodies.rigid_force == other.rigid_force);
+      REQUIRE(bodies.contacts->friction_loss() == other.contacts->friction_loss());
+      REQUIRE(bodies.contacts->damping_loss() == other.contacts->damping_loss());
+      const size_t now = bodies.contacts->springs().size();
+      ended += now < before;
+      before = now;
+    }
+    CHECK(bodies.contacts->searches() < 30);
+    CHECK(ended > 5);
+    CHECK(before > 50);
+  }
+}
+
+TEST_CASE("a slide that was tried leaves nothing behind", "[polygon_kernel][friction][contact]") {
+  samples::Random random(23), same(23);
+  Bodies bodies = random_heap(random, rough_law(FrictionLaw::resultant, .3), 6);
+  Bodies other = random_heap(same, rough_law(FrictionLaw::resultant, .3), 6);
+  for (int i = 0; i < 20; ++i) {
+    // Two states that are tried, with other pairs in touch, on the way to the next step.
+    const std::vector<double> pose = bodies.pose;
+    for (const double dt : {.03, -.02}) {
+      for (size_t c = 0; c < pose.size(); ++c) {
+        bodies.pose[c] = pose[c] + dt * bodies.pose_rate[c];
+      }
+      bodies.evaluate();
+      bodies.contacts->try_slide(bodies.kinematics(), dt);
+      bodies.find_forces();
+    }
+    bodies.contacts->drop_trial();
+    bodies.pose = pose;
+    step(bodies, .01);
+    step(other, .01);
+    REQUIRE(bodies.rigid_force == other.rigid_force);
+    REQUIRE(bodies.contacts->friction_loss() == Approx(other.contacts->friction_loss()));
+  }
+  CHECK(other.contacts->springs().size() > 20);
 }
 
 TEST_CASE("a pair of convex polygons is one patch", "[polygon_kernel][contact]") {

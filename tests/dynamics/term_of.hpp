@@ -1,6 +1,8 @@
 // Looking into the list of terms of a simulation.
 #pragma once
 
+#include <vector>
+
 #include "apothem/dynamics/contact_term.hpp"
 #include "apothem/dynamics/simulation.hpp"
 
@@ -16,9 +18,9 @@ const T* term_of(const Simulation& simulation) {
 }
 
 /// The friction springs of all contacts.
-inline std::span<const Spring> springs(const Simulation& simulation) {
+inline std::vector<Spring> springs(const Simulation& simulation) {
   const auto* contact = term_of<ContactTerm>(simulation);
-  return contact ? contact->contacts().friction().springs() : std::span<const Spring>();
+  return contact ? contact->contacts().springs() : std::vector<Spring>();
 }
 
 }  // namespace apothem::test
