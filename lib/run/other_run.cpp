@@ -33,7 +33,7 @@ nlohmann::json contacts_of(const nlohmann::json& simulation) {
   }
   if (!contacts.contains("tangential")) {
     contacts["tangential"] = {
-        {"pairs", none}, {"runs", none}, {"dampers", none}, {"damping", none}};
+        {"pairs", none}, {"runs", none}, {"dampers", none}, {"damping", none}, {"springs", none}};
   }
   return contacts;
 }

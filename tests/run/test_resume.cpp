@@ -363,7 +363,7 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
   for (const char* missing :
        {"/scene_hash", "/progress", "/progress/next_row", "/simulation", "/simulation/state/x",
         "/simulation/ledger", "/simulation/step_control/size", "/simulation/term_0",
-        "/simulation/term_0/contacts/friction/springs/0/force"}) {
+        "/simulation/term_0/contacts/tangential/springs/0/force"}) {
     INFO(missing);
     write(without(missing));
     refused("is not a checkpoint");
