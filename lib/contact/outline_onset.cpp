@@ -10,13 +10,28 @@ namespace {
 constexpr double kSuddenLength = .1;  // change of the boundary inside, of the smaller r
 constexpr double kRoundOff = 1e-9;
 constexpr double kPathTime = 5000;  // of a pair, ns
-constexpr double kUnitTime = 200;   // ns
+constexpr double kUnitTime = 1000;  // ns
 
 // Sums of these tell sets of vertices apart.
 std::uint64_t scrambled(int vertex) {
   std::uint64_t z = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 31)) * 0xbf58476d1ce4e5b9ULL;
   return z ^ (z >> 29);
+}
+
+// Makes one entry of those of the same pair that follow each other.
+void join_neighbours(std::vector<TouchingPair>& list) {
+  size_t last = 0;
+  for (size_t i = 1; i < list.size(); ++i) {
+    if (list[i].same_pair(list[last])) {
+      list[last].inside_a += list[i].inside_a;
+      list[last].length += list[i].length;
+      list[last].deep = list[last].deep || list[i].deep;
+    } else {
+      list[++last] = list[i];
+    }
+  }
+  list.resize(std::min(list.size(), last + 1));
 }
 
 }  // namespace
@@ -46,6 +61,7 @@ void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlat
   });
   std::vector<TouchingPair>& list = watch_.begin_step();
   runs_.join(list);
+  join_neighbours(list);
   const auto add_deep = [&](int own, BodyIndex in) {
     const auto [a, b] = std::minmax(o.body[own], in);
     const TouchingPair pair{a, b, 0, 0, 0, true};
@@ -54,17 +70,7 @@ void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlat
   for (const OutlinePlateaus::Edge& on : plateaus.edges()) add_deep(on.edge, on.in);
   for (const OutlinePlateaus::Face& on : plateaus.faces()) add_deep(on.face, on.in);
   std::ranges::sort(list, std::less<>());
-  size_t last = 0;
-  for (size_t i = 1; i < list.size(); ++i) {
-    if (list[i].same_pair(list[last])) {
-      list[last].inside_a += list[i].inside_a;
-      list[last].length += list[i].length;
-      list[last].deep = list[last].deep || list[i].deep;
-    } else {
-      list[++last] = list[i];
-    }
-  }
-  list.resize(std::min(list.size(), last + 1));
+  join_neighbours(list);
 }
 
 bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
