@@ -21,6 +21,7 @@ set(APOTHEM_PUBLIC_HEADERS
   execution/pack.hpp
   execution/parallel.hpp
   execution/stopwatch.hpp
+  execution/worker_lists.hpp
   fem/kinds.hpp
   fem/stress.hpp
   geometry/exact/exact_integral.hpp

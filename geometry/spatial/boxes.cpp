@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace apothem {
 namespace {
 
 constexpr std::int32_t kEmpty = INT32_MIN;  // level of an empty box
 constexpr size_t kFew = 4;                  // boxes are few if they are less than one in so many
+// ns, of a box:
+constexpr double kLocateTime = 8, kLookTime = 150, kSortTime = 20, kMergeTime = 8;
 
 bool is_empty(const Box& box) { return box.x1 < box.x0; }
 
@@ -44,19 +48,25 @@ int BoxGrid::level_of(const Box& box) const {
   return std::max(static_cast<int>(bits >> 52) - 1022, finest_);
 }
 
-void BoxGrid::enter(std::int32_t i, const Box& box) {
+void BoxGrid::locate(std::int32_t i, const Box& box) {
   Entry& entry = entries_[i];
   if (is_empty(box)) {
     entry.level = kEmpty;
     return;
   }
-  const int level = level_of(box);
+  entry.level = level_of(box);
+  const double cells = power_of_two(-entry.level);
+  entry.column = floor_of((box.x0 + box.x1) / 2 * cells);
+  entry.row = floor_of((box.y0 + box.y1) / 2 * cells);
+}
+
+void BoxGrid::enter(std::int32_t i) {
+  Entry& entry = entries_[i];
+  const int level = entry.level;
+  if (level == kEmpty) return;
   if (std::find(levels_.begin(), levels_.end(), level) == levels_.end()) levels_.push_back(level);
-  const double cells = power_of_two(-level);
-  std::int64_t column = floor_of((box.x0 + box.x1) / 2 * cells);
-  std::int64_t row = floor_of((box.y0 + box.y1) / 2 * cells);
-  std::int32_t& head = heads_[slot(column, row, level, mask_)];
-  entry = {column, row, head, level};
+  std::int32_t& head = heads_[slot(entry.column, entry.row, level, mask_)];
+  entry.next = head;
   head = i;
 }
 
@@ -88,45 +98,55 @@ void BoxGrid::each_near(const Box& box, int level, const Entry* from, F&& f) con
   }
 }
 
-void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs) {
-  pairs.clear();
+void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pairs,
+                         const Threads& threads) {
   levels_.clear();
+  found_.begin(threads);
   const auto n = static_cast<std::int32_t>(boxes.size());
-  if (n == 0) return;
   reach_ = 0;
   for (const Box& box : boxes) {
     if (!is_empty(box)) reach_ = std::max(reach_, farthest(box));
   }
   // No level is finer than 2^-50 of the largest coordinate, so that cell indices stay below 2^52.
   finest_ = std::max(reach_ > 0 ? std::ilogb(reach_) - 50 : 0, -1000);
-  mask_ = std::bit_ceil(static_cast<size_t>(2) * n) - 1;
+  mask_ = std::bit_ceil(2 * boxes.size()) - 1;
   heads_.assign(mask_ + 1, -1);
-  entries_.resize(n);
-  is_changed_.assign(n, 0);
-  for (std::int32_t i = 0; i < n; ++i) enter(i, boxes[i]);
-
-  for (std::int32_t i = 0; i < n; ++i) {
-    const Box& box = boxes[i];
-    const Entry& own = entries_[i];
-    if (own.level == kEmpty) continue;
-    const auto report = [&](std::int32_t j) {
-      if (!apart(box, boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
-    };
-    for (const int level : levels_) {
-      if (level > own.level) each_near(box, level, nullptr, report);
+  entries_.resize(boxes.size());
+  is_changed_.assign(boxes.size(), 0);
+  threads.chunks(n, kLocateTime, [&](int first, int end, int) {
+    for (std::int32_t i = first; i < end; ++i) locate(i, boxes[i]);
+  });
+  for (std::int32_t i = 0; i < n; ++i) enter(i);
+  threads.chunks(n, kLookTime, [&](int first, int end, int worker) {
+    for (std::int32_t i = first; i < end; ++i) {
+      find_partners(boxes, i, found_.of(worker));
     }
-    each_near(box, own.level, &own, [&](std::int32_t j) {
-      const Entry& other = entries_[j];
-      // In one cell both find each other.
-      if (other.column == own.column && other.row == own.row && j >= i) return;
-      report(j);
-    });
+  });
+  sort(pairs, threads);
+}
+
+// Of a box with those of its own level that come behind it in the grid, and with larger ones.
+void BoxGrid::find_partners(const std::vector<Box>& boxes, std::int32_t i,
+                            std::vector<BoxPair>& found) const {
+  const Box& box = boxes[i];
+  const Entry& own = entries_[i];
+  if (own.level == kEmpty) return;
+  const auto report = [&](std::int32_t j) {
+    if (!apart(box, boxes[j])) found.push_back({std::min(i, j), std::max(i, j)});
+  };
+  for (const int level : levels_) {
+    if (level > own.level) each_near(box, level, nullptr, report);
   }
-  sort(pairs);
+  each_near(box, own.level, &own, [&](std::int32_t j) {
+    const Entry& other = entries_[j];
+    // In one cell both find each other.
+    if (other.column == own.column && other.row == own.row && j >= i) return;
+    report(j);
+  });
 }
 
 void BoxGrid::find_pairs_again(const std::vector<Box>& boxes, std::span<const std::int32_t> changed,
-                               std::vector<BoxPair>& pairs) {
+                               std::vector<BoxPair>& pairs, const Threads& threads) {
   // Large boxes would look into too many cells of the small ones.
   double cells = 0;
   bool few = boxes.size() == entries_.size() && kFew * changed.size() < boxes.size();
@@ -140,46 +160,96 @@ void BoxGrid::find_pairs_again(const std::vector<Box>& boxes, std::span<const st
     few = farthest(box) <= reach_ && cells < 16. * static_cast<double>(boxes.size());
   }
   if (!few) {
-    find_pairs(boxes, pairs);
+    find_pairs(boxes, pairs, threads);
     return;
   }
   for (const std::int32_t i : changed) {
     is_changed_[i] = 1;
     leave(i);
-    enter(i, boxes[i]);
+    locate(i, boxes[i]);
+    enter(i);
   }
-  found_.clear();
-  for (const std::int32_t i : changed) {
-    if (entries_[i].level == kEmpty) continue;
-    const Box& box = boxes[i];
-    for (const int level : levels_) {
-      each_near(box, level, nullptr, [&](std::int32_t j) {
-        if (j == i || (is_changed_[j] && j > i)) return;  // box j reports this pair
-        if (!apart(box, boxes[j])) found_.push_back({std::min(i, j), std::max(i, j)});
-      });
+  found_.begin(threads);
+  const auto count = static_cast<int>(changed.size());
+  threads.chunks(count, kLookTime, [&](int first, int end, int worker) {
+    std::vector<BoxPair>& found = found_.of(worker);
+    for (const std::int32_t i : changed.subspan(first, end - first)) {
+      if (entries_[i].level == kEmpty) continue;
+      const Box& box = boxes[i];
+      for (const int level : levels_) {
+        each_near(box, level, nullptr, [&](std::int32_t j) {
+          if (j == i || (is_changed_[j] && j > i)) return;  // box j reports this pair
+          if (!apart(box, boxes[j])) found.push_back({std::min(i, j), std::max(i, j)});
+        });
+      }
     }
-  }
-  std::erase_if(pairs,
-                [&](const BoxPair& p) { return is_changed_[p.first] || is_changed_[p.second]; });
+  });
+  sort(added_, threads);
+  merge(pairs, added_, threads);
   for (const std::int32_t i : changed) is_changed_[i] = 0;
-  pairs.insert(pairs.end(), found_.begin(), found_.end());
-  sort(pairs);
 }
 
-// Counts the pairs of each first box: takes linear time, because few pairs share one.
-void BoxGrid::sort(std::vector<BoxPair>& pairs) {
-  ends_.assign(entries_.size() + 1, 0);
-  for (const BoxPair& pair : pairs) ++ends_[pair.first + 1];
-  for (size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-  found_.resize(pairs.size());
-  for (const BoxPair& pair : pairs) found_[ends_[pair.first]++] = pair;
-  auto begin = found_.begin();
-  for (size_t i = 0; i + 1 < ends_.size(); ++i) {
-    const auto end = found_.begin() + ends_[i];
-    std::sort(begin, end);
-    begin = end;
-  }
-  pairs.swap(found_);
+// Each thread takes the pairs of a range of first boxes from what all have found, and counts those
+// of each box: this takes linear time, because few pairs share a box.
+void BoxGrid::sort(std::vector<BoxPair>& pairs, const Threads& threads) {
+  pairs.resize(found_.size());
+  ends_.assign(entries_.size(), 0);
+  threads.chunks(static_cast<int>(entries_.size()), kSortTime, [&](int first, int end, int) {
+    std::int32_t place = 0;
+    for (const std::vector<BoxPair>& some : found_.all()) {
+      for (const BoxPair& pair : some) {
+        if (pair.first < first) ++place;
+        if (pair.first >= first && pair.first < end) ++ends_[pair.first];
+      }
+    }
+    auto begin = pairs.begin() + place;
+    for (int i = first; i < end; ++i) place += std::exchange(ends_[i], place);
+    for (const std::vector<BoxPair>& some : found_.all()) {
+      for (const BoxPair& pair : some) {
+        if (pair.first >= first && pair.first < end) pairs[ends_[pair.first]++] = pair;
+      }
+    }
+    for (int i = first; i < end; ++i) {
+      const auto behind = pairs.begin() + ends_[i];
+      std::sort(begin, behind);
+      begin = behind;
+    }
+  });
+}
+
+// Each thread takes the pairs of a range of first boxes, when it is known how many there are
+// before.
+void BoxGrid::merge(std::vector<BoxPair>& pairs, const std::vector<BoxPair>& added,
+                    const Threads& threads) {
+  const auto range = [](const std::vector<BoxPair>& of, int first, int end) {
+    const auto place = [&](int box) {
+      return std::ranges::lower_bound(of, box, {}, &BoxPair::first);
+    };
+    return std::span(place(first), place(end));
+  };
+  const auto stays = [&](const BoxPair& pair) {
+    return !is_changed_[pair.first] && !is_changed_[pair.second];
+  };
+  const auto boxes = static_cast<int>(entries_.size());
+  sizes_.assign(static_cast<size_t>(threads.count()), 0);
+  threads.chunks(boxes, kMergeTime, [&](int first, int end, int worker) {
+    const auto kept = std::ranges::count_if(range(pairs, first, end), stays);
+    sizes_[static_cast<size_t>(worker)] = kept + std::ssize(range(added, first, end));
+  });
+  merged_.resize(
+      static_cast<size_t>(std::accumulate(sizes_.begin(), sizes_.end(), std::ptrdiff_t{0})));
+  threads.chunks(boxes, kMergeTime, [&](int first, int end, int worker) {
+    auto to = std::accumulate(sizes_.begin(), sizes_.begin() + worker, merged_.begin());
+    const auto from = range(added, first, end);
+    auto next = from.begin();
+    for (const BoxPair& pair : range(pairs, first, end)) {
+      if (!stays(pair)) continue;
+      for (; next != from.end() && *next < pair; ++next) *to++ = *next;
+      *to++ = pair;
+    }
+    std::copy(next, from.end(), to);
+  });
+  pairs.swap(merged_);
 }
 
 }  // namespace apothem

@@ -105,10 +105,15 @@ class EdgeFaceBlocks {
   [[nodiscard]] std::span<double> lengths() { return lengths_; }
   [[nodiscard]] std::span<const double> lengths() const { return lengths_; }
 
-  /// Calls f(block, lane) for every contact, in the order of the candidates.
+  /// Calls f(block, lane) for every contact, of all units or of one, in the order of the
+  /// candidates.
   template <class F>
   void each_contact(const F& f) const {
-    for (size_t i = 0; i < met_.size(); ++i) {
+    for (const EdgeFaceUnit& unit : units_) each_contact(unit, f);
+  }
+  template <class F>
+  void each_contact(const EdgeFaceUnit& unit, const F& f) const {
+    for (auto i = static_cast<size_t>(unit.first); i < static_cast<size_t>(unit.end); ++i) {
       for (unsigned m = met_[i] & kContacts; m != 0; m &= m - 1)
         f(i, static_cast<size_t>(std::countr_zero(m)));
     }

@@ -14,7 +14,7 @@
 #include "apothem/contact/outline_plateaus.hpp"
 #include "apothem/contact/outline_slopes.hpp"
 #include "apothem/contact/outlines.hpp"
-#include "apothem/execution/parallel.hpp"
+#include "apothem/execution/worker_lists.hpp"
 
 namespace apothem {
 
@@ -55,6 +55,7 @@ class OutlineOnset {
   const Outlines& outlines_;
   Threads threads_;
   OnsetWatch watch_;
+  WorkerLists<TouchingPair> runs_;
   std::vector<Changed> changed_;
   std::vector<Worker> workers_;
 };

@@ -5,7 +5,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kLookTime = 2;  // of a box, ns
+constexpr double kLookTime = 2;    // of a box, ns
+constexpr double kGrowTime = 4;    // of a surface, ns
+constexpr double kChoiceTime = 4;  // of a pair, ns
 
 }  // namespace
 
@@ -25,50 +27,57 @@ bool Search::stale(const Surfaces& surfaces, const Threads& threads) const {
   return left;
 }
 
-void Search::search(Surfaces& surfaces) {
-  if (surfaces.has_outlines() || !search_again(surfaces)) search_all(surfaces);
-  pairs_.clear();
-  for (const BoxPair& pair : near_) {
-    if (surfaces.body(pair.first) == surfaces.body(pair.second)) continue;
-    if (!surfaces.responsive(pair.first) && !surfaces.responsive(pair.second)) continue;
-    pairs_.push_back(pair);
-  }
+void Search::search(Surfaces& surfaces, const Threads& threads) {
+  if (surfaces.has_outlines() || !search_again(surfaces, threads)) search_all(surfaces, threads);
+  pairs_of_workers_.begin(threads);
+  threads.chunks(static_cast<int>(near_.size()), kChoiceTime, [&](int first, int end, int worker) {
+    std::vector<BoxPair>& chosen = pairs_of_workers_.of(worker);
+    for (int i = first; i < end; ++i) {
+      const BoxPair& pair = near_[static_cast<size_t>(i)];
+      if (surfaces.body(pair.first) == surfaces.body(pair.second)) continue;
+      if (!surfaces.responsive(pair.first) && !surfaces.responsive(pair.second)) continue;
+      chosen.push_back(pair);
+    }
+  });
+  pairs_of_workers_.join(pairs_);
 }
 
-void Search::search_all(Surfaces& surfaces) {
+void Search::search_all(Surfaces& surfaces, const Threads& threads) {
   const std::vector<Box>& boxes = surfaces.shapes().boxes();
-  kept_.clear();
-  for (SurfaceIndex i = 0; i < surfaces.shapes().size(); ++i) {
-    kept_.push_back(boxes[i].grown(surfaces.growth(i)));
-  }
-  if (surfaces.has_outlines()) {
-    surfaces.outlines().prepare_search();
-    kept_.resize(surfaces.size());
-    for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
+  const bool outlines = surfaces.has_outlines();
+  if (outlines) surfaces.outlines().prepare_search();
+  kept_.resize(static_cast<size_t>(surfaces.size()));
+  threads.chunks(surfaces.size(), kGrowTime, [&](int first, int end, int) {
+    for (SurfaceIndex i = first; i < end; ++i) {
+      kept_[i] = Box();
+      if (!surfaces.is_present(i)) continue;
+      if (i < surfaces.shapes().size()) kept_[i] = boxes[i].grown(surfaces.growth(i));
+      if (!outlines) continue;
       const Box& box = surfaces.outlines().body_boxes[i];
       kept_[i].include(box.x0, box.y0);
       kept_[i].include(box.x1, box.y1);
     }
-  }
-  for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
-    if (!surfaces.is_present(i)) kept_[i] = Box();
-  }
-  grid_.find_pairs(kept_, near_);
+  });
+  grid_.find_pairs(kept_, near_, threads);
 }
 
 // Gives new boxes to the surfaces that have left the inner half of the margins of theirs. The
 // others need none for as long again, so searches do not come more often for it.
-bool Search::search_again(const Surfaces& surfaces) {
+bool Search::search_again(const Surfaces& surfaces, const Threads& threads) {
   const std::vector<Box>& boxes = surfaces.shapes().boxes();
   if (kept_.size() != boxes.size()) return false;
-  changed_.clear();
-  for (SurfaceIndex i = 0; i < surfaces.size(); ++i) {
-    if (!surfaces.is_present(i)) continue;
-    if (!contains(kept_[i].grown(-surfaces.growth(i) / 2), boxes[i])) changed_.push_back(i);
-  }
+  changed_of_workers_.begin(threads);
+  threads.chunks(surfaces.size(), kGrowTime, [&](int first, int end, int worker) {
+    std::vector<SurfaceIndex>& changed = changed_of_workers_.of(worker);
+    for (SurfaceIndex i = first; i < end; ++i) {
+      if (!surfaces.is_present(i)) continue;
+      if (!contains(kept_[i].grown(-surfaces.growth(i) / 2), boxes[i])) changed.push_back(i);
+    }
+  });
+  changed_of_workers_.join(changed_);
   if (kFew * changed_.size() >= boxes.size()) return false;
   for (const SurfaceIndex i : changed_) kept_[i] = boxes[i].grown(surfaces.growth(i));
-  grid_.find_pairs_again(kept_, changed_, near_);
+  grid_.find_pairs_again(kept_, changed_, near_, threads);
   return true;
 }
 

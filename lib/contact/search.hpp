@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apothem/contact/surfaces.hpp"
+#include "apothem/execution/worker_lists.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
@@ -21,21 +22,23 @@ class Search {
   void forget() { kept_.clear(); }
   /// Finds all pairs of near surfaces of two bodies, at least one of which forces can move. All
   /// polygons must be at finite places.
-  void search(Surfaces& surfaces);
+  void search(Surfaces& surfaces, const Threads& threads = Threads());
   /// Ascending, with first < second.
   [[nodiscard]] std::span<const BoxPair> pairs() const { return pairs_; }
 
  private:
   static constexpr size_t kFew = 4;  // surfaces are few if they are less than one in so many
 
-  void search_all(Surfaces& surfaces);
+  void search_all(Surfaces& surfaces, const Threads& threads);
   /// False if too many have moved.
-  bool search_again(const Surfaces& surfaces);
+  bool search_again(const Surfaces& surfaces, const Threads& threads);
 
   std::vector<Box> kept_;
   std::vector<BoxPair> near_;  // pairs of boxes
   std::vector<BoxPair> pairs_;
   std::vector<SurfaceIndex> changed_;
+  WorkerLists<BoxPair> pairs_of_workers_;
+  WorkerLists<SurfaceIndex> changed_of_workers_;
   BoxGrid grid_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "apothem/execution/dispatch.hpp"
 #include "apothem/model/rotation.hpp"
@@ -10,6 +11,8 @@ namespace apothem {
 namespace {
 
 constexpr double kKickTime = .7, kDriftTime = .5;  // of a coordinate, ns
+constexpr double kTorqueTime = 1.5;                // of a rigid body, ns
+constexpr int kParts = 64;  // of a sum over all bodies, for any number of threads: the same bits
 
 }  // namespace
 
@@ -357,9 +360,22 @@ Impulse DegreesOfFreedom::weight_sum(const State& state) const {
   const size_t rigid = layout_.node(0), n = weight_.size();
   if (n == 0) return sum;
   const double* x = state.x.data();
-  for (size_t c = 0; c < rigid; c += 3) {
-    sum.angular += x[c] * weight_[c + 1] - x[c + 1] * weight_[c];
-  }
+  std::array<double, kParts> torques{};
+  const auto begin = [&](int part) {
+    return layout_.rigid(
+        static_cast<RigidIndex>(std::int64_t{layout_.rigid_bodies} * part / kParts));
+  };
+  threads_.chunks(kParts, kTorqueTime / kParts * layout_.rigid_bodies,
+                  [&](int first, int end, int) {
+                    for (int part = first; part < end; ++part) {
+                      double torque = 0;
+                      for (size_t c = begin(part); c < begin(part + 1); c += 3) {
+                        torque += x[c] * weight_[c + 1] - x[c + 1] * weight_[c];
+                      }
+                      torques[static_cast<size_t>(part)] = torque;
+                    }
+                  });
+  for (const double torque : torques) sum.angular += torque;
   if (n == rigid) return sum;
   // What displacements add, in many sums, so that none waits for the one before.
   constexpr size_t kNumbers = 16;

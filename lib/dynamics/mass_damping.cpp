@@ -11,6 +11,9 @@
 namespace apothem {
 namespace {
 
+constexpr size_t kPart = 384;    // coordinates of a part: x, y, angle or x, y are not torn apart
+constexpr double kDampTime = 6;  // of a coordinate, ns
+
 // Of each node of a body with several materials: its alphas, weighted with the masses of the
 // elements around it, 1/s.
 std::vector<double> node_rates(const Model& model, const DeformableBody& body) {
@@ -45,10 +48,13 @@ bool MassDamping::needed(const Model& model) {
                      });
 }
 
-MassDamping::MassDamping(const Model& model, const DegreesOfFreedom& dofs) : dofs_(dofs) {
+MassDamping::MassDamping(const Model& model, const DegreesOfFreedom& dofs, int threads)
+    : dofs_(dofs), threads_(threads) {
   const Layout& layout = dofs.layout();
   const auto add = [&](size_t first, size_t end, double rate) {
-    if (rate > 0 && first < end) groups_.push_back({first, end, rate});
+    if (!(rate > 0)) return;
+    for (; first < end; first += kPart)
+      groups_.push_back({first, std::min(first + kPart, end), rate});
   };
   add(0, layout.node(0), model.contact.mass_damping);
   for (const DeformableBody& body : model.deformables) {
@@ -64,6 +70,13 @@ MassDamping::MassDamping(const Model& model, const DegreesOfFreedom& dofs) : dof
     add(layout.node(body.first_node), layout.node(body.first_node + nodes),
         model.materials[body.material].mass_damping + model.contact.mass_damping);
   }
+  size_t coordinates = kPart;
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    if (coordinates >= kPart) parts_.push_back(g), coordinates = 0;
+    coordinates += groups_[g].end - groups_[g].first;
+  }
+  sums_.resize(parts_.size());
+  parts_.push_back(groups_.size());
 }
 
 std::string MassDamping::describe() const {
@@ -76,17 +89,36 @@ std::string MassDamping::describe() const {
                        : fmt::format("mass damping, {:g} to {:g} 1/s", least, most);
 }
 
+MassDamping::Sum MassDamping::damp(const Group& group, State& state, double h) const {
+  const double rest = exponential(-group.rate * h);
+  Sum sum;
+  for (size_t c = group.first; c < group.end; ++c) {
+    if (!dofs_.can_move(c)) continue;
+    double& v = state.v[c];
+    const double p = dofs_.mass(c) * v;
+    sum.loss += p * v / 2 * (1 - rest * rest);
+    sum.impulse.add(dofs_.impulse(state, c, p * (rest - 1)));
+    v *= rest;
+  }
+  return sum;
+}
+
 void MassDamping::damp(State& state, double h, Ledger& ledger) {
-  for (const Group& group : groups_) {
-    const double rest = exponential(-group.rate * h);
-    for (size_t c = group.first; c < group.end; ++c) {
-      if (!dofs_.can_move(c)) continue;
-      double& v = state.v[c];
-      const double p = dofs_.mass(c) * v;
-      loss_ += p * v / 2 * (1 - rest * rest);
-      ledger.add_impulse(dofs_.impulse(state, c, p * (rest - 1)));
-      v *= rest;
+  const auto parts = static_cast<int>(sums_.size());
+  threads_.chunks(parts, kPart * kDampTime, [&](int first, int end, int) {
+    for (auto part = static_cast<size_t>(first); part < static_cast<size_t>(end); ++part) {
+      Sum sum;
+      for (size_t g = parts_[part]; g < parts_[part + 1]; ++g) {
+        const Sum of_group = damp(groups_[g], state, h);
+        sum.loss += of_group.loss;
+        sum.impulse.add(of_group.impulse);
+      }
+      sums_[part] = sum;
     }
+  });
+  for (const Sum& sum : sums_) {
+    loss_ += sum.loss;
+    ledger.add_impulse(sum.impulse);
   }
 }
 

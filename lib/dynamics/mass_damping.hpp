@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apothem/dynamics/term.hpp"
+#include "apothem/execution/parallel.hpp"
 #include "apothem/model/model.hpp"
 
 namespace apothem {
@@ -11,7 +12,7 @@ namespace apothem {
 class MassDamping final : public Term {
  public:
   static bool needed(const Model& model);
-  MassDamping(const Model& model, const DegreesOfFreedom& dofs);
+  MassDamping(const Model& model, const DegreesOfFreedom& dofs, int threads = 1);
 
   [[nodiscard]] std::string describe() const override;
   /// v' = -alpha v solved exactly over h, so that any alpha is stable.
@@ -27,8 +28,20 @@ class MassDamping final : public Term {
     size_t first, end;  // coordinates
     double rate;        // alpha, 1/s
   };
+  /// What a part of the groups gives off.
+  struct Sum {
+    double loss = 0;  // J
+    Impulse impulse;
+  };
+  Sum damp(const Group& group, State& state, double h) const;
+
   const DegreesOfFreedom& dofs_;
-  std::vector<Group> groups_;
+  Threads threads_;
+  std::vector<Group> groups_;  // none of them long, so that threads have equal shares
+  // Groups that are worked on together: where each part begins, and where the last one ends. They
+  // do not depend on the number of threads, nor do the sums over them.
+  std::vector<size_t> parts_;
+  std::vector<Sum> sums_;
   double loss_ = 0;  // J
 };
 

@@ -84,7 +84,9 @@ void Simulation::make_terms(int threads) {
     contact_ = contact.get();
     terms_.push_back(std::move(contact));
   }
-  if (MassDamping::needed(model_)) terms_.push_back(std::make_unique<MassDamping>(model_, dofs_));
+  if (MassDamping::needed(model_)) {
+    terms_.push_back(std::make_unique<MassDamping>(model_, dofs_, threads));
+  }
   if (FoldWatch::needed(model_)) terms_.push_back(std::make_unique<FoldWatch>(model_));
 }
 

@@ -12,8 +12,11 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <ranges>
 #include <stdexcept>
 
@@ -28,6 +31,8 @@
 
 namespace apothem {
 namespace {
+
+constexpr double kFileTime = 1e5;  // of a small file, ns
 
 void add_time(vtkUnstructuredGrid* grid, double time) {
   vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name that VTK's readers know
@@ -385,6 +390,29 @@ vtkNew<vtkUnstructuredGrid> boundaries(const Model& model, double time,
   return grid;
 }
 
+// Calls write(i) for i below `count`, which a thread takes when it is free. Throws what the first
+// of those threw that have failed; no other one is begun after a failure.
+template <class Write>
+void work_on(const Threads& threads, size_t count, const Write& write) {
+  keep_to_one_thread();  // before there are several, since it changes the environment
+  std::vector<std::exception_ptr> failures(count);
+  std::atomic<size_t> next = 0;
+  std::atomic<bool> failed = false;
+  threads.chunks(threads.count(), kFileTime, [&](int, int, int) {
+    for (size_t i = next++; i < count && !failed; i = next++) {
+      try {
+        write(i);
+      } catch (...) {
+        failures[i] = std::current_exception();
+        failed = true;
+      }
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
 std::string file_name(const char* series, size_t frame) {
   return fmt::format("frames/{}_{:06}.vtu", series, frame);
 }
@@ -401,8 +429,9 @@ std::string collection(const char* series, const std::vector<double>& times) {
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times)
-    : folder_(std::move(folder)), model_(model), times_(std::move(times)) {
+FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times,
+                         int threads)
+    : folder_(std::move(folder)), model_(model), threads_(threads), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     Cells cells = convex_cells(model_.bodies[i].potential.vertices);
@@ -419,22 +448,28 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
 void FrameWriter::write(const FrameContents& frame) {
   const size_t number = times_.size();
   const double time = frame.state.time;
-  write_file(folder_ + "/" + file_name("bodies", number),
-             xml(BodyGrid(model_, frame, cells_).grid()));
-  write_file(folder_ + "/" + file_name("outlines", number),
-             xml(outlines(model_, frame.state, loops_)));
-  write_file(folder_ + "/" + file_name("contacts", number),
-             xml(patches(model_, time, frame.contacts)));
-  const auto write_lines = [&](const char* series, vtkUnstructuredGrid* grid) {
-    add_time(grid, time);
-    write_file(folder_ + "/" + file_name(series, number), xml(grid));
+  struct Series {
+    const char* name;
+    std::function<std::string()> text;
   };
-  write_lines("chains", force_chains(model_, frame));
-  if (!model_.regions.empty()) write_lines("roses", roses(model_, frame));
-  if (!frame.surfaces.empty()) {
-    write_file(folder_ + "/" + file_name("surfaces", number),
-               xml(boundaries(model_, time, frame.surfaces)));
+  const auto lines = [&](vtkUnstructuredGrid* grid) {
+    add_time(grid, time);
+    return xml(grid);
+  };
+  // Those that take longest begin first.
+  std::vector<Series> all{{"bodies", [&] { return xml(BodyGrid(model_, frame, cells_).grid()); }},
+                          {"contacts", [&] { return xml(patches(model_, time, frame.contacts)); }},
+                          {"chains", [&] { return lines(force_chains(model_, frame)); }},
+                          {"outlines", [&] { return xml(outlines(model_, frame.state, loops_)); }}};
+  if (!model_.regions.empty()) {
+    all.push_back({"roses", [&] { return lines(roses(model_, frame)); }});
   }
+  if (!frame.surfaces.empty()) {
+    all.push_back({"surfaces", [&] { return xml(boundaries(model_, time, frame.surfaces)); }});
+  }
+  work_on(threads_, all.size(), [&](size_t i) {
+    write_file(folder_ + "/" + file_name(all[i].name, number), all[i].text());
+  });
   times_.push_back(time);
   if (!frame.surfaces.empty()) {
     write_file(folder_ + "/surfaces.pvd", collection("surfaces", times_));

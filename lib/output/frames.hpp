@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/meshing/polygon_mesh.hpp"
 #include "apothem/mesh/mesh.hpp"
 #include "apothem/model/model.hpp"
@@ -37,9 +38,11 @@ class FrameWriter {
  public:
   /// Creates the folder. `times` (s) are those of the frames that it already contains, if a run is
   /// continued. `model` must outlive the writer. Throws SystemFailure.
-  FrameWriter(std::string folder, const Model& model, std::vector<double> times = {});
+  FrameWriter(std::string folder, const Model& model, std::vector<double> times = {},
+              int threads = 1);
 
   /// Writes the next frame and then the .pvd files, so that every file that these list is complete.
+  /// Threads make files of the frame at the same time.
   /// Throws SystemFailure; the earlier frames are then intact.
   void write(const FrameContents& frame);
 
@@ -49,6 +52,7 @@ class FrameWriter {
  private:
   std::string folder_;
   const Model& model_;
+  Threads threads_;
   // Of each rigid body that is several cells, as lists of its corners.
   std::map<RigidIndex, std::vector<std::vector<int>>> cells_;
   std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes

@@ -27,13 +27,18 @@ inline vtkNew<vtkIntArray> integers(const char* name) {
   return array;
 }
 
-/// The grid as the text of a .vtu file. Data are base64 and zlib, which readers other than VTK's
-/// accept as well.
-inline std::string xml(vtkUnstructuredGrid* grid) {
-  // VTK would wake threads for the extremes of every array, which takes longer than to find them.
+/// Has VTK use one thread in all that it does. It would wake others for the extremes of every
+/// array, which takes longer than to find them.
+inline void keep_to_one_thread() {
   // The function that says so needs headers of TBB.
   [[maybe_unused]] static const int sequential =
       setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", /*overwrite=*/0);
+}
+
+/// The grid as the text of a .vtu file. Data are base64 and zlib, which readers other than VTK's
+/// accept as well.
+inline std::string xml(vtkUnstructuredGrid* grid) {
+  keep_to_one_thread();
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);
   writer->SetDataModeToBinary();

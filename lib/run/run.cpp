@@ -55,7 +55,7 @@ Run::Run(Scene scene, const RunSettings& settings)
   HistoryWriter::Sizes sizes{};
   std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
   history_.emplace(folder, scene_.model, scene_.output, sizes);
-  frames_.emplace(folder, scene_.model, progress_.frame_times);
+  frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads);
 }
 
 // The simulation where it begins, or where it goes on.

@@ -47,7 +47,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"model", {"execution", "archive", "geometry", "mesh", "fem", "contact"}},
     {"dynamics", {"execution", "archive", "geometry", "mesh", "fem", "contact", "model"}},
     {"scene", {"execution", "geometry", "mesh", "fem", "contact", "model"}},
-    {"output", {"geometry", "mesh", "model"}},
+    {"output", {"execution", "geometry", "mesh", "model"}},
     {"player", {"geometry", "mesh", "model", "output"}},
     {"run", {"archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
     {"sweep", {"scene", "output", "run"}},

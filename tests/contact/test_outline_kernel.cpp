@@ -1,9 +1,12 @@
 // Outlines of meshes and polygons in contact: candidates, limits, threads, energy in motion.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
+#include <string>
 
 #include "apothem/geometry/spatial/loops.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/run/json_archive.hpp"
 #include "contact/outline_pairs.hpp"
 
 using namespace apothem;
@@ -362,6 +365,34 @@ TEST_CASE("friction and damping of outlines have the same bits for any number of
   CHECK(one.loss != 0);
   CHECK(one.damping_loss > 0);
   for (const int threads : {2, 3, 7}) CHECK((slide_strips(threads, false) == one));
+}
+
+TEST_CASE("what touches is the same for any number of threads",
+          "[outline_kernel][onset][contact]") {
+  // Strips on strips, with more units of candidates than one thread works on.
+  constexpr int kStrips = 6, kCells = 1500;
+  std::string before;
+  for (const int threads : {1, 2, 3, 7}) {
+    Bodies bodies(law_of(1), .002, 1, threads);
+    for (const double y : {0., .0985}) {
+      for (int k = 0; k < kStrips; ++k) {
+        bodies.add_mesh(rectangle_mesh({4, .1}, {kCells, 2}, {4. * k + 20 * y, y},
+                                       ElementShape::quadrilateral));
+      }
+    }
+    bodies.join();
+    std::vector<double>& u = bodies.displacement;
+    for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
+    bodies.evaluate();
+    CHECK_FALSE(bodies.contacts->find_onsets(bodies.kinematics(), {}, 0));
+    JsonWriter archive;
+    archive("contacts", *bodies.contacts);
+    const std::string saved = archive.json().dump();
+    CHECK(saved.find("\"touching\"") != std::string::npos);
+    CHECK(std::count(saved.begin(), saved.end(), '{') > 2 * kStrips);
+    if (threads > 1) CHECK(saved == before);
+    before = saved;
+  }
 }
 
 TEST_CASE("friction and damping of outlines do not depend on when they were searched for",

@@ -317,3 +317,54 @@ TEST_CASE("pairs that no force can move, and pairs of one body, are left out",
                                       {1, 3}, {1, 4}, {2, 3}, {2, 4}};
   CHECK((std::vector(search.pairs().begin(), search.pairs().end()) == expected));
 }
+
+TEST_CASE("the search finds the same on any number of threads", "[search][contact][parallel]") {
+  // Slabs that nothing moves, and squares on a lattice, so many that threads divide all loops.
+  constexpr int kAcross = 120;
+  const Potential square = about_centre(samples::block(-.5, -.5, .5, .5));
+  const Potential slab = about_centre(samples::block(-60, -.5, 60, .5));
+  const auto scene = [&] {
+    Scene made;
+    for (int i = 0; i < kAcross * kAcross; ++i) {
+      made.surfaces.add_polygon(square, {{1, 1, 1}, 2, 1, .5, true, HUGE_VAL});
+      made.pose.insert(made.pose.end(), {1.01 * (i % kAcross), 1.01 * (i / kAcross), 0});
+    }
+    for (int k = 0; k < 2; ++k) {
+      made.surfaces.add_polygon(slab, {{0, 0, 0}, 2, 60, .5, true, HUGE_VAL});
+      made.pose.insert(made.pose.end(), {60, -.8 + .1 * k, 0});
+    }
+    made.place();
+    return made;
+  };
+  const auto found = [&](int threads, bool some_absent) {
+    Scene moved = scene();
+    Search search;
+    std::vector<BoxPair> all;
+    const auto look = [&] {
+      search.search(moved.surfaces, Threads(threads));
+      all.insert(all.end(), search.pairs().begin(), search.pairs().end());
+      all.push_back({-1, -1});
+    };
+    look();
+    samples::Random random(52);
+    for (int again = 0; again < 4; ++again) {
+      for (size_t i = 0; i < moved.pose.size() / 3; ++i) {
+        if (random.integer(0, again < 3 ? 9 : 1) == 0) moved.pose[3 * i] += random.uniform(-.1, .1);
+      }
+      if (some_absent && again == 2) {
+        std::vector<std::uint8_t> absent(moved.pose.size() / 3);
+        for (std::uint8_t& flag : absent) flag = random.integer(0, 4) == 0;
+        moved.surfaces.set_absent(absent);
+        search.forget();
+      }
+      moved.place();
+      look();
+    }
+    return all;
+  };
+  for (const bool absent : {false, true}) {
+    const std::vector<BoxPair> one = found(1, absent);
+    CHECK(one.size() > 5 * 2 * kAcross * kAcross);
+    for (const int threads : {2, 3, 7}) CHECK((found(threads, absent) == one));
+  }
+}

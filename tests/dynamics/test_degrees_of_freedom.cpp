@@ -3,6 +3,7 @@
 #include "apothem/dynamics/degrees_of_freedom.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "apothem/fem/finite_elements.hpp"
 #include "mesh_models.hpp"
@@ -344,5 +345,37 @@ TEST_CASE("weight and its potential energy are those of what forces can move", "
   REQUIRE(m.dofs.weight().size() == m.state.layout.size());
   for (const size_t c : m.coordinates()) {
     if (!m.moves(c)) CHECK(m.dofs.weight()[c] == 0);
+  }
+}
+
+TEST_CASE("the torque of gravity is a sum over all bodies, the same for any number of threads",
+          "[degrees_of_freedom][parallel]") {
+  Model model;
+  model.materials = {{"rock", 2000}};
+  model.gravity = kGravity;
+  RigidBody body;
+  set_shape(body, quad_q(), model);
+  for (const int count : {1, 63, 64, 65, 40000}) {
+    CAPTURE(count);
+    while (static_cast<int>(model.bodies.size()) < count) {
+      const double k = static_cast<double>(model.bodies.size());
+      body.position = {std::sin(k), 1e3 * std::cos(k * k)};
+      model.bodies.push_back(body);
+    }
+    double torque = 0, size = 0;
+    for (const RigidBody& b : model.bodies) {
+      const Vec2 weight = b.mass * kGravity;
+      torque += b.position.x() * weight.y() - b.position.y() * weight.x();
+      size += b.position.norm() * weight.norm();
+    }
+    double one = 0;
+    for (const int threads : {1, 2, 3, 7}) {
+      const DegreesOfFreedom dofs(model, {}, threads);
+      const Impulse sum = dofs.weight_sum(dofs.start());
+      CHECK(std::abs(sum.angular - torque) < 1e-12 * size);
+      CHECK(sum.x == Approx(count * body.mass * kGravity.x()));
+      if (threads == 1) one = sum.angular;
+      CHECK(sum.angular == one);
+    }
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apothem/execution/parallel.hpp"
+#include "apothem/execution/worker_lists.hpp"
 
 using namespace apothem;
 
@@ -112,6 +113,37 @@ TEST_CASE("workers that run at the same time have memory of their own", "[parall
     std::vector<int> expected(10000);
     std::iota(expected.begin(), expected.end(), 0);
     REQUIRE(all == expected);
+  }
+}
+
+TEST_CASE("lists of workers become one in the order of the items", "[parallel]") {
+  WorkerLists<int> lists;
+  std::vector<int> whole{-1};
+  for (const int count : {4, 1, 7, 3}) {
+    const Threads threads(count);
+    for (const int items : {0, 1, 5, 10007}) {
+      CAPTURE(count, items);
+      // None, the later ones, the earlier ones, or two of three.
+      for (int kind = 0; kind < 4; ++kind) {
+        const auto wanted = [&](int i) {
+          return kind == 1 ? i > items / 2 : kind == 2 ? i < items / 3 : kind == 3 && i % 3 != 0;
+        };
+        lists.begin(threads);
+        threads.chunks(items, kLong, [&](int first, int end, int worker) {
+          for (int i = first; i < end; ++i) {
+            if (wanted(i)) lists.of(worker).push_back(i);
+          }
+        });
+        std::vector<int> expected;
+        for (int i = 0; i < items; ++i) {
+          if (wanted(i)) expected.push_back(i);
+        }
+        CHECK(lists.size() == expected.size());
+        lists.join(whole);
+        REQUIRE(whole == expected);
+        CHECK(lists.size() == 0);
+      }
+    }
   }
 }
 

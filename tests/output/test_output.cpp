@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "apothem/fem/finite_elements.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
@@ -77,6 +79,57 @@ OutputSettings tracking(int body) {
 }
 
 }  // namespace
+
+TEST_CASE("frames have the same bytes for any number of threads", "[output][parallel]") {
+  const Model model = two_bodies();
+  std::map<std::string, std::string> before;
+  for (const int threads : {1, 2, 3, 7}) {
+    const Folder folder;
+    State state = state_of(model);
+    FrameWriter frames(folder.path(), model, {}, threads);
+    for (int i = 0; i < 20; ++i) {
+      state.time = .1 * i;
+      state.pose(1)[0] += .25;
+      frames.write({.state = state,
+                    .contacts = {{0, 1, {.5, .25}, {10., 20. + i}, {3, -4}, 1e-3, .01, {-2, -1}}},
+                    .surfaces = {{0, {0, 0}, {1, 0}, 5, 6. * i}},
+                    .forces = {{0, 0, 5}, {0, 0, 8}}});
+    }
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+      if (!entry.is_regular_file()) continue;
+      files[std::filesystem::relative(entry.path(), folder.path())] = content(entry.path());
+    }
+    CHECK(files.size() == 5 * 20 + 5);
+    if (threads > 1) CHECK((files == before));
+    before = files;
+  }
+}
+
+TEST_CASE("a file of a frame that cannot be written is named, and the earlier frames stay",
+          "[output][parallel]") {
+  const Model model = two_bodies();
+  for (const int threads : {1, 2, 7}) {
+    for (const char* series : {"bodies", "outlines", "contacts", "chains"}) {
+      CAPTURE(threads, series);
+      const Folder folder;
+      const State state = state_of(model);
+      FrameWriter frames(folder.path(), model, {}, threads);
+      frames.write({.state = state, .forces = std::vector<BodyForce>(2)});
+      const std::string list = content(folder / "frames.pvd");
+      const std::string name = folder / fmt::format("frames/{}_000001.vtu", series);
+      std::filesystem::create_directory(name);  // where a file should be
+      CHECK_THROWS_WITH(frames.write({.state = state, .forces = std::vector<BodyForce>(2)}),
+                        Catch::StartsWith(name + ": cannot be written"));
+      CHECK(frames.times().size() == 1);
+      CHECK(content(folder / "frames.pvd") == list);
+      // When there is room again, the frame is written.
+      std::filesystem::remove(name);
+      frames.write({.state = state, .forces = std::vector<BodyForce>(2)});
+      CHECK(entries(folder / "frames.pvd").size() == 2);
+    }
+  }
+}
 
 TEST_CASE("VTK's own reader gets bodies, times and fields back", "[output]") {
   const Folder folder;

@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -72,4 +73,46 @@ TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes
     }
   }
   CHECK(few > test::scaled(300));
+}
+
+TEST_CASE("the box grid finds the same on any number of threads", "[boxes][parallel]") {
+  samples::Random random(5);
+  const int n = 6000;  // so many that threads divide all that they can divide
+  const auto box = [&] {
+    const double size = .03 * std::pow(10.0, random.uniform(-1, 0));
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+    if (random.integer(0, 99) == 0) return Box();
+    if (random.integer(0, 999) == 0) return Box{x - .5, y - .01, x + .5, y};
+    return Box{x, y, x + size * random.uniform(0, 1), y + size * random.uniform(0, 1)};
+  };
+  std::vector<Box> boxes;
+  for (int i = 0; i < n; ++i) boxes.push_back(box());
+  std::vector<BoxPair> expected;
+  for (int i = 0; i < n; ++i) {
+    for (int j = i + 1; j < n; ++j) {
+      if (!apart(boxes[i], boxes[j])) expected.push_back({i, j});
+    }
+  }
+  const std::array counts{1, 2, 3, 7};
+  std::array<BoxGrid, counts.size()> grids;
+  std::array<std::vector<BoxPair>, counts.size()> found;
+  for (size_t k = 0; k < counts.size(); ++k) {
+    grids[k].find_pairs(boxes, found[k], Threads(counts[k]));
+    REQUIRE(found[k] == expected);
+  }
+  for (int again = 0; again < 10; ++again) {
+    std::vector<std::int32_t> changed;
+    for (int i = 0; i < n; ++i) {
+      if (random.integer(0, again % 2 == 0 ? 5 : 50) != 0) continue;
+      changed.push_back(i);
+      boxes[i] = box();
+    }
+    for (size_t k = 0; k < counts.size(); ++k) {
+      grids[k].find_pairs_again(boxes, changed, found[k], Threads(counts[k]));
+      REQUIRE(found[k] == found[0]);
+    }
+  }
+  // One that looks at all of them anew.
+  BoxGrid().find_pairs(boxes, expected);
+  CHECK(found[0] == expected);
 }
