@@ -47,7 +47,7 @@ const CLI::Validator kDecimal(
     "");
 
 void add_threads(CLI::App* sub, int& threads) {
-  sub->add_option("--threads", threads, "Threads of the contact phase")
+  sub->add_option("--threads", threads, "Threads of the run")
       ->transform(kWhole)
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -47,7 +47,7 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
 
 bool Contacts::search_if_stale() {
   if (!search_.stale(surfaces_, threads_)) return false;
-  search_.search(surfaces_);
+  search_.search(surfaces_, threads_);
   ++searches_;
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
   for (const BoxPair& pair : search_.pairs()) {
