@@ -355,6 +355,55 @@ void DegreesOfFreedom::add_reactions(const State& state, double h, Impulse& sum)
   sum.add({h * along_x, h * along_y, h * angular});
 }
 
+DegreesOfFreedom::Braked DegreesOfFreedom::brake(State& state, size_t first, size_t end,
+                                                 double rest) const {
+  const double* const x = state.x.data();
+  const double* const start = start_.data();
+  const double* const mass = mass_.data();
+  const double* const w = inverse_mass_.data();
+  double* const v = state.v.data();
+  Braked sum;  // for now with twice the kinetic energy
+  const auto slow = [&](size_t c) APOTHEM_LAMBDA {
+    const double p = w[c] > 0 ? mass[c] * v[c] : 0;
+    sum.energy += p * v[c];
+    if (w[c] > 0) v[c] *= rest;
+    return p;
+  };
+  const size_t rigid = std::min(end, layout_.node(0));
+  size_t c = first;
+  for (; c < rigid; c += 3) {
+    const double px = slow(c), py = slow(c + 1), spin = slow(c + 2);
+    sum.impulse.add({px, py, spin + (x[c] * py - x[c + 1] * px)});
+  }
+  const size_t whole = end - (end - c) % kLanes;
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    using Pack = PackOf<kLanes>;
+    Pack energy(0.), momentum(0.), turned(0.);
+    for (; c < whole; c += kLanes) {
+      const Pack before = Pack::load(v + c);
+      const MaskOf<kLanes> free = Pack::load(w + c) > Pack(0.);
+      const Pack p = select(free, Pack::load(mass + c) * before, Pack(0.));
+      const auto place = (Pack::load(start + c) + Pack::load(x + c)).v;
+      energy += p * before;
+      momentum += p;
+      turned += Pack(__builtin_shufflevector(place, place, 1, 0, 3, 2, 5, 4, 7, 6)) * p;
+      select(free, Pack(rest) * before, before).store(v + c);
+    }
+    for (int k = 0; k < kLanes; k += 2) {
+      sum.energy += energy.v[k] + energy.v[k + 1];
+      sum.impulse.add({momentum.v[k], momentum.v[k + 1], turned.v[k + 1] - turned.v[k]});
+    }
+    return 0.;
+  });
+  for (; c < end; c += 2) {
+    const double px = slow(c), py = slow(c + 1);
+    sum.impulse.add({px, py, (start[c] + x[c]) * py - (start[c + 1] + x[c + 1]) * px});
+  }
+  return {
+      sum.energy / 2 * (1 - rest * rest),
+      {(rest - 1) * sum.impulse.x, (rest - 1) * sum.impulse.y, (rest - 1) * sum.impulse.angular}};
+}
+
 Impulse DegreesOfFreedom::weight_sum(const State& state) const {
   Impulse sum = weight_at_start_;
   const size_t rigid = layout_.node(0), n = weight_.size();

@@ -96,6 +96,14 @@ class DegreesOfFreedom {
   [[nodiscard]] Impulse momentum(const State& state) const;
   /// Of an impulse J on one coordinate (N s, or N m s).
   [[nodiscard]] Impulse impulse(const State& state, size_t coordinate, double j) const;
+  /// What bodies lose that are slowed down.
+  struct Braked {
+    double energy = 0;  ///< J
+    Impulse impulse;    ///< on them
+  };
+  /// Leaves the part `rest` of the velocities of the coordinates from `first` to `end` that forces
+  /// can change. They are whole rigid bodies or whole nodes.
+  Braked brake(State& state, size_t first, size_t end, double rest) const;
   /// Force and torque of gravity on what it moves, N and N m.
   [[nodiscard]] Impulse weight_sum(const State& state) const;
 

@@ -11,8 +11,8 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kPart = 384;    // coordinates of a part: x, y, angle or x, y are not torn apart
-constexpr double kDampTime = 6;  // of a coordinate, ns
+constexpr size_t kPart = 384;      // coordinates of a part: x, y, angle or x, y are not torn apart
+constexpr double kDampTime = 1.5;  // of a coordinate, ns
 
 // Of each node of a body with several materials: its alphas, weighted with the masses of the
 // elements around it, 1/s.
@@ -89,35 +89,23 @@ std::string MassDamping::describe() const {
                        : fmt::format("mass damping, {:g} to {:g} 1/s", least, most);
 }
 
-MassDamping::Sum MassDamping::damp(const Group& group, State& state, double h) const {
-  const double rest = exponential(-group.rate * h);
-  Sum sum;
-  for (size_t c = group.first; c < group.end; ++c) {
-    if (!dofs_.can_move(c)) continue;
-    double& v = state.v[c];
-    const double p = dofs_.mass(c) * v;
-    sum.loss += p * v / 2 * (1 - rest * rest);
-    sum.impulse.add(dofs_.impulse(state, c, p * (rest - 1)));
-    v *= rest;
-  }
-  return sum;
-}
-
 void MassDamping::damp(State& state, double h, Ledger& ledger) {
   const auto parts = static_cast<int>(sums_.size());
   threads_.chunks(parts, kPart * kDampTime, [&](int first, int end, int) {
     for (auto part = static_cast<size_t>(first); part < static_cast<size_t>(end); ++part) {
       Sum sum;
       for (size_t g = parts_[part]; g < parts_[part + 1]; ++g) {
-        const Sum of_group = damp(groups_[g], state, h);
-        sum.loss += of_group.loss;
+        const Group& group = groups_[g];
+        const Sum of_group =
+            dofs_.brake(state, group.first, group.end, exponential(-group.rate * h));
+        sum.energy += of_group.energy;
         sum.impulse.add(of_group.impulse);
       }
       sums_[part] = sum;
     }
   });
   for (const Sum& sum : sums_) {
-    loss_ += sum.loss;
+    loss_ += sum.energy;
     ledger.add_impulse(sum.impulse);
   }
 }

@@ -28,12 +28,7 @@ class MassDamping final : public Term {
     size_t first, end;  // coordinates
     double rate;        // alpha, 1/s
   };
-  /// What a part of the groups gives off.
-  struct Sum {
-    double loss = 0;  // J
-    Impulse impulse;
-  };
-  Sum damp(const Group& group, State& state, double h) const;
+  using Sum = DegreesOfFreedom::Braked;  // of a part of the groups
 
   const DegreesOfFreedom& dofs_;
   Threads threads_;

@@ -301,6 +301,32 @@ TEST_CASE("an impulse on a coordinate turns about the origin of the model", "[do
   }
 }
 
+TEST_CASE("bodies that are slowed down give off energy and momentum", "[dofs]") {
+  const double rest = .75;
+  // All bodies, the rigid ones, and nodes from the second one on, so that some are left over.
+  for (const auto& [from, to] : {std::pair(0, 24), std::pair(0, 12), std::pair(14, 24)}) {
+    Mixed m;
+    m.scatter();
+    const State before = m.state;
+    const auto first = static_cast<size_t>(from), end = static_cast<size_t>(to);
+    const DegreesOfFreedom::Braked lost = m.dofs.brake(m.state, first, end, rest);
+    double energy = 0;
+    Impulse impulse;
+    for (size_t c = 0; c < before.v.size(); ++c) {
+      const bool slowed = c >= first && c < end && m.dofs.can_move(c);
+      CHECK(m.state.v[c] == (slowed ? rest * before.v[c] : before.v[c]));
+      if (!slowed) continue;
+      const double change = m.state.v[c] - before.v[c];
+      energy -= m.dofs.mass(c) * change * (before.v[c] + m.state.v[c]) / 2;
+      impulse.add(m.dofs.impulse(before, c, m.dofs.mass(c) * change));
+    }
+    CHECK(lost.energy == Approx(energy).epsilon(1e-13));
+    CHECK(lost.impulse.x == Approx(impulse.x).epsilon(1e-13));
+    CHECK(lost.impulse.y == Approx(impulse.y).epsilon(1e-13));
+    CHECK(lost.impulse.angular == Approx(impulse.angular).epsilon(1e-13));
+  }
+}
+
 TEST_CASE("what holds a coordinate takes the force on it", "[dofs]") {
   Mixed m;
   m.scatter();
