@@ -12,9 +12,10 @@ namespace {
 
 constexpr size_t kManyContacts = 1024;
 
+constexpr double kRoundOff = 1 - 1e-12;
+
 // No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
 double least_of(const Penetrations& floors, double shortest) {
-  constexpr double kRoundOff = 1 - 1e-12;
   return std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
 }
 
@@ -199,7 +200,12 @@ bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const 
   const double least = least_of(floors, shortest);
   const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
   bool late = false;
-  each([&](const Kernel& kernel) { late = late || kernel.summary().deepest > least; });
+  each([&](const Kernel& kernel) {
+    const ContactSummary all = kernel.summary();
+    if (!(all.deepest > least)) return;
+    late = late || all.deepest > floors.largest.value ||
+           all.relative > kRoundOff * floors.relative.value;
+  });
   return late || std::ranges::any_of(contacts_, deeper);
 }
 

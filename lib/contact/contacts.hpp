@@ -88,8 +88,8 @@ class Contacts {
   /// `floors` where they are not above these, which is soon found out. `lengths`: of every body, m.
   [[nodiscard]] Penetrations penetrations(std::span<const double> lengths,
                                           const Penetrations& floors = {}) const;
-  /// False if no contact is deeper than `floors`, for bodies of no length below `shortest` (m).
-  /// Most steps bring nothing new, and this says so soon.
+  /// False if no contact is deeper than `floors`, for bodies of no length below `shortest` (m); the
+  /// lengths of rigid ones are their inradii. Most steps bring nothing new, and this says so soon.
   [[nodiscard]] bool may_be_deeper(const Penetrations& floors, double shortest) const;
   /// Of the last step: the largest normal force of a pair of bodies, N. It is not known for pairs
   /// with a mesh.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,16 +39,20 @@ struct ContactSummary {
   int count = 0;
   double deepest = 0;  ///< none is deeper, m
   double share = 0;    ///< largest: see Contact
+  /// None is deeper than so many inradii of one of its bodies; HUGE_VAL if that is not known.
+  double relative = HUGE_VAL;
 
-  void include(double depth, double of_range) {
+  void include(double depth, double inradius, double of_range) {
     ++count;
     deepest = std::max(deepest, depth);
     share = std::max(share, of_range);
+    relative = std::max(relative, depth / inradius);
   }
   void include(const ContactSummary& other) {
     count += other.count;
     deepest = std::max(deepest, other.deepest);
     share = std::max(share, other.share);
+    relative = std::max(relative, other.relative);
   }
 };
 

@@ -179,7 +179,7 @@ ContactSummary OutlineKernel::summary() const {
     square = std::max(square, unit.deepest);
   }
   const double deepest = plateaus_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
-  return {static_cast<int>(count), deepest, 0};
+  return {.count = static_cast<int>(count), .deepest = deepest};
 }
 
 // A plateau has the first face, or the first edge, of its body for its partner.

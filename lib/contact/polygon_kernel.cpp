@@ -35,13 +35,15 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
 }
 
 void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
-  for (Found& found : found_) found.summary = {};
+  for (Found& found : found_) found.summary = {.relative = 0};
   pairs_.evaluate([&](const PairInTouch& pair, const PairIntegral& integral, int worker) {
     found_[static_cast<size_t>(worker)].summary.include(
-        pairs_.deepest(pair, integral), pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
+        pairs_.deepest(pair, integral),
+        std::min(surfaces_.inradius(pair.a), surfaces_.inradius(pair.b)),
+        pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
   });
   if (!tangential_) pairs_.forget_ended();
-  summary_ = {};
+  summary_ = {.relative = 0};
   for (const Found& found : found_) summary_.include(found.summary);
 }
 

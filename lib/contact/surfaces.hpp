@@ -105,6 +105,7 @@ class Surfaces {
   void fetch(SurfaceIndex i) const {
     shapes_.fetch(i);
     __builtin_prefetch(&pose_[i]);
+    if (static_cast<size_t>(i) < rigid_.size()) __builtin_prefetch(&rigid_[i]);
   }
   /// The same of a rigid body's place and inertia.
   void fetch_inertia(RigidIndex i) const {
