@@ -162,29 +162,20 @@ class Splitter {
     const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
     const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
     const double x = edge.qx - shift_x, y = edge.qy - shift_y;  // about a's reference point
-    BoundaryRun& run = runs_.emplace_back();
-    run.of_a = of_a;
-    run.edge = e;
-    run.from = from;
-    run.to = to;
-    run.start = {x + ends.s0 * edge.ex, y + ends.s0 * edge.ey};
-    run.end = {x + ends.s1 * edge.ex, y + ends.s1 * edge.ey};
-    if (of_a) {
-      run.force = {-half.fx, -half.fy};
-      run.moment_a = turn - half.moment;
-      run.moment_b = half.moment;
-    } else {
-      run.force = {half.fx, half.fy};
-      run.moment_a = half.moment;
-      run.moment_b = -half.moment - turn;
-    }
-    run.weight = half.weight;
+    Vec2 centre = Vec2::Zero();
     if (half.weight != 0) {
-      run.centre = {(half.wx - shift_x * half.weight) / half.weight,
-                    (half.wy - shift_y * half.weight) / half.weight};
+      centre = {(half.wx - shift_x * half.weight) / half.weight,
+                (half.wy - shift_y * half.weight) / half.weight};
     }
-    run.length = half.length;
-    run.largest_phi = half.largest;
+    runs_.push_back({{of_a, e, 0, from, to, half.length},
+                     {x + ends.s0 * edge.ex, y + ends.s0 * edge.ey},
+                     {x + ends.s1 * edge.ex, y + ends.s1 * edge.ey},
+                     of_a ? Vec2(-half.fx, -half.fy) : Vec2(half.fx, half.fy),
+                     of_a ? turn - half.moment : half.moment,
+                     of_a ? half.moment : -half.moment - turn,
+                     half.weight,
+                     centre,
+                     half.largest});
   }
 
   int root(int run) {
@@ -407,21 +398,21 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
   return result;
 }
 
-void shared_length(std::span<const BoundaryRun> before, int patches_before,
-                   std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table) {
+void shared_length(std::span<const RunPlace> before, int patches_before,
+                   std::span<const RunPlace> now, int patches_now, std::vector<double>& table) {
   table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
   // True if r is on an earlier edge than s.
-  const auto behind = [](const BoundaryRun& r, const BoundaryRun& s) {
+  const auto behind = [](const RunPlace& r, const RunPlace& s) {
     return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
   };
   size_t first = 0;  // first run of `now` on the edge of `old` or after it
-  for (const BoundaryRun& old : before) {
+  for (const RunPlace& old : before) {
     while (first < now.size() && behind(now[first], old)) ++first;
     for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {
-      const BoundaryRun& run = now[i];
+      const RunPlace& run = now[i];
       const double overlap = std::min(old.to, run.to) - std::max(old.from, run.from);
       if (!(overlap >= 0)) continue;
-      const BoundaryRun& longer = old.to - old.from > run.to - run.from ? old : run;
+      const RunPlace& longer = old.to - old.from > run.to - run.from ? old : run;
       const double share = longer.to - longer.from;
       double& entry = table[static_cast<size_t>(old.patch) * patches_now + run.patch];
       if (overlap > 0) {

@@ -15,14 +15,19 @@
 
 namespace apothem {
 
-/// A run: a maximal part of one edge inside the other polygon, with the integrals of the other
-/// polygon's potential phi along it, for unit stiffness. As in PairIntegral, points are relative to
-/// the reference point of a, and moments are about the reference points of a and b.
-struct BoundaryRun {
-  bool of_a;                   ///< true for an edge of a and phi of b, false for the opposite
-  int edge;                    ///< index of the edge in its polygon
-  int patch;                   ///< index of the contact patch that the run belongs to
-  double from, to;             ///< start and end along the edge, as shares of the edge's length
+/// Where a run is: a maximal part of one edge inside the other polygon.
+struct RunPlace {
+  bool of_a;        ///< true for an edge of a and phi of b, false for the opposite
+  int edge;         ///< index of the edge in its polygon
+  int patch;        ///< index of the contact patch that the run belongs to
+  double from, to;  ///< start and end along the edge, as shares of the edge's length
+  double length;    ///< length of the run, m
+};
+
+/// A run with the integrals of the other polygon's potential phi along it, for unit stiffness. As
+/// in PairIntegral, points are relative to the reference point of a, and moments are about the
+/// reference points of a and b.
+struct BoundaryRun : RunPlace {
   Vec2 start = Vec2::Zero();   ///< the point at `from`, m
   Vec2 end = Vec2::Zero();     ///< the point at `to`, m
   Vec2 force = Vec2::Zero();   ///< force on a, normal to the edge, m
@@ -30,7 +35,6 @@ struct BoundaryRun {
   double moment_b = 0;         ///< moment on b about its reference point, m^2
   double weight = 0;           ///< integral of phi ds, m
   Vec2 centre = Vec2::Zero();  ///< integral of phi x ds, divided by `weight`, m
-  double length = 0;           ///< length of the run, m
   double largest_phi = 0;      ///< largest phi on the run
 };
 
@@ -85,7 +89,7 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
 /// i * patches_now + j of the table is the length of boundary of both polygons, in m, that lies in
 /// the earlier patch i and in the present patch j. A run of length zero that lies in another run
 /// counts as the smallest positive number.
-void shared_length(std::span<const BoundaryRun> before, int patches_before,
-                   std::span<const BoundaryRun> now, int patches_now, std::vector<double>& table);
+void shared_length(std::span<const RunPlace> before, int patches_before,
+                   std::span<const RunPlace> now, int patches_now, std::vector<double>& table);
 
 }  // namespace apothem

@@ -92,7 +92,7 @@ std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionL
 // The patches of one pair with all that belongs to them.
 struct Pair {
   PairHistory pair;
-  std::vector<BoundaryRun> runs;
+  std::vector<RunPlace> runs;
   std::vector<PatchDamper> dampers;
 };
 
@@ -111,7 +111,7 @@ std::vector<Pair> renumbered(const History& history, const Renumbering& to) {
     if (pair.pair.a < 0 || pair.pair.b < 0) continue;
     if (pair.pair.a > pair.pair.b) {
       std::swap(pair.pair.a, pair.pair.b);
-      for (BoundaryRun& r : pair.runs) r.of_a = !r.of_a;
+      for (RunPlace& r : pair.runs) r.of_a = !r.of_a;
       for (PatchDamper& d : pair.dampers) exchange(d);
     }
     pairs.push_back(std::move(pair));

@@ -66,6 +66,7 @@ void PairIntegrals::begin() {
     worker.ended.clear();
     worker.parts.clear();
     worker.runs.clear();
+    worker.whole_runs.clear();
     worker.patches.clear();
   }
 }
@@ -250,6 +251,10 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
               static_cast<int>(worker.pair_runs.size()), index, -1,
               static_cast<int>(worker.runs.size())};
   worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+  if (split_ == Split::all) {
+    worker.whole_runs.insert(worker.whole_runs.end(), worker.pair_runs.begin(),
+                             worker.pair_runs.end());
+  }
   if (parts.patches != 1) {  // the only one is the whole pair
     parts.first_patch = static_cast<int>(worker.patches.size());
     worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),

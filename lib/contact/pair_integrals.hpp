@@ -77,10 +77,17 @@ class PairIntegrals {
         .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
   }
   /// The runs of a pair; none if it is not split.
-  [[nodiscard]] std::span<const BoundaryRun> runs(const PairInTouch& pair) const {
+  [[nodiscard]] std::span<const RunPlace> runs(const PairInTouch& pair) const {
     const Parts* const parts = parts_of(pair);
     if (!parts) return {};
     return std::span(workers_[static_cast<size_t>(parts->worker)].runs)
+        .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
+  }
+  /// The same with their integrals, where all pairs are split.
+  [[nodiscard]] std::span<const BoundaryRun> whole_runs(const PairInTouch& pair) const {
+    const Parts* const parts = parts_of(pair);
+    if (!parts || split_ != Split::all) return {};
+    return std::span(workers_[static_cast<size_t>(parts->worker)].whole_runs)
         .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
   }
   /// How many pairs are split.
@@ -132,7 +139,8 @@ class PairIntegrals {
     std::vector<size_t> ended;  // numbers of pairs
     // Of those that it has split.
     std::vector<Parts> parts;
-    std::vector<BoundaryRun> runs;
+    std::vector<RunPlace> runs;
+    std::vector<BoundaryRun> whole_runs;  // the same, where all pairs are split
     std::vector<PairIntegral> patches;
     // Of the pair at hand.
     std::vector<BoundaryRun> pair_runs;

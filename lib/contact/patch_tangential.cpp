@@ -21,7 +21,7 @@ double follow(double force, double slip, double stiffness, double limit, PairBoo
 }  // namespace
 
 // What matching patches needs of a run; the next step makes the rest anew.
-static void describe(Archive& archive, BoundaryRun& run) {
+static void describe(Archive& archive, RunPlace& run) {
   archive("of_a", run.of_a)("edge", run.edge)("patch", run.patch)("from", run.from)("to", run.to)(
       "length", run.length);
 }
@@ -38,7 +38,7 @@ PatchTangential::PatchTangential(const Surfaces& surfaces, const PairIntegrals& 
       ranges_(static_cast<size_t>(threads_.count()), Range(*this)),
       scene_{surfaces_, thickness_} {}
 
-std::span<const BoundaryRun> PatchTangential::Lists::runs_of(const PairMemory& pair) const {
+std::span<const RunPlace> PatchTangential::Lists::runs_of(const PairMemory& pair) const {
   if (pair.split < 0) return {};
   const Place& place = places[static_cast<size_t>(pair.split)];
   return {runs.data() + place.first_run, static_cast<size_t>(place.runs)};
@@ -205,10 +205,11 @@ void PatchTangential::Range::step_pair(const PairInTouch& touching, PairLoad& lo
   }
   before_ = memory;
   memory.split = touching.split;
-  step_patches(work, kind, to);
+  step_patches(touching, work, kind, to);
 }
 
-void PatchTangential::Range::step_patches(const PairWork& pair, Tangential kind, const Place& to) {
+void PatchTangential::Range::step_patches(const PairInTouch& touching, const PairWork& pair,
+                                          Tangential kind, const Place& to) {
   const bool one_each = kind.rough && !all_.per_edge_;
   damping_before_ = pair.damping ? *pair.damping : DampingMemory();
   ancestors_ = static_cast<size_t>(std::max(before_.patches, 0));
@@ -270,7 +271,7 @@ void PatchTangential::Range::step_patches(const PairWork& pair, Tangential kind,
     pair.book->loss += forces.lost;
   }
   if (one_each && !inherit_whole()) pair.book->loss = lost_by_balance(pair, sum);
-  if (kind.rough && all_.per_edge_) per_edge(pair, to, sum);
+  if (kind.rough && all_.per_edge_) per_edge(pair, all_.pairs_.whole_runs(touching), to, sum);
   now.force = sum.force;
   if (pair.damping) {
     *pair.damping = {};
@@ -349,7 +350,8 @@ double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& 
 
 // The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
 // against the motion meet a false tangential force.
-void PatchTangential::Range::per_edge(const PairWork& pair, const Place& to, Sum& sum) {
+void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const BoundaryRun> runs,
+                                      const Place& to, Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
   const PairRate& rate = sum.rate;
   const double stiffness = pair.law->friction.tangential_stiffness * all_.thickness_;
@@ -358,7 +360,7 @@ void PatchTangential::Range::per_edge(const PairWork& pair, const Place& to, Sum
   auto next = all_.now_.springs.begin() + to.first_spring;
   auto old = springs_before.begin();
   const auto lost = [&] { pair.book->loss += (old++)->energy(); };  // of an edge that is free again
-  for (const BoundaryRun& run : runs_) {
+  for (const BoundaryRun& run : runs) {
     const SpringKey key{polygon_kernel, pair.a, pair.b,
                         run.of_a ? run.edge : edges_of_a + run.edge};
     while (old != springs_before.end() && old->key < key) lost();
@@ -464,7 +466,7 @@ PatchTangential::History PatchTangential::history() const {
   for (const PairInTouch& pair : all) {
     const PairMemory* const memory = memory_of(pair);
     if (!memory) continue;
-    const std::span<const BoundaryRun> runs = now_.runs_of(*memory);
+    const std::span<const RunPlace> runs = now_.runs_of(*memory);
     const std::span<const PatchDamper> dampers = dampers_of(pair, *memory);
     history.pairs.push_back(
         {pair.a, pair.b, memory->patches, static_cast<int>(runs.size()), memory->force});

@@ -39,7 +39,7 @@ class PatchTangential {
   /// What all pairs remember, for archives and for other simulations.
   struct History {
     std::vector<PairHistory> pairs;    ///< ascending
-    std::vector<BoundaryRun> runs;     ///< of pairs that are not both convex, or of per_edge
+    std::vector<RunPlace> runs;        ///< of pairs that are not both convex, or of per_edge
     std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
     std::vector<PairDamping> damping;  ///< of every pair, where any pair is damped
     std::vector<Spring> springs;       ///< ascending
@@ -93,12 +93,12 @@ class PatchTangential {
   // Of pairs that are split. Dampers and springs of only one patch are in the slot of its pair.
   struct Lists {
     std::vector<Place> places;
-    std::vector<BoundaryRun> runs;
+    std::vector<RunPlace> runs;
     std::vector<PatchDamper> dampers;
     std::vector<Spring> springs;
 
     void clear() { places.clear(), runs.clear(), dampers.clear(), springs.clear(); }
-    [[nodiscard]] std::span<const BoundaryRun> runs_of(const PairMemory& pair) const;
+    [[nodiscard]] std::span<const RunPlace> runs_of(const PairMemory& pair) const;
     [[nodiscard]] std::span<const PatchDamper> dampers_of(const PairMemory& pair) const;
     [[nodiscard]] std::span<const Spring> springs_of(const PairMemory& pair) const;
   };
@@ -106,7 +106,7 @@ class PatchTangential {
   struct Inherited {
     const PairHistory& old;
     PairDamping damping;
-    std::span<const BoundaryRun> runs = {};
+    std::span<const RunPlace> runs = {};
     std::span<const PatchDamper> dampers = {};
     std::span<const Spring> springs = {};
   };
@@ -136,19 +136,21 @@ class PatchTangential {
       BodyStiffness held_a = {}, held_b = {};  // by its friction springs
     };
     void step_pair(const PairInTouch& touching, PairLoad& load, PairBook& book);
-    void step_patches(const PairWork& pair, Tangential kind, const Place& to);
+    void step_patches(const PairInTouch& touching, const PairWork& pair, Tangential kind,
+                      const Place& to);
     void find_shares();
     [[nodiscard]] bool inherit_whole() const;
     template <class T, class Add>
     void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;
-    void per_edge(const PairWork& pair, const Place& to, Sum& sum);
+    void per_edge(const PairWork& pair, std::span<const BoundaryRun> runs, const Place& to,
+                  Sum& sum);
 
     PatchTangential& all_;
     PairBatch batch_;
     std::vector<PairBook> books_;  // of the pairs of the block
     // Of the pair at hand.
-    std::span<const BoundaryRun> runs_;
+    std::span<const RunPlace> runs_;
     std::span<const PairIntegral> patches_;
     PairMemory before_;
     DampingMemory damping_before_;

@@ -386,7 +386,9 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
       const int after = static_cast<int>(now.patches.size());
       most = std::max(most, after);
       if (step == 0) continue;
-      shared_length(last.runs, before, now.runs, after, table);
+      const std::vector<RunPlace> earlier(last.runs.begin(), last.runs.end());
+      const std::vector<RunPlace> present(now.runs.begin(), now.runs.end());
+      shared_length(earlier, before, present, after, table);
       if (before != after) {
         ++changes;
         continue;
@@ -414,14 +416,12 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
 }
 
 TEST_CASE("shared length", "[patches]") {
-  const Vec2 o = Vec2::Zero();
-  const std::vector<BoundaryRun> before{{true, 0, 0, .1, .5, o, o, o, 0, 0, 0, o, .8},
-                                        {true, 0, 1, .7, .9, o, o, o, 0, 0, 0, o, .4},
-                                        {false, 2, 0, 0, 1, o, o, o, 0, 0, 0, o, 3}};
-  const std::vector<BoundaryRun> now{{true, 0, 0, .4, .8, o, o, o, 0, 0, 0, o, .8},
-                                     {true, 1, 0, .4, .8, o, o, o, 0, 0, 0, o, .8},
-                                     {false, 2, 1, .5, .5, o, o, o, 0, 0, 0, o, 0},
-                                     {false, 2, 1, .75, 1, o, o, o, 0, 0, 0, o, .75}};
+  const std::vector<RunPlace> before{
+      {true, 0, 0, .1, .5, .8}, {true, 0, 1, .7, .9, .4}, {false, 2, 0, 0, 1, 3}};
+  const std::vector<RunPlace> now{{true, 0, 0, .4, .8, .8},
+                                  {true, 1, 0, .4, .8, .8},
+                                  {false, 2, 1, .5, .5, 0},
+                                  {false, 2, 1, .75, 1, .75}};
   std::vector<double> table;
   shared_length(before, 2, now, 2, table);
   REQUIRE(table.size() == 4);
@@ -429,7 +429,7 @@ TEST_CASE("shared length", "[patches]") {
   CHECK(table[2] == Approx(.2));
   CHECK(table[1] == Approx(.75));
   CHECK(table[3] == 0);
-  shared_length(before, 2, std::vector<BoundaryRun>{now[2]}, 2, table);
+  shared_length(before, 2, std::vector<RunPlace>{now[2]}, 2, table);
   CHECK(table[1] > 0);  // without length, but inside
   shared_length({}, 0, now, 2, table);
   CHECK(table.empty());
