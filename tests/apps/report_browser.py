@@ -22,6 +22,12 @@ BROKEN = ("Array.from(document.querySelectorAll('td.number')).filter(e => { cons
           "r.selectNodeContents(e); return new Set(Array.from(r.getClientRects()).map(b => b.top)).size > 1; }).length")
 
 
+# Cells of rows that became lists, in which the head lies on the text.
+OVERLAPPING = ("Array.from(document.querySelectorAll('td')).filter(e => { const r = document.createRange(); "
+               "r.selectNodeContents(e); const head = parseFloat(getComputedStyle(e, '::before').width); return r.toString() && "
+               "r.getBoundingClientRect().left < e.getBoundingClientRect().left + head; }).map(e => e.dataset.head).join('; ')")
+
+
 def keep(name, png):
     folder = os.environ.get("APOTHEM_SCREENSHOTS")
     if folder:
@@ -53,6 +59,8 @@ def look(report, width, phone):
         check.equal("document.documentElement.scrollWidth <= innerWidth", True, "the page fits")
         check.equal(TOO_WIDE, "", "what is cut off")
         check.equal(BROKEN, 0, "numbers that are broken")
+        if phone:
+            check.equal(OVERLAPPING, "", "heads on the text of their cells")
         check.equal("getComputedStyle(document.querySelector('td')).display", "block" if phone else "table-cell", "cells")
         check.equal("Array.from(document.querySelectorAll('a[href^=\"#\"]')).filter(a => "
                     "!document.getElementById(a.getAttribute('href').slice(1))).length", 0, "links to nowhere")
