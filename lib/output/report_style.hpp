@@ -8,7 +8,7 @@ body { font: 16px/1.5 sans-serif; max-width: 1200px; margin: 2em auto; padding: 
 h2 { margin-top: 2.5em; border-top: 2px solid #ccc; padding-top: .7em; }
 h3 { font-size: 1em; margin-bottom: .3em; }
 img { max-width: 100%; height: auto; }
-.picture { overflow-x: auto; }
+.picture, .numbers { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14px; }
 th, td { padding: .2em .6em; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }
 td { overflow-wrap: break-word; }
@@ -25,11 +25,6 @@ dd { margin: 0 0 .6em 1.2em; }
 .contradicted, .missing { background: #fde2dd; color: #801c10; }
 .own { background: #e6e9f2; color: #2c3a66; }
 p.top { font-size: 14px; }
-/* Where there is room, the columns of words get more of it than their longest words need. */
-@media screen and (min-width: 1150px) {
-  td[data-head=quantity] { min-width: 13em; }
-  td[data-head=source] { min-width: 11em; }
-}
 /* On a narrow screen every row is a list of its cells, each behind the head of its column, numbers
    two in a line, and pictures stay large enough to read: they scroll. */
 @media screen and (max-width: 800px) {
@@ -57,7 +52,7 @@ p.top { font-size: 14px; }
   h2 { break-before: page; border: 0; margin-top: 0; }
   #figures { break-before: auto; }
   h3 { break-after: avoid; }
-  .picture { overflow: visible; }
+  .picture, .numbers { overflow: visible; }
   .picture img { max-width: 100%; max-height: 22cm; width: auto; }
   tr, .picture, dl > div { break-inside: avoid; }
   p.top, .players { display: none; }
