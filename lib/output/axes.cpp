@@ -145,6 +145,7 @@ void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, doubl
   const Pen pen{{.25, .25, .25}, .8};
   constexpr int kColours = 256;
   std::vector<Colour> colours;
+  colours.reserve(kColours);
   for (int i = 0; i < kColours; ++i) colours.push_back(viridis((kColours - .5 - i) / kColours));
   canvas.image(frame, 1, kColours, colours);
   canvas.stroke(
