@@ -38,25 +38,32 @@ std::vector<std::string> chosen(const ReproduceOptions& options,
 
 constexpr const char* kAboutReport =
     "<p>The paper: X. Liu, J. Mao, L. Zhao, L. Shao, T. Li, <i>The distance potential "
-    "function-based finite-discrete element method</i>, Computational Mechanics (2020), "
-    "<a href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. "
-    "The pictures are drawn anew from runs of this program, with the paper's data where it gives "
+    "function-based finite-discrete element method</i>, Computational Mechanics (2020), <a "
+    "href=\"https://doi.org/10.1007/s00466-020-01913-2\">doi:10.1007/s00466-020-01913-2</a>. The "
+    "pictures are drawn anew from runs of this program, with the paper's data where it gives "
     "them. The paper shows its results as curves and fields. No number here is read off its "
     "pictures: each has another reference, which is named beside it, or rests on what its text "
     "states. Forces are per thickness of 1 m.</p>"
-    "<p>A verdict holds as long as all numbers of its figure are within their tolerance. What the "
-    "numbers are compared with, beside the paper's words: <i>closed forms</i>; an <i>independent "
-    "prototype</i> of the contact method and an <i>independent explicit code</i> for deformable "
-    "bodies, which share no code with this program; <i>CalculiX</i> 2.20 with quadratic elements; "
-    "<i>Box2D</i> v3, which has another contact model. <code>data/reference/README.md</code> says "
-    "how each table was made. <i>Internal checks</i> are laws that every run obeys, and earlier "
-    "results of this program, which show changes but prove nothing.</p>";
+    "<p><i>Reproduced</i>: what the paper says of the figure comes out here. <i>Reproduced with "
+    "an explained difference</i>: it does, but for what is said beside it. <i>Contradicted</i>: a "
+    "conclusion of the paper does not hold. A verdict holds as long as all numbers of its figure "
+    "are within their tolerance.</p>"
+    "<p>What the numbers are compared with, beside the paper's words: <i>closed forms</i>; an "
+    "<i>independent prototype</i> of the contact method and an <i>independent explicit code</i> "
+    "for deformable bodies, which share no code with this program; <i>CalculiX</i> 2.20 with "
+    "quadratic elements; <i>Box2D</i> v3, which has another contact model. "
+    "<code>data/reference/README.md</code> says how each table was made. <i>Internal checks</i> "
+    "are laws that every run obeys, and earlier results of this program, which show changes but "
+    "prove nothing.</p>";
 
 constexpr const char* kFiguresLeftOut =
     "<h2 id=\"left-out\">Figures of the paper that are not here</h2>\n"
     "<p>Figs. 1, 6 to 12, 16, 18, 22, 23, 25 and 29 are sketches of the algorithm, of models and "
     "of a load, and show no results; the scenes of the figures above (<code>data/scenes</code>) "
-    "hold the models.</p>\n";
+    "hold the models. Fig. 12 has the model of Figs. 13 to 15, Fig. 16 that of Fig. 17, Fig. 18 "
+    "that of Figs. 19 to 21, Figs. 22 and 23 model and load of Fig. 24, Fig. 25 the model of "
+    "Figs. 26 to 28 and Fig. 29 that of Figs. 30 and 31: there stands what was chosen where a "
+    "drawing has no numbers.</p>\n";
 
 std::optional<Basis> basis_of(const nlohmann::json& expectation) {
   const nlohmann::json& name = expectation.at("basis");

@@ -26,9 +26,20 @@ struct Ticks {
   std::string name;  // name of the axis with its unit
 };
 
+// A round step between numbers of an axis, of which there are about `most`: a single number would
+// not be a scale.
+double step_of_ticks(double low, double high, int most) {
+  double step = round_step(high - low, most);
+  for (int more = most + 1; more <= 2 * most; ++more) {
+    if (std::floor(high / step) - std::ceil(low / step) >= 1) break;
+    step = round_step(high - low, more);
+  }
+  return step;
+}
+
 Ticks make_ticks(const Axis& axis, double low, double high, int most) {
   constexpr double kDigits = 2e4;  // more steps than that from zero would need too many digits
-  const double step = round_step(high - low, most);
+  const double step = step_of_ticks(low + axis.zero, high + axis.zero, most);
   const double middle = axis.zero + (low + high) / 2;
   double base = 0;
   if (std::abs(middle) > kDigits * step) {
@@ -134,6 +145,7 @@ void draw_colour_scale(Canvas& canvas, const Box& frame, const Axis& axis, doubl
   const Pen pen{{.25, .25, .25}, .8};
   constexpr int kColours = 256;
   std::vector<Colour> colours;
+  colours.reserve(kColours);
   for (int i = 0; i < kColours; ++i) colours.push_back(viridis((kColours - .5 - i) / kColours));
   canvas.image(frame, 1, kColours, colours);
   canvas.stroke(

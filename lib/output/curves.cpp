@@ -16,7 +16,6 @@ namespace {
 // Colours that colour-blind readers can tell apart (Paul Tol's "bright" scheme).
 constexpr std::array kColours{"#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377"};
 
-constexpr const char* kKey = "set key above left horizontal Left reverse samplen 2.5 width 2\n";
 constexpr int kWidth = 1000;         // pixels
 constexpr size_t kMostInColumn = 6;  // panels; more stand in several columns
 constexpr int kColumns = 3, kColumnWidth = 560;
@@ -55,6 +54,19 @@ std::vector<std::string> labels(const CurvePanel& panel) {
   std::vector<std::string> list;
   for (const Curve& curve : panel.curves) list.push_back(curve.label);
   return list;
+}
+
+// The title of a panel and, below it, its key. Without a key the title stands where it would stand
+// with one; gnuplot's own title would come between a key and its panel.
+std::string title_and_key(const CurvePanel& panel, bool with_key) {
+  if (with_key) {
+    return fmt::format(
+        "unset title\nunset label\n"
+        "set key above left horizontal Left reverse samplen 2.5 width 2 title {} left\n",
+        quoted(panel.title));
+  }
+  return fmt::format("unset key\nset title ' '\nset label 1 {} at graph 0, graph 1 offset 1, 1\n",
+                     quoted(panel.title));
 }
 
 std::string range(const std::optional<Vec2>& limits) {
@@ -118,6 +130,13 @@ std::string y_format(const CurvePanel& panel) {
   return has_bars(panel) ? "set format y '%g'\n" : "set format y\n";
 }
 
+// Bars at the ends of the axes need room; logarithmic axes go on to the next power of ten.
+std::string offsets(const CurvePanel& panel) {
+  if (!has_bars(panel)) return "unset offsets\n";
+  const double x = panel.x_logarithmic ? 0 : .04, y = panel.y_logarithmic ? 0 : .04;
+  return fmt::format("set offsets graph {0}, graph {0}, graph {1}, graph {1}\n", x, y);
+}
+
 std::string log_scales(const CurvePanel& panel) {
   if (!panel.x_logarithmic && !panel.y_logarithmic) return "";
   return fmt::format("set logscale {}{}\n", panel.x_logarithmic ? "x" : "",
@@ -152,13 +171,12 @@ set multiplot layout {2},{3} title {4}."\n " font ',14'
     const CurvePanel& panel = figure.panels[p];
     // The key of a panel is left out if it would repeat the one above.
     const bool repeats = p > 0 && labels(panel) == labels(figure.panels[p - 1]);
-    script += repeats ? "unset key\n" : kKey;
-    script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
-                          quoted(panel.x_label), quoted(panel.y_label));
+    script += title_and_key(panel, !repeats);
+    script +=
+        fmt::format("set xlabel {}\nset ylabel {}\n", quoted(panel.x_label), quoted(panel.y_label));
     script += x_tics(panel) + log_scales(panel);
-    // Bars at the ends of the axes need room, and small values all their digits.
-    script += has_bars(panel) ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
-                              : "unset offsets\n";
+    script += panel.x_logarithmic ? "set format x '%g'\n" : "set format x\n";
+    script += offsets(panel);
     script += y_format(panel);
     script += fmt::format("plot {} {}", range(panel.x_range), range(panel.y_range));
     for (size_t c = 0; c < panel.curves.size(); ++c) {

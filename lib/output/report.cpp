@@ -61,7 +61,9 @@ std::string badge(const ReportFigure& figure) {
 std::string summary(const std::vector<ReportFigure>& figures, bool left_out) {
   std::string rows;
   std::string heads = "<th>figure</th><th>verdict</th>";
-  for (const GroupCount& group : count_groups({})) heads += "<th>" + group.name + "</th>";
+  for (const GroupCount& group : count_groups({})) {
+    heads += "<th class=\"number\">" + group.name + "</th>";
+  }
   for (const ReportFigure& figure : figures) {
     std::string cells = fmt::format(
         "<td class=\"text\" data-head=\"figure\"><a href=\"#{}\">{}</a></td>"

@@ -110,9 +110,11 @@ std::string number_tables(const std::vector<ReportNumber>& numbers) {
     }
     if (rows.empty()) continue;
     text += fmt::format(
-        "<h3>{}</h3>\n<table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
-        "<th>reference</th><th>result</th><th>error</th><th>relative</th><th>tolerance</th>"
-        "<th>verdict</th><th>rests on</th><th>source</th></tr></thead>\n{}</table>\n",
+        "<h3>{}</h3>\n<div class=\"numbers\"><table>\n<thead><tr>{}<th>quantity</th><th>unit</th>"
+        "<th class=\"number\">reference</th><th class=\"number\">result</th>"
+        "<th class=\"number\">error</th><th class=\"number\">relative</th>"
+        "<th class=\"number\">tolerance</th>"
+        "<th>verdict</th><th>rests on</th><th>source</th></tr></thead>\n{}</table></div>\n",
         kGroups[group].heading, with_scenes ? "<th>scene</th>" : "", rows);
   }
   return text;
