@@ -341,7 +341,7 @@ TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from
   Json forgetful = Json::parse(content(folder / "first/final.json"));
   for (auto& [name, term] : forgetful["simulation"].items()) {
     if (term.is_object() && term.contains("contacts")) {
-      term["contacts"]["tangential"]["springs"] = Json::array();
+      term["contacts"]["friction"]["springs"] = Json::array();
     }
   }
   write_file(folder / "first/final.json", forgetful.dump());
