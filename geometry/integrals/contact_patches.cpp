@@ -97,17 +97,16 @@ class Splitter {
     return count;
   }
 
-  /// Sums the integrals of the runs over each of the `count` patches.
+  /// Sums the integrals of the runs over each of the `count` patches. The list is empty before.
   void sum(int count, std::vector<PairIntegral>& patches) {
     work_.of_a.assign(count, {});
     work_.of_b.assign(count, {});
     for (int r = 0; r < size(); ++r) {
       (runs_[r].of_a ? work_.of_a : work_.of_b)[runs_[r].patch].add(work_.halves[r]);
     }
-    patches.resize(count);
     for (int p = 0; p < count; ++p) {
-      patches[p] = combine(work_.of_a[p], work_.of_b[p], arm_);
-      patches[p].depth = depth(a_, b_, work_.of_a[p], work_.of_b[p]);
+      patches.push_back(combine(work_.of_a[p], work_.of_b[p], arm_));
+      patches.back().depth = depth(a_, b_, work_.of_a[p], work_.of_b[p]);
     }
     add_extents(patches);
   }

@@ -137,14 +137,41 @@ APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
 
 }  // namespace
 
-PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tangential kind,
-                               PatchDamper& damper) {
-  PatchStep<double> p;
-  read_pair(scene, &work, p);
-  read_memory(scene, &work, kind.damped, p, damper);
-  PatchForces<double> forces;
-  step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper, forces);
-  return forces;
+void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, Tangential kind,
+                       PatchDamper* dampers, PatchForces<double>* forces) {
+  using Pack = PackOf<kComparedLanes>;
+  std::array<PairWork, kComparedLanes> all;
+  std::array<PatchDamper, kComparedLanes> damper_of;
+  std::array<PatchForces<double>, kComparedLanes> forces_of;
+  std::ranges::copy(work, all.begin());
+  std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // for nobody
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    PatchStep<Pack> p;
+    PatchForces<Pack> found;
+    DamperOf<Pack> damper;
+    read_pair(scene, all.data(), p);
+    read_memory(scene, all.data(), kind.damped, p, damper);
+    step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper, found);
+    const auto of = [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; };
+    write_lanes(found.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).all; });
+    write_lanes(found.damping, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).damping; });
+    write_held(found.held_a, [&](int k) APOTHEM_LAMBDA -> BodyStiffness& { return of(k).held_a; });
+    write_held(found.held_b, [&](int k) APOTHEM_LAMBDA -> BodyStiffness& { return of(k).held_b; });
+    const auto damper_in = [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damper_of[k]; };
+    write_lanes(damper.elastic,
+                [&](int k) APOTHEM_LAMBDA -> PairForce& { return damper_in(k).elastic; });
+    write_lanes(damper.damping,
+                [&](int k) APOTHEM_LAMBDA -> PairForce& { return damper_in(k).damping; });
+    for (int k = 0; k < kComparedLanes; ++k) {
+      of(k).spring = found.spring.v[k];
+      of(k).lost = found.lost.v[k];
+      of(k).tangent = {found.tangent.x.v[k], found.tangent.y.v[k]};
+      damper_in(k).tangential = damper.tangential.v[k];
+    }
+    return 0.;
+  });
+  std::copy_n(damper_of.begin(), work.size(), dampers);
+  std::copy_n(forces_of.begin(), work.size(), forces);
 }
 
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,

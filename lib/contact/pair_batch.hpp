@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "apothem/contact/friction_memory.hpp"
 #include "apothem/contact/kinematics.hpp"
@@ -66,9 +67,10 @@ struct PairWork {
   PairBook* book = nullptr;          ///< null without friction and damping
 };
 
-/// Friction and damping of one contact patch. `work` is read only.
-PatchForces<double> step_patch(const PairScene& scene, const PairWork& work, Tangential kind,
-                               PatchDamper& damper);
+/// Friction and damping of so many contact patches, kComparedLanes at most. Those of `work` are not
+/// written to.
+void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, Tangential kind,
+                       PatchDamper* dampers, PatchForces<double>* forces);
 /// The load of a pair with these forces beside the normal one. `held_a`, `held_b`: how its friction
 /// springs hold the bodies.
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,

@@ -242,16 +242,26 @@ void PatchTangential::Range::step_patches(const PairInTouch& touching, const Pai
   now.spring = 0;
   now.tangent = {};
   Sum sum{.rate = pair_rate(*scene.now, pair.a, pair.b)};
+  forces_.resize(patches_.size());
+  std::array<PairMemory, kComparedLanes> memory;
+  std::array<DampingMemory, kComparedLanes> damping;
+  std::array<PairWork, kComparedLanes> work;
+  for (size_t first = 0; first < patches_.size(); first += kComparedLanes) {
+    const size_t count = std::min<size_t>(kComparedLanes, patches_.size() - first);
+    for (size_t k = 0; k < count; ++k) {
+      const size_t j = first + k;
+      memory[k] = {.spring = one_each ? patch_springs_[j].force : 0, .patches = before_.patches};
+      damping[k] = {damping_before_.pair, dampers_[j]};
+      work[k] = pair;
+      work[k].integral = &patches_[j];
+      work[k].memory = &memory[k];
+      work[k].damping = &damping[k];
+    }
+    find_patch_forces(scene, {work.data(), count}, {one_each, kind.damped}, &dampers_[first],
+                      &forces_[first]);
+  }
   for (size_t j = 0; j < patches_.size(); ++j) {
-    PairMemory of_patch{.spring = one_each ? patch_springs_[j].force : 0,
-                        .patches = before_.patches};
-    DampingMemory of_damper{damping_before_.pair, dampers_[j]};
-    PairWork work = pair;
-    work.integral = &patches_[j];
-    work.memory = &of_patch;
-    work.damping = &of_damper;
-    const PatchForces<double> forces =
-        step_patch(scene, work, {one_each, kind.damped}, dampers_[j]);
+    const PatchForces<double>& forces = forces_[j];
     sum.force = sum.force + forces.all;
     sum.damping = sum.damping + forces.damping;
     if (!one_each) continue;

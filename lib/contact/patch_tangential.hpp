@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -158,6 +159,7 @@ class PatchTangential {
     std::vector<double> shares_;  // of each ancestor that goes to each patch of now
     std::vector<Spring> patch_springs_;
     std::vector<PatchDamper> dampers_;
+    std::vector<PatchForces<double>> forces_;  // of the patches
   };
 
   [[nodiscard]] Tangential kind_of(const PairLaw& law) const {
