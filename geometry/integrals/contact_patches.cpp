@@ -76,10 +76,8 @@ class Splitter {
     };
     grow(work_.parent, runs_.size());
     grow(work_.joined, 2 * runs_.size());
-    for (int r = 0; r < size(); ++r) {
-      work_.parent[r] = r;
-      work_.joined[2 * r] = work_.joined[2 * r + 1] = 0;
-    }
+    for (int r = 0; r < size(); ++r) work_.parent[r] = r;
+    std::fill_n(work_.joined.begin(), 2 * size(), char{0});
     loose_ = 2 * size();
     join_at_vertices(0, of_a_, a_.size);
     join_at_vertices(of_a_, size(), b_.size);
@@ -199,8 +197,9 @@ class Splitter {
     for (int r = first; r < last; ++r) {
       const int next = r + 1 < last ? r + 1 : first;
       const int edge = runs_[r].edge + 1 < edges ? runs_[r].edge + 1 : 0;
-      if (runs_[next].edge == edge && work_.crossed[2 * r + 1] < 0 && work_.crossed[2 * next] < 0) {
-        join(2 * r + 1, 2 * next);
+      const int end = 2 * r + 1, start = 2 * next;
+      if (runs_[next].edge == edge && work_.crossed[end] < 0 && work_.crossed[start] < 0) {
+        join(end, start);
       }
     }
   }
@@ -356,7 +355,7 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
                              std::vector<PairIntegral>& patches, NearEdges& near) {
   patches.clear();
   Splitter splitter(a, b, offset, workspace, runs);
-  const PairIntegral whole = splitter.find_runs(near);
+  PairIntegral whole = splitter.find_runs(near);
   const bool finite = !std::isnan(whole.weight);
   if (!finite || !whole.touching()) runs.clear();
   if (!whole.touching()) return whole;

@@ -42,9 +42,9 @@ class Renumbering {
 
  private:
   static void add(std::vector<int>& map, int first, int count, int heir_first, int heir_count) {
-    map.resize(std::max(map.size(), static_cast<size_t>(first + count)), -1);
+    map.resize(std::max(map.size(), static_cast<size_t>(first) + static_cast<size_t>(count)), -1);
     for (int k = 0; k < count && count == heir_count; ++k) {
-      map[static_cast<size_t>(first + k)] = heir_first + k;
+      map[static_cast<size_t>(first) + static_cast<size_t>(k)] = heir_first + k;
     }
   }
   static int at(const std::vector<int>& map, int i) {

@@ -17,7 +17,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <ranges>
+#include <numeric>
 #include <stdexcept>
 
 #include "apothem/mesh/boundary.hpp"
@@ -190,7 +190,9 @@ class BodyGrid {
     };
     const auto several = rigid_cells_.find(i);
     if (several == rigid_cells_.end()) {
-      add(0, std::views::iota(0, body.potential.size()));
+      std::vector<int> corners(static_cast<size_t>(body.potential.size()));
+      std::iota(corners.begin(), corners.end(), 0);
+      add(0, corners);
       return;
     }
     for (size_t part = 0; part < several->second.size(); ++part) add(part, several->second[part]);
