@@ -17,6 +17,7 @@ constexpr int kSoon = 32;
 constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
 constexpr int kLate = 256;
 constexpr size_t kManyFresh = 1024;
+constexpr size_t kFewFresh = 8;  // pairs are few if they are less than one in so many
 
 // For one more. Large scenes need the memory.
 template <class T>
@@ -217,7 +218,10 @@ void PairIntegrals::give_slots(Worker& worker, size_t first) {
     touching_[first + fresh.result].slot = slot;
   }
   // At the start all pairs are new, and hardly any later: large scenes need the memory.
-  if (worker.fresh.size() > kManyFresh) std::vector<Fresh>().swap(worker.fresh);
+  const size_t count = worker.fresh.size();
+  if (count > kManyFresh && kFewFresh * count > touching_.size()) {
+    std::vector<Fresh>().swap(worker.fresh);
+  }
 }
 
 void PairIntegrals::forget_ended() {

@@ -216,7 +216,9 @@ void Run::loop(double until) {
     if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
     if (on_progress_) on_progress_(*this);
     const std::optional<double>& interval = scene_.output.checkpoint_interval;
-    if (interval && seconds_since(last_checkpoint_) > *interval) {
+    // Not of a run that has just been stopped: a rule is looked at after a step, and a run that
+    // goes on from here would take one more before it knows.
+    if (interval && stopped_by_.empty() && seconds_since(last_checkpoint_) > *interval) {
       write(StateFile::checkpoint);
       last_checkpoint_ = Clock::now();
     }
@@ -253,7 +255,11 @@ Run::Status Run::finish() {
       warn(std::move(sentence));
     }
   }
-  if (!settings_.folder.empty()) write_summary(*this);
+  if (!settings_.folder.empty()) {
+    write_summary(*this);
+    // Last of all: a run that is killed before goes on from there.
+    if (status_ != Status::unstable && ended()) remove_checkpoint(settings_.folder);
+  }
   return status_;
 }
 
@@ -280,7 +286,6 @@ void Run::close() {
   flush();
   if (ended()) {
     write(StateFile::final);
-    if (!settings_.folder.empty()) remove_checkpoint(settings_.folder);
   } else {
     write(StateFile::checkpoint);
     if (!scene_.time.statics) {

@@ -42,8 +42,11 @@ TEST_CASE("a run that is killed twenty times ends as if it had not been", "[surv
   const std::string parts = folder / "parts";
   std::mt19937 random(5);
   int kills = 0;
-  for (int i = 0;
-       i < static_cast<int>(scaled(20)) && !std::filesystem::exists(parts + "/final.json"); ++i) {
+  const auto complete = [&] {
+    return std::filesystem::exists(parts + "/final.json") &&
+           std::filesystem::exists(parts + "/run.json");
+  };
+  for (int i = 0; i < static_cast<int>(scaled(20)) && !complete(); ++i) {
     const bool resume = std::filesystem::exists(parts + "/checkpoint.json");
     const double delay = .02 + .3 * (static_cast<double>(random()) / 4.3e9);
     const Result killed =
@@ -53,7 +56,7 @@ TEST_CASE("a run that is killed twenty times ends as if it had not been", "[surv
     readable_frames(parts);
   }
   CHECK(kills > 0);
-  if (!std::filesystem::exists(parts + "/final.json")) {
+  if (!complete()) {
     const bool resume = std::filesystem::exists(parts + "/checkpoint.json");
     REQUIRE(run({"run", scene, "-o", parts, "--quiet", resume ? "--resume" : "--overwrite"}, folder)
                 .code == 0);
