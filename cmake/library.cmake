@@ -17,6 +17,7 @@ function(apothem_library name)
   target_include_directories(apothem_${name} PUBLIC
     $<BUILD_INTERFACE:${APOTHEM_HEADERS}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(apothem_${name} PUBLIC cxx_std_20)
+  target_compile_definitions(apothem_${name} PUBLIC ${APOTHEM_EIGEN})
   target_link_libraries(apothem_${name} PRIVATE $<BUILD_INTERFACE:apothem_options>)
 endfunction()
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/placement.hpp"
 
 namespace apothem {
@@ -127,7 +128,7 @@ double depth_ratio(const Potential& potential) {
       const Vec2 arm = potential.roof->points[node] - from;
       const double foot = arm.dot(along) / length;
       const double height = cross(along, arm) / length;
-      ratio = std::max(ratio, std::hypot(1, std::max({0., -foot, foot - length}) / height));
+      ratio = std::max(ratio, hypotenuse(1, std::max({0., -foot, foot - length}) / height));
     }
   }
   return ratio;

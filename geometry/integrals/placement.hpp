@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/integrals/edge_integral.hpp"
 
 namespace apothem {
@@ -24,7 +25,7 @@ struct Placement {
     }
     double radius = 0;
     for (size_t i = 2; i < n + 2; ++i)
-      radius = std::max(radius, std::hypot(x[i] - x[1], y[i] - y[1]));
+      radius = std::max(radius, hypotenuse(x[i] - x[1], y[i] - y[1]));
     // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
     // coordinates of the polygon.
     view = {.x = x.data() + 1,

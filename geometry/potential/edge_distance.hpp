@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/point.hpp"
 
 namespace apothem {
@@ -20,7 +21,7 @@ struct Edge {
   double length;
 
   Edge(const Vec2& a, const Vec2& b)
-      : start(a), end(b), direction(b - a), length(std::hypot(direction.x(), direction.y())) {
+      : start(a), end(b), direction(b - a), length(hypotenuse(direction.x(), direction.y())) {
     direction /= length;
   }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/potential/inscribed_circle.hpp"
 #include "apothem/geometry/potential/lower_envelope.hpp"
 
@@ -30,7 +31,7 @@ std::vector<Vec2> inward_normals(const Polygon& polygon) {
   std::vector<Vec2> normals(polygon.size());
   for (int i = 0; i < polygon.size(); ++i) {
     const Vec2 d = polygon.after(i) - polygon[i];
-    normals[i] = Vec2(-d.y(), d.x()) / std::hypot(d.x(), d.y());
+    normals[i] = Vec2(-d.y(), d.x()) / hypotenuse(d.x(), d.y());
   }
   return normals;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/cyclic.hpp"
 #include "apothem/geometry/skeleton/edge_lines.hpp"
 
@@ -97,7 +98,7 @@ class ConvexShrink {
   };
   [[nodiscard]] Bisector bisector(int e, int f, double turn, double gap) const {
     const double rise = (lines_[e].tangent - lines_[f].tangent).squaredNorm() / 2;
-    const double norm = std::hypot(turn, rise);
+    const double norm = hypotenuse(turn, rise);
     if (!(norm > 0)) return {1, 0, 0};  // straight on
     return {turn / norm, rise / norm, gap / norm};
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/polygon.hpp"
 
 namespace apothem {
@@ -28,7 +29,7 @@ inline std::vector<EdgeLine> edge_lines(const Polygon& polygon) {
   std::vector<EdgeLine> lines;
   for (int i = 0; i < polygon.size(); ++i) {
     const Vec2 edge = polygon.after(i) - polygon[i];
-    const double length = std::hypot(edge.x(), edge.y());
+    const double length = hypotenuse(edge.x(), edge.y());
     lines.push_back({polygon[i] - polygon.origin(), edge / length, length});
   }
   return lines;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/execution/elementary.hpp"
 #include "apothem/execution/parallel.hpp"
 #include "apothem/geometry/integrals/collar.hpp"
 #include "apothem/geometry/integrals/placed_shapes.hpp"
@@ -122,7 +123,7 @@ class Outlines {
   }
   /// Length of an edge as given, m.
   [[nodiscard]] double given_length(int edge) const {
-    return std::hypot(x0_[next[edge]] - x0_[edge], y0_[next[edge]] - y0_[edge]);
+    return hypotenuse(x0_[next[edge]] - x0_[edge], y0_[next[edge]] - y0_[edge]);
   }
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {

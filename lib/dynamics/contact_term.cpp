@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/execution/elementary.hpp"
 #include "apothem/model/inradius.hpp"
 #include "apothem/model/pairs.hpp"
 
@@ -336,7 +337,7 @@ void ContactTerm::bound_step(StepBounds& bounds) {
   contacts_.limit_damping(of_nodes);
   const double stiffest = pair_table(model_).stiffest() * model_.thickness;
   const double rate = std::sqrt(of_nodes + stiffest * rigid);
-  bounds.nodes = {2 / std::hypot(2 / bounds.nodes.step, rate), "elements and their contacts"};
+  bounds.nodes = {2 / hypotenuse(2 / bounds.nodes.step, rate), "elements and their contacts"};
 }
 
 void ContactTerm::fields(Archive& archive) {

@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/execution/elementary.hpp"
 #include "apothem/mesh/measure.hpp"
 
 namespace apothem {
@@ -91,7 +92,7 @@ double Equilibrium::ramp(double from, double until) const {
     const std::array<double, 3> a = body.history.displacement(from);
     const std::array<double, 3> b = body.history.displacement(until);
     longest = std::max(longest,
-                       std::hypot(b[0] - a[0], b[1] - a[1]) + body.reach() * std::abs(b[2] - a[2]));
+                       hypotenuse(b[0] - a[0], b[1] - a[1]) + body.reach() * std::abs(b[2] - a[2]));
   }
   return std::max(kRamp, std::ceil(longest / (kStride * shortest_)));
 }
@@ -233,7 +234,7 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
   result.load += sizes;
   for (const auto& term : terms_) {
     const Vec2 force = term->force_on(b);
-    sizes += std::hypot(force.x(), force.y());
+    sizes += hypotenuse(force.x(), force.y());
   }
   const BodyIndex number = static_cast<BodyIndex>(model_.bodies.size()) + b;
   double& loads = body_loads_[number];
@@ -245,8 +246,8 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
 bool Equilibrium::rigid_balanced(const State& state, RigidIndex b, double contact,
                                  LoadStep& result) {
   const size_t c = state.layout.rigid(b);
-  const double force = std::hypot(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius_[b];
-  const double own = std::hypot(weight(c), weight(c + 1));
+  const double force = hypotenuse(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius_[b];
+  const double own = hypotenuse(weight(c), weight(c + 1));
   result.load += own;
   sum_loads_ += own * own;
   const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius_[b];

@@ -64,10 +64,10 @@ class Blocks {
       if (!b.free) continue;
       const double partner = slopes[i] > flattest[0] ? flattest[0] : flattest[1];
       const double stiffness = softest * (slopes[i] + partner);  // Pa/m
-      const double sine = std::isfinite(b.tangent) ? b.tangent / std::hypot(1, b.tangent) : 1;
+      const double sine = std::isfinite(b.tangent) ? b.tangent / hypotenuse(1, b.tangent) : 1;
       const double at_corner = softest * (partner + sine * slopes[i]);
       note(b.density * g_ * (bottom - top) / stiffness, 0, i, result.by_weight);
-      const double v = std::hypot(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
+      const double v = hypotenuse(b.speed, std::sqrt(2 * g_ * fall(b))) + fastest_;
       const double energy = b.mass / model_.thickness * v * v / 2;  // J/m
       note(std::min(std::sqrt(2 * energy / (stiffness * b.breadth)), b.wave * v / stiffness),
            cube_root(3 * energy / (b.tangent * at_corner)), i, result.by_speed);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/execution/elementary.hpp"
 
 namespace apothem {
 namespace {
@@ -78,7 +79,7 @@ class Relaxation {
       const size_t at = state_.layout.rigid(i);
       const Eigen::Vector3d a = residual(i);
       const double off =
-          body.mass * std::hypot(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
+          body.mass * hypotenuse(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
       const double place = std::abs(state_.x[at]) + std::abs(state_.x[at + 1]) + radius_[i];
       const double may = kResidual * (body.mass * model_.strongest_gravity() +
                                       std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +

@@ -18,6 +18,10 @@ struct SineCosine {
 /// The same of two angles at once, with the same bits.
 [[nodiscard]] std::array<SineCosine, 2> sine_cosine(const std::array<double, 2>& angles);
 [[nodiscard]] double tangent(double angle);
+/// sqrt(x^2 + y^2) for numbers of any size.
+[[nodiscard]] double hypotenuse(double x, double y);
+/// From -pi/2 to pi/2.
+[[nodiscard]] double arc_sine(double x);
 /// Angle of the direction (x, y), from -pi to pi.
 [[nodiscard]] double arc_tangent(double y, double x);
 template <class N>

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "apothem/execution/elementary.hpp"
+
 namespace apothem {
 
 /// Cauchy stress, Pa, in the plane and (`zz`) perpendicular to it.
@@ -15,7 +17,7 @@ struct CauchyStress {
 /// Principal stresses in the plane, Pa: the major (most tensile) one, then the minor one.
 inline std::array<double, 2> principal_stresses(const CauchyStress& s) {
   const double middle = (s.xx + s.yy) / 2;
-  const double radius = std::hypot((s.xx - s.yy) / 2, s.xy);
+  const double radius = hypotenuse((s.xx - s.yy) / 2, s.xy);
   return {middle + radius, middle - radius};
 }
 

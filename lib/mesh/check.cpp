@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "apothem/execution/elementary.hpp"
 #include "apothem/geometry/polygon/polygon.hpp"
 #include "apothem/geometry/polygon/predicates.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
@@ -85,7 +86,7 @@ class Check {
     if (!convex) general_element(e);
     Box box;
     for (const int c : corners) box.include(mesh_.nodes[c].x(), mesh_.nodes[c].y());
-    const double diagonal = std::hypot(box.x1 - box.x0, box.y1 - box.y0);
+    const double diagonal = hypotenuse(box.x1 - box.x0, box.y1 - box.y0);
     if (!(element_area(mesh_, e) >= kFlat * diagonal * diagonal)) {
       throw InvalidMesh::at_element(e, "is degenerate: its area is below 1e-12 of its diameter^2");
     }

@@ -44,7 +44,7 @@ Vec2 block_point(double u, double v) {
 std::vector<double> layer_ends(int layers, double grading) {
   std::vector<double> end{0};
   double size = 1;
-  const double ratio = layers > 1 ? std::pow(grading, -1. / (layers - 1)) : 1;
+  const double ratio = layers > 1 ? power(grading, -1. / (layers - 1)) : 1;
   for (int k = 0; k < layers; ++k, size *= ratio) end.push_back(end.back() + size);
   for (double& e : end) e /= end.back();
   return end;

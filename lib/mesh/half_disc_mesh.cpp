@@ -35,7 +35,7 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   if (!(growth >= 1.01 && growth <= 2)) {
     throw std::invalid_argument("the growth must be between 1.01 and 2");
   }
-  const double side = std::asin(fine);
+  const double side = arc_sine(fine);
   const int around = 4 * n;
   Mesh mesh;
   const auto block = [n = n](int i, int j) { return j * (2 * n + 1) + i; };
@@ -67,11 +67,11 @@ Mesh half_disc_mesh(const Vec2& pole, double radius, const HalfDiscCells& cells,
   const double first = fine / n / length;
   const int layers = static_cast<int>(
       std::ceil(natural_logarithm(1 + (growth - 1) / first) / natural_logarithm(growth)));
-  const double whole = std::pow(growth, layers) - 1;
+  const double whole = power(growth, layers) - 1;
   std::vector<std::array<int, 2>> arc, straight;
   std::vector<int> left{last.front()}, right{last.back()};
   for (int l = 1; l <= layers; ++l) {
-    const double s = l < layers ? (std::pow(growth, l) - 1) / whole : 1;
+    const double s = l < layers ? (power(growth, l) - 1) / whole : 1;
     const Vec2 end = l < layers ? on_arc(side + s * length) : Vec2(1, 1);
     std::vector<int> next;
     for (int k = 0; k <= around; ++k) {

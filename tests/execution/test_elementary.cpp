@@ -58,10 +58,34 @@ TEST_CASE("sine, cosine, tangent, exponential, logarithm and roots are right to 
     look(tangent(x), std::tan(fine));
     look(cube_root(x), std::cbrt(fine));
     look(arc_tangent(x, 1.), std::atan2(fine, 1.L));
+    if (std::abs(x) <= 1) look(arc_sine(x), std::asin(fine));
     look(arc_tangent(1., x), std::atan2(1.L, fine));
     look(natural_logarithm(std::abs(x)), std::log(std::abs(fine)));
     if (std::abs(x) < 700) look(exponential(x), std::exp(fine));
     if (std::abs(x) < 100) look(power(1.5, x), std::pow(1.5L, fine));
   });
   CHECK(worst < kBound);
+}
+
+TEST_CASE("the hypotenuse is right to the last digit for numbers of any size") {
+  double worst = 0;
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> ratio(0, 2);
+  each_number(-290, 300, [&](double x) {
+    const double y = x * ratio(engine);
+    worst = std::max(worst, error(hypotenuse(x, y), std::hypot((long double)x, (long double)y)));
+  });
+  CHECK(worst < .52);  // the best there is has .5
+  const double huge = std::numeric_limits<double>::max();
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  CHECK(hypotenuse(3, -4) == 5);
+  CHECK(hypotenuse(-0x1p1000, 0) == 0x1p1000);
+  CHECK(hypotenuse(3 * 0x1p1000, 4 * 0x1p1000) == 5 * 0x1p1000);
+  CHECK(hypotenuse(3 * tiny, 4 * tiny) == 5 * tiny);
+  CHECK(hypotenuse(1, tiny) == 1);
+  CHECK(hypotenuse(0, 0) == 0);
+  CHECK(hypotenuse(huge, huge) == HUGE_VAL);
+  CHECK(hypotenuse(std::nan(""), -HUGE_VAL) == HUGE_VAL);
+  CHECK(std::isnan(hypotenuse(std::nan(""), 1)));
+  CHECK(std::isnan(hypotenuse(0, std::nan(""))));
 }

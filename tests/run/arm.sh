@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# The same bits on Arm: builds the program for 64-bit Arm, with the libraries of Debian's packages, and runs the scenes
+# of processors.sh under QEMU. Takes minutes, and 2 GB in FOLDER. Needs the packages g++-aarch64-linux-gnu and qemu-user.
+# Usage: arm.sh PROGRAM FOLDER. PROGRAM is that of this machine; what FOLDER has from an earlier time is not made again.
+set -euo pipefail
+[ $# = 2 ] || { sed -n 4p "$0"; exit 2; }
+for tool in aarch64-linux-gnu-g++ qemu-aarch64; do
+  command -v $tool >/dev/null || { echo "arm.sh: there is no $tool; apt-get install g++-aarch64-linux-gnu qemu-user" >&2; exit 2; }
+done
+tests=$(cd "$(dirname "$0")" && pwd)
+program=$(realpath "$1")
+mkdir -p "$2" && cd "$2" && folder=$PWD
+
+# Folders of its own for apt, in which nothing is installed: all libraries come, and this system stays as it is.
+if [ ! -d root ]; then
+  mkdir -p apt/lists apt/cache/archives/partial root.part
+  : >apt/status
+  apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State::lists="$folder/apt/lists"
+       -o Dir::State::status="$folder/apt/status" -o Dir::Cache="$folder/apt/cache" -o APT::Sandbox::User=root)
+  "${apt[@]}" update
+  "${apt[@]}" install -y --download-only --no-install-recommends libvtk9.1 libgmp-dev libmpfr-dev libcairo2-dev libfmt-dev \
+    libsleef-dev zlib1g-dev
+  for package in apt/cache/archives/*.deb; do dpkg-deb -x "$package" root.part; done
+  mv root.part root
+  rm -r apt
+fi
+
+# Libraries of Arm; headers without a library of their own are those of this system.
+cat >toolchain.cmake <<END
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_FIND_ROOT_PATH $folder/root)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L $folder/root)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-L$folder/root/usr/lib/aarch64-linux-gnu -Wl,--allow-shlib-undefined")
+foreach(lib usr/lib lib)
+  string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,$folder/root/\${lib}/aarch64-linux-gnu")
+endforeach()
+END
+here=$(dpkg-architecture -qDEB_HOST_MULTIARCH 2>/dev/null || gcc -print-multiarch)
+cmake -S "$tests/../.." -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
+  -DCMAKE_TOOLCHAIN_FILE="$folder/toolchain.cmake" -DCGAL_DIR="/usr/lib/$here/cmake/CGAL" \
+  -DBoost_DIR="$(echo /usr/lib/"$here"/cmake/Boost-*)" >/dev/null
+cmake --build build
+# The program starts a helper, which is no program to this kernel.
+if [ ! -e build/apothem-skeleton.arm ] || [ build/apothem-skeleton -nt build/apothem-skeleton.arm ]; then
+  mv build/apothem-skeleton build/apothem-skeleton.arm
+  printf '#!/bin/sh\nexec qemu-aarch64 -L "%s/root" "%s/build/apothem-skeleton.arm" "$@"\n' "$folder" "$folder" \
+    >build/apothem-skeleton
+  chmod +x build/apothem-skeleton
+  touch build/apothem-skeleton.arm
+fi
+exec "$tests/processors.sh" "$program" "qemu-aarch64 -L $folder/root $folder/build/apothem"
