@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # The same bits on Arm: builds the program for 64-bit Arm, with the libraries of Debian's packages, and runs the scenes
-# of processors.sh under QEMU. Takes minutes, and 2 GB in FOLDER. Needs the packages g++-aarch64-linux-gnu and qemu-user.
-# Usage: arm.sh PROGRAM FOLDER. PROGRAM is that of this machine; what FOLDER has from an earlier time is not made again.
+# of processors.sh under QEMU. Takes a quarter of an hour and 2 GB in a folder of its own, which APOTHEM_ARM names; what
+# the folder has from an earlier time is not made again. Needs the packages g++-aarch64-linux-gnu and qemu-user.
+# Usage: APOTHEM_ARM=FOLDER arm.sh PROGRAM. PROGRAM is that of this machine. Exit code 77: no folder is named.
 set -euo pipefail
-[ $# = 2 ] || { sed -n 4p "$0"; exit 2; }
+[ -n "${APOTHEM_ARM:-}" ] || exit 77
 for tool in aarch64-linux-gnu-g++ qemu-aarch64; do
   command -v $tool >/dev/null || { echo "arm.sh: there is no $tool; apt-get install g++-aarch64-linux-gnu qemu-user" >&2; exit 2; }
 done
 tests=$(cd "$(dirname "$0")" && pwd)
 program=$(realpath "$1")
-mkdir -p "$2" && cd "$2" && folder=$PWD
+mkdir -p "$APOTHEM_ARM" && cd "$APOTHEM_ARM" && folder=$PWD
 
 # Folders of its own for apt, in which nothing is installed: all libraries come, and this system stays as it is.
 if [ ! -d root ]; then
