@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The same bits on Arm: builds the program for 64-bit Arm, with the libraries of Debian's packages, and runs the scenes
-# of processors.sh under QEMU. Takes a quarter of an hour and 2 GB in a folder of its own, which APOTHEM_ARM names; what
+# of processors.sh under QEMU. Takes a quarter of an hour and 1 GB in a folder of its own, which APOTHEM_ARM names; what
 # the folder has from an earlier time is not made again. Needs the packages g++-aarch64-linux-gnu and qemu-user.
 # Usage: APOTHEM_ARM=FOLDER arm.sh PROGRAM. PROGRAM is that of this machine. Exit code 77: no folder is named.
 set -euo pipefail
