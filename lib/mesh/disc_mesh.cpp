@@ -109,6 +109,7 @@ Mesh disc_mesh(const Vec2& centre, double radius, const DiscCells& cells, Elemen
   }
   for (Vec2& p : mesh.nodes) p = centre + radius * p;
   std::vector<std::array<int, 2>> boundary;
+  boundary.reserve(4 * static_cast<size_t>(n));
   for (int k = 0; k < 4 * n; ++k) boundary.push_back({ring(layers, k), ring(layers, k + 1)});
   mesh.groups = {line_group("boundary", std::move(boundary))};
   return mesh;
