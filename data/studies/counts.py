@@ -60,14 +60,6 @@ def collect(_):
     out.writerows(rows)
 
 
-def source(runs):
-    """The file with the runs of a row. Files without versions are of earlier scenes, of which no run can be made again."""
-    if not runs:
-        return "counts"
-    with open(RESULTS / runs, newline="", encoding="utf-8") as file:
-        return runs if "version" in next(csv.reader(file)) else f"{runs}, earlier scenes"
-
-
 def share(jammed, n):
     low, high = tables.wilson(jammed, n)
     return f"{jammed} of {n}: {jammed / n:.2f} ({low:.2f} to {high:.2f})"
@@ -99,7 +91,7 @@ def table(args):
             if other:
                 a, m = int(other["jammed"]), int(other["n"])
                 cells[-3:] = [share(a, m), f"{tables.fisher(k, n, a, m):.2g}", other["rate"] or "-"]
-        print("| " + " | ".join(cells) + f" | {source(row['runs'])} |")
+        print("| " + " | ".join(cells) + f" | {row['runs'] or 'counts'} |")
 
 
 def main():
