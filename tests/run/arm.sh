@@ -13,16 +13,16 @@ program=$(realpath "$1")
 mkdir -p "$APOTHEM_ARM" && cd "$APOTHEM_ARM" && folder=$PWD
 
 # Folders of its own for apt, in which nothing is installed: all libraries come, and this system stays as it is.
-if [ ! -d root ]; then
-  mkdir -p apt/lists apt/cache/archives/partial root.part
+if [ ! -d sysroot ]; then
+  mkdir -p apt/lists apt/cache/archives/partial sysroot.part
   : >apt/status
   apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State::lists="$folder/apt/lists"
        -o Dir::State::status="$folder/apt/status" -o Dir::Cache="$folder/apt/cache" -o APT::Sandbox::User=root)
   "${apt[@]}" update
   "${apt[@]}" install -y --download-only --no-install-recommends libvtk9.1 libgmp-dev libmpfr-dev libcairo2-dev libfmt-dev \
     libsleef-dev zlib1g-dev
-  for package in apt/cache/archives/*.deb; do dpkg-deb -x "$package" root.part; done
-  mv root.part root
+  for package in apt/cache/archives/*.deb; do dpkg-deb -x "$package" sysroot.part; done
+  mv sysroot.part sysroot
   rm -r apt
 fi
 
@@ -33,13 +33,13 @@ set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
-set(CMAKE_FIND_ROOT_PATH $folder/root)
+set(CMAKE_FIND_ROOT_PATH $folder/sysroot)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
-set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L $folder/root)
-set(CMAKE_EXE_LINKER_FLAGS_INIT "-L$folder/root/usr/lib/aarch64-linux-gnu -Wl,--allow-shlib-undefined")
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L $folder/sysroot)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-L$folder/sysroot/usr/lib/aarch64-linux-gnu -Wl,--allow-shlib-undefined")
 foreach(lib usr/lib lib)
-  string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,$folder/root/\${lib}/aarch64-linux-gnu")
+  string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,$folder/sysroot/\${lib}/aarch64-linux-gnu")
 endforeach()
 END
 here=$(dpkg-architecture -qDEB_HOST_MULTIARCH 2>/dev/null || gcc -print-multiarch)
@@ -50,9 +50,9 @@ cmake --build build
 # The program starts a helper, which is no program to this kernel.
 if [ ! -e build/apothem-skeleton.arm ] || [ build/apothem-skeleton -nt build/apothem-skeleton.arm ]; then
   mv build/apothem-skeleton build/apothem-skeleton.arm
-  printf '#!/bin/sh\nexec qemu-aarch64 -L "%s/root" "%s/build/apothem-skeleton.arm" "$@"\n' "$folder" "$folder" \
+  printf '#!/bin/sh\nexec qemu-aarch64 -L "%s/sysroot" "%s/build/apothem-skeleton.arm" "$@"\n' "$folder" "$folder" \
     >build/apothem-skeleton
   chmod +x build/apothem-skeleton
   touch build/apothem-skeleton.arm
 fi
-exec "$tests/processors.sh" "$program" "qemu-aarch64 -L $folder/root $folder/build/apothem"
+exec "$tests/processors.sh" "$program" "qemu-aarch64 -L $folder/sysroot $folder/build/apothem"
