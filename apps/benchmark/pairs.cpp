@@ -144,22 +144,10 @@ struct Crosses {
       const double direction = random.uniform(0, 2 * M_PI);
       offsets.emplace_back(1.9 * std::cos(direction), 1.9 * std::sin(direction));
     }
-    near.resize(offsets.size());
-  }
-  // Finds them once, as the step loop does in many steps.
-  void find_near() {
-    constexpr double kMargin = 1. / 64;  // of the apothem, .5 m
-    NearEdgesWorkspace workspace;
-    for (int i = 0; i < kPairs; ++i) {
-      near[static_cast<size_t>(i)] =
-          near_edges(shapes.view(2 * i), shapes.view(2 * i + 1), offsets[static_cast<size_t>(i)],
-                     kMargin * .5, workspace);
-    }
   }
   Potential potential;
   PlacedShapes shapes;
   std::vector<Vec2> offsets;
-  std::vector<NearEdges> near;
   EdgeWorkspace edges;
   PatchWorkspace for_patches;
   std::vector<BoundaryRun> runs;
@@ -177,14 +165,13 @@ Work cross_integrals(PotentialChoice::Field field) {
   }};
 }
 
-Work cross_patches(PotentialChoice::Field field, bool near) {
+Work cross_patches(PotentialChoice::Field field) {
   const auto c = std::make_shared<Crosses>(field);
-  if (near) c->find_near();
   const auto all = [c] {
     size_t patches = 0;
     for (int k = 0; k < Crosses::kPairs; ++k) {
       contact_patches(c->shapes.view(2 * k), c->shapes.view(2 * k + 1), c->offsets[k],
-                      c->for_patches, c->runs, c->patches, c->near[k]);
+                      c->for_patches, c->runs, c->patches);
       patches += c->patches.size();
     }
     return static_cast<double>(patches);
@@ -236,9 +223,7 @@ std::vector<BenchmarkCase> pair_cases() {
     enter("cross_pair_edge" + which, std::string("crosses, force: ") + name,
           [field = field] { return cross_integrals(field); });
     enter("cross_pair_patches" + which, std::string("crosses, contact patches: ") + name,
-          [field = field] { return cross_patches(field, false); });
-    enter("cross_pair_near" + which, std::string("the same, near edges known: ") + name,
-          [field = field] { return cross_patches(field, true); });
+          [field = field] { return cross_patches(field); });
   }
   return cases;
 }
