@@ -10,8 +10,6 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kManyContacts = 1024;
-
 constexpr double kRoundOff = 1 - 1e-12;
 
 // No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
@@ -70,15 +68,18 @@ void Contacts::evaluate() {
   each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
 }
 
-const std::vector<Contact>& Contacts::list(double least) const {
-  // At the start all of them are listed, and hardly any later: large scenes need the memory.
-  if (listed_.capacity() > kManyContacts) std::vector<Contact>().swap(listed_);
-  listed_.clear();
-  each([&](const Kernel& kernel) { kernel.add_contacts(least, listed_); });
-  if (!contacts_.empty()) {
-    listed_.insert(listed_.end(), contacts_.begin(), contacts_.end());
-    std::ranges::stable_sort(listed_, {}, &Contact::kernel);
+// In the order of the kernels.
+void Contacts::visit(double least, const ContactVisitor& show) const {
+  auto next = contacts_.begin();
+  for (int k = 0; k < kernel_kinds; ++k) {
+    if (kernels_[k]) kernels_[k]->visit_contacts(least, show);
+    for (; next != contacts_.end() && next->kernel == k; ++next) show(*next);
   }
+}
+
+const std::vector<Contact>& Contacts::list(double least) const {
+  listed_.clear();
+  visit(least, [&](const Contact& contact) { listed_.push_back(contact); });
   return listed_;
 }
 
@@ -179,12 +180,13 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     const auto [a, b] = bodies(c);
     peak = {depth, a, b};
   };
-  const std::vector<Contact>& deep = list(least_of(floors, *std::ranges::min_element(lengths)));
-  for (const Contact& c : deep) {
+  const double shortest = *std::ranges::min_element(lengths);
+  visit(least_of(floors, shortest), [&](const Contact& c) {
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
-  }
-  for (const Contact& c : deep) {
+  });
+  // Those that may be deeper still are few: the others need not be listed.
+  for (const Contact& c : list(least_of(found, shortest))) {
     if (c.at_most <= kKnown * c.depth) continue;
     const double known = std::min(found.largest.value, found.relative.value * length(c));
     if (!(c.at_most > known)) continue;

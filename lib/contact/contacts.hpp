@@ -127,6 +127,8 @@ class Contacts {
   void inherit(const ContactMemory& memory);
 
  private:
+  // Those that may be deeper than `least`, m, and all that kernels have appended.
+  void visit(double least, const ContactVisitor& show) const;
   [[nodiscard]] const std::vector<Contact>& list(double least) const;
   template <class F>
   void each(F&& f) const {

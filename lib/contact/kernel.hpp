@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -56,6 +57,8 @@ struct ContactSummary {
   }
 };
 
+using ContactVisitor = std::function<void(const Contact&)>;
+
 class Kernel {
  public:
   virtual ~Kernel() = default;
@@ -64,13 +67,13 @@ class Kernel {
   /// itself.
   virtual void take(std::span<const BoxPair> pairs) = 0;
   /// Finds the contacts of its pairs and the normal forces in them; appends the contacts in
-  /// ascending order, or leaves that to `add_contacts`. The same bits for any number of threads. No
-  /// allocation unless there are more contacts than ever before.
+  /// ascending order, or leaves them to `visit_contacts`. The same bits for any number of threads.
+  /// No allocation unless there are more contacts than ever before.
   virtual void evaluate(std::vector<Contact>& contacts) = 0;
   /// What a step asks of contacts that `evaluate` has not appended.
   [[nodiscard]] virtual ContactSummary summary() const { return {}; }
-  /// Appends those of them that may be deeper than `least`, m.
-  virtual void add_contacts(double /*least*/, std::vector<Contact>& /*contacts*/) const {}
+  /// Shows those of them that may be deeper than `least`, m. Not for every step.
+  virtual void visit_contacts(double /*least*/, const ContactVisitor& /*visit*/) const {}
   /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.

@@ -183,7 +183,7 @@ ContactSummary OutlineKernel::summary() const {
 }
 
 // A plateau has the first face, or the first edge, of its body for its partner.
-void OutlineKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
+void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) const {
   const Outlines& o = outlines_;
   blocks_.each_contact([&](size_t i, size_t lane) {
     const EdgeFaceBlock& block = blocks_.blocks()[i];
@@ -198,16 +198,15 @@ void OutlineKernel::add_contacts(double least, std::vector<Contact>& contacts) c
     const bool known = o.body[edge] == o.body[a] && surely > 0;
     const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
     if (at_most <= least) return;
-    contacts.push_back({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
-                        block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
+    visit({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
+           block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
   });
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    contacts.push_back(
-        {outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
+    visit({outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
   }
   if (least >= 0) return;  // the others have no depth
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
-    contacts.push_back({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
+    visit({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
 

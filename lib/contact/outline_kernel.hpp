@@ -35,7 +35,7 @@ class OutlineKernel final : public Kernel {
   /// The contacts are those of edges with faces, then of edges with tops and of tops with edges.
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] ContactSummary summary() const override;
-  void add_contacts(double least, std::vector<Contact>& contacts) const override;
+  void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void undo_slide() override {

@@ -94,7 +94,7 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   } else if (near.edges.margin > 0 && !near.edges.none() && near.age < kSoon) {
     near.share = static_cast<std::int16_t>(std::min(near.share + 1, kLargestMargin));
   }
-  near = {{}, between, turn_a, turn_b, near.share, 0};
+  near = {{}, turn_a, between, turn_b, near.share, 0};
   if (convex || !surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
   const PlacedPotential view_a = shapes.view(a);
   const PlacedPotential view_b = shapes.view(b);

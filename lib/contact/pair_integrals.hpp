@@ -115,8 +115,9 @@ class PairIntegrals {
   // Edges of a pair that are near the other body, and where the bodies were when they were found.
   struct Near {
     NearEdges edges;
+    double angle_a = 0;
     Vec2 between = Vec2::Zero();
-    double angle_a = 0, angle_b = 0;
+    double angle_b = 0;
     std::int16_t share = kFirstMargin;  // the margin asked for: this power of two inradii
     std::int16_t age = 0;               // evaluations since then
   };

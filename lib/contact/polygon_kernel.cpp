@@ -47,10 +47,9 @@ void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
   for (const Found& found : found_) summary_.include(found.summary);
 }
 
-void PolygonKernel::add_contacts(double least, std::vector<Contact>& contacts) const {
+void PolygonKernel::visit_contacts(double least, const ContactVisitor& visit) const {
   for (const PairInTouch& pair : pairs_.touching()) {
-    if (!(pairs_.deepest(pair, pairs_.integral(pair)) <= least))
-      contacts.push_back(contact_of(pair));
+    if (!(pairs_.deepest(pair, pairs_.integral(pair)) <= least)) visit(contact_of(pair));
   }
 }
 

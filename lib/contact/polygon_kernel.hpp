@@ -24,7 +24,7 @@ class PolygonKernel final : public Kernel {
   void take(std::span<const BoxPair> pairs) override;
   void evaluate(std::vector<Contact>& contacts) override;
   [[nodiscard]] ContactSummary summary() const override { return summary_; }
-  void add_contacts(double least, std::vector<Contact>& contacts) const override;
+  void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
