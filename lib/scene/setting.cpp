@@ -9,6 +9,17 @@
 namespace apothem {
 namespace {
 
+using Json = nlohmann::json;
+
+// Numbers that JSON does not know, like .1 or +2, are numbers as elsewhere on the command line.
+Json json_of_word(const std::string& word) {
+  try {
+    return parse_decimal(word);
+  } catch (const BadNumber&) {
+    return word;
+  }
+}
+
 // The part of a path up to its next dot. Keys and names may hold dots themselves: of those that the
 // path goes on with, the longest one is meant.
 std::string next_part(const std::string& rest, const std::vector<std::string>& names) {
@@ -99,14 +110,14 @@ Setting parse_setting(const std::string& text, const std::string& file) {
                                  text));
   }
   Setting setting{text.substr(0, equals), text.substr(equals + 1)};
-  using Json = nlohmann::json;
   const Json json = Json::parse(setting.value, nullptr, /*allow_exceptions=*/false);
   if (!json.is_discarded()) {
     setting.value = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   } else if (std::string("[{\"").find(setting.value[0]) != std::string::npos) {
     throw SceneError(file, 0, "", fmt::format("\"{}\": the value is not valid JSON", text));
   } else {
-    setting.value = Json(setting.value).dump(-1, ' ', false, Json::error_handler_t::replace);
+    setting.value =
+        json_of_word(setting.value).dump(-1, ' ', false, Json::error_handler_t::replace);
   }
   return setting;
 }

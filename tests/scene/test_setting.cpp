@@ -28,10 +28,14 @@ Scene with(const Folder& folder, const std::vector<std::string>& texts) {
 
 }  // namespace
 
-TEST_CASE("a setting is a path and a value in JSON, or a bare word", "[scene][setting]") {
+TEST_CASE("a setting is a path and a value in JSON, or a bare word or number", "[scene][setting]") {
   const auto value = [](const std::string& text) { return parse_setting(text, "f").value; };
   CHECK(parse_setting("a.b=1", "f").path == "a.b");
   CHECK(value("a=0.30") == "0.3");
+  CHECK(value("a=.5") == "0.5");
+  CHECK(value("a=-.5") == "-0.5");
+  CHECK(value("a=+2.") == "2.0");
+  CHECK(value("a=1.2.3") == "\"1.2.3\"");
   CHECK(value("a=[0, -9.81]") == "[0,-9.81]");
   CHECK(value("a=word") == "\"word\"");
   CHECK(value("a=two words") == "\"two words\"");
