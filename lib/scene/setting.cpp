@@ -70,14 +70,13 @@ class Path {
         return array.item(i);
       }
     }
-    size_t index = size;
     try {
-      index = static_cast<size_t>(parse_count(part));
+      const auto index = static_cast<size_t>(parse_count(part));
+      if (index < size) return array.item(index);
     } catch (const BadNumber&) {
       fail(array,
            (names.empty() ? "has no item " : "has no item of the name ") + suggest(part, names));
     }
-    if (index < size) return array.item(index);
     fail(array, fmt::format("has no item {}: it has {}, counted from 0", part, size));
   }
 
