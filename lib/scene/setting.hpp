@@ -19,7 +19,8 @@ struct Setting {
 };
 
 /// Reads "PATH=VALUE". The value is JSON, or a decimal number like .1 or +2; other text that does
-/// not begin like an object, an array or a string is a string. Throws SceneError, with `file` as its place.
+/// not begin like an object, an array or a string is a string. Throws SceneError, with `file` as
+/// its place.
 Setting parse_setting(const std::string& text, const std::string& file);
 
 /// Puts the value of a setting into a scene. Keys that the path names and the scene lacks are
