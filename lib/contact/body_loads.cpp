@@ -32,23 +32,54 @@ void BodyLoads::end() {
   }
 }
 
-void BodyLoads::add_to(const ForceViews& forces) {
-  threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int) {
+void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> touching) {
+  rates_.resize(sums_.size());
+  fastest_.assign(parts_.size(), 0.);
+  threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int worker) {
+    double fastest = 0;
     for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
-      BodyLoad& sum = sums_[i];
+      const BodyLoad& sum = sums_[i];
       double* const f = &forces.rigid[3 * i];
       f[0] += sum.x;
       f[1] += sum.y;
       f[2] += sum.moment;
-      const std::array<double, 3>& inverse_mass =
-          surfaces_.rigid(static_cast<RigidIndex>(i)).inverse_mass;
-      double rate = rate_bound_of(sum.held, inverse_mass);
-      // It is exact above the limit, so that it does not shorten the step in vain.
-      if (rate > forces.lambda_limit) rate = rate_of(sum.held, inverse_mass);
-      forces.lambda[i] += rate;
-      sum = {};
+      if (!forces.beside.empty()) std::ranges::copy(sum.beside, &forces.beside[3 * i]);
+      rates_[i].own = rate_bound_of(sum.held, inverse_mass(i));
+      fastest = std::max(fastest, rates_[i].own);
+    }
+    fastest_[static_cast<size_t>(worker)] = fastest;
+  });
+  // Most steps end here: no pair is near the limit.
+  const double most = 2 * *std::ranges::max_element(fastest_);
+  if (most > forces.lambda_limit) find_rates(forces.lambda_limit, touching);
+  threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int) {
+    for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+      Rate& rate = rates_[i];
+      forces.lambda[i] += rate.own + (most > forces.lambda_limit ? rate.partner : rate.own);
+      rate = {};
+      sums_[i] = {};
     }
   });
+}
+
+// The largest rate of a partner that can move, of each body: see stiffness.hpp. Rates are exact
+// above the limit, so that they do not shorten the step in vain.
+void BodyLoads::find_rates(double limit, std::span<const PairInTouch> touching) {
+  const auto sharpen = [&](size_t i) {
+    if (rates_[i].exact) return;
+    rates_[i].own = rate_of(sums_[i].held, inverse_mass(i));
+    rates_[i].exact = true;
+  };
+  for (const PairInTouch& pair : touching) {
+    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    if (rates_[a].own + rates_[b].own > limit) sharpen(a), sharpen(b);
+  }
+  for (const PairInTouch& pair : touching) {
+    Rate& a = rates_[static_cast<size_t>(pair.a)];
+    Rate& b = rates_[static_cast<size_t>(pair.b)];
+    a.partner = std::max(a.partner, b.own);
+    b.partner = std::max(b.partner, a.own);
+  }
 }
 
 }  // namespace apothem

@@ -5,10 +5,12 @@
 // taken in the order of the pairs and has the same bits for any number of threads.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "apothem/contact/kinematics.hpp"
+#include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_load.hpp"
 #include "apothem/contact/surfaces.hpp"
 #include "apothem/execution/parallel.hpp"
@@ -36,7 +38,7 @@ class BodyLoads {
   /// After all threads are done.
   void end();
   /// Adds the sums to the forces and their bounds, and forgets them.
-  void add_to(const ForceViews& forces);
+  void add_to(const ForceViews& forces, std::span<const PairInTouch> touching);
 
  private:
   struct LateLoad {
@@ -53,11 +55,23 @@ class BodyLoads {
     }
   };
 
+  // Of a body: w^2 of what its own contacts hold, and the largest one of its partners, 1/s^2.
+  struct Rate {
+    double own = 0, partner = 0;
+    bool exact = false;  // own is not a bound
+  };
+  [[nodiscard]] const std::array<double, 3>& inverse_mass(size_t body) const {
+    return surfaces_.rigid(static_cast<RigidIndex>(body)).inverse_mass;
+  }
+  void find_rates(double limit, std::span<const PairInTouch> touching);
+
   const Surfaces& surfaces_;
   Threads threads_;
   std::vector<BodyLoad> sums_;             // of each rigid body
   std::vector<RigidIndex> first_partner_;  // of each: itself or the least one that it may touch
   std::vector<Part> parts_;
+  std::vector<Rate> rates_;      // of each rigid body
+  std::vector<double> fastest_;  // of these, by each thread
 };
 
 }  // namespace apothem

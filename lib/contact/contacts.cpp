@@ -128,11 +128,22 @@ void Contacts::drop_trial() {
   each([](Kernel& kernel) { kernel.undo_slide(); });
 }
 
-void Contacts::add_forces(const ForceViews& forces) {
+void Contacts::add_forces(ForceViews forces) {
+  if (tangential_) {
+    std::swap(beside_, beside_before_);
+    beside_.assign(forces.rigid.size(), 0.);
+    forces.beside = beside_;
+  }
   each([&](Kernel& kernel) { kernel.add_forces(forces); });
 }
 
-bool Contacts::find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) {
+void Contacts::book_bend(Dynamics dynamics, double dt) {
+  dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
+  memory_.lose(dynamics.lost_in_bend(dt));
+}
+
+bool Contacts::find_onsets(const Kinematics& now, Dynamics dynamics, double dt) {
+  dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   bool found = false;
   each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt) || found; });
   return found;
@@ -309,6 +320,7 @@ void Contacts::inherit(const ContactMemory& memory) {
 
 void Contacts::fields(Archive& archive) {
   archive("friction", memory_);
+  if (tangential_) archive("beside", beside_);
   each([&](Kernel& kernel) { kernel.fields(archive); });
 }
 

@@ -59,7 +59,7 @@ class Contacts {
   void try_slide(const Kinematics& now, double dt);
   /// Contacts remember what they did before the last slide that was tried.
   void drop_trial();
-  void add_forces(const ForceViews& forces);
+  void add_forces(ForceViews forces);
 
   /// Ascending within a kernel, until they are listed again. Not for every step.
   [[nodiscard]] const std::vector<Contact>& contacts() const { return list(-HUGE_VAL); }
@@ -71,8 +71,13 @@ class Contacts {
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
 
+  /// True if there is friction or damping.
+  [[nodiscard]] bool dissipates() const { return tangential_; }
+  /// After the forces at the end of a drift of dt (s): books what friction and damping take on a
+  /// path that bends within the step.
+  void book_bend(Dynamics dynamics, double dt);
   /// Impulses of contacts that have begun or ended in the drift of dt (s): see Kernel.
-  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt);
+  bool find_onsets(const Kinematics& now, Dynamics dynamics, double dt);
   void add_onsets(double scale, const ForceViews& forces) const;
 
   /// Elastic energy of contacts and springs, J. Not for every step.
@@ -153,6 +158,8 @@ class Contacts {
   std::vector<Contact> contacts_;        // without those that kernels add when they are asked for
   mutable std::vector<Contact> listed_;  // those that list() has found
   FrictionMemory memory_;
+  // What friction and damping do to rigid bodies, N and N m: now and in the step before.
+  std::vector<double> beside_, beside_before_;
   bool tried_ = false;  // the last slide was a trial
   std::int64_t searches_ = 0;
 };

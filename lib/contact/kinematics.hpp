@@ -21,9 +21,11 @@ struct Kinematics {
 struct ForceViews {
   std::span<double> rigid;  ///< N, N and the moment about the mass centre, N m, of each rigid body
   std::span<double> nodes;  ///< x, y of each node, N
-  /// Of each rigid body: bound of the stiffness of its contacts divided by its inertia, 1/s^2.
+  /// Of each rigid body: bound of w^2 of what its contacts hold, 1/s^2: see stiffness.hpp.
   std::span<double> lambda;
   double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
+  /// What of `rigid` friction and damping do; empty if nobody asks.
+  std::span<double> beside = {};
 };
 
 /// A body has a vertex that is not at a finite place.

@@ -69,6 +69,17 @@ int find_onset_samples(std::span<const double> events, int panels,
   return static_cast<int>(count);
 }
 
+double Dynamics::lost_in_bend(double dt) const {
+  double sum = 0;
+  for (size_t c = 0; c < beside_after.size(); ++c) {
+    const double g = weight.empty() ? 0 : weight[c];
+    const double kept_before = before[c] + g - beside_before[c];
+    const double kept_after = after[c] + g - beside_after[c];
+    sum += inverse_mass[c] * (kept_after * beside_before[c] - kept_before * beside_after[c]);
+  }
+  return dt * dt / 12 * sum;
+}
+
 void OnsetRest::add(const OnsetForces& f, double missing, const OtherForces& others,
                     double inverse_mass, double velocity) {
   const double first = f.first + others.first;
@@ -77,10 +88,16 @@ void OnsetRest::add(const OnsetForces& f, double missing, const OtherForces& oth
   const double p1 = dt_ * (last / 2 + missing);
   const double d0 = inverse_mass * p0;
   const double d1 = inverse_mass * p1;
-  const double change = others.last - others.first;
+  const double kept_first = first - others.beside_first;
+  const double kept_last = last - others.beside_last;
+  const double change = (others.last - others.beside_last) - (others.first - others.beside_first);
   energy_ += (p1 * d1 - p0 * d0) / 2 -
              dt_ / 6 * ((f.end_slope + change) * d1 - (f.start_slope + change) * d0) -
-             dt_ * dt_ / 24 * inverse_mass * (last * last - first * first);
+             dt_ * dt_ * inverse_mass *
+                 ((last * last - first * first) / 8 -
+                  (kept_last * (last + others.beside_first) -
+                   kept_first * (first + others.beside_last)) /
+                      12);
   const double h = dt_ * inverse_mass;
   first_.along += f.start_slope * velocity;
   first_.aside += f.start_slope * d0;

@@ -73,6 +73,8 @@ struct OnsetForces {
 /// Forces of all but the pair on a coordinate, at the start and at the end of the step.
 struct OtherForces {
   double first, last;
+  /// What friction and damping do, of these and of the pair: it belongs to no potential.
+  double beside_first = 0, beside_last = 0;
 };
 
 /// What moves the bodies in a step: of every coordinate in the order of a state, rigid bodies
@@ -81,11 +83,20 @@ struct Dynamics {
   std::span<const double> inverse_mass;   ///< 1/kg and 1/(kg m^2); 0 where forces cannot move it
   std::span<const double> before, after;  ///< all forces at the start and at the end, N and N m
   std::span<const double> weight;         ///< of gravity, besides these; may be empty
+  /// Of the forces of the first coordinates, what friction and damping do; of the others nothing.
+  std::span<const double> beside_before = {}, beside_after = {};
 
   [[nodiscard]] OtherForces others(size_t coordinate, const OnsetForces& of_pair) const {
     const double g = weight.empty() ? 0 : weight[coordinate];
-    return {before[coordinate] - of_pair.first + g, after[coordinate] - of_pair.last + g};
+    OtherForces f{before[coordinate] - of_pair.first + g, after[coordinate] - of_pair.last + g};
+    if (coordinate < beside_after.size()) {
+      f.beside_first = beside_before[coordinate], f.beside_last = beside_after[coordinate];
+    }
+    return f;
   }
+  /// What the work of friction and damping, as the trapezoid rule sums it along the straight path
+  /// of the drift, lacks of that along the path of Verlet's modified energy, J, in a step of dt.
+  [[nodiscard]] double lost_in_bend(double dt) const;
 };
 
 /// R and what it takes to remove it, summed over the coordinates.

@@ -86,6 +86,8 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
   read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].memory->patches > 0 ? 0. : 1.; });
   read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].memory->spring; });
+  read_lanes(p.friction_before,
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return work[k].memory->force; });
   if (!damped) {  // what only dampers need
     p.rate_before = {};
     p.touched = Real(0.) > Real(0.);
@@ -101,6 +103,10 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   read_lanes(damper.damping,
              [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.damping; });
   read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return last(k).patch.tangential; });
+  PairVectorOf<Real> damping_before;
+  read_lanes(damping_before,
+             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).pair.damping; });
+  p.friction_before = p.friction_before - damping_before;
 }
 
 template <class Real>
@@ -124,15 +130,17 @@ APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
 
 // The numbers of a load stand in a row.
 static_assert(offsetof(BodyLoad, held) == 3 * sizeof(double) &&
-              sizeof(BodyLoad) == 9 * sizeof(double));
+              sizeof(BodyLoad) == 12 * sizeof(double));
 template <int lanes, class F>
 APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
                                const PackOf<lanes>& moment,
-                               const BodyStiffnessOf<PackOf<lanes>>& held, const F& to) {
+                               const BodyStiffnessOf<PackOf<lanes>>& held,
+                               const std::array<PackOf<lanes>, 3>& beside, const F& to) {
   write_rows({x, y, moment, held.xx}, [&](int k) APOTHEM_LAMBDA { return &to(k).x; });
   write_rows({held.xy, held.yy, held.xt, held.yt},
              [&](int k) APOTHEM_LAMBDA { return &to(k).held.xy; });
-  for (int k = 0; k < lanes; ++k) to(k).held.tt = held.tt.v[k];
+  write_rows({held.tt, beside[0], beside[1], beside[2]},
+             [&](int k) APOTHEM_LAMBDA { return &to(k).held.tt; });
 }
 
 }  // namespace
@@ -151,6 +159,8 @@ void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, T
     DamperOf<Pack> damper;
     read_pair(scene, all.data(), p);
     read_memory(scene, all.data(), kind.damped, p, damper);
+    // What the spring of one patch of several did before is not known: it may have been elsewhere.
+    p.friction_before = p.force_at_point(p.spring * p.normal.turned());
     step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper, found);
     const auto of = [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; };
     write_lanes(found.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).all; });
@@ -181,8 +191,11 @@ void load_pair(const PairScene& scene, const PairWork& work, const PairForce& be
   BodyStiffness a = held_a, b = held_b;
   hold(&work, p, a, b);
   const PairForce f = whole_force(p, beside);
-  *work.load = {
-      {f.x, f.y, f.a, a}, {-f.x, -f.y, f.b, b}, p.normal_stiffness * p.size, work.a, work.b};
+  *work.load = {{f.x, f.y, f.a, a, {beside.x, beside.y, beside.a}},
+                {-f.x, -f.y, f.b, b, {-beside.x, -beside.y, beside.b}},
+                p.normal_stiffness * p.size,
+                work.a,
+                work.b};
 }
 
 APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
@@ -241,9 +254,10 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   }
   hold(work, p, forces.held_a, forces.held_b);
   const PairVectorOf<Pack> f = whole_force(p, forces.all);
-  write_load(f.x, f.y, f.a, forces.held_a,
+  const PairVectorOf<Pack>& beside = forces.all;
+  write_load(f.x, f.y, f.a, forces.held_a, {beside.x, beside.y, beside.a},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_a; });
-  write_load(-f.x, -f.y, f.b, forces.held_b,
+  write_load(-f.x, -f.y, f.b, forces.held_b, {-beside.x, -beside.y, beside.b},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_b; });
   const Pack normal = p.normal_stiffness * p.size;
   for (int k = 0; k < kAtOnce; ++k) {

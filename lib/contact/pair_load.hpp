@@ -2,6 +2,8 @@
 // holds them, as formulas for numbers and for packs of them.
 #pragma once
 
+#include <array>
+
 #include "apothem/contact/pair_vector.hpp"
 #include "apothem/contact/patch_laws.hpp"
 #include "apothem/contact/stiffness.hpp"
@@ -9,17 +11,19 @@
 
 namespace apothem {
 
-/// What contacts do to a rigid body: the force, N, its moment about the mass centre, N m, and how
-/// they resist its displacement.
+/// What contacts do to a rigid body: the force, N, its moment about the mass centre, N m, how they
+/// resist its displacement, and what of the force and the moment friction and damping do.
 struct BodyLoad {
   double x = 0, y = 0, moment = 0;
   BodyStiffness held;
+  std::array<double, 3> beside = {};
 
   void add(const BodyLoad& other) {
     x += other.x;
     y += other.y;
     moment += other.moment;
     held.add(other.held, 1);
+    for (size_t k = 0; k < 3; ++k) beside[k] += other.beside[k];
   }
 };
 
@@ -35,8 +39,7 @@ template <class Real>
 struct ContactStrip {
   Real breadth, middle;  // across the force: see PairIntegral
 
-  /// Adds to `springs`, how friction springs hold a body, how the contact does. The displacements
-  /// of both bodies add where both can move: K (x_a - x_b)^2 <= 2 K (x_a^2 + x_b^2).
+  /// Adds to `springs`, how friction springs hold a body, how the contact does.
   APOTHEM_INLINE void hold(const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
                            BodyStiffnessOf<Real>& b) const {
     const Real zero(0.), one(1.);
@@ -52,19 +55,13 @@ struct ContactStrip {
     // other.
     const VectorOf<Real> at = middle * tangent;
     const Real spread = stiffness * breadth * breadth / Real(12.);
-    const auto moves = [&](const std::array<Real, 3>& w)
-                           APOTHEM_LAMBDA { return w[0] + w[1] + w[2] > zero; };
-    const Truth<Real> a_moves = moves(p.inverse_mass_a), b_moves = moves(p.inverse_mass_b);
-    const Real times = select(a_moves & b_moves, Real(2.), one);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
       BodyStiffnessOf<Real> sum;
       sum.add(stiffness, normal.x, normal.y, point.cross(normal));
       sum.add(across, tangent.x, tangent.y, centre.cross(tangent));
       sum.tt = sum.tt + spread;
-      sum.add(springs, one);
-      springs = {};
-      springs.add(sum, times);
+      springs.add(sum, one);
     };
     body(a, at, p.centre);
     body(b, at + p.between, p.centre + p.between);

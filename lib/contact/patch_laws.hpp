@@ -41,6 +41,7 @@ struct PatchStep {
   // The law. Stiffnesses are times the thickness, N/m.
   Real normal_stiffness, tangential_stiffness, coefficient, normal_ratio, tangential_ratio;
   Real spring;  // the force of the friction spring before, N
+  PairVectorOf<Real> friction_before;  // what it did to the bodies
 
   // What follows from it.
   Real size;                  // of the force for unit stiffness, m
@@ -163,13 +164,15 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const 
   const auto within = [&](const Real& f) __attribute__((always_inline)) {
     return select(f < -limit, -limit, select(f > limit, limit, f));
   };
-  const Real trial = p.spring - k * (slip * (share * Real(dt)));
-  const Real next = within(trial);
-  // What it loses is the mean force times the slip that it does not follow; without a direction,
-  // all that it has stored.
-  forces.lost = select(p.has_direction, (p.spring + next) * (trial - next), p.spring * p.spring) /
-                (Real(2.) * k);
-  forces.spring = select(p.has_direction, next, Real(0.));
+  // The point at which it acts moves: in the first half of the step it is still where it was.
+  const Real power_before = p.friction_before.power(p.rate);
+  const Real slip_before = select(p.spring * p.spring > Real(0.), power_before / p.spring, slip);
+  const Real trial = p.spring - k * (Real(.5) * (slip + slip_before) * (share * Real(dt)));
+  forces.spring = select(p.has_direction, within(trial), Real(0.));
+  // What it loses is what it takes from the bodies and does not store.
+  forces.lost = -Real(dt / 2) * (power_before + forces.spring * along) -
+                (forces.spring * forces.spring - p.spring * p.spring) / (Real(2.) * k);
+  const Real& next = forces.spring;
   forces.tangent = {select(p.has_direction, tangent.x, Real(0.)),
                     select(p.has_direction, tangent.y, Real(0.))};
   forces.all = forces.all + p.force_at_point(forces.spring * tangent).where(p.has_direction);

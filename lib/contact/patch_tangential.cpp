@@ -271,9 +271,8 @@ void PatchTangential::Range::step_patches(const PairInTouch& touching, const Pai
       now.tangent = {spring.tangent.x(), spring.tangent.y()};
     }
     pair.book->energy += spring.energy();
-    pair.book->loss += forces.lost;
   }
-  if (one_each && !inherit_whole()) pair.book->loss = lost_by_balance(pair, sum);
+  if (one_each) pair.book->loss = lost_by_balance(pair, sum);
   if (kind.rough && all_.per_edge_) per_edge(pair, all_.pairs_.whole_runs(touching), to, sum);
   now.force = sum.force;
   if (pair.damping) {
@@ -312,17 +311,6 @@ void PatchTangential::Range::find_shares() {
   }
 }
 
-// True if every patch goes on alone, or there were none.
-bool PatchTangential::Range::inherit_whole() const {
-  const size_t heirs = patches_.size();
-  if (ancestors_ == 0 || (ancestors_ == 1 && heirs == 1)) return true;
-  if (ancestors_ != heirs) return false;
-  for (size_t i = 0; i < heirs; ++i) {
-    if (shares_[i * heirs + i] != 1) return false;
-  }
-  return true;
-}
-
 template <class T, class Add>
 void PatchTangential::Range::inherit(std::span<const T> before, std::vector<T>& heirs,
                                      Add&& add) const {
@@ -339,8 +327,7 @@ void PatchTangential::Range::inherit(std::span<const T> before, std::vector<T>& 
   }
 }
 
-// Where patches come, go, split or merge, springs do not know what they lose: what friction has
-// taken from the bodies and the springs do not store.
+// What friction has taken from the bodies and the springs do not store.
 double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& sum) const {
   double power = (sum.force - sum.damping).power(sum.rate);
   if (before_.touched()) {

@@ -140,7 +140,6 @@ class PatchTangential {
     void step_patches(const PairInTouch& touching, const PairWork& pair, Tangential kind,
                       const Place& to);
     void find_shares();
-    [[nodiscard]] bool inherit_whole() const;
     template <class T, class Add>
     void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;

@@ -100,7 +100,7 @@ void PolygonKernel::add_forces(const ForceViews& forces) {
   if (!tangential_) {
     sum_loads([&](int first, int end, int worker) { find_normal_loads(first, end, worker); });
   }
-  loads_.add_to(forces);
+  loads_.add_to(forces, pairs_.touching());
 }
 
 // Calls part(first, end, worker) for the blocks of touching pairs of each thread.

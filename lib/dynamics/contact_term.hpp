@@ -27,6 +27,10 @@ class ContactTerm final : public Term {
   /// Throws Unstable where bodies are out of the method's range.
   void add_forces(const Evaluation& evaluation) override;
   [[nodiscard]] bool has_onsets() const override { return true; }
+  [[nodiscard]] bool needs_bend() const override { return contacts_.dissipates(); }
+  void book_bend(const State& state, std::span<const double> before, double dt) override {
+    contacts_.book_bend({dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
+  }
   bool find_onsets(const State& state, std::span<const double> before, double dt) override {
     return contacts_.find_onsets(state.kinematics(state.v),
                                  {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);

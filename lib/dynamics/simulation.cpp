@@ -132,8 +132,11 @@ void Simulation::take_step() {
   dofs_.drift(state_, dt);
   for (const auto& term : terms_) term->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
-  if (watches_onsets()) forces_ = state_.f;
+  if (needs_forces_before()) forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
+  for (const auto& term : terms_) {
+    if (term->needs_bend()) term->book_bend(state_, forces_, dt);
+  }
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
@@ -204,6 +207,11 @@ void Simulation::find_forces(std::span<const double> velocity, double dt, double
 bool Simulation::watches_onsets() const {
   return onsets_ &&
          std::ranges::any_of(terms_, [](const auto& term) { return term->has_onsets(); });
+}
+
+bool Simulation::needs_forces_before() const {
+  return watches_onsets() ||
+         std::ranges::any_of(terms_, [](const auto& term) { return term->needs_bend(); });
 }
 
 // Contacts that begin or end within the step push in its second half as if they had pushed when

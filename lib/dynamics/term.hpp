@@ -46,6 +46,12 @@ class Term {
   /// and those of the nodes with the elements' (Elements is the first term where there are nodes).
   /// Throws Unstable.
   virtual void add_forces(const Evaluation& /*evaluation*/) {}
+  /// True if its dissipative forces have to be booked along the path that bends within a step.
+  [[nodiscard]] virtual bool needs_bend() const { return false; }
+  /// After add_forces at the end of a drift of dt (s), with all forces at the start of the step as
+  /// `before`: books what the trapezoid rule leaves out of the work of its dissipative forces.
+  virtual void book_bend(const State& /*state*/, std::span<const double> /*before*/,
+                         double /*dt*/) {}
   /// True if find_onsets may find something.
   [[nodiscard]] virtual bool has_onsets() const { return false; }
   /// After add_forces at the end of a drift of dt (s): finds the impulses that the two ends of the
