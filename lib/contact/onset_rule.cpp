@@ -94,10 +94,9 @@ void OnsetRest::add(const OnsetForces& f, double missing, const OtherForces& oth
   energy_ += (p1 * d1 - p0 * d0) / 2 -
              dt_ / 6 * ((f.end_slope + change) * d1 - (f.start_slope + change) * d0) -
              dt_ * dt_ * inverse_mass *
-                 ((last * last - first * first) / 8 -
-                  (kept_last * (last + others.beside_first) -
-                   kept_first * (first + others.beside_last)) /
-                      12);
+                 ((last * last - first * first) / 8 - (kept_last * (last + others.beside_first) -
+                                                       kept_first * (first + others.beside_last)) /
+                                                          12);
   const double h = dt_ * inverse_mass;
   first_.along += f.start_slope * velocity;
   first_.aside += f.start_slope * d0;

@@ -47,18 +47,22 @@ struct ContactStrip {
     // Of the pushes of the edges: 1 if all have one direction.
     const Real share = p.size / p.weight;
     const Real aligned = select(share < one, share, one);
-    const Real across = (one - aligned * aligned) * stiffness;
+    const Real aside = square_root(one - aligned * aligned);
+    const Real across = aside * aside * stiffness;
+    // Flanks give way along the force: each edge resists by the cosine of its angle to it. Where the
+    // pushes of the edges cancel, the force has no direction that says anything.
+    const Real along = select(aligned > aside, aligned, aside) * stiffness;
     const Truth<Real> pushes = p.size > zero;
     const VectorOf<Real> normal{select(pushes, p.normal.x, zero), select(pushes, p.normal.y, zero)};
     const VectorOf<Real> tangent = normal.turned();
     // Where the resultant acts says little: boundary that is hardly inside is as stiff as any
     // other.
     const VectorOf<Real> at = middle * tangent;
-    const Real spread = stiffness * breadth * breadth / Real(12.);
+    const Real spread = along * breadth * breadth / Real(12.);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
       BodyStiffnessOf<Real> sum;
-      sum.add(stiffness, normal.x, normal.y, point.cross(normal));
+      sum.add(along, normal.x, normal.y, point.cross(normal));
       sum.add(across, tangent.x, tangent.y, centre.cross(tangent));
       sum.tt = sum.tt + spread;
       springs.add(sum, one);

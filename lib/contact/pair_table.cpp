@@ -30,6 +30,8 @@ PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& ma
       damped_ = damped_ || pair.damping.normal > 0 || pair.damping.tangential > 0;
       stiffest_ = std::max(stiffest_, pair.normal_stiffness);
       softest_ = std::min(softest_, pair.normal_stiffness);
+      if (!(pair.friction.coefficient > 0)) continue;
+      stiffest_friction_ = std::max(stiffest_friction_, pair.friction.tangential_stiffness);
     }
   }
 }

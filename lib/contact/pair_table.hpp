@@ -27,13 +27,15 @@ class PairTable {
   /// The largest and the smallest normal stiffness between any two bodies, Pa.
   [[nodiscard]] double stiffest() const { return stiffest_; }
   [[nodiscard]] double softest() const { return softest_; }
+  /// The largest tangential stiffness between any two rough bodies, Pa; 0 if there is no friction.
+  [[nodiscard]] double stiffest_friction() const { return stiffest_friction_; }
 
  private:
   std::vector<int> kind_;  // of each body
   size_t kinds_ = 0;
   std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
   bool self_, rough_ = false, damped_ = false;
-  double stiffest_ = 0, softest_ = HUGE_VAL;
+  double stiffest_ = 0, softest_ = HUGE_VAL, stiffest_friction_ = 0;
 };
 
 }  // namespace apothem

@@ -40,7 +40,7 @@ struct PatchStep {
   Truth<Real> begins;              // the pair had no patch in the step before
   // The law. Stiffnesses are times the thickness, N/m.
   Real normal_stiffness, tangential_stiffness, coefficient, normal_ratio, tangential_ratio;
-  Real spring;  // the force of the friction spring before, N
+  Real spring;                         // the force of the friction spring before, N
   PairVectorOf<Real> friction_before;  // what it did to the bodies
 
   // What follows from it.

@@ -10,9 +10,9 @@
 namespace apothem {
 namespace {
 
-// The bound counts the short flanks of a flat contact as well, which do not press: a step may
-// exceed it by a little.
-constexpr double kOvershoot = 1.05;
+// The step is chosen for two bodies. One that is squeezed between two others may be stiffer by this
+// part of the frequency, before a change of the step costs less than it is worth.
+constexpr double kOvershoot = 1.5;
 constexpr std::int64_t kPatience = 512;
 constexpr std::int64_t kSoon = 8;  // times the patience
 constexpr size_t kMostChanges = 1000;

@@ -7,8 +7,10 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "apothem/contact/stiffness.hpp"
+#include "apothem/dynamics/landing.hpp"
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/execution/elementary.hpp"
 #include "apothem/model/pairs.hpp"
@@ -21,45 +23,78 @@ namespace {
 constexpr double kSmooth = .5;
 constexpr double kCoarsest = .6;
 
-// An edge that lies flat on another body.
-struct FlatEdge {
-  double length;    // m
-  double mobility;  // of the body against a force spread over the edge, 1/kg
-};
-
-struct FlatEdges {
-  std::vector<FlatEdge> edges;
+// A body in the search for the stiffest pair.
+struct Lander {
+  std::vector<Landing> landings;
   double longest = 0;   // m
   double mobility = 0;  // the highest, 1/kg
   double slope = 0;     // of the potential, 1/m
+  double slide = 0;     // the same along the strips, 1/kg
+  int pieces = 1;       // the most
 };
 
-FlatEdges flat_edges(const RigidBody& body) {
-  FlatEdges result;
-  const std::array<double, 3> inverse_mass = body.inverse_mass();
-  const std::vector<Vec2>& v = body.potential.vertices;
-  for (size_t i = 0; i < v.size(); ++i) {
-    const Vec2& p = v[i];
-    const Vec2& q = v[i + 1 == v.size() ? 0 : i + 1];
-    const double length = (q - p).norm();
-    const double arm = std::abs((p + q).dot(q - p)) / (2 * length);
-    result.edges.push_back({length, strip_mobility(inverse_mass, arm, length)});
-    result.longest = std::max(result.longest, length);
-    result.mobility = std::max(result.mobility, result.edges.back().mobility);
+// The landings of all bodies at the deepest impact that they may have with one that is flat.
+std::vector<Lander> landers(const Model& model, double softest) {
+  const std::vector<double> speeds = fastest_speeds(model);
+  // Of each body the fastest and the flattest other one.
+  const auto other = [&](auto&& value, auto&& better, double none) {
+    double first = none, second = none;
+    for (size_t i = 0; i < model.bodies.size(); ++i) {
+      const double x = value(i);
+      if (better(x, first)) {
+        second = first, first = x;
+      } else if (better(x, second)) {
+        second = x;
+      }
+    }
+    return [=](double own) { return own == first ? second : first; };
+  };
+  const auto slope = [&](size_t i) { return model.bodies[i].potential.steepest; };
+  const auto fastest = other([&](size_t i) { return speeds[i]; }, std::greater(), 0.);
+  const auto flattest = other(slope, std::less(), HUGE_VAL);
+  std::vector<double> energies;  // J, with the mass of the body that moves
+  for (size_t i = 0; i < model.bodies.size(); ++i) {
+    const double speed = speeds[i] + fastest(speeds[i]);
+    const bool free = model.bodies[i].motion == Motion::free;
+    energies.push_back(free ? model.bodies[i].mass * speed * speed / 2 : 0);
   }
-  result.slope = body.potential.steepest;
-  return result;
+  const double largest = energies.empty() ? 0 : *std::ranges::max_element(energies);
+  std::vector<Lander> all;
+  for (size_t i = 0; i < model.bodies.size(); ++i) {
+    const RigidBody& body = model.bodies[i];
+    const double energy = body.motion == Motion::free ? energies[i] : largest;
+    const double slopes = slope(i) + flattest(slope(i));
+    Lander lander;
+    lander.slope = slope(i);
+    lander.landings = landings(body, energy / (softest * model.thickness * slopes));
+    for (const Landing& landing : lander.landings) {
+      lander.longest = std::max(lander.longest, landing.length);
+      lander.mobility = std::max(lander.mobility, landing.mobility);
+      lander.slide = std::max(lander.slide, landing.slide);
+      lander.pieces = std::max(lander.pieces, landing.pieces);
+    }
+    all.push_back(std::move(lander));
+  }
+  return all;
 }
 
-// lambda / k_n of two bodies, flat on each other along the worst two edges.
-double flat_contact(const FlatEdges& a, const FlatEdges& b) {
-  double worst = 0;
-  for (const FlatEdge& p : a.edges) {
-    for (const FlatEdge& q : b.edges) {
-      worst = std::max(worst, std::min(p.length, q.length) * (p.mobility + q.mobility));
-    }
-  }
-  return worst * (a.slope + b.slope);
+// lambda over the thickness of two bodies that lie on each other with these landings: that of the
+// normal force, and with the springs of friction beside it.
+double lambda_of(const RigidBody& body_a, const RigidBody& body_b, const Landing& a,
+                 const Landing& b, const PairLaw& law) {
+  const double slopes = body_a.potential.steepest + body_b.potential.steepest;
+  const double normal = law.normal_stiffness * std::min(a.length, b.length) * slopes;
+  if (!(law.friction.coefficient > 0)) return normal * (a.mobility + b.mobility);
+  const double breadth = std::min(a.breadth, b.breadth);
+  const int springs = std::max(a.pieces, b.pieces);
+  const auto rate = [&](const RigidBody& body, const Landing& landing) {
+    BodyStiffness stiffness;
+    stiffness.add(normal, 0, 1, landing.arm);
+    stiffness.tt += normal * breadth * breadth / 12;
+    stiffness.add(springs * law.friction.tangential_stiffness, 1, 0, landing.height);
+    return rate_of(stiffness, body.inverse_mass());
+  };
+  return rate(body_a, a) + rate(body_b, b);
 }
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }
@@ -68,35 +103,41 @@ std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
 double flat_mobility(const RigidBody& body) {
   double worst = 0;
-  for (const FlatEdge& edge : flat_edges(body).edges) {
-    worst = std::max(worst, edge.length * edge.mobility);
+  for (const Landing& landing : landings(body, 0)) {
+    worst = std::max(worst, landing.length * landing.mobility);
   }
   return worst;
 }
 
 namespace {
 
-// A bound of lambda / k_n of two bodies, or of a body with each of a group.
+// A bound of lambda over the thickness of two bodies, or of a body with each of a group.
 template <class Flat>
-double flat_bound(const FlatEdges& a, const Flat& b) {
-  return std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
+double flat_bound(const Lander& a, const Flat& b, const PairLaw& worst) {
+  const double normal =
+      std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
+  return worst.normal_stiffness * normal +
+         std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness * (a.slide + b.slide);
 }
 
 // Bounds of some bodies.
 struct FlatGroup {
   std::vector<int> members;
-  double longest = 0, mobility = 0, slope = 0;
+  double longest = 0, mobility = 0, slope = 0, slide = 0;
+  int pieces = 1;
 
-  void add(int member, const FlatEdges& f) {
+  void add(int member, const Lander& f) {
     members.push_back(member);
     longest = std::max(longest, f.longest);
     mobility = std::max(mobility, f.mobility);
     slope = std::max(slope, f.slope);
+    slide = std::max(slide, f.slide);
+    pieces = std::max(pieces, f.pieces);
   }
 };
 
 // Bodies of about the same size go together, so that the bounds of a group are sharp.
-std::vector<FlatGroup> groups_by_length(const std::vector<FlatEdges>& all) {
+std::vector<FlatGroup> groups_by_length(const std::vector<Lander>& all) {
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater(), [&](int i) { return all[i].longest; });
@@ -112,14 +153,17 @@ std::vector<FlatGroup> groups_by_length(const std::vector<FlatEdges>& all) {
 }  // namespace
 
 StepLimit contact_step_limit(const Model& model) {
-  std::vector<FlatEdges> all;
-  for (const RigidBody& body : model.bodies) all.push_back(flat_edges(body));
   const PairTable table = pair_table(model);
+  const std::vector<Lander> all = landers(model, table.softest());
   const std::vector<FlatGroup> groups = groups_by_length(all);
+  const PairLaw stiffest{.normal_stiffness = table.stiffest(),
+                         .friction = {0, table.stiffest_friction()}};
   const auto bound = [&](int i) {
     double most = 0;
-    for (const FlatGroup& group : groups) most = std::max(most, flat_bound(all[i], group));
-    return most * table.stiffest();
+    for (const FlatGroup& group : groups) {
+      most = std::max(most, flat_bound(all[i], group, stiffest));
+    }
+    return most;
   };
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
   std::vector<std::pair<double, int>> order;
@@ -127,18 +171,23 @@ StepLimit contact_step_limit(const Model& model) {
   std::ranges::sort(order);
   double worst = 0;
   std::array<int, 2> pair{-1, -1};
+  const auto look_at = [&](int i, int j) {
+    const RigidBody &a = model.bodies[i], &b = model.bodies[j];
+    const PairLaw& law = table.between(i, j);
+    for (const Landing& p : all[i].landings) {
+      for (const Landing& q : all[j].landings) {
+        const double lambda = lambda_of(a, b, p, q, law);
+        if (lambda > worst) worst = lambda, pair = {std::min(i, j), std::max(i, j)};
+      }
+    }
+  };
   for (const auto& [minus_bound, i] : order) {
     if (!(-minus_bound > worst)) break;
     for (const FlatGroup& group : groups) {
-      if (!(flat_bound(all[i], group) * table.stiffest() > worst)) continue;
+      if (!(flat_bound(all[i], group, stiffest) > worst)) continue;
       for (const int j : group.members) {
-        if (!(flat_bound(all[i], all[j]) * table.stiffest() > worst)) continue;
         if (i == j || (!model.bodies[i].can_move() && !model.bodies[j].can_move())) continue;
-        const double lambda = flat_contact(all[i], all[j]) * table.between(i, j).normal_stiffness;
-        if (lambda > worst) {
-          worst = lambda;
-          pair = {std::min(i, j), std::max(i, j)};
-        }
+        if (flat_bound(all[i], all[j], stiffest) > worst) look_at(i, j);
       }
     }
   }
@@ -149,30 +198,12 @@ StepLimit contact_step_limit(const Model& model) {
 }
 
 StepLimit motion_step_limit(const Model& model) {
-  double inradius = std::numeric_limits<double>::infinity();
-  Box scene;
-  for (const RigidBody& body : model.bodies) {
-    inradius = std::min(inradius, body.inradius);
-    for (const Vec2& v : body.potential.vertices) {
-      scene.include(body.position.x() + v.x(), body.position.y() + v.y());
-    }
-  }
-  double fastest = 0;
+  double inradius = std::numeric_limits<double>::infinity(), fastest = 0;
   std::string name;
-  for (const RigidBody& body : model.bodies) {
-    double speed = body.velocity.norm();
-    double spin = std::abs(body.spin);
-    if (body.servo) speed = body.servo->speed;
-    for (const auto& point : body.history.velocity) speed = std::max(speed, point.velocity.norm());
-    for (const auto& point : body.history.spin) spin = std::max(spin, std::abs(point.spin));
-    if (body.motion == Motion::free) {
-      speed = std::sqrt(speed * speed + 2 * model.strongest_gravity() * scene.extent());
-    }
-    speed += spin * body.reach();
-    if (speed > fastest) {
-      fastest = speed;
-      name = body.name;
-    }
+  const std::vector<double> speeds = fastest_speeds(model);
+  for (size_t i = 0; i < model.bodies.size(); ++i) {
+    inradius = std::min(inradius, model.bodies[i].inradius);
+    if (speeds[i] > fastest) fastest = speeds[i], name = model.bodies[i].name;
   }
   if (model.bodies.size() < 2 || fastest == 0) {
     return {std::numeric_limits<double>::infinity(), "nothing to run into"};
