@@ -139,13 +139,18 @@ void Contacts::add_forces(ForceViews forces) {
 
 void Contacts::book_bend(Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
-  memory_.lose(dynamics.lost_in_bend(dt));
+  const double lost = dynamics.lost_in_bend(dt);
+  if (table_.damped()) {
+    memory_.damp(lost);
+  } else {
+    memory_.lose(lost);
+  }
 }
 
 bool Contacts::find_onsets(const Kinematics& now, Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   bool found = false;
-  each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt) || found; });
+  each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt, memory_) || found; });
   return found;
 }
 

@@ -97,7 +97,8 @@ class Kernel {
   virtual void add_forces(const ForceViews& forces) = 0;
   /// At the end of a drift of dt (s): finds the impulses that contacts lack that have begun or
   /// ended in it (onset.hpp); true if there is one.
-  virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/) {
+  virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
+                           FrictionMemory& /*memory*/) {
     return false;
   }
   /// Adds these impulses over dt, times `scale`, to the forces.

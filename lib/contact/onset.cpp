@@ -29,14 +29,18 @@ struct Onset::Path {
   }
 };
 
-bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynamics& dynamics,
-                 double dt) {
+bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
+                 const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
+  const bool damped = tangential && table_.damped();
+  std::swap(damping_, damping_before_);
+  damping_.clear();
   for (const PairInTouch& result : pairs.touching()) {
     const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
     now_touching.push_back(
         {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
+    if (damped) note_damping(*tangential, result, pair, now_touching.back());
   }
   changed_.clear(), impulses_.clear();
   if (!(dt > 0)) return false;
@@ -44,9 +48,7 @@ bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynami
       [&](RigidIndex a, RigidIndex b) {
         return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
       },
-      [&](RigidIndex a, RigidIndex b, int panels) {
-        changed_.push_back({a, b, panels});
-      });
+      [&](const PairChange& change) { changed_.push_back(change); });
   impulses_.resize(changed_.size());
   threads_.chunks(
       static_cast<int>(changed_.size()), kPairTime, [&](int first, int end, int worker) {
@@ -58,12 +60,47 @@ bool Onset::find(const PairIntegrals& pairs, const Kinematics& now, const Dynami
   return !impulses_.empty();
 }
 
+// Where damping takes the whole force, or does so no more, the force of the pair has a kink as
+// well.
+void Onset::note_damping(const PatchTangential& tangential, const PairInTouch& pair,
+                         const PairIntegral& integral, TouchingPair& touching) {
+  constexpr double kWhole = 1e-9;  // of the force
+  constexpr std::uint64_t kFree = 0x9e3779b97f4a7c15ULL;
+  damping_.emplace_back();
+  const PairForce* const force = tangential.lone_damping(pair);
+  if (!force) return;
+  damping_.back() = {true, *force};
+  const double k = table_.between(pair.a, pair.b).normal_stiffness * thickness_;
+  const double size = k * integral.force.norm();
+  const double pull = -k * integral.force.dot(Vec2(force->x, force->y));
+  if (pull >= (1 - kWhole) * size * size) touching.inside_a += kFree;
+}
+
+// Not where the pair has several patches, each of which is damped by itself.
+bool Onset::path_is_damped(const PairChange& pair) const {
+  if (!table_.damped() || !(table_.between(pair.a, pair.b).damping.normal > 0)) return false;
+  const auto alone = [](const std::vector<Damped>& list, int i) {
+    return i < 0 || list[static_cast<size_t>(i)].alone;
+  };
+  return alone(damping_, pair.now) && alone(damping_before_, pair.before);
+}
+
+double Onset::damping_loss() const {
+  double sum = 0;
+  for (const Impulse& impulse : impulses_) sum += impulse.damping_loss;
+  return sum;
+}
+
 // The loads at all samples, those of convex polygons together.
-void Onset::find_loads(const Path& path, Worker& worker) const {
+void Onset::find_loads(const Path& path, bool damped, Worker& worker) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
-  worker.loads.clear();
+  worker.loads.clear(), worker.damped.clear();
   const auto add = [&](const PairIntegral& pair) {
+    if (damped) {
+      const double theta = worker.samples[worker.loads.size()].theta;
+      worker.damped.push_back({pair, path.offset(theta)});
+    }
     worker.loads.push_back(
         {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b});
   };
@@ -138,7 +175,7 @@ void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
   }
 }
 
-Onset::Impulse Onset::find_pair(const Changed& pair, const Kinematics& now,
+Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
                                 const Dynamics& dynamics, double dt, Worker& worker) const {
   const RigidIndex a = pair.a, b = pair.b;
   const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
@@ -150,7 +187,8 @@ Onset::Impulse Onset::find_pair(const Changed& pair, const Kinematics& now,
   find_events(path, worker);
   const auto inside =
       static_cast<size_t>(find_onset_samples(worker.events, pair.panels, worker.samples));
-  find_loads(path, worker);
+  const bool damped = path_is_damped(pair);
+  find_loads(path, damped, worker);
   std::array<OnsetForces, 4> forces;
   for (size_t i = 0; i < worker.samples.size(); ++i) {
     const Load& load = worker.loads[i];
@@ -174,18 +212,56 @@ Onset::Impulse Onset::find_pair(const Changed& pair, const Kinematics& now,
     }
     return rest;
   };
+  Load damping{};
+  if (damped) {
+    const PathDamping along = damping_along(
+        {table_.between(a, b).normal_stiffness * thickness_, table_.between(a, b).damping.normal,
+         surfaces_.shapes().slope(a), surfaces_.shapes().slope(b), surfaces_.rigid(a).inverse_mass,
+         surfaces_.rigid(b).inverse_mass, dt},
+        std::span(worker.samples).first(inside), std::span(worker.damped).first(inside));
+    PairForce ends{};
+    if (pair.now >= 0) ends = ends + damping_[static_cast<size_t>(pair.now)].force;
+    if (pair.before >= 0) ends = ends + damping_before_[static_cast<size_t>(pair.before)].force;
+    const PairForce rest = along.mean - .5 * ends;
+    damping = {rest.x, rest.y, rest.a, rest.b};
+    for (OnsetForces& f : forces) {
+      if (along.free_first) f.start_slope = 0;
+      if (along.free_last) f.end_slope = 0;
+    }
+  }
   for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
-  OnsetRest rest = rest_of(a, 2, 1);
-  rest.add(rest_of(b, 3, -1));
-  const double share = rest.share();
-  for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
+  if (!damped) {
+    OnsetRest rest = rest_of(a, 2, 1);
+    rest.add(rest_of(b, 3, -1));
+    const double share = rest.share();
+    for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
+  }
+  for (size_t k = 0; k < 4; ++k) missing[k] += damping[k];
   // Moments of forces at earlier positions do not balance at the end of the step. What is left over
   // goes half and half to both bodies, so that the angular momentum is kept.
   const double couple =
       cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
   missing[2] -= couple / 2;
   missing[3] -= couple / 2;
-  return {a, b, missing};
+  Impulse impulse{a, b, missing};
+  if (damped) {
+    // With the velocities in the middle of what the impulse changes.
+    const auto power = [&](RigidIndex body, size_t moment, double sign) {
+      double sum = 0;
+      for (const size_t axis : {0, 1, 2}) {
+        const size_t k = axis < 2 ? axis : moment;
+        const size_t c = 3 * static_cast<size_t>(body) + axis;
+        const double own = axis < 2 ? sign : 1;
+        const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
+        const double pushed =
+            dynamics.after[c] + weight + own * (2 * missing[k] - damping[k]);  // over half a step
+        sum += own * damping[k] * (now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed);
+      }
+      return sum;
+    };
+    impulse.damping_loss = -dt * (power(a, 2, 1) + power(b, 3, -1));
+  }
+  return impulse;
 }
 
 void Onset::add(double scale, std::span<double> forces) const {

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "apothem/archive/archive.hpp"
+#include "apothem/contact/onset_damping.hpp"
 #include "apothem/contact/onset_rule.hpp"
 #include "apothem/contact/onset_watch.hpp"
 #include "apothem/contact/pair_integrals.hpp"
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/contact/patch_tangential.hpp"
 #include "apothem/execution/parallel.hpp"
 
 namespace apothem {
@@ -27,23 +29,33 @@ class Onset {
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs whose vertices inside each other are not those of the step before, or of which much more
   /// or less boundary is inside. True if there is a J. With dt = 0, at the start, there is none,
-  /// and what only just touches then is new in the first step.
-  bool find(const PairIntegrals& pairs, const Kinematics& now, const Dynamics& dynamics, double dt);
+  /// and what only just touches then is new in the first step. `tangential`: may be null. The
+  /// damping along the path of these pairs is a part of J.
+  bool find(const PairIntegrals& pairs, const PatchTangential* tangential, const Kinematics& now,
+            const Dynamics& dynamics, double dt);
+  /// What the damping in the last J takes from the bodies, J.
+  [[nodiscard]] double damping_loss() const;
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
-  void fields(Archive& archive) { watch_.fields(archive); }
+  void fields(Archive& archive) {
+    watch_.fields(archive);
+    if (table_.damped()) archive("damping", damping_);
+  }
 
  private:
   /// Force on a, and the moments on a and b about their mass centres, N and N m.
   using Load = std::array<double, 4>;
   struct Impulse {
     int a, b;
-    Load mean;  ///< J / dt
+    Load mean;                ///< J / dt
+    double damping_loss = 0;  ///< J
   };
-  struct Changed {
-    RigidIndex a, b;
-    int panels;
+  /// The damping of a pair in a step, if it is known to be that of one patch.
+  struct Damped {
+    bool alone = false;
+    PairForce force = {};
+    void fields(Archive& archive) { archive("alone", alone)("force", force); }
   };
   /// Where the two polygons of a pair are within a step.
   struct Path;
@@ -51,27 +63,32 @@ class Onset {
   struct Worker {
     std::vector<double> events;
     std::vector<OnsetSample> samples;
-    std::vector<Load> loads;  // of the samples
+    std::vector<Load> loads;           // of the samples
+    std::vector<DampedSample> damped;  // the same, where damping is needed
     PlacedShapes::Turned start_a, start_b;
     std::array<PlacedShapes::Turned, 2 * ConvexPairs::kAtOnce> turned;
     std::array<NearEdges, ConvexPairs::kAtOnce> near;
     EdgeWorkspace edges;
   };
 
-  [[nodiscard]] Impulse find_pair(const Changed& pair, const Kinematics& now,
+  [[nodiscard]] Impulse find_pair(const PairChange& pair, const Kinematics& now,
                                   const Dynamics& dynamics, double dt, Worker& worker) const;
   void find_events(const Path& path, Worker& worker) const;
   static void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                              const PlacedPotential& y0, const PlacedPotential& y1,
                              const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);
-  void find_loads(const Path& path, Worker& worker) const;
+  void find_loads(const Path& path, bool damped, Worker& worker) const;
+  void note_damping(const PatchTangential& tangential, const PairInTouch& pair,
+                    const PairIntegral& integral, TouchingPair& touching);
+  [[nodiscard]] bool path_is_damped(const PairChange& pair) const;
 
   const Surfaces& surfaces_;
   const PairTable& table_;
   double thickness_;
   Threads threads_;
   OnsetWatch watch_;
-  std::vector<Changed> changed_;
+  std::vector<Damped> damping_, damping_before_;  // of the pairs of the watch, where any is damped
+  std::vector<PairChange> changed_;
   std::vector<Impulse> impulses_;  // of these
   std::vector<Worker> workers_;
 };

@@ -7,7 +7,6 @@
 namespace apothem {
 namespace {
 
-constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 constexpr std::array kSlope{-25. / 3, 48. / 3, -36. / 3, 16. / 3, -3. / 3};
 // Slopes need a part of a step without kinks: this one at least, which leaves 11 digits of them.
 constexpr double kShortest = 1e-3;

@@ -21,6 +21,7 @@
 // D^T / (h v.D), the stiffness along the path.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -42,6 +43,9 @@ inline double crossing(double h0, double h1) {
   if (std::abs(h0) <= kRoundOff * std::abs(h1 - h0)) return h0 == h1 ? -1 : 0;
   return (h0 < 0) == (h1 < 0) ? -1 : h0 / (h0 - h1);
 }
+
+/// Boole's rule on a panel of five samples.
+inline constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 
 /// Panels of a part of a step in which the force is smooth, and in which it may bend at once.
 inline constexpr int kFewPanels = 2, kManyPanels = 4;

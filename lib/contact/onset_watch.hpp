@@ -36,6 +36,13 @@ struct TouchingPair {
   }
 };
 
+/// A pair whose contact has changed within a step.
+struct PairChange {
+  int a, b;
+  int panels;       ///< of the samples
+  int now, before;  ///< its number in the lists of the step and of the step before, or -1
+};
+
 class OnsetWatch {
  public:
   /// What touched becomes what touched before; the empty list is to be filled, ascending.
@@ -45,7 +52,7 @@ class OnsetWatch {
     return now_;
   }
 
-  /// Calls changed(a, b, panels), ascending, for every pair whose vertices inside each other have
+  /// Calls changed(change), ascending, for every pair whose vertices inside each other have
   /// changed. The stiffness of a pair grows with the boundary of one inside the other: where this
   /// changes by more than sudden(a, b), m, within a step, as where a body lands nearly flat, the
   /// force is not smooth even if no vertex enters or leaves. `panels` of the samples: more where it
@@ -54,24 +61,30 @@ class OnsetWatch {
   template <class Sudden, class Changed>
   void compare(const Sudden& sudden, const Changed& changed) const {
     auto old = before_.begin();
-    const auto judge = [&](const TouchingPair& pair, bool same, double change) {
+    const auto judge = [&](const TouchingPair& pair, bool same, double change, bool is_now,
+                           bool was_before) {
       if (pair.deep) return;
+      PairChange found{pair.a, pair.b, 1, is_now ? static_cast<int>(&pair - now_.data()) : -1,
+                       was_before ? static_cast<int>(old - before_.begin()) : -1};
       if (change > sudden(pair.a, pair.b)) {
-        changed(pair.a, pair.b, change > kMuch * pair.length ? kManyPanels : kFewPanels);
-      } else if (!same) {
-        changed(pair.a, pair.b, 1);
+        found.panels = change > kMuch * pair.length ? kManyPanels : kFewPanels;
+      } else if (same) {
+        return;
       }
+      changed(found);
     };
     for (const TouchingPair& pair : now_) {
-      for (; old != before_.end() && *old < pair; ++old) judge(*old, false, old->length);
+      for (; old != before_.end() && *old < pair; ++old) {
+        judge(*old, false, old->length, false, true);
+      }
       const bool known = old != before_.end() && old->same_pair(pair);
       if (!known || !old->deep) {
         judge(pair, known && old->same_vertices(pair),
-              std::abs(pair.length - (known ? old->length : 0)));
+              std::abs(pair.length - (known ? old->length : 0)), true, known);
       }
       if (known) ++old;
     }
-    for (; old != before_.end(); ++old) judge(*old, false, old->length);
+    for (; old != before_.end(); ++old) judge(*old, false, old->length, false, true);
   }
 
   void fields(Archive& archive) { archive("touching", now_); }

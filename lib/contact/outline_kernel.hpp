@@ -42,7 +42,8 @@ class OutlineKernel final : public Kernel {
     if (friction_) friction_->undo_slide();
   }
   void add_forces(const ForceViews& forces) override;
-  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
+                   FrictionMemory& /*memory*/) override {
     return onset_.find(candidates_, blocks_, plateaus_, now, dynamics, dt);
   }
   void add_onsets(double scale, const ForceViews& forces) const override {

@@ -85,8 +85,8 @@ bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBloc
       [&](BodyIndex a, BodyIndex b) {
         return kSuddenLength * std::min(bodies[a].reference, bodies[b].reference);
       },
-      [&](BodyIndex a, BodyIndex b, int panels) {
-        changed_.push_back({a, b, panels});
+      [&](const PairChange& change) {
+        changed_.push_back({change.a, change.b, change.panels});
       });
   threads_.chunks(static_cast<int>(changed_.size()), kPathTime,
                   [&](int first, int end, int number) {

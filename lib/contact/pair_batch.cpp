@@ -103,6 +103,7 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   read_lanes(damper.damping,
              [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.damping; });
   read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return last(k).patch.tangential; });
+  read_lanes(damper.stiffness, [&](int k) APOTHEM_LAMBDA { return last(k).patch.stiffness; });
   PairVectorOf<Real> damping_before;
   read_lanes(damping_before,
              [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).pair.damping; });
@@ -177,6 +178,7 @@ void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, T
       of(k).lost = found.lost.v[k];
       of(k).tangent = {found.tangent.x.v[k], found.tangent.y.v[k]};
       damper_in(k).tangential = damper.tangential.v[k];
+      damper_in(k).stiffness = damper.stiffness.v[k];
     }
     return 0.;
   });
@@ -213,31 +215,19 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
     if (kind_.damped) {
       const auto damping = [&](int k) APOTHEM_LAMBDA -> DampingMemory& { return *work[k].damping; };
       const auto pair = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return damping(k).pair; };
-      PairDampingOf<Pack> before, now;
-      now.damping = forces.damping;
-      now.rate = p.rate;
-      read_lanes(before.damping,
-                 [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
-      read_lanes(before.change_of_damping, [&](int k) APOTHEM_LAMBDA -> const PairForce& {
-        return pair(k).change_of_damping;
-      });
-      read_lanes(before.power_before, [&](int k) APOTHEM_LAMBDA { return pair(k).power_before; });
-      before.rate = {select(p.touched, p.rate_before.x, p.rate.x),
-                     select(p.touched, p.rate_before.y, p.rate.y),
-                     select(p.touched, p.rate_before.a, p.rate.a),
-                     select(p.touched, p.rate_before.b, p.rate.b)};
-      const Pack lost = close_damping(before, scene.dt, now);
-      write_lanes(now.damping, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).damping; });
-      write_lanes(now.change_of_damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).change_of_damping; });
-      write_lanes(now.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).rate; });
+      PairVectorOf<Pack> before;
+      read_lanes(before, [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
+      const Pack lost = Pack(-scene.dt / 2) * (forces.damping + before).power(p.rate);
+      write_lanes(forces.damping,
+                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).damping; });
+      write_lanes(p.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).rate; });
       write_lanes(damper.elastic,
                   [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.elastic; });
       write_lanes(damper.damping,
                   [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.damping; });
       for (int k = 0; k < kAtOnce; ++k) {
-        pair(k).power_before = now.power_before.v[k];
         damping(k).patch.tangential = damper.tangential.v[k];
+        damping(k).patch.stiffness = damper.stiffness.v[k];
         work[k].book->damping_loss = lost.v[k];
       }
     }

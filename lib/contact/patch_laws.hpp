@@ -16,9 +16,11 @@ struct DamperOf {
   PairVectorOf<Real> elastic;  ///< the normal force
   PairVectorOf<Real> damping;  ///< along the normal, its own force
   Real tangential = Real(0.);  ///< and that beside the friction spring, along the tangent, N
+  Real stiffness = Real(0.);   ///< bound of the normal stiffness, N/m
 
   void fields(Archive& archive) {
-    archive("elastic", elastic)("damping", damping)("tangential", tangential);
+    archive("elastic", elastic)("damping", damping)("tangential", tangential)("stiffness",
+                                                                              stiffness);
   }
 };
 
@@ -99,16 +101,24 @@ APOTHEM_INLINE void damp(const PatchStep<Real>& p, double dt, DamperOf<Real>& da
   // The pair may touch already with another patch, or have touched in the run before.
   const Truth<Real> is_new = (damper.elastic.x == Real(0.)) & (damper.elastic.y == Real(0.));
   const VectorOf<Real> before = (damper.elastic + damper.damping).plane();
+  const Real stiffness = k * p.slopes;
+  const Real stiffness_before = damper.stiffness;
   damper.elastic = elastic;
+  damper.stiffness = stiffness;
   // A first look, perhaps with the memory of another run: as springs do, it keeps its force.
   if (!(dt > 0)) return;
-  const Real size = k * p.size, stiffness = k * p.slopes, step(dt);
+  const Real size = k * p.size, step(dt);
   const Real time = p.damping_time(p.normal_ratio, stiffness, p.normal);
   // A patch that is new has risen from nothing since its bodies have met, not in the whole step.
   const Real approach = -p.slip(p.rate).dot(p.normal);
   const Truth<Real> met = is_new & (approach * step * stiffness > size);
   const Real since = select(met, size / (stiffness * approach), step);
-  PairVectorOf<Real> damping = time / since * rise;
+  // The force has risen with the mean stiffness of the step; at its end the stiffness is another.
+  const Truth<Real> known = stiffness_before > Real(0.);
+  const Real grown =
+      select(is_new, Real(1.),
+             select(known, Real(2.) * stiffness / (stiffness + stiffness_before), Real(1.)));
+  PairVectorOf<Real> damping = time * grown / since * rise;
   // This is the rate half a step ago. Until now the bodies have been accelerated as before, and by
   // the change of this force, with the damping itself. `gained`: half a step of the acceleration
   // before, m/s.
@@ -119,9 +129,6 @@ APOTHEM_INLINE void damp(const PatchStep<Real>& p, double dt, DamperOf<Real>& da
   const Real now = (early + time * stiffness * gained - half * (size - before.dot(p.normal))) /
                    (Real(1.) + half);
   damping = damping + p.force_at_point((now - early) * p.normal);
-  // The first force acts for the step to come and has to make up for the time since the bodies met,
-  // where Verlet gives it half a step.
-  damping = select(is_new, Real(.5) + since / step, Real(1.)) * damping;
   // Damping takes the whole force and no more.
   damping = select(-now > size, size / -now, Real(1.)) * damping;
   damper.damping = damping.where(p.has_direction & (time > Real(0.)));
@@ -210,40 +217,13 @@ APOTHEM_INLINE void step_patch(const PatchStep<Real>& p, bool rough, bool damped
   if (rough) rub(p, damped, dt, finite ? closed_share(p, dt) : Real(1.), damper, forces);
 }
 
-/// The damping of a pair at the end of a step, and what the ledger needs of it.
+/// The damping of a pair at the end of a step.
 template <class Real>
 struct PairDampingOf {
-  PairVectorOf<Real> damping{};            ///< the force of all its patches
-  PairVectorOf<Real> change_of_damping{};  ///< in the last step
-  PairVectorOf<Real> rate{};               ///< of the bodies in the last half step
-  Real power_before = Real(0.);            ///< of the change at the rate before that one, W
+  PairVectorOf<Real> damping{};  ///< the force of all its patches
+  PairVectorOf<Real> rate{};     ///< of the bodies in the last half step
 
-  void fields(Archive& archive) {
-    archive("damping", damping)("change_of_damping", change_of_damping)("rate", rate)(
-        "power_before", power_before);
-  }
+  void fields(Archive& archive) { archive("damping", damping)("rate", rate); }
 };
-
-/// Closes a step of dt (s) in which damping has become now.damping, with the bodies at now.rate;
-/// `before` is zero, with the same rate, if the pair did not touch. Returns what damping takes from
-/// the bodies, J.
-///
-/// Velocity Verlet sums the work of a force G by the trapezoid rule, along a path that bends within
-/// the step. With the accelerations of the bodies against each other at both ends, the work on them
-/// is h^2/12 (G_1 - G_0) (a_0 + a_1) larger, summed over a contact. The last one is known a step
-/// later, so that this part is of the step before.
-template <class Real>
-APOTHEM_INLINE Real close_damping(const PairDampingOf<Real>& before, double dt,
-                                  PairDampingOf<Real>& now) {
-  if (!(dt > 0)) {
-    now.change_of_damping = {};
-    now.power_before = Real(0.);
-    return Real(0.);
-  }
-  now.change_of_damping = now.damping - before.damping;
-  now.power_before = now.change_of_damping.power(before.rate);
-  const Real half = Real(dt / 2) * (now.damping + before.damping).power(now.rate);
-  return -(half + Real(dt / 12) * (before.change_of_damping.power(now.rate) - before.power_before));
-}
 
 }  // namespace apothem

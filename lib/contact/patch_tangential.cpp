@@ -106,10 +106,7 @@ void PatchTangential::release(const Left& last, FrictionMemory& memory) const {
   const PairRate rate = pair_rate(kinematics_, last.a, last.b);
   const double dt = scene_.dt;
   memory.lose(last.energy - dt / 2 * (last.force.power(rate) - last.damping.damping.power(rate)));
-  if (!table_.damped()) return;
-  PairDamping gone{.rate = rate}, over{.rate = rate};
-  memory.damp(close_damping(last.damping, dt, gone));
-  memory.damp(close_damping(gone, dt, over));
+  if (table_.damped()) memory.damp(-dt / 2 * last.damping.damping.power(rate));
 }
 
 void PatchTangential::release_ended(FrictionMemory& memory) {
@@ -219,6 +216,7 @@ void PatchTangential::Range::step_patches(const PairInTouch& touching, const Pai
               heir.elastic = heir.elastic + share * old.elastic;
               heir.damping = heir.damping + share * old.damping;
               heir.tangential += share * old.tangential;
+              heir.stiffness += share * old.stiffness;
             });
   }
   if (one_each) {
@@ -285,9 +283,9 @@ void PatchTangential::Range::step_patches(const PairInTouch& touching, const Pai
   }
   if (pair.damping && kind.damped) {
     pair.damping->pair = {.damping = sum.damping, .rate = sum.rate};
-    const PairDamping none{.rate = sum.rate};
-    pair.book->damping_loss = close_damping(before_.touched() ? damping_before_.pair : none,
-                                            scene.dt, pair.damping->pair);
+    PairForce both = sum.damping;
+    if (before_.touched()) both = both + damping_before_.pair.damping;
+    pair.book->damping_loss = -scene.dt / 2 * both.power(sum.rate);
   }
   load_pair(scene, pair, sum.force, sum.held_a, sum.held_b);
 }

@@ -67,6 +67,14 @@ class PatchTangential {
   void remember() { kept_ = inherited_ ? *inherited_ : history(); }
   void undo_step() { inherited_ = kept_; }
 
+  /// What damps a pair of one patch, or null: it has no damping, or several patches.
+  [[nodiscard]] const PairForce* lone_damping(const PairInTouch& pair) const {
+    const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
+    const bool lone = table_.damped() && memory.patches == 1 &&
+                      table_.between(pair.a, pair.b).damping.normal > 0;
+    return lone ? &damping_[static_cast<size_t>(pair.slot)].pair.damping : nullptr;
+  }
+
   /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
   /// needed by the law per_edge.
   void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,

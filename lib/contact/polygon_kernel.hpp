@@ -38,8 +38,12 @@ class PolygonKernel final : public Kernel {
     if (tangential_ && tangential_->adopt()) pairs_.forget_ended();
   }
   void add_forces(const ForceViews& forces) override;
-  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt) override {
-    return onset_.find(pairs_, now, dynamics, dt);
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
+                   FrictionMemory& memory) override {
+    const bool found =
+        onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
+    if (found) memory.damp(onset_.damping_loss());
+    return found;
   }
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces.rigid);

@@ -228,6 +228,10 @@ double contact_safety(double accuracy) {
   return std::min(.16 * power(accuracy / 1e-4, 1. / 5), kCoarsest);
 }
 
+double damped_safety(double accuracy) {
+  return std::min(.055 * std::sqrt(accuracy / 1e-4), contact_safety(accuracy));
+}
+
 double element_safety(double accuracy) {
   return std::min(.2 * power(accuracy / 1e-4, 1. / 4), kSmooth);
 }
@@ -235,7 +239,9 @@ double element_safety(double accuracy) {
 StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,
                        int frames, bool node_contact) {
   StepChoice choice;
-  choice.safety = time.safety.value_or(contact_safety(time.accuracy));
+  const bool damped = !model.bodies.empty() && pair_table(model).damped();
+  choice.safety = time.safety.value_or(damped ? damped_safety(time.accuracy)
+                                              : contact_safety(time.accuracy));
   choice.element_safety =
       time.element_safety.value_or(node_contact ? element_safety(time.accuracy) : kSmooth);
   choice.limit = bounds.nodes.step < bounds.bodies.step ? bounds.nodes : bounds.bodies;

@@ -50,6 +50,9 @@ struct StepChoice {
 /// (docs/verification.md, "Contacts that begin or end within a step").
 double contact_safety(double accuracy);
 double element_safety(double accuracy);
+/// The same for contacts of rigid bodies that are damped: keeps the kinetic energy that an impact
+/// leaves to ten times the accuracy, in parts of that before it.
+double damped_safety(double accuracy);
 
 /// With an automatic step, `frames` equal intervals of the run get a whole number of steps each.
 /// `node_contact`: nodes can touch something. Throws Unrunnable if a fixed step is above the
