@@ -32,15 +32,14 @@ struct Onset::Path {
 bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
                  const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
-  const bool damped = tangential && table_.damped();
-  std::swap(damping_, damping_before_);
-  damping_.clear();
+  std::swap(beside_, beside_before_);
+  beside_.clear();
   for (const PairInTouch& result : pairs.touching()) {
     const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
     now_touching.push_back(
         {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
-    if (damped) note_damping(*tangential, result, pair, now_touching.back());
+    if (tangential) note_beside(*tangential, result, pair, now_touching.back());
   }
   changed_.clear(), impulses_.clear();
   if (!(dt > 0)) return false;
@@ -62,33 +61,66 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
 
 // Where damping takes the whole force, or does so no more, the force of the pair has a kink as
 // well.
-void Onset::note_damping(const PatchTangential& tangential, const PairInTouch& pair,
-                         const PairIntegral& integral, TouchingPair& touching) {
+void Onset::note_beside(const PatchTangential& tangential, const PairInTouch& pair,
+                        const PairIntegral& integral, TouchingPair& touching) {
   constexpr double kWhole = 1e-9;  // of the force
   constexpr std::uint64_t kFree = 0x9e3779b97f4a7c15ULL;
-  damping_.emplace_back();
-  const PairForce* const force = tangential.lone_damping(pair);
-  if (!force) return;
-  damping_.back() = {true, *force};
+  beside_.push_back(tangential.beside(pair));
+  if (!beside_.back().alone) return;
+  const PairForce& damping = beside_.back().damping;
   const double k = table_.between(pair.a, pair.b).normal_stiffness * thickness_;
   const double size = k * integral.force.norm();
-  const double pull = -k * integral.force.dot(Vec2(force->x, force->y));
-  if (pull >= (1 - kWhole) * size * size) touching.inside_a += kFree;
+  const double pull = -k * integral.force.dot(Vec2(damping.x, damping.y));
+  if (pull > 0 && pull >= (1 - kWhole) * size * size) touching.inside_a += kFree;
 }
 
-// Not where the pair has several patches, each of which is damped by itself.
-bool Onset::path_is_damped(const PairChange& pair) const {
-  if (!table_.damped() || !(table_.between(pair.a, pair.b).damping.normal > 0)) return false;
-  const auto alone = [](const std::vector<Damped>& list, int i) {
-    return i < 0 || list[static_cast<size_t>(i)].alone;
-  };
-  return alone(damping_, pair.now) && alone(damping_before_, pair.before);
+// Not where the pair has several patches, each of which has friction and damping by itself.
+bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) const {
+  const PairLaw& law = table_.between(pair.a, pair.b);
+  if (!(law.damping.normal > 0 || law.friction.coefficient > 0)) return false;
+  first = last = {true};
+  if (pair.before >= 0) first = beside_before_[static_cast<size_t>(pair.before)];
+  if (pair.now >= 0) last = beside_[static_cast<size_t>(pair.now)];
+  return first.alone && last.alone;
 }
 
-double Onset::damping_loss() const {
-  double sum = 0;
-  for (const Impulse& impulse : impulses_) sum += impulse.damping_loss;
+PairBook Onset::losses() const {
+  PairBook sum;
+  for (const Impulse& impulse : impulses_) sum.add(impulse.losses);
   return sum;
+}
+
+// What friction lacks: it goes with the normal force along the path, as at the ends of the step. A
+// spring that sticks follows the slip, which goes with the elastic part of it.
+Onset::Load Onset::friction_along(const PairLaw& law, const Beside& first, const Beside& last,
+                                  const PathDamping& damping, const Worker& worker, size_t inside) {
+  constexpr double kSticks = 1 - 1e-9;  // part of Coulomb's limit
+  const auto elastic = [&](size_t i) {
+    const Load& load = worker.loads[i];
+    return PairForce{load[0], load[1], load[2], load[3]};
+  };
+  const std::array ends{elastic(0).plane().size(), elastic(inside - 1).plane().size()};
+  const std::array net{(elastic(0) + first.damping).plane().size(),
+                       (elastic(inside - 1) + last.damping).plane().size()};
+  double mean = 0;
+  for (size_t i = 0; i < inside; ++i) {
+    mean += worker.samples[i].mean * elastic(i).plane().size();
+  }
+  const bool damped = law.damping.normal > 0;
+  PairForce sum{};
+  double known = 0;
+  for (const size_t end : {0, 1}) {
+    if (!(ends[end] > 0 && net[end] > 0)) continue;
+    known += 1;
+    const PairForce& friction = end == 0 ? first.friction : last.friction;
+    const double limit = law.friction.coefficient * net[end];
+    const bool slides = damped && friction.plane().size() >= kSticks * limit;
+    const double lacks =
+        slides ? damping.net_mean - (net[0] + net[1]) / 2 : mean - (ends[0] + ends[1]) / 2;
+    sum = sum + (lacks / (slides ? net[end] : ends[end])) * friction;
+  }
+  if (known > 0) sum = (1 / known) * sum;
+  return {sum.x, sum.y, sum.a, sum.b};
 }
 
 // The loads at all samples, those of convex polygons together.
@@ -187,7 +219,10 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   find_events(path, worker);
   const auto inside =
       static_cast<size_t>(find_onset_samples(worker.events, pair.panels, worker.samples));
-  const bool damped = path_is_damped(pair);
+  const PairLaw& law = table_.between(a, b);
+  Beside first, last;
+  const bool beside = find_beside(pair, first, last);
+  const bool damped = beside && law.damping.normal > 0;
   find_loads(path, damped, worker);
   std::array<OnsetForces, 4> forces;
   for (size_t i = 0; i < worker.samples.size(); ++i) {
@@ -198,7 +233,26 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       if (i + 1 == inside) forces[k].last = load[k];
     }
   }
+  Load damping{}, friction{};
+  PathDamping along{};
+  if (damped) {
+    along = damping_along({law.normal_stiffness * thickness_, law.damping.normal,
+                           surfaces_.shapes().slope(a), surfaces_.shapes().slope(b),
+                           surfaces_.rigid(a).inverse_mass, surfaces_.rigid(b).inverse_mass, dt},
+                          std::span(worker.samples).first(inside),
+                          std::span(worker.damped).first(inside));
+    const PairForce lacks = along.mean - .5 * (first.damping + last.damping);
+    damping = {lacks.x, lacks.y, lacks.a, lacks.b};
+    for (OnsetForces& f : forces) {
+      if (along.free_first) f.start_slope = 0;
+      if (along.free_last) f.end_slope = 0;
+    }
+  }
+  if (beside && law.friction.coefficient > 0) {
+    friction = friction_along(law, first, last, along, worker, inside);
+  }
   Load missing;
+  for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
   const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
     OnsetRest rest(dt);
     for (const size_t axis : {0, 1, 2}) {
@@ -207,60 +261,43 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       OnsetForces f = forces[k];
       const double own = axis < 2 ? sign : 1;
       for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
-      rest.add(f, own * missing[k], dynamics.others(c, f), dynamics.inverse_mass[c],
-               now.pose_rate[c]);
+      rest.add(f, {own * missing[k], own * friction[k]}, dynamics.others(c, f),
+               dynamics.inverse_mass[c], now.pose_rate[c]);
     }
     return rest;
   };
-  Load damping{};
-  if (damped) {
-    const PathDamping along = damping_along(
-        {table_.between(a, b).normal_stiffness * thickness_, table_.between(a, b).damping.normal,
-         surfaces_.shapes().slope(a), surfaces_.shapes().slope(b), surfaces_.rigid(a).inverse_mass,
-         surfaces_.rigid(b).inverse_mass, dt},
-        std::span(worker.samples).first(inside), std::span(worker.damped).first(inside));
-    PairForce ends{};
-    if (pair.now >= 0) ends = ends + damping_[static_cast<size_t>(pair.now)].force;
-    if (pair.before >= 0) ends = ends + damping_before_[static_cast<size_t>(pair.before)].force;
-    const PairForce rest = along.mean - .5 * ends;
-    damping = {rest.x, rest.y, rest.a, rest.b};
-    for (OnsetForces& f : forces) {
-      if (along.free_first) f.start_slope = 0;
-      if (along.free_last) f.end_slope = 0;
-    }
-  }
-  for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
   if (!damped) {
     OnsetRest rest = rest_of(a, 2, 1);
     rest.add(rest_of(b, 3, -1));
     const double share = rest.share();
     for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
   }
-  for (size_t k = 0; k < 4; ++k) missing[k] += damping[k];
+  for (size_t k = 0; k < 4; ++k) missing[k] += damping[k] + friction[k];
   // Moments of forces at earlier positions do not balance at the end of the step. What is left over
   // goes half and half to both bodies, so that the angular momentum is kept.
   const double couple =
       cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
   missing[2] -= couple / 2;
   missing[3] -= couple / 2;
-  Impulse impulse{a, b, missing};
-  if (damped) {
-    // With the velocities in the middle of what the impulse changes.
-    const auto power = [&](RigidIndex body, size_t moment, double sign) {
-      double sum = 0;
-      for (const size_t axis : {0, 1, 2}) {
-        const size_t k = axis < 2 ? axis : moment;
-        const size_t c = 3 * static_cast<size_t>(body) + axis;
-        const double own = axis < 2 ? sign : 1;
-        const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
-        const double pushed =
-            dynamics.after[c] + weight + own * (2 * missing[k] - damping[k]);  // over half a step
-        sum += own * damping[k] * (now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed);
-      }
-      return sum;
-    };
-    impulse.damping_loss = -dt * (power(a, 2, 1) + power(b, 3, -1));
-  }
+  Impulse impulse{a, b, missing, {}};
+  if (!beside) return impulse;
+  // The power of a part of the impulse, with the velocities when half of what it and others change
+  // is done.
+  const auto power = [&](const Load& part, RigidIndex body, size_t moment, double sign) {
+    double sum = 0;
+    for (const size_t axis : {0, 1, 2}) {
+      const size_t k = axis < 2 ? axis : moment;
+      const size_t c = 3 * static_cast<size_t>(body) + axis;
+      const double own = axis < 2 ? sign : 1;
+      const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
+      const double pushed = dynamics.after[c] + weight +
+                            own * (2 * missing[k] - damping[k] - friction[k]);  // for dt / 2
+      sum += own * part[k] * (now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed);
+    }
+    return sum;
+  };
+  impulse.losses.damping_loss = -dt * (power(damping, a, 2, 1) + power(damping, b, 3, -1));
+  impulse.losses.loss = -dt * (power(friction, a, 2, 1) + power(friction, b, 3, -1));
   return impulse;
 }
 

@@ -29,18 +29,18 @@ class Onset {
   /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
   /// pairs whose vertices inside each other are not those of the step before, or of which much more
   /// or less boundary is inside. True if there is a J. With dt = 0, at the start, there is none,
-  /// and what only just touches then is new in the first step. `tangential`: may be null. The
-  /// damping along the path of these pairs is a part of J.
+  /// and what only just touches then is new in the first step. `tangential`: null if there is
+  /// neither friction nor damping; both are followed along the path of these pairs, as a part of J.
   bool find(const PairIntegrals& pairs, const PatchTangential* tangential, const Kinematics& now,
             const Dynamics& dynamics, double dt);
-  /// What the damping in the last J takes from the bodies, J.
-  [[nodiscard]] double damping_loss() const;
+  /// What friction and damping in the last J take from the bodies, J.
+  [[nodiscard]] PairBook losses() const;
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
   void fields(Archive& archive) {
     watch_.fields(archive);
-    if (table_.damped()) archive("damping", damping_);
+    if (table_.damped() || table_.rough()) archive("beside", beside_);
   }
 
  private:
@@ -48,15 +48,10 @@ class Onset {
   using Load = std::array<double, 4>;
   struct Impulse {
     int a, b;
-    Load mean;                ///< J / dt
-    double damping_loss = 0;  ///< J
+    Load mean;        ///< J / dt
+    PairBook losses;  ///< of friction and damping in it
   };
-  /// The damping of a pair in a step, if it is known to be that of one patch.
-  struct Damped {
-    bool alone = false;
-    PairForce force = {};
-    void fields(Archive& archive) { archive("alone", alone)("force", force); }
-  };
+  using Beside = PatchTangential::Beside;
   /// Where the two polygons of a pair are within a step.
   struct Path;
   /// What a thread needs.
@@ -78,16 +73,20 @@ class Onset {
                              const PlacedPotential& y0, const PlacedPotential& y1,
                              const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);
   void find_loads(const Path& path, bool damped, Worker& worker) const;
-  void note_damping(const PatchTangential& tangential, const PairInTouch& pair,
-                    const PairIntegral& integral, TouchingPair& touching);
-  [[nodiscard]] bool path_is_damped(const PairChange& pair) const;
+  void note_beside(const PatchTangential& tangential, const PairInTouch& pair,
+                   const PairIntegral& integral, TouchingPair& touching);
+  /// At the start and at the end of the step; false if it is not known what acts.
+  bool find_beside(const PairChange& pair, Beside& first, Beside& last) const;
+  [[nodiscard]] static Load friction_along(const PairLaw& law, const Beside& first,
+                                           const Beside& last, const PathDamping& damping,
+                                           const Worker& worker, size_t inside);
 
   const Surfaces& surfaces_;
   const PairTable& table_;
   double thickness_;
   Threads threads_;
   OnsetWatch watch_;
-  std::vector<Damped> damping_, damping_before_;  // of the pairs of the watch, where any is damped
+  std::vector<Beside> beside_, beside_before_;  // of the pairs of the watch
   std::vector<PairChange> changed_;
   std::vector<Impulse> impulses_;  // of these
   std::vector<Worker> workers_;

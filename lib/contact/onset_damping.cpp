@@ -55,6 +55,7 @@ PathDamping damping_along(const DampedPair& pair, std::span<const OnsetSample> s
       if (whole && pull > 0) damping = (size / pull) * damping;
       if (size == 0) damping = {};
       result.mean = result.mean + width * kBoole[k] * damping;
+      result.net_mean += width * kBoole[k] * (elastic[k] + damping).plane().size();
       if (first == 0 && k == 0) result.free_first = whole;
       result.free_last = whole;
     }

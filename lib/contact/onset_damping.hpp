@@ -28,6 +28,7 @@ struct DampedSample {
 
 struct PathDamping {
   PairForce mean;           ///< over the step, N and N m
+  double net_mean = 0;      ///< the mean size of the normal force with it, N
   bool free_first = false;  ///< at the start damping takes the whole force
   bool free_last = false;   ///< at the end
 };

@@ -79,19 +79,21 @@ double Dynamics::lost_in_bend(double dt) const {
   return dt * dt / 12 * sum;
 }
 
-void OnsetRest::add(const OnsetForces& f, double missing, const OtherForces& others,
+void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
                     double inverse_mass, double velocity) {
   const double first = f.first + others.first;
   const double last = f.last + others.last;
   const double p0 = -dt_ * first / 2;
-  const double p1 = dt_ * (last / 2 + missing);
+  const double p1 = dt_ * (last / 2 + parts.missing);
   const double d0 = inverse_mass * p0;
   const double d1 = inverse_mass * p1;
   const double kept_first = first - others.beside_first;
   const double kept_last = last - others.beside_last;
   const double change = (others.last - others.beside_last) - (others.first - others.beside_first);
   energy_ += (p1 * d1 - p0 * d0) / 2 -
-             dt_ / 6 * ((f.end_slope + change) * d1 - (f.start_slope + change) * d0) -
+             dt_ / 6 *
+                 ((f.end_slope + change) * (d1 + dt_ * inverse_mass * parts.friction) -
+                  (f.start_slope + change) * d0) -
              dt_ * dt_ * inverse_mass *
                  ((last * last - first * first) / 8 - (kept_last * (last + others.beside_first) -
                                                        kept_first * (first + others.beside_last)) /

@@ -103,15 +103,21 @@ struct Dynamics {
   [[nodiscard]] double lost_in_bend(double dt) const;
 };
 
+/// Parts of J / h.
+struct OnsetParts {
+  double missing;       ///< of the normal force
+  double friction = 0;  ///< whose work is booked by itself
+};
+
 /// R and what it takes to remove it, summed over the coordinates.
 class OnsetRest {
  public:
   explicit OnsetRest(double dt) : dt_(dt) {}
 
-  /// A coordinate: the force `f` of the pair on it, its part `missing` of J / h, and `others`,
-  /// which are the other forces on it at the start and at the end. `velocity` of the drift.
-  void add(const OnsetForces& f, double missing, const OtherForces& others, double inverse_mass,
-           double velocity);
+  /// A coordinate: the force `f` of the pair on it, its parts of J / h, and `others`, which are the
+  /// other forces on it at the start and at the end. `velocity` of the drift.
+  void add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
+           double inverse_mass, double velocity);
   /// The coordinates of another body. In this way the order of two bodies changes no bit.
   void add(const OnsetRest& other);
   /// The impulse over h along the mean force, as a multiple of it.

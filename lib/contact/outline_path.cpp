@@ -38,7 +38,7 @@ void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
     Coordinate& c = coordinates_[i];
     c.missing = c.force.missing();
     (i < sides_.back().coordinates ? rest_a : rest_b)
-        .add(c.force, c.missing, step.dynamics.others(c.index, c.force),
+        .add(c.force, {c.missing}, step.dynamics.others(c.index, c.force),
              step.dynamics.inverse_mass[c.index], c.velocity);
   }
   rest_a.add(rest_b);

@@ -162,7 +162,7 @@ void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, T
     read_memory(scene, all.data(), kind.damped, p, damper);
     // What the spring of one patch of several did before is not known: it may have been elsewhere.
     p.friction_before = p.force_at_point(p.spring * p.normal.turned());
-    step_patch(p, kind.rough, kind.damped, scene.dt, scene.now->finite, damper, found);
+    step_patch(p, kind.rough, kind.damped, scene.dt, damper, found);
     const auto of = [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; };
     write_lanes(found.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).all; });
     write_lanes(found.damping, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).damping; });
@@ -209,7 +209,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   if (kind_.any()) {
     DamperOf<Pack> damper;
     read_memory(scene, work, kind_.damped, p, damper);
-    step_patch(p, kind_.rough, kind_.damped, scene.dt, scene.now->finite, damper, forces);
+    step_patch(p, kind_.rough, kind_.damped, scene.dt, damper, forces);
     const auto memory = [&](int k) APOTHEM_LAMBDA -> PairMemory& { return *work[k].memory; };
     write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
     if (kind_.damped) {

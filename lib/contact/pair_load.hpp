@@ -49,8 +49,8 @@ struct ContactStrip {
     const Real aligned = select(share < one, share, one);
     const Real aside = square_root(one - aligned * aligned);
     const Real across = aside * aside * stiffness;
-    // Flanks give way along the force: each edge resists by the cosine of its angle to it. Where the
-    // pushes of the edges cancel, the force has no direction that says anything.
+    // Flanks give way along the force: each edge resists by the cosine of its angle to it. Where
+    // the pushes of the edges cancel, the force has no direction that says anything.
     const Real along = select(aligned > aside, aligned, aside) * stiffness;
     const Truth<Real> pushes = p.size > zero;
     const VectorOf<Real> normal{select(pushes, p.normal.x, zero), select(pushes, p.normal.y, zero)};

@@ -134,7 +134,7 @@ APOTHEM_INLINE void damp(const PatchStep<Real>& p, double dt, DamperOf<Real>& da
   damper.damping = damping.where(p.has_direction & (time > Real(0.)));
 }
 
-/// The part of a long step after which a patch that is new has closed: its mean depth over the
+/// The part of a step after which a patch that is new has closed: its mean depth over the
 /// approach.
 template <class Real>
 APOTHEM_INLINE Real closed_share(const PatchStep<Real>& p, double dt) {
@@ -203,18 +203,17 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const 
 }
 
 /// A step of dt (s) of a patch with friction or damping or both, whose direction has been found.
-/// `finite`: the bodies may move by more than a patch that is new is deep. `forces` are zero
-/// before.
+/// `forces` are zero before.
 template <class Real>
 APOTHEM_INLINE void step_patch(const PatchStep<Real>& p, bool rough, bool damped, double dt,
-                               bool finite, DamperOf<Real>& damper, PatchForces<Real>& forces) {
+                               DamperOf<Real>& damper, PatchForces<Real>& forces) {
   if (damped) {
     damp(p, dt, damper);
     forces.all = forces.damping = damper.damping;
   } else {
     damper = {};
   }
-  if (rough) rub(p, damped, dt, finite ? closed_share(p, dt) : Real(1.), damper, forces);
+  if (rough) rub(p, damped, dt, closed_share(p, dt), damper, forces);
 }
 
 /// The damping of a pair at the end of a step.

@@ -67,12 +67,20 @@ class PatchTangential {
   void remember() { kept_ = inherited_ ? *inherited_ : history(); }
   void undo_step() { inherited_ = kept_; }
 
-  /// What damps a pair of one patch, or null: it has no damping, or several patches.
-  [[nodiscard]] const PairForce* lone_damping(const PairInTouch& pair) const {
+  /// What acts beside the normal force of a pair.
+  struct Beside {
+    bool alone = false;  ///< the pair has one patch; otherwise it is not known
+    PairForce damping = {}, friction = {};
+    void fields(Archive& archive) {
+      archive("alone", alone)("damping", damping)("friction", friction);
+    }
+  };
+  [[nodiscard]] Beside beside(const PairInTouch& pair) const {
     const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
-    const bool lone = table_.damped() && memory.patches == 1 &&
-                      table_.between(pair.a, pair.b).damping.normal > 0;
-    return lone ? &damping_[static_cast<size_t>(pair.slot)].pair.damping : nullptr;
+    if (memory.patches != 1) return {};
+    const PairForce damping =
+        table_.damped() ? damping_[static_cast<size_t>(pair.slot)].pair.damping : PairForce{};
+    return {true, damping, memory.force - damping};
   }
 
   /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,

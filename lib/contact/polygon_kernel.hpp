@@ -42,7 +42,7 @@ class PolygonKernel final : public Kernel {
                    FrictionMemory& memory) override {
     const bool found =
         onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
-    if (found) memory.damp(onset_.damping_loss());
+    if (found) memory.add(onset_.losses());
     return found;
   }
   void add_onsets(double scale, const ForceViews& forces) const override {

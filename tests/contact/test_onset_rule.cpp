@@ -63,7 +63,7 @@ TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[
       const OnsetForces f =
           sampled({event}, 1, [&](double t) { return spring(from + t * h * velocity); });
       OnsetRest rest(h);
-      rest.add(f, f.missing(), {0, 0}, 1, velocity);
+      rest.add(f, {f.missing()}, {0, 0}, 1, velocity);
       return h * (f.last / 2 + f.missing() + rest.share() * f.mean);
     };
     v += step(x - h * v, v, 1 - share);
