@@ -90,10 +90,12 @@ PairBook Onset::losses() const {
   return sum;
 }
 
-// What friction lacks: it goes with the normal force along the path, as at the ends of the step. A
-// spring that sticks follows the slip, which goes with the elastic part of it.
-Onset::Load Onset::friction_along(const PairLaw& law, const Beside& first, const Beside& last,
-                                  const PathDamping& damping, const Worker& worker, size_t inside) {
+// What friction and the dashpot beside it lack. Where they slide, they go with the normal force. A
+// spring that sticks follows the slip, which goes with the elastic part of that; its dashpot acts
+// for as long as the bodies touch.
+void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside& last,
+                          const PathDamping& damping, const Worker& worker, size_t inside,
+                          Load& friction, Load& drag) {
   constexpr double kSticks = 1 - 1e-9;  // part of Coulomb's limit
   const auto elastic = [&](size_t i) {
     const Load& load = worker.loads[i];
@@ -102,25 +104,32 @@ Onset::Load Onset::friction_along(const PairLaw& law, const Beside& first, const
   const std::array ends{elastic(0).plane().size(), elastic(inside - 1).plane().size()};
   const std::array net{(elastic(0) + first.damping).plane().size(),
                        (elastic(inside - 1) + last.damping).plane().size()};
-  double mean = 0;
+  double mean = 0, touching = 0;
   for (size_t i = 0; i < inside; ++i) {
-    mean += worker.samples[i].mean * elastic(i).plane().size();
+    const double size = elastic(i).plane().size();
+    mean += worker.samples[i].mean * size;
+    touching += size > 0 ? worker.samples[i].mean : 0;
   }
-  const bool damped = law.damping.normal > 0;
-  PairForce sum{};
+  const double net_mean = law.damping.normal > 0 ? damping.net_mean : mean;
+  const double elastic_lacks = mean - (ends[0] + ends[1]) / 2;
+  const double net_lacks = net_mean - (net[0] + net[1]) / 2;
   double known = 0;
+  for (const double size : net) known += size > 0 ? 1 : 0;
+  const double drag_lacks = touching - known / 2;
   for (const size_t end : {0, 1}) {
-    if (!(ends[end] > 0 && net[end] > 0)) continue;
-    known += 1;
-    const PairForce& friction = end == 0 ? first.friction : last.friction;
+    if (!(net[end] > 0)) continue;
+    const Beside& at = end == 0 ? first : last;
     const double limit = law.friction.coefficient * net[end];
-    const bool slides = damped && friction.plane().size() >= kSticks * limit;
-    const double lacks =
-        slides ? damping.net_mean - (net[0] + net[1]) / 2 : mean - (ends[0] + ends[1]) / 2;
-    sum = sum + (lacks / (slides ? net[end] : ends[end])) * friction;
+    const bool slides = (at.friction + at.drag).plane().size() >= kSticks * limit;
+    const double of_spring = (slides ? net_lacks / net[end] : elastic_lacks / ends[end]) / known;
+    const double of_dashpot = (slides ? net_lacks / net[end] : drag_lacks) / known;
+    const auto add = [](double share, const PairForce& force, Load& to) {
+      to[0] += share * force.x, to[1] += share * force.y;
+      to[2] += share * force.a, to[3] += share * force.b;
+    };
+    add(of_spring, at.friction, friction);
+    add(of_dashpot, at.drag, drag);
   }
-  if (known > 0) sum = (1 / known) * sum;
-  return {sum.x, sum.y, sum.a, sum.b};
 }
 
 // The loads at all samples, those of convex polygons together.
@@ -249,7 +258,9 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
     }
   }
   if (beside && law.friction.coefficient > 0) {
-    friction = friction_along(law, first, last, along, worker, inside);
+    Load drag{};
+    find_friction(law, first, last, along, worker, inside, friction, drag);
+    for (size_t k = 0; k < 4; ++k) damping[k] += drag[k];
   }
   Load missing;
   for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();

@@ -77,9 +77,9 @@ class Onset {
                    const PairIntegral& integral, TouchingPair& touching);
   /// At the start and at the end of the step; false if it is not known what acts.
   bool find_beside(const PairChange& pair, Beside& first, Beside& last) const;
-  [[nodiscard]] static Load friction_along(const PairLaw& law, const Beside& first,
-                                           const Beside& last, const PathDamping& damping,
-                                           const Worker& worker, size_t inside);
+  static void find_friction(const PairLaw& law, const Beside& first, const Beside& last,
+                            const PathDamping& damping, const Worker& worker, size_t inside,
+                            Load& friction, Load& drag);
 
   const Surfaces& surfaces_;
   const PairTable& table_;

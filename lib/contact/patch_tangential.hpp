@@ -69,18 +69,21 @@ class PatchTangential {
 
   /// What acts beside the normal force of a pair.
   struct Beside {
-    bool alone = false;  ///< the pair has one patch; otherwise it is not known
-    PairForce damping = {}, friction = {};
+    bool alone = false;       ///< the pair has one patch; otherwise it is not known
+    PairForce damping = {};   ///< along the normal
+    PairForce friction = {};  ///< of the spring
+    PairForce drag = {};      ///< of the dashpot beside the spring
     void fields(Archive& archive) {
-      archive("alone", alone)("damping", damping)("friction", friction);
+      archive("alone", alone)("damping", damping)("friction", friction)("drag", drag);
     }
   };
   [[nodiscard]] Beside beside(const PairInTouch& pair) const {
     const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
     if (memory.patches != 1) return {};
-    const PairForce damping =
-        table_.damped() ? damping_[static_cast<size_t>(pair.slot)].pair.damping : PairForce{};
-    return {true, damping, memory.force - damping};
+    if (!table_.damped()) return {true, {}, memory.force};
+    const DampingMemory& damping = damping_[static_cast<size_t>(pair.slot)];
+    const PairForce& normal = damping.patch.damping;
+    return {true, normal, memory.force - damping.pair.damping, damping.pair.damping - normal};
   }
 
   /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,

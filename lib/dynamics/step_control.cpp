@@ -10,9 +10,10 @@
 namespace apothem {
 namespace {
 
-// The step is chosen for two bodies. One that is squeezed between two others may be stiffer by this
-// part of the frequency, before a change of the step costs less than it is worth.
-constexpr double kOvershoot = 1.5;
+// The step is chosen for two bodies. The frequency of one that is squeezed between others may be
+// higher by this factor, before a change of the step costs less than it is worth.
+constexpr double kOvershoot = 2;
+constexpr double kStable = .9;  // part of the limit of stability that a step may take
 constexpr std::int64_t kPatience = 512;
 constexpr std::int64_t kSoon = 8;  // times the patience
 constexpr size_t kMostChanges = 1000;
@@ -47,7 +48,8 @@ void StepControl::follow(const State& state, std::span<const double> lambda) {
 }
 
 double StepControl::largest_lambda() const {
-  const double frequency = 2 * kOvershoot * (automatic_ ? safety_ : 1) / choice_.step;
+  const double part = automatic_ ? std::min(kOvershoot * safety_, std::max(kStable, safety_)) : 1;
+  const double frequency = 2 * part / choice_.step;
   return frequency * frequency;
 }
 
@@ -66,7 +68,7 @@ void StepControl::shorten(const State& state, double limit, RigidIndex body) {
   }
   if (state.step - lengthened_ < kSoon * patience_) patience_ *= 2;
   double size = choice_.step;
-  while (size > kOvershoot * safety_ * limit) {
+  while (size > safety_ * limit) {
     size /= 2;
     ++halvings_;
     part_ *= 2;

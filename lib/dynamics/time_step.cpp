@@ -229,7 +229,7 @@ double contact_safety(double accuracy) {
 }
 
 double damped_safety(double accuracy) {
-  return std::min(.055 * std::sqrt(accuracy / 1e-4), contact_safety(accuracy));
+  return std::min(.05 * std::sqrt(accuracy / 1e-4), contact_safety(accuracy));
 }
 
 double element_safety(double accuracy) {
