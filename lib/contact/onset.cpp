@@ -9,9 +9,11 @@
 namespace apothem {
 namespace {
 
-constexpr double kSudden = .03;     // change of the boundary inside, of an inradius
-constexpr double kAtFirst = 1e-9;   // a potential that is round-off where a run starts
-constexpr double kPairTime = 2000;  // ns
+constexpr double kSudden = .03;      // change of the boundary inside, of an inradius
+constexpr double kAtFirst = 1e-9;    // a potential that is round-off where a run starts
+constexpr double kPairTime = 2000;   // ns
+constexpr int kMostLooks = 1 << 14;  // for crossings of vertices and edges
+constexpr size_t kMostEvents = 8;
 
 }  // namespace
 
@@ -37,8 +39,11 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
   for (const PairInTouch& result : pairs.touching()) {
     const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
-    now_touching.push_back(
-        {result.a, result.b, pair.inside_a, pair.inside_b, pair.own_length_a + pair.own_length_b});
+    const double k = table_.between(result.a, result.b).normal_stiffness * thickness_;
+    const double arm = surfaces_.inradius(result.a);
+    now_touching.push_back({result.a, result.b, pair.inside_a, pair.inside_b,
+                            pair.own_length_a + pair.own_length_b, k * pair.force.norm(),
+                            k * pair.moment_a / arm});
     if (tangential) note_beside(*tangential, result, pair, now_touching.back());
   }
   changed_.clear(), impulses_.clear();
@@ -168,10 +173,12 @@ void Onset::find_loads(const Path& path, bool damped, Worker& worker) const {
 }
 
 // Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
-// for the rotation of a step.
-void Onset::find_events(const Path& path, Worker& worker) const {
+// for the rotation of a step. False if there are many, or many to look for: each is then a small
+// part of the force, and samples at equal distances do as well.
+bool Onset::find_events(const Path& path, Worker& worker) const {
   worker.events.clear();
   const PlacedShapes& shapes = surfaces_.shapes();
+  if (shapes.view(path.a).size * shapes.view(path.b).size > kMostLooks) return false;
   const auto [turn_a, turn_b] = sine_cosine({path.turn_a(0), path.turn_b(0)});
   const PlacedPotential a0 = shapes.turn(path.a, turn_a, worker.start_a);
   const PlacedPotential b0 = shapes.turn(path.b, turn_b, worker.start_b);
@@ -179,7 +186,12 @@ void Onset::find_events(const Path& path, Worker& worker) const {
   const PlacedPotential b1 = shapes.view(path.b);
   find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.events);
   find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
+  if (worker.events.size() > kMostEvents) {
+    worker.events.clear();
+    return false;
+  }
   std::ranges::sort(worker.events);
+  return true;
 }
 
 // Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
@@ -225,9 +237,10 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   };
   const Path path{
       a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
-  find_events(path, worker);
+  const bool few = find_events(path, worker);
+  const int panels = few ? pair.panels : kManyPanels;
   const auto inside =
-      static_cast<size_t>(find_onset_samples(worker.events, pair.panels, worker.samples));
+      static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
   const PairLaw& law = table_.between(a, b);
   Beside first, last;
   const bool beside = find_beside(pair, first, last);

@@ -68,7 +68,7 @@ class Onset {
 
   [[nodiscard]] Impulse find_pair(const PairChange& pair, const Kinematics& now,
                                   const Dynamics& dynamics, double dt, Worker& worker) const;
-  void find_events(const Path& path, Worker& worker) const;
+  bool find_events(const Path& path, Worker& worker) const;
   static void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                              const PlacedPotential& y0, const PlacedPotential& y1,
                              const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);

@@ -48,7 +48,7 @@ void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlat
       const int edge = blocks.blocks()[i].p[lane], face = blocks.blocks()[i].a[lane];
       if (at_first && touch.deepest[lane] < kRoundOff * o.length[edge]) return;
       const auto [a, b] = std::minmax({o.body[edge], o.body[face]});
-      const TouchingPair pair{a, b, 0, 0, 0};
+      const TouchingPair pair{a, b, 0, 0, 0, 0, 0};
       if (runs.size() == before || !runs.back().same_pair(pair)) runs.push_back(pair);
       if (touch.from[lane] == 0) runs.back().inside_a += scrambled(edge);
       runs.back().length += (touch.to[lane] - touch.from[lane]) * o.length[edge];
@@ -64,7 +64,7 @@ void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlat
   join_neighbours(list);
   const auto add_deep = [&](int own, BodyIndex in) {
     const auto [a, b] = std::minmax(o.body[own], in);
-    const TouchingPair pair{a, b, 0, 0, 0, true};
+    const TouchingPair pair{a, b, 0, 0, 0, 0, 0, true};
     if (list.empty() || !list.back().same_pair(pair) || !list.back().deep) list.push_back(pair);
   };
   for (const OutlinePlateaus::Edge& on : plateaus.edges()) add_deep(on.edge, on.in);

@@ -14,6 +14,8 @@ namespace {
 // higher by this factor, before a change of the step costs less than it is worth.
 constexpr double kOvershoot = 2;
 constexpr double kStable = .9;  // part of the limit of stability that a step may take
+// The bound counts flanks that hardly press: a step may exceed it by a little.
+constexpr double kOfBound = 1.05;
 constexpr std::int64_t kPatience = 512;
 constexpr std::int64_t kSoon = 8;  // times the patience
 constexpr size_t kMostChanges = 1000;
@@ -48,7 +50,8 @@ void StepControl::follow(const State& state, std::span<const double> lambda) {
 }
 
 double StepControl::largest_lambda() const {
-  const double part = automatic_ ? std::min(kOvershoot * safety_, std::max(kStable, safety_)) : 1;
+  const double part =
+      automatic_ ? std::min(kOvershoot * safety_, std::max(kStable, safety_)) : kOfBound;
   const double frequency = 2 * part / choice_.step;
   return frequency * frequency;
 }
@@ -68,7 +71,7 @@ void StepControl::shorten(const State& state, double limit, RigidIndex body) {
   }
   if (state.step - lengthened_ < kSoon * patience_) patience_ *= 2;
   double size = choice_.step;
-  while (size > safety_ * limit) {
+  while (size > kOfBound * safety_ * limit) {
     size /= 2;
     ++halvings_;
     part_ *= 2;
