@@ -6,6 +6,7 @@
 
 #include "apothem/contact/contacts.hpp"
 #include "apothem/dynamics/results.hpp"
+#include "apothem/dynamics/stride_watch.hpp"
 #include "apothem/dynamics/term.hpp"
 #include "apothem/model/model.hpp"
 
@@ -80,22 +81,15 @@ class ContactTerm final : public Term {
   void refuse_buried(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
+  void refuse_passage(const State& state);
   [[nodiscard]] const std::string& name(BodyIndex body) const { return model_.name_of(body); }
-
-  /// The fastest of some bodies: the largest speed of a point of it, m/s.
-  struct Stride {
-    double speed = 0;
-    RigidIndex body = -1;
-  };
 
   const Model& model_;
   const DegreesOfFreedom& dofs_;
-  Threads threads_;
   Contacts contacts_;
-  double largest_stride_ = 0;     // m
-  std::vector<Stride> strides_;   // of each thread
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
+  StrideWatch strides_;
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
   std::string closed_notch_;
