@@ -304,23 +304,6 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
                  last < static_cast<BodyIndex>(model_.bodies.size()) ? last : -1);
 }
 
-void ContactTerm::add_energies(const State& state, double /*dt*/, Energies& e) {
-  e.contact += contacts_.energy();
-  e.friction_loss += contacts_.friction_loss();
-  e.damping_loss += contacts_.damping_loss();
-  if (!touches_meshes(model_)) return;
-  // The kernels of meshes do not know the forces of pairs: here they are summed over the patches.
-  const std::vector<ContactRecord> records = contacts_.records();
-  Vec2 force = Vec2::Zero();
-  for (size_t i = 0; i < records.size(); ++i) {
-    const BodyIndex a = records[i].a, b = records[i].b;
-    force += records[i].normal;
-    if (i + 1 < records.size() && records[i + 1].a == a && records[i + 1].b == b) continue;
-    if (force.norm() > force_.value) force_ = {force.norm(), state.time, a, b};
-    force = Vec2::Zero();
-  }
-}
-
 void ContactTerm::start_ledger() {
   contacts_.start_ledger();
   penetration_ = relative_penetration_ = force_ = {};

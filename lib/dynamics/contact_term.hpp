@@ -35,10 +35,16 @@ class ContactTerm final : public Term {
   void add_onsets(State& state) const override {
     contacts_.add_onsets(2, {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), {}});
   }
-  /// Throws Unstable if a body has moved so far that contacts may have been missed.
+  /// Throws Unstable if bodies that meet have moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt) override;
   void watch(const State& state) override;
-  void add_energies(const State& state, double dt, Energies& energies) override;
+  void add_energies(const State& /*state*/, Energies& energies) override {
+    energies.contact += contacts_.energy();
+  }
+  void add_losses(double /*dt*/, Energies& energies) const override {
+    energies.friction_loss += contacts_.friction_loss();
+    energies.damping_loss += contacts_.damping_loss();
+  }
   void start_ledger() override;
   void bound_step(StepBounds& bounds) override;
 
