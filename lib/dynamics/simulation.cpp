@@ -294,7 +294,9 @@ void Simulation::look_at_energy(bool last) {
   if (verdict != EnergyGuard::Verdict::good && !equilibrium_) {
     refuse_energy(verdict, e.total_error, touching > touching_before_);
   }
-  if (state_.step % EnergyGuard::kEvery == 0) touching_before_ = touching;
+  // What an excess is due to came before it.
+  if (state_.step % EnergyGuard::kEvery == 0 && std::abs(e.total_error) <= guard_.allowed())
+    touching_before_ = touching;
 }
 
 void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const {
