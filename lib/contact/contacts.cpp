@@ -228,7 +228,12 @@ bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const 
 }
 
 PairPeak Contacts::largest_force() const {
-  return kernels_[polygon_kernel] ? kernels_[polygon_kernel]->largest_force() : PairPeak{};
+  PairPeak largest;
+  each([&](const Kernel& kernel) {
+    const PairPeak found = kernel.largest_force();
+    if (found.value > largest.value) largest = found;
+  });
+  return largest;
 }
 
 double Contacts::node_rate(std::span<const double> node_mass) const {

@@ -96,8 +96,8 @@ class Contacts {
   /// False if no contact is deeper than `floors`, for bodies of no length below `shortest` (m); the
   /// lengths of rigid ones are their inradii. Most steps bring nothing new, and this says so soon.
   [[nodiscard]] bool may_be_deeper(const Penetrations& floors, double shortest) const;
-  /// Of the last step: the largest normal force of a pair of bodies, N. It is not known for pairs
-  /// with a mesh.
+  /// Of the last step: the largest normal force of a pair of bodies, N. That of a body with itself
+  /// is none.
   [[nodiscard]] PairPeak largest_force() const;
 
   /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.

@@ -22,6 +22,7 @@ struct EdgeFaceLaw {
   double friction;      ///< mu
   std::int32_t bodies;  ///< index of the two bodies in DampingTimes
   bool self;            ///< both are one body
+  std::int32_t pair;    ///< index of the pair of bodies, which takes no order of the two
 };
 
 /// An edge that meets a face.

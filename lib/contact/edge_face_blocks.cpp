@@ -51,6 +51,7 @@ void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const 
   touches_.resize(blocks_.size());
   met_.assign(blocks_.size(), 0);
   lengths_.assign(laws_.size(), 0);
+  forces_.assign(laws_.size(), Vec2::Zero());
 }
 
 void EdgeFaceBlocks::divide(const Threads& threads) {
@@ -108,6 +109,7 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
       block.slope[l] = repeated ? 0 : law.slope;
       block.spring[l] = repeated ? 0 : law.spring;
       block.nothing[l] = repeated ? HUGE_VAL : law.self ? kNothing * o.depth[c.face] : 0;
+      block.edge_is_lower[l] = o.body[c.edge] < o.body[c.face];
       if (repeated) continue;
       block.lanes |= 1U << l;
       const Key key = key_of(c);

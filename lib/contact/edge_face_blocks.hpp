@@ -32,6 +32,7 @@ struct EdgeFaceBlock {
   Vertices law;
   Numbers slope, spring;  ///< of the law; 0 in what is repeated
   Numbers nothing;        ///< up to this depth it is no contact, m
+  Numbers edge_is_lower;  ///< 1 where the body of the edge has the lower number, else 0
   unsigned lanes;         ///< one bit for each candidate
   bool one_law;           ///< of all lanes
 };
@@ -101,6 +102,9 @@ class EdgeFaceBlocks {
   static constexpr unsigned kPushed = 1U << kBlock, kContacts = kPushed - 1;
   [[nodiscard]] std::span<std::uint8_t> met() { return met_; }
   [[nodiscard]] std::span<const std::uint8_t> met() const { return met_; }
+  /// Normal force of the contacts with each law on that of the two bodies with the lower number, N.
+  [[nodiscard]] std::span<Vec2> forces() { return forces_; }
+  [[nodiscard]] std::span<const Vec2> forces() const { return forces_; }
   /// Length of the contact with each law, m.
   [[nodiscard]] std::span<double> lengths() { return lengths_; }
   [[nodiscard]] std::span<const double> lengths() const { return lengths_; }
@@ -138,6 +142,7 @@ class EdgeFaceBlocks {
   std::vector<EdgeFaceTouch> touches_;
   std::vector<std::uint8_t> met_;
   std::vector<double> lengths_;
+  std::vector<Vec2> forces_;
   static constexpr int kNobody = -1, kSeveral = -2;
   std::vector<int> owners_;                  // workers, of each vertex
   std::vector<std::uint8_t> has_shared_;     // of each block

@@ -76,7 +76,10 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
   Pack deepest(0.);  // squares of bounds
   double deep_deepest = 0;
   int touching = 0;
-  for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.lengths()[i] = 0;
+  for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) {
+    all.lengths()[i] = 0;
+    all.forces()[i].setZero();
+  }
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     const EdgeFaceBlock& block = all.blocks()[i];
     const auto at = [](const std::vector<double>& of, const Vertices& v) APOTHEM_LAMBDA {
@@ -127,10 +130,23 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     const Pack square = where(contact, piece.deepest * piece.deepest * (one + beyond * beyond));
     deepest = select(square <= deepest, deepest, square);
 
+    // What the body with the lower number feels at its edge, or at its face.
+    EdgeFaceTouch::Numbers lower_x, lower_y;
+    const auto at_edge = Pack::load(block.edge_is_lower.data()) > zero;
+    const Pack lower =
+        where(piece.met, select(at_edge, (force.edge_start + force.edge_end) / edge_length,
+                                force.face_start + force.face_end));
+    put(lower_x, zero - select(at_edge, ey, face.ty) * lower);
+    put(lower_y, select(at_edge, ex, face.tx) * lower);
+
     unsigned found = bits(contact);
     for (; deep != 0; deep &= deep - 1) {
-      edge_face_detail::find_deep(o, block, static_cast<size_t>(std::countr_zero(deep)), touch,
-                                  found, pushes, deep_deepest, crossings);
+      const auto l = static_cast<size_t>(std::countr_zero(deep));
+      edge_face_detail::find_deep(o, block, l, touch, found, pushes, deep_deepest, crossings);
+      const bool edge = block.edge_is_lower[l] > 0;
+      const std::int32_t line = edge ? block.p[l] : block.a[l];
+      const double sum = edge ? pushes[l][0] + pushes[l][1] : pushes[l][2] + pushes[l][3];
+      lower_x[l] = -o.ty[line] * sum, lower_y[l] = o.tx[line] * sum;
     }
     met = static_cast<std::uint8_t>(found | EdgeFaceBlocks::kPushed);
     touching += std::popcount(found);
@@ -139,8 +155,14 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     if (block.one_law) {
       double& sum = all.lengths()[block.law[0]];
       sum = sum + length[0] + length[1] + length[2] + length[3];
+      Vec2& force_sum = all.forces()[block.law[0]];
+      force_sum = {force_sum.x() + lower_x[0] + lower_x[1] + lower_x[2] + lower_x[3],
+                   force_sum.y() + lower_y[0] + lower_y[1] + lower_y[2] + lower_y[3]};
     } else {
-      for (size_t l = 0; l < kBlock; ++l) all.lengths()[block.law[l]] += length[l];
+      for (size_t l = 0; l < kBlock; ++l) {
+        all.lengths()[block.law[l]] += length[l];
+        all.forces()[block.law[l]] += Vec2(lower_x[l], lower_y[l]);
+      }
     }
     push(i, pushes);
   }

@@ -46,6 +46,7 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
   pairs_.forget_ended();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   touches_.clear();
+  largest_force_ = {};
   for (const PairInTouch& pair : pairs_.touching()) {
     const SurfaceIndex a = pair.a, b = pair.b;
     contacts.push_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
@@ -58,6 +59,25 @@ void ElementKernel::evaluate(std::vector<Contact>& contacts) {
     const double contact_stiffness = contacts.back().stiffness;
     add_touch(pair);
     touches_.back().stiffness = contact_stiffness;
+  }
+  find_largest_force();
+}
+
+void ElementKernel::find_largest_force() {
+  body_touches_.clear();
+  for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
+    body_touches_.push_back({surfaces_.body(touches_[i].a), surfaces_.body(touches_[i].b), i});
+  }
+  std::ranges::sort(body_touches_);
+  Vec2 force = Vec2::Zero();
+  for (size_t i = 0; i < body_touches_.size(); ++i) {
+    const auto& [a, b, touch] = body_touches_[i];
+    force += touches_[touch].force;
+    if (i + 1 < body_touches_.size() && body_touches_[i + 1].a == a && body_touches_[i + 1].b == b)
+      continue;
+    const double size = hypotenuse(force.x(), force.y());
+    if (size > largest_force_.value) largest_force_ = {size, a, b};
+    force = Vec2::Zero();
   }
 }
 

@@ -39,6 +39,7 @@ class ElementKernel final : public Kernel {
   void limit_damping(double rate) override { times_.limit(rate); }
   void fields(Archive& archive) override;
 
+  [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
   /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
@@ -91,6 +92,7 @@ class ElementKernel final : public Kernel {
     return table_.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness * thickness_;
   }
   void add_touch(const PairInTouch& result);
+  void find_largest_force();
   /// What looking for a penetration works in.
   struct Depths {
     PatchWorkspace workspace;
@@ -111,6 +113,14 @@ class ElementKernel final : public Kernel {
   ForceDistribution distribution_;
   PairIntegrals pairs_;
   std::vector<Touch> touches_;  // ascending
+  /// Of two bodies, with the number of the touch.
+  struct BodyTouch {
+    BodyIndex a, b;
+    int touch;
+    auto operator<=>(const BodyTouch&) const = default;
+  };
+  std::vector<BodyTouch> body_touches_;  // of all touches, ascending
+  PairPeak largest_force_;
   Forces normal_, tangential_, damping_;
   DampingTimes times_;
   PatchWorkspace workspace_;

@@ -103,8 +103,8 @@ class Kernel {
   }
   /// Adds these impulses over dt, times `scale`, to the forces.
   virtual void add_onsets(double /*scale*/, const ForceViews& /*forces*/) const {}
-  /// Of the last call: the largest normal force of a pair of bodies. Not known to all kernels.
-  [[nodiscard]] virtual PairPeak largest_force() const { return {}; }
+  /// Of the last call: the largest normal force of a pair of bodies, N.
+  [[nodiscard]] virtual PairPeak largest_force() const = 0;
 
   /// Elastic energy of the normal contact, J. Not for every step.
   [[nodiscard]] virtual double energy() const = 0;

@@ -37,6 +37,9 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
   if (friction_) friction_->take(pairs);
   candidates_.clear();
   laws_.clear();
+  pair_forces_.clear();
+  for (const BoxPair& pair : pairs) pair_forces_.push_back({pair, Vec2::Zero()});
+  std::ranges::sort(pair_forces_, {}, &PairForce::bodies);
   std::fill(ends_.begin(), ends_.end(), EndForces{0, 0});
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
@@ -52,8 +55,45 @@ EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
   const Friction& friction = table_.between(edges, faces).friction;
   const double spring =
       friction.tangential_stiffness * thickness_ / outlines_.bodies[faces].reference;
-  return {slopes_(faces, edges), spring, friction.coefficient,
-          friction_ ? friction_->bodies(edges, faces) : 0, edges == faces};
+  return {slopes_(faces, edges), spring,
+          friction.coefficient,  friction_ ? friction_->bodies(edges, faces) : 0,
+          edges == faces,        pair_number(edges, faces)};
+}
+
+std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
+  const auto [low, high] = std::minmax(a, b);
+  const auto at =
+      std::ranges::lower_bound(pair_forces_, BoxPair{low, high}, {}, &PairForce::bodies);
+  return static_cast<std::int32_t>(at - pair_forces_.begin());
+}
+
+// By what edges and faces of the body with the lower number feel. That of a body with itself is
+// none.
+void OutlineKernel::find_largest_force() {
+  const Outlines& o = outlines_;
+  for (PairForce& pair : pair_forces_) pair.force = Vec2::Zero();
+  const std::span<const EdgeFaceLaw> laws = blocks_.laws();
+  for (size_t i = 0; i < laws.size(); ++i) {
+    pair_forces_[static_cast<size_t>(laws[i].pair)].force += blocks_.forces()[i];
+  }
+  const auto add = [&](int line, BodyIndex other, double force) {
+    if (o.body[line] > other) return;
+    pair_forces_[static_cast<size_t>(pair_number(o.body[line], other))].force +=
+        force * Vec2(-o.ty[line], o.tx[line]);
+  };
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    add(on.edge, on.in,
+        slopes_(on.in, o.body[on.edge]) * o.bodies[on.in].depth * on.sum * o.length[on.edge]);
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    add(on.face, on.in, slopes_(o.body[on.face], on.in) * on.moment.area);
+  }
+  largest_force_ = {};
+  for (const auto& [bodies, force] : pair_forces_) {
+    if (bodies.first == bodies.second) continue;
+    const double size = hypotenuse(force.x(), force.y());
+    if (size > largest_force_.value) largest_force_ = {size, bodies.first, bodies.second};
+  }
 }
 
 // An edge of a body lies on its own face, without a depth, and in those of the edges next to it
@@ -149,6 +189,7 @@ void OutlineKernel::evaluate(std::vector<Contact>& /*contacts*/) {
     for (const auto& [pair, top] : worker.crossings) plateaus_.add(pair, top);
   }
   add_plateaus();
+  find_largest_force();
 }
 
 // An edge inside the top of a body is a contact with that body.

@@ -57,6 +57,7 @@ class OutlineKernel final : public Kernel {
     if (friction_) friction_->limit_damping(rate);
   }
 
+  [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override;
   /// The largest 2 k (1/r_c + 1/r_t) l_i/m_i of a boundary node (docs/theory.md, Step) for nodes of
   /// these masses in kg (0 where held). Needs placed outlines.
@@ -78,6 +79,8 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] Resultant resultant(BodyIndex body) const;
   void find_candidates(BodyIndex a, BodyIndex b);
   [[nodiscard]] EdgeFaceLaw law_of(BodyIndex edges, BodyIndex faces) const;
+  [[nodiscard]] std::int32_t pair_number(BodyIndex a, BodyIndex b) const;
+  void find_largest_force();
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
   void add_plateaus();
   [[nodiscard]] Vec2 normal_force(int vertex) const;
@@ -92,6 +95,13 @@ class OutlineKernel final : public Kernel {
   std::optional<OutlineFriction> friction_;  // only where there is friction
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // of these
+  /// Two bodies, the lower number first, and the normal force on that one, N.
+  struct PairForce {
+    BoxPair bodies;
+    Vec2 force;
+  };
+  std::vector<PairForce> pair_forces_;  // ascending
+  PairPeak largest_force_;
   std::vector<int> near_edges_, near_faces_;
   EdgeFaceBlocks blocks_;  // of the candidates
   /// What a thread finds, and its forces on edges that other threads have forces for as well.

@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kPolygonSkin = 0.1;  // of the size of a rigid body
 constexpr double kMeshSkin = 0.25;    // of the shortest reference length
-constexpr double kStrideTime = 2;     // of a body, ns
+// Of the smaller inradius of two bodies. The middle of a body, an inradius from its boundary,
+// cannot be inside another one before they are so deep in each other; elements stretch.
+constexpr double kPassage = 0.5;
 // A corner that has closed may open again before the run fails for it.
 constexpr int kLooksKept = 8;
 
@@ -38,6 +40,14 @@ double common_skin(const Model& model) {
     ++count;
   }
   return count > 0 ? count / sum : 0;
+}
+
+std::vector<double> inradii_of(const Model& model) {
+  std::vector<double> inradii(model.bodies.size() + model.deformables.size());
+  for (size_t i = 0; i < inradii.size(); ++i) {
+    inradii[i] = inradius_of(model, static_cast<BodyIndex>(i));
+  }
+  return inradii;
 }
 
 }  // namespace
@@ -107,14 +117,10 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
                          int threads)
     : model_(model),
       dofs_(dofs),
-      threads_(threads),
       contacts_(model.contact, model.thickness, surfaces_of(model, dofs), pair_table(model),
-                threads) {
-  double inradius = HUGE_VAL;
-  for (const RigidBody& body : model.bodies) inradius = std::min(inradius, body.inradius);
-  largest_stride_ = kLargestStride * inradius;
-  const auto bodies = static_cast<BodyIndex>(model.bodies.size() + model.deformables.size());
-  for (BodyIndex i = 0; i < bodies; ++i) inradius_.push_back(inradius_of(model, i));
+                threads),
+      inradius_(inradii_of(model)),
+      strides_(model, inradius_, threads) {
   shortest_inradius_ = *std::ranges::min_element(inradius_);
   if (!state.absent.empty()) contacts_.set_absent(state.absent);
   try {
@@ -169,27 +175,15 @@ std::string ContactTerm::describe() const {
 }
 
 void ContactTerm::check_drift(const State& state, double dt) {
-  const Surfaces& surfaces = contacts_.surfaces();
-  strides_.assign(static_cast<size_t>(threads_.count()), {});
-  threads_.chunks(surfaces.rigid_count(), kStrideTime, [&](int first, int end, int worker) {
-    Stride longest;
-    for (RigidIndex i = first; i < end; ++i) {
-      if (!surfaces.rigid(i).moves) continue;
-      const double* v = &state.v[state.layout.rigid(i)];
-      const double far =
-          std::max(std::abs(v[0]), std::abs(v[1])) + std::abs(v[2]) * surfaces.shapes().radius(i);
-      if (far > longest.speed) longest = {far, i};
-    }
-    strides_[static_cast<size_t>(worker)] = longest;
-  });
-  const auto [stride, farthest] = *std::ranges::max_element(strides_, {}, &Stride::speed);
-  if (!(stride * dt > largest_stride_) || surfaces.rigid_count() < 2) return;
+  const auto fault = strides_.look(state, contacts_.surfaces(), dt);
+  if (!fault) return;
   throw Unstable(
-      fmt::format("body \"{}\" moves {:.3g} m in one step {}, more than a quarter of the "
-                  "smallest inradius: contacts would be missed; reduce time.step or "
-                  "time.safety",
-                  name(farthest), stride * dt, at_time(state)),
-      farthest);
+      fmt::format(
+          "body \"{}\" moves {:.3g} m in one step where \"{}\" is in its way, {}, more than a "
+          "quarter of {:.3g} m, the smaller inradius of the two: contacts would be missed; "
+          "reduce time.step or time.safety",
+          name(fault->fast), fault->stride, name(fault->other), at_time(state), fault->length),
+      fault->fast < static_cast<BodyIndex>(model_.bodies.size()) ? fault->fast : -1);
 }
 
 void ContactTerm::watch(const State& state) {
@@ -240,6 +234,7 @@ void ContactTerm::add_forces(const Evaluation& now) {
   counts_.touching_now = contacts_.count();
   counts_.touching_pairs += counts_.touching_now;
   note_peaks(state);
+  refuse_passage(state);
 }
 
 void ContactTerm::note_peaks(const State& state) {
@@ -256,6 +251,28 @@ void ContactTerm::note_peaks(const State& state) {
   note(found.largest, penetration_);
   note(found.relative, relative_penetration_);
   note(contacts_.largest_force(), force_);
+}
+
+// Contact of meshes resists up to any depth, but with no more than a constant pressure: bodies that
+// press harder pass through each other. Rigid ones have the guard of their potentials.
+void ContactTerm::refuse_passage(const State& state) {
+  if (!touches_meshes(model_) || !(relative_penetration_.value > kPassage)) return;
+  std::pair<BodyIndex, BodyIndex> last(-1, -1);
+  for (const Contact& contact : contacts_.contacts()) {
+    const auto pair = contacts_.bodies(contact);
+    const auto [a, b] = pair;
+    const bool meshed = std::max(a, b) >= static_cast<BodyIndex>(model_.bodies.size());
+    if (pair == last || a == b || !meshed) continue;
+    last = pair;
+    if (!strides_.are_passing(state, contacts_.surfaces(), a, b)) continue;
+    throw Unstable(fmt::format(
+        "bodies \"{}\" and \"{}\" overlap as deep as the middle of one of them {} and are about to "
+        "pass "
+        "through each other: {}",
+        name(a), name(b), at_time(state),
+        state.step == 0 ? "move them apart"
+                        : "the contact is too soft for this load; raise contact.normal_stiffness"));
+  }
 }
 
 void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
@@ -285,23 +302,6 @@ void ContactTerm::refuse(const ContactFault& fault, const State& state) const {
   throw Unstable(fmt::format("{} at ({:.6g}, {:.6g}) m, t = {:.9g} s (step {}): {}", what,
                              world.x(), world.y(), state.time, state.step, advice),
                  last < static_cast<BodyIndex>(model_.bodies.size()) ? last : -1);
-}
-
-void ContactTerm::add_energies(const State& state, double /*dt*/, Energies& e) {
-  e.contact += contacts_.energy();
-  e.friction_loss += contacts_.friction_loss();
-  e.damping_loss += contacts_.damping_loss();
-  if (!touches_meshes(model_)) return;
-  // The kernels of meshes do not know the forces of pairs: here they are summed over the patches.
-  const std::vector<ContactRecord> records = contacts_.records();
-  Vec2 force = Vec2::Zero();
-  for (size_t i = 0; i < records.size(); ++i) {
-    const BodyIndex a = records[i].a, b = records[i].b;
-    force += records[i].normal;
-    if (i + 1 < records.size() && records[i + 1].a == a && records[i + 1].b == b) continue;
-    if (force.norm() > force_.value) force_ = {force.norm(), state.time, a, b};
-    force = Vec2::Zero();
-  }
 }
 
 void ContactTerm::start_ledger() {

@@ -6,6 +6,7 @@
 
 #include "apothem/contact/contacts.hpp"
 #include "apothem/dynamics/results.hpp"
+#include "apothem/dynamics/stride_watch.hpp"
 #include "apothem/dynamics/term.hpp"
 #include "apothem/model/model.hpp"
 
@@ -38,10 +39,16 @@ class ContactTerm final : public Term {
   void add_onsets(State& state) const override {
     contacts_.add_onsets(2, {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), {}});
   }
-  /// Throws Unstable if a body has moved so far that contacts may have been missed.
+  /// Throws Unstable if bodies that meet have moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt) override;
   void watch(const State& state) override;
-  void add_energies(const State& state, double dt, Energies& energies) override;
+  void add_energies(const State& /*state*/, Energies& energies) override {
+    energies.contact += contacts_.energy();
+  }
+  void add_losses(double /*dt*/, Energies& energies) const override {
+    energies.friction_loss += contacts_.friction_loss();
+    energies.damping_loss += contacts_.damping_loss();
+  }
   void start_ledger() override;
   void bound_step(StepBounds& bounds) override;
 
@@ -84,22 +91,15 @@ class ContactTerm final : public Term {
   void refuse_buried(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
+  void refuse_passage(const State& state);
   [[nodiscard]] const std::string& name(BodyIndex body) const { return model_.name_of(body); }
-
-  /// The fastest of some bodies: the largest speed of a point of it, m/s.
-  struct Stride {
-    double speed = 0;
-    RigidIndex body = -1;
-  };
 
   const Model& model_;
   const DegreesOfFreedom& dofs_;
-  Threads threads_;
   Contacts contacts_;
-  double largest_stride_ = 0;     // m
-  std::vector<Stride> strides_;   // of each thread
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
+  StrideWatch strides_;
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
   std::string closed_notch_;

@@ -150,8 +150,11 @@ std::string Elements::collapse(const State& state) const {
       centre.x(), centre.y(), body.name, size, at_time(state), material.name);
 }
 
-void Elements::add_energies(const State& state, double dt, Energies& e) {
+void Elements::add_energies(const State& state, Energies& e) {
   e.strain += elements_.strain_energy(state.layout.of_nodes(state.x));
+}
+
+void Elements::add_losses(double dt, Energies& e) const {
   // Of the last force only half a step has acted (-dt/2 [v.C.v] since the start), and each power
   // was taken with the velocity half a step before its force: SUM v.C.a dt^2/2 = dt/4 [v.C.v].
   e.damping_loss += summed_damping_loss_ - dt / 4 * (damping_power_ - first_damping_power_);

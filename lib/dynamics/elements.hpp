@@ -22,7 +22,8 @@ class Elements final : public Term {
   void add_forces(const Evaluation& evaluation) override;
   /// Throws Unstable if an element has turned inside out.
   void watch(const State& state) override;
-  void add_energies(const State& state, double dt, Energies& energies) override;
+  void add_energies(const State& state, Energies& energies) override;
+  void add_losses(double dt, Energies& energies) const override;
   void bound_step(StepBounds& bounds) override;
   void add_stiffness(const State& state, NodeStiffness& stiffness) override;
   void fields(Archive& archive) override {

@@ -8,9 +8,19 @@
 namespace apothem {
 namespace {
 
-constexpr double kLargestError = 0.1;       // of the energy in play
-constexpr double kArriving = 4;             // growth of the energy in play between two looks
-constexpr std::int64_t kLongestExcess = 4;  // looks in a row, however fast energy arrives
+constexpr double kLargestError = 0.1;  // of the energy in play
+// What losses may fall, of the energy in play. Springs and dashpots are booked by the trapezoid
+// rule over steps with velocities between them. Of springs that stick this leaves less than 1e-4 in
+// random scenes; a dashpot that stops a body within a few steps may fall by some parts in a
+// hundred.
+constexpr double kFrictionFall = 0.01, kDampingFall = 0.1;
+constexpr double kArriving = 4;  // growth of the energy in play between regular looks
+constexpr double kHopeless =
+    0.5;  // error, of the energy in play: no contact that passes is so coarse
+// A look beyond the regular ones costs so many parts of the work of the steps. Work is counted in
+// coordinates and touching pairs, which cost alike in a step, whose first few come at once; the
+// energy of a pair costs several times its force.
+constexpr std::int64_t kPrice = 32, kStepWork = 8, kEnergyWork = 8;
 
 // Lifting every body, and pressing contacts, by a few roundings of the scene's size.
 double round_off(const Model& model) {
@@ -33,22 +43,69 @@ double round_off(const Model& model) {
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const Model& model) : noise_(round_off(model)) {}
+EnergyGuard::EnergyGuard(const Model& model)
+    : noise_(round_off(model)),
+      coordinates_(3 * static_cast<std::int64_t>(model.bodies.size()) + 2 * model.node_count()) {}
 
-bool EnergyGuard::exceeded(const Energies& e) {
-  const double before = in_play_;
+void EnergyGuard::start(const Energies& e) {
+  in_play_ = lately_ = before_ = e.kinetic + e.strain + e.contact;
+}
+
+void EnergyGuard::Loss::follow(double loss) {
+  largest = std::max(largest, loss);
+  fall = largest - loss;
+}
+
+bool EnergyGuard::due(std::int64_t step, const Energies& losses, std::int64_t touching) {
+  friction_.follow(losses.friction_loss);
+  damping_.follow(losses.damping_loss);
+  const std::int64_t price = kPrice * (coordinates_ + kEnergyWork * touching);
+  credit_ += kStepWork + coordinates_ + touching;
+  const bool regular = step % kEvery == 0;
+  if (regular) before_ = lately_;
+  const bool affordable = touching > 0 && credit_ >= price;
+  if (regular || affordable) {
+    credit_ = std::max<std::int64_t>(credit_ - price, 0);
+    return true;
+  }
+  // An excess has to be followed, and a fall to be judged.
+  if (excess_since_ >= 0) return !arriving();
+  return excess(0) != Verdict::good;
+}
+
+EnergyGuard::Verdict EnergyGuard::excess(double error) const {
+  if (!(error <= allowed())) return Verdict::unaccounted;
+  if (friction_.fall > kFrictionFall * in_play_ + noise_) return Verdict::friction;
+  if (damping_.fall > kDampingFall * in_play_ + noise_) return Verdict::damping;
+  return Verdict::good;
+}
+
+double EnergyGuard::allowed() const { return kLargestError * in_play_ + noise_; }
+
+bool EnergyGuard::arriving() const { return in_play_ > kArriving * before_; }
+
+EnergyGuard::Verdict EnergyGuard::judge(std::int64_t step, const Energies& e, bool last) {
   const double present = e.kinetic + e.strain + e.contact;
   const double work = std::abs(e.gravity) + std::abs(e.external_work);
   const double error = std::abs(e.total_error);
   in_play_ = std::max({in_play_, present, work});
-  largest_error_ = std::max(largest_error_, error);
-  if (error <= kLargestError * in_play_ + noise_) {
-    looks_in_excess_ = 0;
-    return false;
+  if (step % kEvery == 0) lately_ = in_play_;
+  record(e);
+  const Verdict verdict = excess(error);
+  if (verdict == Verdict::good) {
+    excess_since_ = -1;
+    return verdict;
   }
-  ++looks_in_excess_;
-  const bool arriving = in_play_ > kArriving * before;
-  return !arriving || looks_in_excess_ >= kLongestExcess;
+  if (excess_since_ < 0) excess_since_ = step;
+  const bool hopeless = !(error <= kHopeless * in_play_);
+  if (last) return hopeless || !arriving() ? verdict : Verdict::good;
+  const std::int64_t patience = arriving() ? kArrival : kLasting;
+  if (hopeless && !arriving()) return verdict;
+  return step - excess_since_ >= patience ? verdict : Verdict::good;
+}
+
+void EnergyGuard::record(const Energies& e) {
+  largest_error_ = std::max(largest_error_, std::abs(e.total_error));
 }
 
 }  // namespace apothem

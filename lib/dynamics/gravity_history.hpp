@@ -21,9 +21,7 @@ class GravityHistory final : public Term {
   [[nodiscard]] std::string describe() const override;
   /// Scales gravity to the time of the state; it is no part of the forces.
   void add_forces(const Evaluation& evaluation) override;
-  void add_energies(const State& /*state*/, double /*dt*/, Energies& e) override {
-    e.external_work += work_;
-  }
+  void add_energies(const State& /*state*/, Energies& e) override { e.external_work += work_; }
   void start_ledger() override { work_ = 0; }
   void fields(Archive& archive) override { archive("work", work_); }
   void refresh(const State& state) override;

@@ -17,9 +17,7 @@ class MassDamping final : public Term {
   [[nodiscard]] std::string describe() const override;
   /// v' = -alpha v solved exactly over h, so that any alpha is stable.
   void damp(State& state, double h, Ledger& ledger) override;
-  void add_energies(const State& /*state*/, double /*dt*/, Energies& e) override {
-    e.damping_loss += loss_;
-  }
+  void add_losses(double /*dt*/, Energies& e) const override { e.damping_loss += loss_; }
   void start_ledger() override { loss_ = 0; }
   void fields(Archive& archive) override { archive("mass_damping_loss", loss_); }
 

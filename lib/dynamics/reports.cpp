@@ -1,5 +1,6 @@
 // What a simulation tells of its present state.
 #include <algorithm>
+#include <cmath>
 
 #include "apothem/dynamics/contact_term.hpp"
 #include "apothem/dynamics/elements.hpp"
@@ -53,9 +54,16 @@ const std::vector<double>& Simulation::node_mass() const {
 }
 
 Extremes Simulation::extremes() const {
-  if (!contact_) return {{}, {}, {}, guard_.largest_error()};
-  return {contact_->penetration(), contact_->relative_penetration(), contact_->force(),
-          guard_.largest_error()};
+  Extremes extremes;
+  if (contact_) {
+    extremes.penetration = contact_->penetration();
+    extremes.relative_penetration = contact_->relative_penetration();
+    extremes.force = contact_->force();
+  }
+  extremes.energy_error = guard_.largest_error();
+  extremes.energy_in_play = guard_.in_play();
+  extremes.energy_allowed = equilibrium_ ? HUGE_VAL : guard_.allowed();
+  return extremes;
 }
 
 ContactCounts Simulation::counts() const { return contact_ ? contact_->counts() : ContactCounts{}; }

@@ -22,8 +22,13 @@ struct Extremes {
   Peak penetration;  ///< of a pair, m (geometry/integrals/penetration.hpp)
   /// Penetration of a pair over the inradius of the body where that is smaller.
   Peak relative_penetration;
-  Peak force;               ///< size of the contact force of a pair, N
-  double energy_error = 0;  ///< largest |total_error| of the looks of the energy guard, J
+  Peak force;  ///< size of the normal force of a pair of two bodies, N
+  /// Largest |total_error| of the looks of the energy guard and of the records, J.
+  double energy_error = 0;
+  double energy_in_play = 0;  ///< see EnergyGuard, J
+  /// What of it may be unaccounted for, J; infinite in static runs, whose load steps give off
+  /// energy.
+  double energy_allowed = 0;
 };
 
 /// Two bodies that overlap.

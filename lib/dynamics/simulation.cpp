@@ -63,7 +63,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
   }
-  ledger_.start(state_, energies_of_terms());
+  start_ledger();
 }
 
 Simulation::~Simulation() = default;
@@ -97,7 +97,13 @@ void Simulation::add(std::unique_ptr<Term> term) {
     return;
   }
   find_forces(state_.v, 0);
-  ledger_.start(state_, energies_of_terms());
+  start_ledger();
+}
+
+void Simulation::start_ledger() {
+  const Energies terms = energies_of_terms();
+  ledger_.start(state_, terms);
+  guard_.start(ledger_.close(state_, terms));
 }
 
 void Simulation::step() {
@@ -147,7 +153,7 @@ void Simulation::take_step() {
   control_->follow(state_, lambda_);
   clock_.lap(Phase::integrate);
   timed_steps_ += timed;
-  if (state_.step % kWatchedEvery == 0) watch();
+  watch();
 }
 
 void Simulation::take_absent_out() {
@@ -254,7 +260,7 @@ void Simulation::inherit(const ContactMemory& memory) {
   find_forces(state_.v, 0);
   add_onsets(0);
   if (equilibrium_) equilibrium_->begin_loaded();
-  ledger_.start(state_, energies_of_terms());
+  start_ledger();
 }
 
 void Simulation::settle(const std::function<bool()>& stop) {
@@ -274,43 +280,79 @@ void Simulation::settle(const std::function<bool()>& stop) {
 }
 
 void Simulation::watch() {
-  if (!std::isfinite(dofs_.kinetic(state_))) refuse_infinite(state_, "a body");
-  for (const auto& term : terms_) term->watch(state_);
-  if (state_.step % EnergyGuard::kEvery == 0) check_energy();
-  if (!population_) return;
+  const bool regular = state_.step % kWatchedEvery == 0;
+  if (regular) {
+    if (!std::isfinite(dofs_.kinetic(state_))) refuse_infinite(state_, "a body");
+    for (const auto& term : terms_) term->watch(state_);
+  }
+  if (guard_.due(state_.step, losses(), counts().touching_now)) look_at_energy(false);
+  if (!regular || !population_) return;
   const Population::Change change = population_->look(state_);
   if (!change.empty()) change_population(change.leave, change.come);
 }
 
-void Simulation::check_energy() {
+void Simulation::check_energy() { look_at_energy(true); }
+
+void Simulation::look_at_energy(bool last) {
   const Energies e = energies();
   if (!std::isfinite(e.total_error)) refuse_infinite(state_, "a body or node");
+  const EnergyGuard::Verdict verdict = guard_.judge(state_.step, e, last);
   const std::int64_t touching = counts().touching_pairs;
-  const bool touched = touching > touching_before_;
-  touching_before_ = touching;
   // A load step that comes at once gives off energy; that is no error of the equilibrium.
-  if (!guard_.exceeded(e) || equilibrium_) return;
+  if (verdict != EnergyGuard::Verdict::good && !equilibrium_) {
+    refuse_energy(verdict, e.total_error, touching > touching_before_);
+  }
+  // What an excess is due to came before it.
+  if (state_.step % EnergyGuard::kEvery == 0 && std::abs(e.total_error) <= guard_.allowed())
+    touching_before_ = touching;
+}
+
+void Simulation::refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const {
+  std::string stiffest;
+  const PairPeak pair = contact_ ? contact_->contacts().largest_force() : PairPeak{};
+  if (pair.a >= 0) {
+    stiffest = fmt::format(", of which \"{}\" with \"{}\" has the largest force",
+                           model_.name_of(pair.a), model_.name_of(pair.b));
+  }
+  if (verdict != EnergyGuard::Verdict::unaccounted) {
+    const bool friction = verdict == EnergyGuard::Verdict::friction;
+    throw Unstable(fmt::format(
+        "{} has given {:.3g} J back of what it had taken, which is energy out of nothing, {}; "
+        "{:.3g} J are in play: the step is too long for the {} of these contacts{}; reduce "
+        "{}time.step or time.safety",
+        friction ? "friction" : "damping",
+        friction ? guard_.friction_fall() : guard_.damping_fall(), at_time(state_),
+        guard_.in_play(), friction ? "friction" : "damping", stiffest,
+        friction ? "contact.friction.tangential_stiffness, " : "contact.damping.ratio, "));
+  }
   std::string cause = "no bodies touch: the step is too long for what moves them";
   if (touched) {
-    cause = "the step is too long for the contacts of these steps";
-    const PairPeak pair = contact_->contacts().largest_force();
-    if (pair.a >= 0) {
-      cause += fmt::format(", of which \"{}\" with \"{}\" has the largest force",
-                           model_.name_of(pair.a), model_.name_of(pair.b));
-    }
+    cause = "the step is too long for the contacts of these steps" + stiffest;
   } else if (elements_) {
     cause = "no bodies touch: the step is too long for the elements";
   }
   throw Unstable(fmt::format(
       "{:.3g} J of the {:.3g} J in play are unaccounted for {}, a tenth is allowed: {}; reduce "
       "time.step or time.safety",
-      e.total_error, guard_.in_play(), at_time(state_), cause));
+      error, guard_.in_play(), at_time(state_), cause));
+}
+
+Energies Simulation::losses() const {
+  Energies sum;
+  for (const auto& term : terms_) term->add_losses(step_size(), sum);
+  return sum;
 }
 
 Energies Simulation::energies_of_terms() const {
-  Energies sum;
-  for (const auto& term : terms_) term->add_energies(state_, step_size(), sum);
+  Energies sum = losses();
+  for (const auto& term : terms_) term->add_energies(state_, sum);
   return sum;
+}
+
+Energies Simulation::energies_to_record() {
+  const Energies e = energies();
+  guard_.record(e);
+  return e;
 }
 
 Energies Simulation::energies() const { return ledger_.close(state_, energies_of_terms()); }

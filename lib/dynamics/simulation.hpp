@@ -89,11 +89,13 @@ class Simulation {
   [[nodiscard]] const StepChoice& step_choice() const { return control_->choice(); }
   [[nodiscard]] const StepChanges& step_changes() const { return control_->changes(); }
 
-  /// Throws Unstable if more than a tenth of the energy in play is unaccounted for. Dynamic steps
-  /// ask this at regular intervals by themselves; the end of a run asks it once more.
+  /// Throws Unstable if the run has made energy (energy_guard.hpp). Dynamic steps see to this by
+  /// themselves; it is asked once more where a run ends.
   void check_energy();
 
   [[nodiscard]] Energies energies() const;
+  /// The same for a record: no error that is written is larger than the largest of extremes().
+  Energies energies_to_record();
   [[nodiscard]] Momenta momenta() const { return ledger_.momenta(state_); }
   [[nodiscard]] std::vector<ContactRecord> contacts() const;
   /// What acts on each body from contacts; rigid bodies first. Without forces on rigid ones, which
@@ -122,6 +124,7 @@ class Simulation {
 
  private:
   void make_terms(int threads);
+  void start_ledger();
   void take_step();
   void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;
@@ -132,6 +135,9 @@ class Simulation {
   bool add_onsets(double dt);
   void settle(const std::function<bool()>& stop);
   void watch();
+  void look_at_energy(bool last);
+  [[noreturn]] void refuse_energy(EnergyGuard::Verdict verdict, double error, bool touched) const;
+  [[nodiscard]] Energies losses() const;
   [[nodiscard]] Energies energies_of_terms() const;
 
   const Model& model_;
@@ -150,8 +156,9 @@ class Simulation {
   std::vector<double> forces_;  // at the start of the step; then at its end, without onsets
   std::vector<double> lambda_;  // of each rigid body's contacts: bound of stiffness/inertia, 1/s^2
   EnergyGuard guard_;
-  std::int64_t touching_before_ = 0;  // touching pairs, summed over the steps, at the last look
-  std::int64_t steps_before_ = 0;     // of earlier legs of a resumed run
+  std::int64_t touching_before_ =
+      0;  // touching pairs, summed over the steps, at the last regular look
+  std::int64_t steps_before_ = 0;  // of earlier legs of a resumed run
   Stopwatch clock_;
   std::int64_t timed_steps_ = 0;
 };

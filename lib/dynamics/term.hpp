@@ -73,8 +73,11 @@ class Term {
   /// From time to time. Throws Unstable if a body is out of the range of the method.
   virtual void watch(const State& /*state*/) {}
 
-  /// Adds its stored and dissipated energies, J. Not for every step.
-  virtual void add_energies(const State& /*state*/, double /*dt*/, Energies& /*energies*/) {}
+  /// Adds its stored energy and the work from outside that it books itself, J. Not for every step.
+  virtual void add_energies(const State& /*state*/, Energies& /*energies*/) {}
+  /// Adds what it has dissipated so far to friction_loss and damping_loss, J; after steps of dt
+  /// (s). Asked in every step.
+  virtual void add_losses(double /*dt*/, Energies& /*energies*/) const {}
   /// What has been dissipated so far does not count.
   virtual void start_ledger() {}
 

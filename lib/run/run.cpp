@@ -178,6 +178,7 @@ bool Run::try_step() {
   }
   if (scene_.time.statics || state().step % kLookEvery == 0) look_for_stop();
   if (on_step_) on_step_();
+  if (ended()) simulation_->check_energy();
   return true;
 }
 
@@ -242,7 +243,6 @@ void Run::look_for_stop() {
 void Run::advance(std::optional<double> until) {
   note_failures([&] {
     loop(std::min(until.value_or(scene_.time.end), scene_.time.end));
-    if (ended()) simulation_->check_energy();
     flush();
   });
 }
@@ -323,7 +323,7 @@ void Run::write_row() {
     regions = region_sums(model, s.state(), s.node_mass(), contacts,
                           body_statistics(model, s.state(), contacts, s.stresses()));
   }
-  history_->add(s.state(), s.energies(), s.momenta(),
+  history_->add(s.state(), s.energies_to_record(), s.momenta(),
                 {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),
                  scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces(),
                  std::move(regions)});

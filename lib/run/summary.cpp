@@ -54,6 +54,7 @@ void add_peaks(Json& json, const Run& run) {
   json["largest_contact_force"] = extremes.force.value;
   json["largest_contact_force_at"] = where(extremes.force);
   json["largest_energy_error"] = extremes.energy_error;
+  json["energy_in_play"] = extremes.energy_in_play;
 }
 
 void add_load_steps(Json& json, const Run& run) {

@@ -26,10 +26,21 @@ void warn_of_penetration(const Model& model, const Peak& deepest,
       100 * deepest.value, model.name_of(smaller), inradius, 100 * limit));
 }
 
+// What lasted has ended the run. What a contact has made and taken back is no energy of the run,
+// but its motion meanwhile is coarse.
+void warn_of_energy(const Extremes& extremes, std::vector<std::string>& warnings) {
+  if (!(extremes.energy_error > extremes.energy_allowed)) return;
+  warnings.push_back(fmt::format(
+      "for a few steps {:.3g} J were unaccounted for, more than a tenth of the {:.3g} J in play: "
+      "contacts are integrated coarsely; reduce time.accuracy, time.safety or time.step",
+      extremes.energy_error, extremes.energy_in_play));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Model& model, const Extremes& extremes) {
   std::vector<std::string> warnings;
+  warn_of_energy(extremes, warnings);
   warn_of_penetration(model, extremes.relative_penetration, warnings);
   return warnings;
 }

@@ -1,6 +1,8 @@
 // Deformable bodies that touch each other and rigid bodies, in the step loop.
 #include <catch2/catch.hpp>
+#include <map>
 
+#include "apothem/contact/outlines.hpp"
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
 #include "apothem/mesh/select.hpp"
@@ -206,6 +208,48 @@ TEST_CASE("a body on two feet has two contact patches", "[surface]") {
       CHECK(x[1] == Approx(.9).margin(.05));
       const BodyForce on = simulation.contact_forces().back();
       CHECK((sum + Vec2(on.fx, on.fy)).norm() < 1e-9 * sum.norm());
+    }
+  }
+}
+
+TEST_CASE("the largest force is that of all steps, also between meshes", "[surface]") {
+  for (const ContactSurface surface : {ContactSurface::body, ContactSurface::element}) {
+    for (const double softness : {1., 1e-3}) {  // the soft one is deep beyond the collars
+      if (surface == ContactSurface::element && softness < 1) continue;
+      Model model = empty_model();
+      model.contact.surface = surface;
+      model.contact.distribution = surface == ContactSurface::body ? ForceDistribution::variational
+                                                                   : ForceDistribution::resultant;
+      model.contact.normal_stiffness *= softness;
+      add_floor(model);
+      add(model, "one", disc({0, .5001}, Shape::quads), ElementKind::quad4, {0, -5});
+      add(model, "two", disc({.3, 1.46}, Shape::triangles), ElementKind::tri3,
+          {-1, softness < 1 ? -60. : -15.});
+      Outlines outlines;
+      outlines.add_mesh(model.deformables[0].mesh, boundary(model.deformables[0].mesh), 0);
+      const double collar = outlines.bodies[0].depth;
+      Simulation simulation(model, {.end = 1}, 1, 1);
+      Peak largest;
+      bool deep = false;
+      for (int i = 0; i < 600; ++i) {
+        simulation.step();
+        std::map<std::pair<BodyIndex, BodyIndex>, Vec2> forces;
+        for (const ContactRecord& r : simulation.contacts()) {
+          forces.try_emplace({r.a, r.b}, Vec2::Zero()).first->second += r.normal;
+          deep = deep || r.penetration > 1.5 * collar;
+        }
+        for (const auto& [pair, force] : forces) {
+          if (!(force.norm() > largest.value)) continue;
+          largest = {force.norm(), simulation.state().time, pair.first, pair.second};
+        }
+      }
+      const Peak found = simulation.extremes().force;
+      CAPTURE(static_cast<int>(surface), softness, deep);
+      CHECK(deep == (softness < 1));
+      CHECK(found.value == Approx(largest.value).epsilon(1e-11));
+      CHECK(found.time == largest.time);
+      CHECK(found.a == largest.a);
+      CHECK(found.b == largest.b);
     }
   }
 }

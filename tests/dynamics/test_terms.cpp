@@ -87,10 +87,12 @@ class Anchor final : public Term {
     CHECK(dt == 2 * half_step_);
   }
   void watch(const State& /*state*/) override { calls_.emplace_back("watch"); }
-  void add_energies(const State& state, double /*dt*/, Energies& energies) override {
+  void add_energies(const State& state, Energies& energies) override {
     for (size_t c = 0; c < start_.size(); ++c) {
       energies.strain += stiffness_ * (state.x[c] - start_[c]) * (state.x[c] - start_[c]) / 2;
     }
+  }
+  void add_losses(double /*dt*/, Energies& energies) const override {
     energies.damping_loss += loss_;
   }
   void fields(Archive& archive) override { archive("start", start_)("loss", loss_); }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apothem/run/warnings.hpp"
 #include "folder.hpp"
 #include "run/scenes.hpp"
 
@@ -70,6 +71,18 @@ TEST_CASE("contact.penetration_warning sets how deep is too deep", "[run][warnin
   CHECK(warnings(1e8, "0.001").size() == 1);
   CHECK_THAT(warnings(1e8, "0.001").at(0), Catch::Contains("(0.1 %)"));
   CHECK_THROWS_WITH(warnings(1e8, "0"), Catch::Contains("/contact/penetration_warning"));
+}
+
+TEST_CASE("a run warns of energy that a coarse contact has made and taken back",
+          "[run][warnings]") {
+  Extremes extremes;
+  extremes.energy_error = 1.5, extremes.energy_in_play = 10, extremes.energy_allowed = 1;
+  const std::vector<std::string> warnings = warnings_of(Model(), extremes);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::Contains("1.5 J") && Catch::Contains("the 10 J in play") &&
+                              Catch::Contains("reduce time.accuracy"));
+  extremes.energy_error = .9;
+  CHECK(warnings_of(Model(), extremes).empty());
 }
 
 TEST_CASE("others add warnings of their own to a run", "[run][warnings]") {

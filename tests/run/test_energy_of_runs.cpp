@@ -1,0 +1,115 @@
+// What a run writes of its energy, what it says of it, and its verdict are one.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apothem/dynamics/term.hpp"
+#include "apothem/output/run_folder.hpp"
+#include "folder.hpp"
+#include "run/random_scenes.hpp"
+#include "run/scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+struct Written {
+  Run::Status status;
+  nlohmann::json summary;
+  double largest_row = 0;  // of |total_error|, J
+  double last_row = 0;     // |total_error|, J
+  double fall = 0;         // the largest of a loss, J
+};
+
+Written run_and_read(const Folder& folder, const std::string& text,
+                     std::optional<double> interval = {}) {
+  Scene scene = scene_of(folder, text);
+  if (interval) scene.output.history_interval = interval;
+  Run run(std::move(scene), {.folder = folder / "out", .overwrite = true});
+  Written found;
+  found.status = run.run();
+  found.summary = nlohmann::json::parse(content(folder / "out/run.json"));
+  const HistoryTable table = read_table(folder / "out", "energy.csv");
+  for (const double error : *table.column("total_error")) {
+    found.last_row = std::abs(error);
+    found.largest_row = std::max(found.largest_row, found.last_row);
+  }
+  for (const char* quantity : {"friction_loss", "damping_loss"}) {
+    double most = 0;
+    for (const double loss : *table.column(quantity)) {
+      most = std::max(most, loss);
+      found.fall = std::max(found.fall, most - loss);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+// 800 scenes with APOTHEM_LONG=1.
+TEST_CASE("what random runs write and what they say of their energy agree", "[run][energy]") {
+  const Folder folder;
+  const int count = long_run() ? 800 : scaled(40);
+  int done = 0, with_rows_near_the_largest = 0;
+  for (int seed = 0; seed < count; ++seed) {
+    const std::string text = RandomScene(static_cast<unsigned>(seed)).text();
+    CAPTURE(seed, text);
+    const Written written = run_and_read(folder, text);
+    const double largest = written.summary["largest_energy_error"];
+    const double in_play = written.summary["energy_in_play"];
+    REQUIRE(written.largest_row <= largest);
+    with_rows_near_the_largest += written.largest_row > .5 * largest;
+    if (written.status != Run::Status::done) {
+      CHECK(written.status == Run::Status::unstable);
+      continue;
+    }
+    ++done;
+    // Nothing that has made energy ends well.
+    CHECK(written.last_row <= .1 * in_play);
+    CHECK(written.fall <= .1 * in_play);
+    // The verdict and the largest force do not depend on what is written.
+    const Written other = run_and_read(folder, text, 10.);
+    CHECK(other.status == Run::Status::done);
+    CHECK(other.summary["final_state_hash"] == written.summary["final_state_hash"]);
+    for (const char* extreme : {"largest_contact_force", "largest_penetration", "energy_in_play"}) {
+      CHECK(other.summary[extreme] == written.summary[extreme]);
+    }
+    CHECK(other.summary["largest_energy_error"] <= largest);
+  }
+  CHECK(done > .9 * count);
+  CHECK(with_rows_near_the_largest > 0);
+}
+
+namespace {
+
+// A push that does work and does not say so.
+class Thief final : public Term {
+ public:
+  [[nodiscard]] std::string describe() const override { return "a thief"; }
+  void add_forces(const Evaluation& now) override { now.state.f[0] += 2e4; }
+};
+
+}  // namespace
+
+TEST_CASE("a run that is stepped by hand has the verdict of its end as well", "[run][energy]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, flying_block(R"(, "velocity": [1, 0])"));
+  const auto steal = [](Run& run) { run.simulation().add(std::make_unique<Thief>()); };
+  // Until .1 s there is no look by itself.
+  Scene brief = scene;
+  brief.time.end = .1;
+  Run ran(brief, {});
+  steal(ran);
+  CHECK(ran.run() == Run::Status::unstable);
+  CHECK_THAT(ran.message(), Catch::Contains("unaccounted for"));
+  Run stepped(brief, {});
+  steal(stepped);
+  for (int i = 0; i < 99; ++i) REQUIRE(stepped.step());
+  CHECK_THROWS_WITH(stepped.step(), Catch::Contains("unaccounted for"));
+  CHECK(stepped.status() == Run::Status::unstable);
+  // One that goes on is not judged there.
+  Run begun(scene, {});
+  steal(begun);
+  CHECK(begun.run(.1) == Run::Status::done);
+}
