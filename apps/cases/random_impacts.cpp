@@ -17,7 +17,9 @@ double log_uniform(Random& random, double a, double b) {
 
 Polygon random_shape(Random& random, std::string& name) {
   switch (random.integer(0, 8)) {
-    case 0: name = "quad"; return random_quad(random);
+    case 0:
+      name = "quad";
+      return random_quad(random);
     case 1: {
       const int n = random.integer(3, 12);
       name = fmt::format("convex-{}", n);
@@ -33,7 +35,9 @@ Polygon random_shape(Random& random, std::string& name) {
       name = fmt::format("regular-{}", n);
       return regular(n);
     }
-    case 4: name = "cross"; return cross_of_squares(random.uniform(.3, 1.5));
+    case 4:
+      name = "cross";
+      return cross_of_squares(random.uniform(.3, 1.5));
     case 5: {
       const int tips = random.integer(3, 12);
       name = fmt::format("star-{}", tips);
@@ -44,8 +48,12 @@ Polygon random_shape(Random& random, std::string& name) {
       name = fmt::format("rough-{}", n);
       return random_star_shaped(random, n, random.uniform(.4, .9));
     }
-    case 7: name = "bar"; return block(0, 0, random.uniform(1, 6), 1);
-    default: name = "L"; return l_shape(random.uniform(1.3, 3));
+    case 7:
+      name = "bar";
+      return block(0, 0, random.uniform(1, 6), 1);
+    default:
+      name = "L";
+      return l_shape(random.uniform(1.3, 3));
   }
 }
 
@@ -87,7 +95,8 @@ double hull_normal(Random& random, const Polygon& p) {
       const Vec2 e = v[j] - v[i];
       const Vec2 n = Vec2(e.y(), -e.x()) / e.norm();
       const double reach = n.dot(v[i]);
-      if (!std::ranges::all_of(v, [&](const Vec2& q) { return n.dot(q) <= reach + 1e-9; })) continue;
+      if (!std::ranges::all_of(v, [&](const Vec2& q) { return n.dot(q) <= reach + 1e-9; }))
+        continue;
       const double at = std::atan2(n.y(), n.x());
       const double off = std::abs(std::remainder(at - angle, 2 * M_PI));
       if (off < best) best = off, normal = at;
