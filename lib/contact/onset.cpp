@@ -14,6 +14,8 @@ constexpr double kAtFirst = 1e-9;    // a potential that is round-off where a ru
 constexpr double kPairTime = 2000;   // ns
 constexpr int kMostLooks = 1 << 14;  // for crossings of vertices and edges
 constexpr size_t kMostEvents = 8;
+constexpr double kAtOnce = 1e-3;  // of the step
+constexpr int kMostPanels = 8;    // of a step with kinks
 
 }  // namespace
 
@@ -186,12 +188,15 @@ bool Onset::find_events(const Path& path, Worker& worker) const {
   const PlacedPotential b1 = shapes.view(path.b);
   find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.events);
   find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
-  if (worker.events.size() > kMostEvents) {
-    worker.events.clear();
-    return false;
-  }
   std::ranges::sort(worker.events);
-  return true;
+  if (worker.events.size() <= kMostEvents) return true;
+  // Where many vertices cross at once, as the teeth of a comb that lands, they are one event.
+  const auto same = [](double a, double b) { return b - a < kAtOnce; };
+  worker.events.erase(std::unique(worker.events.begin(), worker.events.end(), same),
+                      worker.events.end());
+  if (worker.events.size() <= kMostEvents) return true;
+  worker.events.clear();
+  return false;
 }
 
 // Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
@@ -238,7 +243,8 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   const Path path{
       a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
   const bool few = find_events(path, worker);
-  const int panels = few ? pair.panels : kManyPanels;
+  const int most = kMostPanels / (static_cast<int>(worker.events.size()) + 1);
+  const int panels = std::clamp(few ? pair.panels : kFewPanels, 1, std::max(most, 1));
   const auto inside =
       static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
   const PairLaw& law = table_.between(a, b);

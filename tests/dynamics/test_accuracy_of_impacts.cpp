@@ -19,7 +19,7 @@ using samples::RandomImpact;
 
 namespace {
 
-struct Row {
+struct ImpactRow {
   std::vector<double> errors;  // ascending
   std::int64_t steps = 0, changes = 0;
   std::string worst;  // what the impact with the largest error is
@@ -46,9 +46,9 @@ struct Row {
   }
 };
 
-int cases(int few, int many) { return test::long_run() ? many : test::scaled(few); }
+int share_of(int few, int many) { return test::long_run() ? many : test::scaled(few); }
 
-void add_body(Model& model, const Polygon& polygon, const Vec2& velocity) {
+void add_polygon_body(Model& model, const Polygon& polygon, const Vec2& velocity) {
   RigidBody body;
   body.name = std::to_string(model.bodies.size());
   set_shape(body, polygon, model);
@@ -56,7 +56,7 @@ void add_body(Model& model, const Polygon& polygon, const Vec2& velocity) {
   model.bodies.push_back(body);
 }
 
-Model model_of(double density, double stiffness) {
+Model model_with(double density, double stiffness) {
   Model model;
   model.materials = {{"rock", density}};
   model.contact.normal_stiffness = stiffness;
@@ -73,9 +73,9 @@ double error_at_end(const Model& model, double end, const TimeSettings& time) {
 }  // namespace
 
 TEST_CASE("random impacts of rigid bodies keep the accuracy", "[accuracy_of_impacts][slow]") {
-  const int count = cases(100, 1000);
+  const int count = share_of(100, 1000);
   for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
-    Row row;
+    ImpactRow row;
     for (int seed = 1; seed <= count; ++seed) {
       const RandomImpact impact = samples::random_impact(static_cast<std::uint64_t>(seed));
       const ImpactResult result = run_impact(impact, {.accuracy = accuracy});
@@ -93,9 +93,9 @@ TEST_CASE("random impacts of rigid bodies keep the accuracy", "[accuracy_of_impa
 TEST_CASE("damped impacts leave the kinetic energy that they should",
           "[accuracy_of_impacts][slow]") {
   const double accuracy = 1e-4;
-  const int count = cases(30, 200);
+  const int count = share_of(30, 200);
   const ImpactKind kind{.damping = 1, .least_damping = .02};
-  Row row;
+  ImpactRow row;
   for (int seed = 1; seed <= count; ++seed) {
     const RandomImpact impact = samples::random_impact(static_cast<std::uint64_t>(seed), kind);
     TimeSettings time{.accuracy = accuracy};
@@ -114,10 +114,10 @@ TEST_CASE("friction that only follows an impact is not in its energy error",
           "[accuracy_of_impacts]") {
   // A square lands flat, obliquely and turning a little: it slides and sticks, and a corner leaves
   // before the other one. The error falls with the order 4 or more of the step.
-  Model model = model_of(2000, 4e9);
-  add_body(model, samples::block(-3, -1, 3, 1), Vec2::Zero());
+  Model model = model_with(2000, 4e9);
+  add_polygon_body(model, samples::block(-3, -1, 3, 1), Vec2::Zero());
   model.bodies.back().motion = Motion::fixed;
-  add_body(model, samples::block(-.3, 1.002, .3, 1.602), {.4, -1});
+  add_polygon_body(model, samples::block(-.3, 1.002, .3, 1.602), {.4, -1});
   model.bodies.back().spin = .05;
   for (const double mu : {.1, .3, .7}) {
     model.contact.friction = {mu, .8 * model.contact.normal_stiffness};
@@ -132,20 +132,21 @@ TEST_CASE("friction that only follows an impact is not in its energy error",
 
 TEST_CASE("the step does not change while two bodies touch", "[accuracy_of_impacts]") {
   // Two free boxes, of which one has half the mass.
-  Model boxes = model_of(1000, 1e9);
-  add_body(boxes, samples::block(-.101, -.05, -.001, .05), {5, 0});
-  add_body(boxes, samples::block(0, -.1, .1, .1), {-5, 0});
+  Model boxes = model_with(1000, 1e9);
+  add_polygon_body(boxes, samples::block(-.101, -.05, -.001, .05), {5, 0});
+  add_polygon_body(boxes, samples::block(0, -.1, .1, .1), {-5, 0});
   // A wheel falls on a floor: many short edges touch at once.
-  Model wheel = model_of(1000, 2e8);
+  Model wheel = model_with(1000, 2e8);
   wheel.gravity = {0, -9.81};
-  add_body(wheel, samples::block(-1, -.5, 1, 0), Vec2::Zero());
+  add_polygon_body(wheel, samples::block(-1, -.5, 1, 0), Vec2::Zero());
   wheel.bodies.back().motion = Motion::fixed;
-  add_body(wheel, samples::shifted(samples::scaled(samples::regular(32), .1), {0, .3}), {0, -3});
+  add_polygon_body(wheel, samples::shifted(samples::scaled(samples::regular(32), .1), {0, .3}),
+                   {0, -3});
   // Two wheels of 100 corners.
-  Model wheels = model_of(1000, 1e9);
-  add_body(wheels, samples::scaled(samples::regular(100), .5), {10, 0});
-  add_body(wheels, samples::shifted(samples::scaled(samples::regular(100), .5), {1.002, .1}),
-           {-10, 0});
+  Model wheels = model_with(1000, 1e9);
+  add_polygon_body(wheels, samples::scaled(samples::regular(100), .5), {10, 0});
+  add_polygon_body(
+      wheels, samples::shifted(samples::scaled(samples::regular(100), .5), {1.002, .1}), {-10, 0});
   for (const Model* model : {&boxes, &wheel, &wheels}) {
     for (const double friction : {0., .4}) {
       Model rough = *model;
@@ -167,10 +168,10 @@ TEST_CASE("the step does not change while two bodies touch", "[accuracy_of_impac
 }
 
 TEST_CASE("a row of squares hands on its energy", "[accuracy_of_impacts]") {
-  Model model = model_of(1000, 1e9);
+  Model model = model_with(1000, 1e9);
   for (int i = 0; i < 5; ++i) {
     const double x = i * (1 + 1e-6);
-    add_body(model, samples::block(x, -.5, x + 1, .5), {i == 0 ? 1. : 0., 0});
+    add_polygon_body(model, samples::block(x, -.5, x + 1, .5), {i == 0 ? 1. : 0., 0});
   }
   for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
     CAPTURE(accuracy);
@@ -181,18 +182,18 @@ TEST_CASE("a row of squares hands on its energy", "[accuracy_of_impacts]") {
 TEST_CASE("vertices in the middle of edges and the order of bodies do not drive the step",
           "[accuracy_of_impacts]") {
   const auto step = [](bool divided, bool swapped) {
-    Model model = model_of(2000, 1e9);
+    Model model = model_with(2000, 1e9);
     model.contact.friction = {.3, 8e8};
     std::vector<Vec2> ring{{-.5, .1}, {.5, .1}, {.5, .9}, {-.5, .9}};
     if (divided) ring = {{-.5, .1}, {-.2, .1}, {.4, .1}, {.5, .1}, {.5, .9}, {0, .9}, {-.5, .9}};
     const Polygon floor = samples::block(-2, -1, 2, 0);
     const auto add_floor = [&] {
-      add_body(model, floor, Vec2::Zero());
+      add_polygon_body(model, floor, Vec2::Zero());
       model.bodies.back().motion = Motion::fixed;
     };
     if (!swapped) add_floor();
-    add_body(model, Polygon(ring), {0, -1});
-    add_body(model, samples::shifted(Polygon(ring), {0, 1}), {0, -1});
+    add_polygon_body(model, Polygon(ring), {0, -1});
+    add_polygon_body(model, samples::shifted(Polygon(ring), {0, 1}), {0, -1});
     if (swapped) add_floor();
     return Simulation(model, {.end = 1}, 1, 1).step_choice().stability;
   };
