@@ -17,6 +17,14 @@ constexpr size_t kMostEvents = 8;
 constexpr double kAtOnce = 1e-3;  // of the step
 constexpr int kMostPanels = 8;    // of a step with kinks
 
+// Calls f(coordinate, number in a load, sign) for the coordinates of both bodies of a pair.
+template <class F>
+void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
+  const size_t of_a = 3 * static_cast<size_t>(a), of_b = 3 * static_cast<size_t>(b);
+  f(of_a, 0, 1.), f(of_a + 1, 1, 1.), f(of_a + 2, 2, 1.);
+  f(of_b, 0, -1.), f(of_b + 1, 1, -1.), f(of_b + 2, 3, 1.);
+}
+
 }  // namespace
 
 struct Onset::Path {
@@ -63,6 +71,7 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
               find_pair(changed_[i], now, dynamics, dt, workers_[static_cast<size_t>(worker)]);
         }
       });
+  book_losses(now, dynamics, dt);
   return !impulses_.empty();
 }
 
@@ -91,10 +100,35 @@ bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) con
   return first.alone && last.alone;
 }
 
-PairBook Onset::losses() const {
-  PairBook sum;
-  for (const Impulse& impulse : impulses_) sum.add(impulse.losses);
-  return sum;
+// The work of friction and damping in the impulses, with the velocities when half of what these
+// parts change is done, after all other parts.
+void Onset::book_losses(const Kinematics& now, const Dynamics& dynamics, double dt) {
+  losses_ = {};
+  if (std::ranges::none_of(impulses_, &Impulse::beside)) return;
+  all_.resize(now.pose_rate.size());
+  parts_.resize(now.pose_rate.size());
+  for (const Impulse& i : impulses_) {
+    each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
+      all_[c] += sign * i.mean[k];
+      parts_[c] += sign * (i.damping[k] + i.friction[k]);
+    });
+  }
+  for (const Impulse& i : impulses_) {
+    if (!i.beside) continue;
+    double of_damping = 0, of_friction = 0;
+    each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
+      const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
+      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // for dt / 2
+      const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
+      of_damping += sign * i.damping[k] * speed;
+      of_friction += sign * i.friction[k] * speed;
+    });
+    losses_.damping_loss += i.damping_loss - dt * of_damping;
+    losses_.loss -= dt * of_friction;
+  }
+  for (const Impulse& i : impulses_) {
+    each_coordinate(i.a, i.b, [&](size_t c, size_t, double) { all_[c] = parts_[c] = 0; });
+  }
 }
 
 // What friction and the dashpot beside it lack. Where they slide, they go with the normal force. A
@@ -120,11 +154,11 @@ void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside&
   const double net_mean = law.damping.normal > 0 ? damping.net_mean : mean;
   const double elastic_lacks = mean - (ends[0] + ends[1]) / 2;
   const double net_lacks = net_mean - (net[0] + net[1]) / 2;
-  double known = 0;
-  for (const double size : net) known += size > 0 ? 1 : 0;
+  const auto pushes = [&](size_t end) { return ends[end] > 0 && net[end] > 0; };
+  const double known = (pushes(0) ? 1 : 0) + (pushes(1) ? 1 : 0);
   const double drag_lacks = touching - known / 2;
   for (const size_t end : {0, 1}) {
-    if (!(net[end] > 0)) continue;
+    if (!pushes(end)) continue;
     const Beside& at = end == 0 ? first : last;
     const double limit = law.friction.coefficient * net[end];
     const bool slides = (at.friction + at.drag).plane().size() >= kSticks * limit;
@@ -291,14 +325,14 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       OnsetForces f = forces[k];
       const double own = axis < 2 ? sign : 1;
       for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
-      rest.add(f, {own * missing[k], own * friction[k]}, dynamics.others(c, f),
+      rest.add(f, {own * missing[k], own * (friction[k] + damping[k])}, dynamics.others(c, f),
                dynamics.inverse_mass[c], now.pose_rate[c]);
     }
     return rest;
   };
+  OnsetRest rest = rest_of(a, 2, 1);
+  rest.add(rest_of(b, 3, -1));
   if (!damped) {
-    OnsetRest rest = rest_of(a, 2, 1);
-    rest.add(rest_of(b, 3, -1));
     const double share = rest.share();
     for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
   }
@@ -309,26 +343,8 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
   missing[2] -= couple / 2;
   missing[3] -= couple / 2;
-  Impulse impulse{a, b, missing, {}};
-  if (!beside) return impulse;
-  // The power of a part of the impulse, with the velocities when half of what it and others change
-  // is done.
-  const auto power = [&](const Load& part, RigidIndex body, size_t moment, double sign) {
-    double sum = 0;
-    for (const size_t axis : {0, 1, 2}) {
-      const size_t k = axis < 2 ? axis : moment;
-      const size_t c = 3 * static_cast<size_t>(body) + axis;
-      const double own = axis < 2 ? sign : 1;
-      const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
-      const double pushed = dynamics.after[c] + weight +
-                            own * (2 * missing[k] - damping[k] - friction[k]);  // for dt / 2
-      sum += own * part[k] * (now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed);
-    }
-    return sum;
-  };
-  impulse.losses.damping_loss = -dt * (power(damping, a, 2, 1) + power(damping, b, 3, -1));
-  impulse.losses.loss = -dt * (power(friction, a, 2, 1) + power(friction, b, 3, -1));
-  return impulse;
+  // A dashpot begins with a jump of the force. What is left over is its work along the bent path.
+  return {a, b, missing, beside, friction, damping, damped ? -rest.energy() : 0};
 }
 
 void Onset::add(double scale, std::span<double> forces) const {

@@ -34,7 +34,7 @@ class Onset {
   bool find(const PairIntegrals& pairs, const PatchTangential* tangential, const Kinematics& now,
             const Dynamics& dynamics, double dt);
   /// What friction and damping in the last J take from the bodies, J.
-  [[nodiscard]] PairBook losses() const;
+  [[nodiscard]] const PairBook& losses() const { return losses_; }
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
@@ -48,8 +48,10 @@ class Onset {
   using Load = std::array<double, 4>;
   struct Impulse {
     int a, b;
-    Load mean;        ///< J / dt
-    PairBook losses;  ///< of friction and damping in it
+    Load mean;    ///< J / dt
+    bool beside;  ///< friction and damping are a part of it, these:
+    Load friction, damping;
+    double damping_loss;  ///< beside the work of that part, J
   };
   using Beside = PatchTangential::Beside;
   /// Where the two polygons of a pair are within a step.
@@ -77,6 +79,7 @@ class Onset {
                    const PairIntegral& integral, TouchingPair& touching);
   /// At the start and at the end of the step; false if it is not known what acts.
   bool find_beside(const PairChange& pair, Beside& first, Beside& last) const;
+  void book_losses(const Kinematics& now, const Dynamics& dynamics, double dt);
   static void find_friction(const PairLaw& law, const Beside& first, const Beside& last,
                             const PathDamping& damping, const Worker& worker, size_t inside,
                             Load& friction, Load& drag);
@@ -89,6 +92,10 @@ class Onset {
   std::vector<Beside> beside_, beside_before_;  // of the pairs of the watch
   std::vector<PairChange> changed_;
   std::vector<Impulse> impulses_;  // of these
+  PairBook losses_;
+  // Of each coordinate: the forces of all impulses, and their parts of friction and damping; 0 but
+  // while losses are booked.
+  std::vector<double> all_, parts_;
   std::vector<Worker> workers_;
 };
 

@@ -92,7 +92,7 @@ void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherFo
   const double change = (others.last - others.beside_last) - (others.first - others.beside_first);
   energy_ += (p1 * d1 - p0 * d0) / 2 -
              dt_ / 6 *
-                 ((f.end_slope + change) * (d1 + dt_ * inverse_mass * parts.friction) -
+                 ((f.end_slope + change) * (d1 + dt_ * inverse_mass * parts.beside) -
                   (f.start_slope + change) * d0) -
              dt_ * dt_ * inverse_mass *
                  ((last * last - first * first) / 8 - (kept_last * (last + others.beside_first) -
@@ -133,7 +133,7 @@ double OnsetRest::End::energy() const {
 }
 
 double OnsetRest::share() const {
-  const double energy = energy_ + dt_ * (last_.energy() - first_.energy());
+  const double energy = this->energy();
   // Where the bodies are about to turn back, no impulse along the force changes the energy.
   const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);
   if (!(scale > 0 && mean_ > 0)) return 0;

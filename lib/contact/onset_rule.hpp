@@ -105,8 +105,8 @@ struct Dynamics {
 
 /// Parts of J / h.
 struct OnsetParts {
-  double missing;       ///< of the normal force
-  double friction = 0;  ///< whose work is booked by itself
+  double missing;     ///< of the elastic force
+  double beside = 0;  ///< of friction and damping, whose work is booked by itself
 };
 
 /// R and what it takes to remove it, summed over the coordinates.
@@ -120,6 +120,8 @@ class OnsetRest {
            double inverse_mass, double velocity);
   /// The coordinates of another body. In this way the order of two bodies changes no bit.
   void add(const OnsetRest& other);
+  /// R, J.
+  [[nodiscard]] double energy() const { return energy_ + dt_ * (last_.energy() - first_.energy()); }
   /// The impulse over h along the mean force, as a multiple of it.
   [[nodiscard]] double share() const;
 
