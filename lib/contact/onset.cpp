@@ -138,6 +138,7 @@ void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside&
                           const PathDamping& damping, const Worker& worker, size_t inside,
                           Load& friction, Load& drag) {
   constexpr double kSticks = 1 - 1e-9;  // part of Coulomb's limit
+  constexpr double kVanishes = 1e-3;    // of the mean force
   const auto elastic = [&](size_t i) {
     const Load& load = worker.loads[i];
     return PairForce{load[0], load[1], load[2], load[3]};
@@ -154,7 +155,9 @@ void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside&
   const double net_mean = law.damping.normal > 0 ? damping.net_mean : mean;
   const double elastic_lacks = mean - (ends[0] + ends[1]) / 2;
   const double net_lacks = net_mean - (net[0] + net[1]) / 2;
-  const auto pushes = [&](size_t end) { return ends[end] > 0 && net[end] > 0; };
+  // A force that is about to vanish says nothing of the rest of the step.
+  const double least = kVanishes * (mean + net_mean);
+  const auto pushes = [&](size_t end) { return ends[end] > least && net[end] > least; };
   const double known = (pushes(0) ? 1 : 0) + (pushes(1) ? 1 : 0);
   const double drag_lacks = touching - known / 2;
   for (const size_t end : {0, 1}) {
@@ -162,8 +165,9 @@ void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside&
     const Beside& at = end == 0 ? first : last;
     const double limit = law.friction.coefficient * net[end];
     const bool slides = (at.friction + at.drag).plane().size() >= kSticks * limit;
-    const double of_spring = (slides ? net_lacks / net[end] : elastic_lacks / ends[end]) / known;
-    const double of_dashpot = (slides ? net_lacks / net[end] : drag_lacks) / known;
+    const double of_net = net_lacks / net[end] / known;
+    const double of_spring = slides ? of_net : elastic_lacks / ends[end] / known;
+    const double of_dashpot = slides ? of_net : drag_lacks / known;
     const auto add = [](double share, const PairForce& force, Load& to) {
       to[0] += share * force.x, to[1] += share * force.y;
       to[2] += share * force.a, to[3] += share * force.b;
@@ -298,11 +302,11 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   Load damping{}, friction{};
   PathDamping along{};
   if (damped) {
-    along = damping_along({law.normal_stiffness * thickness_, law.damping.normal,
-                           surfaces_.shapes().slope(a), surfaces_.shapes().slope(b),
-                           surfaces_.rigid(a).inverse_mass, surfaces_.rigid(b).inverse_mass, dt},
-                          std::span(worker.samples).first(inside),
-                          std::span(worker.damped).first(inside));
+    along = damping_along(
+        {law.normal_stiffness * thickness_, law.damping.normal, surfaces_.shapes().slope(a),
+         surfaces_.shapes().slope(b), surfaces_.rigid(a).inverse_mass,
+         surfaces_.rigid(b).inverse_mass, dt, pair_rate(now, a, b)},
+        std::span(worker.samples).first(inside), std::span(worker.damped).first(inside));
     const PairForce lacks = along.mean - .5 * (first.damping + last.damping);
     damping = {lacks.x, lacks.y, lacks.a, lacks.b};
     for (OnsetForces& f : forces) {

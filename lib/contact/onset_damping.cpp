@@ -13,12 +13,18 @@ constexpr std::array<std::array<double, 5>, 5> kSlopes{{{-25, 48, -36, 16, -3},
                                                         {-1, 6, -18, 10, 3},
                                                         {3, -16, 36, -48, 25}}};
 
+constexpr double kShortestPanel = 1e-6;  // of the step: a panel that has no slopes, and no share
+
 PairForce elastic_of(const DampedPair& pair, const PairIntegral& i) {
   return pair.stiffness * PairForce{i.force.x(), i.force.y(), i.moment_a, i.moment_b};
 }
 
-// 2 ratio/omega at a sample, s.
-double time_of(const DampedPair& pair, const DampedSample& sample) {
+// 2 ratio/omega at a sample, s, and the largest force that it can make of the speed there, N: where
+// hardly any boundary is inside, differences of forces say little of the rate.
+struct Dashpot {
+  double time = 0, most = 0;
+};
+Dashpot dashpot_of(const DampedPair& pair, const DampedSample& sample) {
   const PairIntegral& i = sample.integral;
   PatchStep<double> p;
   p.force = {i.force.x(), i.force.y()};
@@ -29,9 +35,11 @@ double time_of(const DampedPair& pair, const DampedSample& sample) {
   p.inverse_mass_a = pair.inverse_mass_a;
   p.inverse_mass_b = pair.inverse_mass_b;
   p.find_direction();
-  if (!p.has_direction) return 0;
+  if (!p.has_direction) return {};
   const double slopes = i.own_length_a * pair.slope_b + i.own_length_b * pair.slope_a;
-  return p.damping_time(pair.ratio, pair.stiffness * slopes, p.normal);
+  const double stiffness = pair.stiffness * slopes;
+  const double time = p.damping_time(pair.ratio, stiffness, p.normal);
+  return {time, time * stiffness * p.slip(pair.rate).size()};
 }
 
 }  // namespace
@@ -41,14 +49,17 @@ PathDamping damping_along(const DampedPair& pair, std::span<const OnsetSample> s
   PathDamping result{};
   for (size_t first = 0; first + 4 < samples.size(); first += 4) {
     const double width = samples[first + 4].theta - samples[first].theta;
+    if (width < kShortestPanel) continue;
     std::array<PairForce, 5> elastic;
     for (size_t k = 0; k < 5; ++k) elastic[k] = elastic_of(pair, at[first + k].integral);
     for (size_t k = 0; k < 5; ++k) {
       PairForce rate{};
       for (size_t j = 0; j < 5; ++j)
         rate = rate + kSlopes[k][j] / (3 * width * pair.dt) * elastic[j];
-      const double time = time_of(pair, at[first + k]);
-      PairForce damping = time * rate;
+      const Dashpot dashpot = dashpot_of(pair, at[first + k]);
+      PairForce damping = dashpot.time * rate;
+      const double strength = damping.plane().size();
+      if (strength > dashpot.most) damping = (dashpot.most / strength) * damping;
       const double size = elastic[k].plane().size();
       const double pull = size > 0 ? -damping.plane().dot((1 / size) * elastic[k].plane()) : 0;
       const bool whole = pull >= size;

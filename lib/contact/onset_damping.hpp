@@ -16,7 +16,8 @@ struct DampedPair {
   double ratio;      ///< of critical damping
   double slope_a, slope_b;
   std::array<double, 3> inverse_mass_a, inverse_mass_b;
-  double dt;  ///< s
+  double dt;      ///< s
+  PairRate rate;  ///< of the drift
 };
 
 /// A sample of the path: the integrals for unit stiffness, and the mass centre of a minus that of

@@ -239,9 +239,9 @@ double element_safety(double accuracy) {
 StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,
                        int frames, bool node_contact) {
   StepChoice choice;
-  const bool damped = !model.bodies.empty() && pair_table(model).damped();
-  choice.safety = time.safety.value_or(damped ? damped_safety(time.accuracy)
-                                              : contact_safety(time.accuracy));
+  choice.damped = !model.bodies.empty() && pair_table(model).damped();
+  choice.safety = time.safety.value_or(choice.damped ? damped_safety(time.accuracy)
+                                                     : contact_safety(time.accuracy));
   choice.element_safety =
       time.element_safety.value_or(node_contact ? element_safety(time.accuracy) : kSmooth);
   choice.limit = bounds.nodes.step < bounds.bodies.step ? bounds.nodes : bounds.bodies;

@@ -43,6 +43,7 @@ struct StepChoice {
   double stability = 0;  ///< largest stable step, s; infinite if nothing can touch
   /// An automatic step over the limit of the contacts of rigid bodies, and over that of the nodes.
   double safety = 0, element_safety = 0;
+  bool damped = false;  ///< contacts of rigid bodies have dashpots
 };
 
 /// Parts of the limits of stability that keep the energy error of an impact below `accuracy` of its
