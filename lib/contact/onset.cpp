@@ -87,14 +87,16 @@ void Onset::note_beside(const PatchTangential& tangential, const PairInTouch& pa
   const double k = table_.between(pair.a, pair.b).normal_stiffness * thickness_;
   const double size = k * integral.force.norm();
   const double pull = -k * integral.force.dot(Vec2(damping.x, damping.y));
-  if (pull > 0 && pull >= (1 - kWhole) * size * size) touching.inside_a += kFree;
+  if (!(pull > 0 && pull >= (1 - kWhole) * size * size)) return;
+  beside_.back().free = true;
+  touching.inside_a += kFree;
 }
 
 // Not where the pair has several patches, each of which has friction and damping by itself.
 bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) const {
   const PairLaw& law = table_.between(pair.a, pair.b);
   if (!(law.damping.normal > 0 || law.friction.coefficient > 0)) return false;
-  first = last = {true};
+  first = last = {.alone = true};
   if (pair.before >= 0) first = beside_before_[static_cast<size_t>(pair.before)];
   if (pair.now >= 0) last = beside_[static_cast<size_t>(pair.now)];
   return first.alone && last.alone;
@@ -310,8 +312,8 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
     const PairForce lacks = along.mean - .5 * (first.damping + last.damping);
     damping = {lacks.x, lacks.y, lacks.a, lacks.b};
     for (OnsetForces& f : forces) {
-      if (along.free_first) f.start_slope = 0;
-      if (along.free_last) f.end_slope = 0;
+      if (first.free) f.start_slope = 0;
+      if (last.free) f.end_slope = 0;
     }
   }
   if (beside && law.friction.coefficient > 0) {

@@ -62,13 +62,10 @@ PathDamping damping_along(const DampedPair& pair, std::span<const OnsetSample> s
       if (strength > dashpot.most) damping = (dashpot.most / strength) * damping;
       const double size = elastic[k].plane().size();
       const double pull = size > 0 ? -damping.plane().dot((1 / size) * elastic[k].plane()) : 0;
-      const bool whole = pull >= size;
-      if (whole && pull > 0) damping = (size / pull) * damping;
+      if (pull > size) damping = (size / pull) * damping;
       if (size == 0) damping = {};
       result.mean = result.mean + width * kBoole[k] * damping;
       result.net_mean += width * kBoole[k] * (elastic[k] + damping).plane().size();
-      if (first == 0 && k == 0) result.free_first = whole;
-      result.free_last = whole;
     }
   }
   return result;

@@ -28,10 +28,8 @@ struct DampedSample {
 };
 
 struct PathDamping {
-  PairForce mean;           ///< over the step, N and N m
-  double net_mean = 0;      ///< the mean size of the normal force with it, N
-  bool free_first = false;  ///< at the start damping takes the whole force
-  bool free_last = false;   ///< at the end
+  PairForce mean;       ///< over the step, N and N m
+  double net_mean = 0;  ///< the mean size of the normal force with it, N
 };
 
 /// `samples` and `at` are those of find_onset_samples from theta = 0 to 1. As the law of a step

@@ -70,20 +70,22 @@ class PatchTangential {
   /// What acts beside the normal force of a pair.
   struct Beside {
     bool alone = false;       ///< the pair has one patch; otherwise it is not known
+    bool free = false;        ///< damping takes the whole normal force
     PairForce damping = {};   ///< along the normal
     PairForce friction = {};  ///< of the spring
     PairForce drag = {};      ///< of the dashpot beside the spring
     void fields(Archive& archive) {
-      archive("alone", alone)("damping", damping)("friction", friction)("drag", drag);
+      archive("alone", alone)("free", free)("damping", damping)("friction", friction)("drag", drag);
     }
   };
   [[nodiscard]] Beside beside(const PairInTouch& pair) const {
     const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
     if (memory.patches != 1) return {};
-    if (!table_.damped()) return {true, {}, memory.force};
+    if (!table_.damped()) return {true, false, {}, memory.force};
     const DampingMemory& damping = damping_[static_cast<size_t>(pair.slot)];
     const PairForce& normal = damping.patch.damping;
-    return {true, normal, memory.force - damping.pair.damping, damping.pair.damping - normal};
+    return {true, false, normal, memory.force - damping.pair.damping,
+            damping.pair.damping - normal};
   }
 
   /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
