@@ -13,6 +13,7 @@ constexpr std::array<std::array<double, 5>, 5> kSlopes{{{-25, 48, -36, 16, -3},
                                                         {-1, 6, -18, 10, 3},
                                                         {3, -16, 36, -48, 25}}};
 
+constexpr double kRoom = 10;
 constexpr double kShortestPanel = 1e-6;  // of the step: a panel that has no slopes, and no share
 
 PairForce elastic_of(const DampedPair& pair, const PairIntegral& i) {
@@ -39,7 +40,7 @@ Dashpot dashpot_of(const DampedPair& pair, const DampedSample& sample) {
   const double slopes = i.own_length_a * pair.slope_b + i.own_length_b * pair.slope_a;
   const double stiffness = pair.stiffness * slopes;
   const double time = p.damping_time(pair.ratio, stiffness, p.normal);
-  return {time, time * stiffness * p.slip(pair.rate).size()};
+  return {time, kRoom * time * stiffness * p.slip(pair.rate).size()};
 }
 
 }  // namespace
