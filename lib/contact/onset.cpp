@@ -350,10 +350,12 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   for (size_t k = 0; k < 4; ++k) missing[k] += damping[k] + friction[k];
   // Moments of forces at earlier positions do not balance at the end of the step. What is left over
   // goes half and half to both bodies, so that the angular momentum is kept.
-  const double couple =
-      cross(path.between, Vec2(missing[0], missing[1])) + (missing[2] + missing[3]);
-  missing[2] -= couple / 2;
-  missing[3] -= couple / 2;
+  const auto balance = [&](Load& part) {
+    const double couple = cross(path.between, Vec2(part[0], part[1])) + (part[2] + part[3]);
+    part[2] -= couple / 2;
+    part[3] -= couple / 2;
+  };
+  balance(missing), balance(damping), balance(friction);
   // A dashpot begins with a jump of the force. What is left over is its work along the bent path.
   return {a, b, missing, beside, friction, damping, damped ? -rest.energy() : 0};
 }
