@@ -99,12 +99,7 @@ bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) con
   first = last = {.alone = true};
   if (pair.before >= 0) first = beside_before_[static_cast<size_t>(pair.before)];
   if (pair.now >= 0) last = beside_[static_cast<size_t>(pair.now)];
-  // In the middle of a contact of polygons that are not convex the patch may be another one.
-  const bool kink = pair.before < 0 || pair.now < 0 || first.free != last.free;
-  const PlacedShapes& shapes = surfaces_.shapes();
-  const bool convex =
-      ConvexPairs::serves(shapes.view(pair.a)) && ConvexPairs::serves(shapes.view(pair.b));
-  return (kink || convex) && first.alone && last.alone;
+  return first.alone && last.alone;
 }
 
 // The work of friction and damping in the impulses, with the velocities when half of what these
