@@ -13,7 +13,7 @@ constexpr std::array<std::array<double, 5>, 5> kSlopes{{{-25, 48, -36, 16, -3},
                                                         {-1, 6, -18, 10, 3},
                                                         {3, -16, 36, -48, 25}}};
 
-constexpr double kRoom = 10;
+constexpr double kRoom = 10;             // of the bound, which is not sharp where bodies turn
 constexpr double kShortestPanel = 1e-6;  // of the step: a panel that has no slopes, and no share
 
 PairForce elastic_of(const DampedPair& pair, const PairIntegral& i) {
