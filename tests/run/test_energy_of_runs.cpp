@@ -78,7 +78,8 @@ TEST_CASE("what random runs write and what they say of their energy agree", "[ru
     CHECK(other.summary["largest_energy_error"] <= largest);
   }
   CHECK(done > .9 * count);
-  CHECK(with_rows_near_the_largest > 0);
+  // Of a handful, all may be largest between two rows.
+  if (count >= 40) CHECK(with_rows_near_the_largest > 0);
 }
 
 namespace {
