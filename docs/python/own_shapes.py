@@ -39,7 +39,7 @@ sim = apothem.Simulation(apothem.Scene({
                 "damping": {"model": "viscous", "ratio": 0.3}},
     "bodies": [body("wedge", wedge, motion="fixed"), body("bitten", bitten), body("letter", letter),
                body("star", star)],
-    "time": {"end": 0.9, "accuracy": 0.1}}))
+    "time": {"end": 2, "accuracy": 0.1}}))
 sim.run()
 
 # The outlines now, and back to Shapely: who touches whom, by a method of its own.

@@ -106,8 +106,8 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
 void Elements::add_forces(const Evaluation& now) {
   State& state = now.state;
   const Layout& layout = state.layout;
-  const double power =
-      elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v), layout.of_nodes(state.f));
+  const double power = elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v),
+                                       layout.of_nodes(state.f), now.trial ? 0 : now.dt / 2);
   if (now.dt > 0 && !now.trial) {
     damping_power_ = power;
     summed_damping_loss_ += now.dt * power;

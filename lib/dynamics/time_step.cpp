@@ -233,7 +233,7 @@ double damped_safety(double accuracy) {
 }
 
 double element_safety(double accuracy) {
-  return std::min(.2 * power(accuracy / 1e-4, 1. / 4), kSmooth);
+  return std::min(.11 * std::sqrt(accuracy / 1e-4), kSmooth);
 }
 
 StepChoice choose_step(const Model& model, const TimeSettings& time, const StepBounds& bounds,

@@ -31,6 +31,7 @@ struct Blocks {
   const double* u;
   const double* v;
   double* f;
+  double lag;  // s, by which v is behind u
 };
 
 // The vectors (x, y) of nodes: loads of 16 bytes and a transposition, which is faster than a gather
@@ -86,7 +87,7 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
   constexpr int kParts = kLanes / lanes;
   const ElementMaterial& material = blocks.material;
   const Response<Law, damped> response(Law(material.elastic), material.elastic,
-                                       material.stiffness_damping, blocks.thickness);
+                                       material.stiffness_damping, blocks.thickness, blocks.lag);
   const int corners = Element::kCorners > 0 ? Element::kCorners : blocks.corners;
   constexpr int kMost = Element::kCorners > 0 ? Element::kCorners : kMostCorners;
   const ptrdiff_t stored = static_cast<ptrdiff_t>(Element::stored(corners)) * kLanes;
@@ -298,7 +299,7 @@ void FiniteElements::find_shared_nodes() {
 }
 
 double FiniteElements::run(Task task, std::span<const double> u, std::span<const double> v,
-                           std::span<double> f) {
+                           std::span<double> f, double lag) {
   const int count = static_cast<int>(chunks_.size());
   const bool moving = task == Task::force && damped_;
   threads_.chunks(count, kChunk * kElementTime, [&](int first, int end, int worker) {
@@ -325,9 +326,17 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       for (size_t r = chunk.runs; r < chunk.runs_end; ++r) {
         const Run& part = runs_[r];
         const Behaviour& of_part = behaviours_[part.behaviour];
-        const Blocks blocks{&data_[part.data], &local_[part.local], part.elements,     part.corners,
-                            of_part.kind,      of_part.material,    of_part.thickness, s.u.data(),
-                            s.v.data(),        s.f.data()};
+        const Blocks blocks{&data_[part.data],
+                            &local_[part.local],
+                            part.elements,
+                            part.corners,
+                            of_part.kind,
+                            of_part.material,
+                            of_part.thickness,
+                            s.u.data(),
+                            s.v.data(),
+                            s.f.data(),
+                            lag};
         if (task == Task::energy) {
           sum += dispatch<false, false>(blocks);
         } else {
@@ -371,12 +380,12 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
 }
 
 double FiniteElements::force(std::span<const double> u, std::span<const double> v,
-                             std::span<double> f) {
-  return run(Task::force, u, v, f);
+                             std::span<double> f, double lag) {
+  return run(Task::force, u, v, f, lag);
 }
 
 double FiniteElements::strain_energy(std::span<const double> u) {
-  return run(Task::energy, u, {}, {});
+  return run(Task::energy, u, {}, {}, 0);
 }
 
 // Calls f(element struct, stored numbers, number of corners, set, number in its mesh, displacements

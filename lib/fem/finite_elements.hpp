@@ -75,8 +75,10 @@ class FiniteElements {
 
   /// Writes minus the internal forces, N, at the displacements `u` (m) and, if damped(), the
   /// velocities `v` (m/s) into `f`. Returns the power that damping dissipates, W. Allocates no
-  /// memory.
-  double force(std::span<const double> u, std::span<const double> v, std::span<double> f);
+  /// memory. `lag`, s: the velocities are those with which the nodes have moved from 2 lag ago to
+  /// now; strain rates are means over this way, which a rigid rotation leaves zero.
+  double force(std::span<const double> u, std::span<const double> v, std::span<double> f,
+               double lag = 0);
 
   /// Strain energy of all elements at the displacements `u` (m), J.
   [[nodiscard]] double strain_energy(std::span<const double> u);
@@ -149,7 +151,8 @@ class FiniteElements {
     return behaviour_numbers_[member.set][sets_[member.set].material_number(member.element)];
   }
   void find_shared_nodes();
-  double run(Task task, std::span<const double> u, std::span<const double> v, std::span<double> f);
+  double run(Task task, std::span<const double> u, std::span<const double> v, std::span<double> f,
+             double lag);
   template <class F>
   void visit(const Run& part, int k, std::span<const double> u, std::vector<Point<double>>& corners,
              F&& f) const;

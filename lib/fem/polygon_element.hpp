@@ -46,8 +46,8 @@ struct PolygonElement {
       rate = moving.h;
       const N damping(material.beta);
       for (int k = 0; k < 4; ++k) {
-        const N change = contract(moving.t[k], fit.h) + moving.t[k].xx + moving.t[k].yy +
-                         contract(fit.t[k], moving.h);
+        const N change = contract(moving.t[k], material.before(fit.h, rate)) + moving.t[k].xx +
+                         moving.t[k].yy + contract(material.before(fit.t[k], moving.t[k]), rate);
         beta[k] += damping * change;
         power += damping * change * change;
       }

@@ -99,7 +99,9 @@ struct Quad4 {
       const N beta(material.beta);
       rate = s.gradient(w);
       const Point<N> q_rate = s.bending(w);
-      const N rate_a = dot(w.xi, q) + dot(a, q_rate), rate_b = dot(w.eta, q) + dot(b, q_rate);
+      const Point<N> q_before = material.before(q, q_rate);
+      const N rate_a = dot(w.xi, q_before) + dot(material.before(a, w.xi), q_rate);
+      const N rate_b = dot(w.eta, q_before) + dot(material.before(b, w.eta), q_rate);
       along_a += beta * rate_a;
       along_b += beta * rate_b;
       power += N(4 * material.thickness) / d[6] * material.damping_power(h, rate) +

@@ -196,6 +196,25 @@ TEST_CASE("Rayleigh damping: decay of a bar, and the ledger closes", "[deformabl
   CHECK(late / early == Approx(std::exp(-ratio * 2 * M_PI * 10)).epsilon(.03));
 }
 
+TEST_CASE("a steady rotation is not damped", "[deformable]") {
+  for (const ElementKind kind : kKinds) {
+    INFO(static_cast<int>(kind));
+    DeformableBody body = block({1, .5}, {4, 2}, kind);
+    body.spin = 50;
+    Model model = model_of(body, rock());
+    model.materials[0].elastic.young = 1e7;
+    model.materials[0].stiffness_damping = 2e-3;
+    TimeSettings time;
+    time.end = 2;
+    Simulation simulation(model, time, 1, 1);
+    while (simulation.state().time < 1) simulation.step();
+    const double lost = simulation.energies().damping_loss;
+    CHECK(lost > 0);  // by the oscillations at the start
+    while (simulation.state().time < 2) simulation.step();
+    CHECK(std::abs(simulation.energies().damping_loss - lost) < 1e-9 * lost);
+  }
+}
+
 TEST_CASE("threads change no bit", "[deformable]") {
   DeformableBody body = block({2, 1}, {70, 35}, ElementKind::quad4);
   reorder_along_curve(body.mesh);

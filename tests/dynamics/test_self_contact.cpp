@@ -208,7 +208,7 @@ void check_fold(const char* name, Model (*make)(double, ElementShape, double), d
   for (const ElementShape shape : {ElementShape::quadrilateral, ElementShape::triangle}) {
     for (const double stiffness : {1e6, 1e7}) {
       const Model model = make(stiffness, shape, speed);
-      const Fold coarse = run(model, {}, end), fine = run(model, .05, end);
+      const Fold coarse = run(model, .2, end), fine = run(model, .05, end);
       CAPTURE(name, stiffness, coarse.what, fine.what);
       if (std::getenv("APOTHEM_PRINT")) {
         fmt::print(

@@ -41,13 +41,13 @@ struct OneElement {
   }
   template <class N>
   std::vector<Point<N>> force(const std::vector<Point<N>>& u, const std::vector<Point<N>>& v = {},
-                              double beta = 0, N* power = nullptr) const {
+                              double beta = 0, N* power = nullptr, double lag = 0) const {
     std::vector<Point<N>> f(size());
     N lost(0.);
     with_element(kind, [&]<class Element>(Element) {
       with_law(material, [&]<class Law>(const Law& law) {
         if (beta > 0) {
-          const Response<Law, true> r(law, material, beta, thickness);
+          const Response<Law, true> r(law, material, beta, thickness, lag);
           Element::force(Stored<N>{data.data()}, r, size(), u.data(), v.data(), f.data(), lost);
         } else {
           const Response<Law, false> r(law, material, 0, thickness);
@@ -218,6 +218,19 @@ TEST_CASE("damping takes the power of its forces and nothing from a rotation", "
       for (int i = 0; i < e.size(); ++i) {
         CHECK(turning[i].x == Approx(elastic[i].x).margin(1e-14));
         CHECK(turning[i].y == Approx(elastic[i].y).margin(1e-14));
+      }
+      // A turn within one step, by the velocities that lead from one place to the other.
+      const double lag = .2, c = std::cos(2 * lag), sine = std::sin(2 * lag);
+      std::vector<Point<double>> way;
+      for (int i = 0; i < e.size(); ++i) {
+        const double x = e.x[i].x() + u[i].x, y = e.x[i].y() + u[i].y;
+        way.push_back({(x - (c * x + sine * y)) / (2 * lag), (y - (c * y - sine * x)) / (2 * lag)});
+      }
+      const auto turned = e.force(u, way, .3, &power, lag);
+      CHECK(power < 1e-28);
+      for (int i = 0; i < e.size(); ++i) {
+        CHECK(turned[i].x == Approx(elastic[i].x).margin(1e-14));
+        CHECK(turned[i].y == Approx(elastic[i].y).margin(1e-14));
       }
     }
   }
