@@ -104,8 +104,8 @@ class Contacts {
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_stiffness(std::span<double> nodes, std::span<double> rigid) const;
   /// See Kernel.
-  void limit_damping(double rate) {
-    each([&](Kernel& kernel) { kernel.limit_damping(rate); });
+  void limit_damping(std::span<const double> node_mass) {
+    each([&](Kernel& kernel) { kernel.limit_damping(node_mass); });
   }
   /// The force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apothem/contact/pair_table.hpp"
+#include "apothem/contact/stiffness.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
@@ -27,9 +28,18 @@ class DampingTimes {
   DampingTimes(const PairTable& table, const std::vector<double>& inverse_mass)
       : table_(table), inverse_mass_(inverse_mass) {}
 
-  /// `rate`: bound of w^2 of the contact of any node, 1/s^2. No dashpot takes more than the speed
-  /// of a node in a step.
-  void limit(double rate) { largest_rate_ = rate; }
+  /// What bounds the frequency of the nodes of a body in contact.
+  struct Nodes {
+    double slope = 0;  ///< of the body's potential, the steepest, 1/m
+    double share = 0;  ///< largest of a node that can move: half of its edges over its mass, m/kg
+  };
+  /// `nodes` of each body. No dashpot takes more than the speed of a node in a step. The bound of a
+  /// pair depends on nothing else than its two bodies as they were given, so that the others in the
+  /// scene have no say in their damping. `thickness`, m.
+  void limit(std::vector<Nodes> nodes, double thickness) {
+    nodes_ = std::move(nodes);
+    thickness_ = thickness;
+  }
 
   /// The pairs of bodies that may touch, in any order, also twice.
   template <class Bodies>
@@ -66,15 +76,25 @@ class DampingTimes {
         const double longest = rate > 0 ? 1 / (rate * dt) : HUGE_VAL;
         return std::min(2 * ratio / std::sqrt(stiffness * mobility), longest);
       };
-      pair.normal_time = time(law.damping.normal, pair.normal, largest_rate_);
-      pair.tangential_time = time(law.damping.tangential, pair.tangential, largest_rate_ * softer);
+      const double rate = rate_of_nodes(pair, law);
+      pair.normal_time = time(law.damping.normal, pair.normal, rate);
+      pair.tangential_time = time(law.damping.tangential, pair.tangential, rate * softer);
     }
   }
 
  private:
+  // Bound of w^2 of the contact of any node of the two bodies, 1/s^2.
+  [[nodiscard]] double rate_of_nodes(const Pair& pair, const PairLaw& law) const {
+    if (nodes_.empty()) return 0;
+    const Nodes &a = nodes_[pair.a], &b = nodes_[pair.b];
+    return node_rate(law.normal_stiffness * thickness_, a.slope + b.slope,
+                     std::max(a.share, b.share));
+  }
+
   const PairTable& table_;
   const std::vector<double>& inverse_mass_;
-  double largest_rate_ = 0;
+  std::vector<Nodes> nodes_;
+  double thickness_ = 0;
   std::vector<Pair> pairs_;
 };
 

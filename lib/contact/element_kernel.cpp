@@ -308,13 +308,31 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-double ElementKernel::rate(std::span<const double> node_mass) const {
-  const auto bodies = static_cast<size_t>(surfaces_.body_count());
-  std::vector<double> slope(bodies), other(bodies);  // own, and the steepest among the others
+// Of each body the steepest, 1/m.
+std::vector<double> ElementKernel::slopes() const {
+  std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
     double& own = slope[surfaces_.body(i)];
     own = std::max(own, surfaces_.shapes().slope(i));
   }
+  return slope;
+}
+
+void ElementKernel::limit_damping(std::span<const double> node_mass) {
+  std::vector<DampingTimes::Nodes> nodes;
+  for (const double slope : slopes()) nodes.push_back({slope, 0});
+  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+    if (node_mass[node] > 0) {
+      nodes[body].share = std::max(nodes[body].share, length / node_mass[node]);
+    }
+  }
+  times_.limit(std::move(nodes), thickness_);
+}
+
+double ElementKernel::rate(std::span<const double> node_mass) const {
+  const auto bodies = static_cast<size_t>(surfaces_.body_count());
+  const std::vector<double> slope = slopes();
+  std::vector<double> other(bodies);  // the steepest among the others
   for (size_t a = 0; a < bodies; ++a) {
     for (size_t b = 0; b < bodies; ++b) {
       if (a != b) other[a] = std::max(other[a], slope[b]);

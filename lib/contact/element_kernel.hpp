@@ -36,7 +36,7 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
-  void limit_damping(double rate) override { times_.limit(rate); }
+  void limit_damping(std::span<const double> node_mass) override;
   void fields(Archive& archive) override;
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
@@ -51,6 +51,7 @@ class ElementKernel final : public Kernel {
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
 
  private:
+  [[nodiscard]] std::vector<double> slopes() const;
   /// Two polygons that touch.
   struct Touch {
     SurfaceIndex a, b;

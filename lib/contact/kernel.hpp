@@ -110,9 +110,9 @@ class Kernel {
   [[nodiscard]] virtual double energy() const = 0;
   /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
   [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
-  /// Before the first step: `rate` is the largest of these of all nodes that contact can move. No
-  /// dashpot takes more than the speed of a node in a step.
-  virtual void limit_damping(double /*rate*/) {}
+  /// Before the first step: no dashpot takes more than the speed of a node in a step. Masses as in
+  /// rate().
+  virtual void limit_damping(std::span<const double> /*node_mass*/) {}
   /// Adds to each node near another body the same bound as a stiffness, N/m, and to x, y and angle
   /// of each rigid body what nodes near it have, N/m and N m.
   virtual void add_stiffness(std::span<double> /*nodes*/, std::span<double> /*rigid*/) const {}

@@ -38,6 +38,19 @@ OutlineFriction::OutlineFriction(const Outlines& outlines, const PairTable& tabl
   std::iota(all_.begin(), all_.end(), 0);
 }
 
+void OutlineFriction::limit_damping(std::span<const double> node_mass, double thickness) {
+  const Outlines& o = outlines_;
+  std::vector<DampingTimes::Nodes> nodes(o.bodies.size());
+  for (size_t b = 0; b < nodes.size(); ++b) nodes[b].slope = o.bodies[b].slope();
+  for (int i = 0; i < o.size(); ++i) {
+    const double mass = o.node[i] < 0 ? 0 : node_mass[o.node[i]];
+    if (!(mass > 0)) continue;
+    const double share = (o.given_length(o.previous[i]) + o.given_length(i)) / 2;
+    nodes[o.body[i]].share = std::max(nodes[o.body[i]].share, share / mass);
+  }
+  times_.limit(std::move(nodes), thickness);
+}
+
 // Finds the velocities of the vertices, and makes room for the new forces. Returns the powers of
 // the old ones.
 OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& now,

@@ -25,7 +25,7 @@ class OutlineFriction {
                   const std::vector<double>& inverse_mass, int threads);
 
   /// See Kernel.
-  void limit_damping(double rate) { times_.limit(rate); }
+  void limit_damping(std::span<const double> node_mass, double thickness);
   /// After a search: the pairs of bodies that may touch.
   void take(std::span<const BoxPair> pairs) {
     times_.take(pairs);

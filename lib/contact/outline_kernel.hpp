@@ -53,8 +53,8 @@ class OutlineKernel final : public Kernel {
     archive("outline_onset", onset_);
     if (friction_) friction_->fields(archive);
   }
-  void limit_damping(double rate) override {
-    if (friction_) friction_->limit_damping(rate);
+  void limit_damping(std::span<const double> node_mass) override {
+    if (friction_) friction_->limit_damping(node_mass, thickness_);
   }
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }

@@ -334,7 +334,7 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
   const double of_nodes = contacts_.node_rate(dofs_.free_node_mass());
-  contacts_.limit_damping(of_nodes);
+  contacts_.limit_damping(dofs_.free_node_mass());
   const double stiffest = pair_table(model_).stiffest() * model_.thickness;
   const double rate = std::sqrt(of_nodes + stiffest * rigid);
   bounds.nodes = {2 / hypotenuse(2 / bounds.nodes.step, rate), "elements and their contacts"};
