@@ -1,0 +1,351 @@
+// One situation said in many ways gives one result. A table of ways times a table of scenes: a new
+// way, or a new scene, is one entry. Each way says how much its results may differ: not in one bit
+// where the program does the same sums, by round-off where numbers are others.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apothem/output/run_folder.hpp"
+#include "apothem/run/run.hpp"
+#include "folder.hpp"
+#include "run/scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+using Json = nlohmann::json;
+
+namespace ways {
+namespace {
+
+struct Motion {
+  double x, y, angle, vx, vy, spin;  // angle: by which it has turned
+};
+
+struct Outcome {
+  std::map<std::string, Motion> bodies;     // at the end
+  std::map<std::string, double> energies;   // likewise, J
+  double force = 0, depth = 0, energy = 0;  // largest of the run, N and m; energy in play, J
+  double time = 0;                          // of the end, s
+};
+
+struct NamedText {
+  const char* name;
+  std::string text;
+};
+
+// All bodies have their polygons and meshes about their own mass centres, so that a way moves them
+// by "position" and "angle" alone.
+std::vector<NamedText> scenes() {
+  const std::string materials =
+      R"("materials": { "rock": { "density": 2000, "young": 2e8, "poisson": 0.2 } }, "gravity": [0, -9.81])";
+  const std::string floor =
+      R"({ "name": "floor", "material": "rock", "motion": "fixed", "position": [0, -0.5],
+           "polygon": [[-3, -0.5], [3, -0.5], [3, 0.5], [-3, 0.5]] })";
+  const std::string meshed_floor =
+      R"({ "name": "floor", "material": "rock", "position": [0, -0.15],
+           "mesh": { "rectangle": { "size": [3, 0.3], "cells": [12, 2] } },
+           "supports": [ { "where": { "group": "bottom" }, "fix": ["x", "y"] } ] })";
+  const std::string block =
+      R"({ "name": "block", "material": "rock", "position": [-0.3, 0.2501], "velocity": [0.7, -0.6], "spin": 0.4,
+           "polygon": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]], "angle": 0.2 })";
+  const std::string cross =
+      R"({ "name": "cross", "material": "rock", "position": [0.5, 0.37], "velocity": [-0.3, -0.8], "spin": -1, "angle": 0.1,
+           "polygon": [[-0.1, -0.1], [-0.1, -0.3], [0.1, -0.3], [0.1, -0.1], [0.3, -0.1], [0.3, 0.1],
+                       [0.1, 0.1], [0.1, 0.3], [-0.1, 0.3], [-0.1, 0.1], [-0.3, 0.1], [-0.3, -0.1]] })";
+  const std::string cube =
+      R"({ "name": "cube", "material": "rock", "position": [-0.3, 0.1999], "velocity": [0.5, 0],
+           "polygon": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]] })";
+  const std::string soft =
+      R"({ "name": "soft", "material": "rock", "position": [0.25, 0.1695], "velocity": [0.2, -0.5], "angle": 0.1,
+           "mesh": { "rectangle": { "size": [0.4, 0.3], "cells": [4, 3] } } })";
+  const std::string wheel =
+      R"({ "name": "wheel", "material": "rock", "position": [0.25, 0.2035], "velocity": [0.4, -0.5], "spin": -2,
+           "mesh": { "disc": { "radius": 0.2, "cells": 2 } } })";
+  const std::string plain = R"("normal_stiffness": 1e8)";
+  const std::string rough =
+      plain + R"(, "friction": { "coefficient": 0.4, "tangential_stiffness": 5e7 })";
+  const std::string damped = rough + R"(, "damping": { "model": "viscous", "ratio": 0.2 })";
+  const auto scene = [&](const std::string& contact, const std::string& bodies, double end,
+                         double step) {
+    return fmt::format(
+        R"({{ {}, "contact": {{ {} }}, "bodies": [ {} ], "time": {{ "end": {}, "step": {} }} }})",
+        materials, contact, bodies, end, step);
+  };
+  return {{"rigid bodies collide", scene(plain, floor + ", " + block + ", " + cross, .1, 4e-5)},
+          {"rigid bodies rub", scene(rough, floor + ", " + block + ", " + cross, .1, 4e-5)},
+          {"rigid bodies damped", scene(damped, floor + ", " + block + ", " + cross, .1, 2e-5)},
+          {"a block slides", scene(damped, floor + ", " + cube, .06, 2e-5)},
+          {"a mesh falls", scene(plain, floor + ", " + soft, .05, 2e-5)},
+          {"a mesh rubs", scene(rough, floor + ", " + soft + ", " + block, .05, 2e-5)},
+          {"meshes damped", scene(damped, meshed_floor + ", " + soft + ", " + block, .05, 2e-5)},
+          {"a wheel on a mesh", scene(damped, meshed_floor + ", " + wheel, .05, 2e-5)}};
+}
+
+Outcome run(const Folder& folder, Json scene, int threads = 1, double stop = 0) {
+  Json tracks = Json::array();
+  for (const Json& body : scene["bodies"]) {
+    if (body["name"] != "far") tracks.push_back({{"body", body["name"]}});
+  }
+  Json& output = scene["output"];
+  if (!output.contains("frames")) output["frames"] = 1;
+  Json& history = output["history"];
+  if (!history.contains("interval")) history["interval"] = scene["time"]["end"];
+  history["track"] = tracks;
+  const std::filesystem::path out = folder / "out";
+  std::filesystem::remove_all(out);
+  if (stop > 0) {
+    Run until(scene_of(folder, scene.dump()), {.folder = out, .threads = threads});
+    REQUIRE(until.run(stop) == Run::Status::done);
+  }
+  Run one(scene_of(folder, scene.dump()), {.folder = out, .threads = threads, .resume = stop > 0});
+  CAPTURE(one.message());
+  REQUIRE(one.run() == Run::Status::done);
+  Outcome found;
+  const HistoryTable table = read_table(out, "history.csv");
+  const auto first = [&](const std::string& column) { return table.column(column)->front(); };
+  const auto last = [&](const std::string& column) { return table.column(column)->back(); };
+  for (const Json& track : tracks) {
+    const std::string name = track["body"];
+    found.bodies[name] = {
+        last(name + ".x"),  last(name + ".y"),  last(name + ".angle") - first(name + ".angle"),
+        last(name + ".vx"), last(name + ".vy"), last(name + ".spin")};
+  }
+  const HistoryTable energies = read_table(out, "energy.csv");
+  for (const char* column :
+       {"kinetic", "strain", "contact", "gravity", "friction_loss", "damping_loss"}) {
+    found.energies[column] = energies.column(column)->back();
+  }
+  const Json summary = Json::parse(content(out / "run.json"));
+  found.force = summary["largest_contact_force"];
+  found.depth = summary["largest_penetration"];
+  found.energy = summary["energy_in_play"];
+  found.time = energies.column("time")->back();
+  return found;
+}
+
+struct Way {
+  const char* name;
+  double tolerance;  // of lengths over 1 m, speeds over 1 m/s, energies over the energy in play
+  std::function<void(Json&)> change;
+  /// What the way makes of the motion of a body.
+  std::function<Motion(Motion, double time)> motion = [](Motion m, double) { return m; };
+  /// How many times the lengths (and the speeds) are what they were.
+  double length = 1;
+  int threads = 1;
+  double stop = 0;             // where a run is stopped and resumed, as a part of its end
+  bool gravity_counts = true;  // energies that depend on where the origin is
+  bool kinetic_counts = true;  // or on the frame
+  bool energies_count = true;  // not where there are other bodies
+};
+
+void each_vector(Json& scene, const std::function<Vec2(Vec2)>& turn) {
+  const auto change = [&](Json& v) {
+    const Vec2 p = turn({v[0].get<double>(), v[1].get<double>()});
+    v = Json::array({p.x(), p.y()});
+  };
+  change(scene["gravity"]);
+  for (Json& body : scene["bodies"]) {
+    change(body["position"]);
+    if (body.contains("velocity")) change(body["velocity"]);
+  }
+}
+
+std::vector<Way> all_ways() {
+  std::vector<Way> all;
+  const double angle = .7;
+  const auto turn = [=](const Vec2& p) {
+    return Vec2(std::cos(angle) * p.x() - std::sin(angle) * p.y(),
+                std::sin(angle) * p.x() + std::cos(angle) * p.y());
+  };
+  all.push_back({"turned", 1e-8,
+                 [=](Json& s) {
+                   each_vector(s, turn);
+                   for (Json& b : s["bodies"]) b["angle"] = b.value("angle", 0.) + angle;
+                 },
+                 [=](const Motion& m, double) {
+                   const Vec2 x = turn({m.x, m.y}), v = turn({m.vx, m.vy});
+                   return Motion{x.x(), x.y(), m.angle, v.x(), v.y(), m.spin};
+                 }});
+  all.push_back(
+      {"mirrored", 1e-8,
+       [](Json& s) {
+         each_vector(s, [](const Vec2& p) { return Vec2(-p.x(), p.y()); });
+         for (Json& b : s["bodies"]) {
+           b["angle"] = -b.value("angle", 0.);
+           if (b.contains("spin")) b["spin"] = -b["spin"].get<double>();
+           if (!b.contains("polygon")) continue;
+           Json& ring = b["polygon"];
+           std::reverse(ring.begin(), ring.end());
+           for (Json& v : ring) v[0] = -v[0].get<double>();
+         }
+       },
+       [](const Motion& m, double) { return Motion{-m.x, m.y, -m.angle, -m.vx, m.vy, -m.spin}; }});
+  // Round-off is a thousand times larger there, and friction in flat contact amplifies it.
+  Way shifted{"shifted by a kilometre", 1e-5,
+              [](Json& s) {
+                for (Json& b : s["bodies"]) {
+                  b["position"][0] = b["position"][0].get<double>() + 1000;
+                  b["position"][1] = b["position"][1].get<double>() - 300;
+                }
+              },
+              [](Motion m, double) {
+                m.x += 1000, m.y -= 300;
+                return m;
+              }};
+  shifted.gravity_counts = false;
+  all.push_back(shifted);
+  Way scaled{"a thousand times as large", 1e-8, [](Json& s) {
+               each_vector(s, [](const Vec2& p) { return Vec2(1000 * p); });
+               const auto times = [](Json& number, double factor) {
+                 number = number.get<double>() * factor;
+               };
+               times(s["materials"]["rock"]["young"], 1e6);
+               times(s["contact"]["normal_stiffness"], 1e6);
+               if (s["contact"].contains("friction")) {
+                 times(s["contact"]["friction"]["tangential_stiffness"], 1e6);
+               }
+               for (Json& b : s["bodies"]) {
+                 if (b.contains("polygon")) {
+                   for (Json& v : b["polygon"]) times(v[0], 1000), times(v[1], 1000);
+                   continue;
+                 }
+                 Json& mesh = b["mesh"];
+                 if (mesh.contains("disc")) times(mesh["disc"]["radius"], 1000);
+                 if (!mesh.contains("rectangle")) continue;
+                 for (Json& side : mesh["rectangle"]["size"]) times(side, 1000);
+               }
+             }};
+  scaled.length = 1000;
+  all.push_back(scaled);
+  all.push_back({"bodies in another order", 1e-8,
+                 [](Json& s) { std::reverse(s["bodies"].begin(), s["bodies"].end()); }});
+  all.push_back({"written as pairs", 1e-12, [](Json& s) {
+                   s["materials"]["other"] = s["materials"]["rock"];
+                   s["bodies"].back()["material"] = "other";
+                   Json pair = {{"between", {"rock", "other"}}};
+                   for (const char* key : {"normal_stiffness", "friction", "damping"}) {
+                     if (s["contact"].contains(key)) pair[key] = s["contact"][key];
+                   }
+                   s["contact"]["pairs"] = Json::array({pair});
+                 }});
+  Way moving{"seen from a moving frame", 1e-8,
+             [](Json& s) {
+               for (Json& b : s["bodies"]) {
+                 if (b.contains("motion")) {
+                   b["motion"] = {{"velocity", Json::array({Json::array({0, 0.9, 0})})}};
+                   continue;
+                 }
+                 const Json v = b.value("velocity", Json::array({0, 0}));
+                 b["velocity"] = Json::array({v[0].get<double>() + .9, v[1]});
+                 if (!b.contains("supports")) continue;
+                 for (Json& support : b["supports"]) {
+                   support["velocity"] = Json::array({Json::array({0, 0.9, 0})});
+                 }
+               }
+             },
+             [](Motion m, double t) {
+               m.x += .9 * t, m.vx += .9;
+               return m;
+             }};
+  moving.kinetic_counts = false;
+  all.push_back(moving);
+  all.push_back({"gravity with a history", 0, [](Json& s) {
+                   s["gravity"] = {
+                       {"value", s["gravity"]},
+                       {"history", Json::array({Json::array({0, 1}), Json::array({1, 1})})}};
+                 }});
+  // Impulses of contacts that begin are found for each vertex.
+  all.push_back({"vertices in the middle of edges", 1e-5, [](Json& s) {
+                   for (Json& b : s["bodies"]) {
+                     if (!b.contains("polygon")) continue;
+                     Json ring = Json::array();
+                     const Json& old = b["polygon"];
+                     for (size_t i = 0; i < old.size(); ++i) {
+                       const Json &p = old[i], &q = old[(i + 1) % old.size()];
+                       ring.push_back(p);
+                       ring.push_back(
+                           Json::array({.5 * (p[0].get<double>() + q[0].get<double>()),
+                                        .5 * (p[1].get<double>() + q[1].get<double>())}));
+                     }
+                     b["polygon"] = ring;
+                   }
+                 }});
+  all.push_back({"with frames and rows", 0, [](Json& s) {
+                   s["output"] = {{"frames", 7}, {"history", {{"interval", 3e-3}}}};
+                 }});
+  Way far{"with a far mesh", 1e-12, [](Json& s) {
+            s["bodies"].push_back(Json::parse(
+                R"({ "name": "far", "material": "rock", "position": [50, 0], "mesh": {
+                            "rectangle": { "size": [2, 1], "cells": [2, 1] } },
+                            "supports": [ { "where": { "group": "bottom" }, "fix": ["x", "y"] } ] })"));
+          }};
+  far.energies_count = false;
+  all.push_back(far);
+  all.push_back({"with contact of bodies with themselves", 0,
+                 [](Json& s) { s["contact"]["self_contact"] = "compute"; }});
+  Way threads{"by three threads", 0, [](Json&) {}};
+  threads.threads = 3;
+  all.push_back(threads);
+  Way resumed{"stopped and resumed", 0, [](Json&) {}};
+  resumed.stop = .37;
+  all.push_back(resumed);
+  return all;
+}
+
+// What differs too much; empty if nothing does.
+std::string difference(const Way& way, const Outcome& plain, const Outcome& other) {
+  std::string found;
+  const auto compare = [&](const std::string& what, double a, double b, double scale) {
+    if (std::abs(a - b) <= way.tolerance * scale) return;
+    found += fmt::format("{} is {} and not {}; ", what, b, a);
+  };
+  const double length = way.length;
+  for (const auto& [name, motion] : plain.bodies) {
+    Motion m = motion;
+    m.x *= length, m.y *= length, m.vx *= length, m.vy *= length;
+    m = way.motion(m, plain.time);
+    const Motion& n = other.bodies.at(name);
+    compare(name + ".x", m.x, n.x, length), compare(name + ".y", m.y, n.y, length);
+    compare(name + ".vx", m.vx, n.vx, length), compare(name + ".vy", m.vy, n.vy, length);
+    compare(name + ".angle", m.angle, n.angle, 1), compare(name + ".spin", m.spin, n.spin, 1);
+  }
+  const double size = std::pow(length, 4);
+  for (const auto& [name, energy] : plain.energies) {
+    if (!way.energies_count) continue;
+    if (!way.gravity_counts && name == "gravity") continue;
+    if (!way.kinetic_counts && name == "kinetic") continue;
+    compare(name, size * energy, other.energies.at(name), size * plain.energy);
+  }
+  compare("force", plain.force * length * length * length, other.force,
+          10 * plain.force * length * length * length);
+  compare("depth", plain.depth * length, other.depth, length);
+  return found;
+}
+
+}  // namespace
+}  // namespace ways
+
+TEST_CASE("one situation said in many ways gives one result", "[ways]") {
+  const Folder folder;
+  for (const ways::NamedText& scene : ways::scenes()) {
+    const Json plain = Json::parse(scene.text);
+    const ways::Outcome expected = ways::run(folder, plain);
+    REQUIRE(expected.force > 0);
+    for (const ways::Way& way : ways::all_ways()) {
+      if (kSanitized && way.tolerance > 0) continue;
+      CAPTURE(scene.name, way.name);
+      Json changed = plain;
+      way.change(changed);
+      const double end = plain["time"]["end"];
+      const ways::Outcome found = ways::run(folder, changed, way.threads, way.stop * end);
+      CHECK(ways::difference(way, expected, found) == "");
+    }
+  }
+}
