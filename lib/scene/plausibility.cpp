@@ -24,6 +24,9 @@ constexpr std::array kOfMaterial{
 };
 constexpr Range kCoefficient{"coefficient", 0, 2, "",
                              "it is the tangent of the friction angle, not an angle in degrees"};
+// Sliding blocks begin to rock above this coefficient unless the damping ratio of their contacts is
+// as large as the second number (docs/theory.md, "Sliding blocks that rock").
+constexpr double kRocks = .65, kCalms = .2;
 constexpr double kFastest = 1000;          // m/s
 constexpr double kStrongestGravity = 1e3;  // m/s^2
 constexpr double kLargest = 100;           // extent of the smallest body that is not fixed, m
@@ -65,7 +68,10 @@ class Inspection {
   void contact() {
     const JsonValue* law = scene_.document.find("contact");
     if (law == nullptr) return;
-    if (const JsonValue* friction = law->find("friction")) judge(*friction, kCoefficient);
+    if (const JsonValue* friction = law->find("friction")) {
+      judge(*friction, kCoefficient);
+      rocking(*friction);
+    }
     if (const JsonValue* pairs = law->find("pairs")) {
       for (const JsonValue& pair : pairs->items()) {
         if (const JsonValue* friction = pair.find("friction")) judge(*friction, kCoefficient);
@@ -84,6 +90,17 @@ class Inspection {
                       ratio < 1 ? "so soft let bodies sink into each other"
                                 : "so stiff shorten the time step and make nothing more exact"));
     }
+  }
+
+  void rocking(const JsonValue& friction) {
+    const ContactLaw& law = scene_.model.contact;
+    const bool slides = std::ranges::any_of(
+        scene_.model.bodies, [](const RigidBody& body) { return body.motion == Motion::free; });
+    if (!slides || law.friction.coefficient <= kRocks || law.damping.normal >= kCalms) return;
+    say(friction,
+        fmt::format("rigid blocks that slide with a coefficient above {:g} may begin to rock "
+                    "and lift off; a contact damping of the ratio {:g} prevents it",
+                    kRocks, kCalms));
   }
 
   void motion() {
