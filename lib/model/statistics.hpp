@@ -11,6 +11,10 @@
 
 namespace apothem {
 
+/// True if a body counts where free bodies are counted: neither its motion is prescribed, nor does
+/// `fix`, or do supports, hold it in both directions.
+bool is_free(const Model& model, BodyIndex body);
+
 struct BodyStatistics {
   int coordination = 0;  ///< number of bodies that it touches
   /// Mean stress, Pa, tension positive. Of a rigid body 1/V SUM f (x) l over its contacts, with the
@@ -56,6 +60,8 @@ struct RegionQuantity {
   const char* name;
   const char* unit;
   double (*value)(const RegionSums&);
+  /// It changes at once where a body enters the region or leaves it, or a contact begins or ends.
+  bool jumps = true;
 };
 constexpr double share_of(double part, double whole) { return whole > 0 ? part / whole : 0; }
 inline double spread(const RegionSums& s) {
@@ -73,8 +79,8 @@ inline constexpr std::array kRegionQuantities{
                    [](const RegionSums& s) { return share_of(s.translation, s.count); }},
     RegionQuantity{"rotation", "J",
                    [](const RegionSums& s) { return share_of(s.rotation, s.count); }},
-    RegionQuantity{"solid_fraction", "1",
-                   [](const RegionSums& s) { return s.solid_area / s.area; }},
+    RegionQuantity{"solid_fraction", "1", [](const RegionSums& s) { return s.solid_area / s.area; },
+                   false},
     RegionQuantity{"coordination", "1",
                    [](const RegionSums& s) { return share_of(s.coordination, s.count); }},
     RegionQuantity{"sxx", "Pa", [](const RegionSums& s) { return s.stress.xx / s.volume; }},
