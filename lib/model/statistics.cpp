@@ -161,7 +161,7 @@ std::vector<BodyStatistics> body_statistics(const Model& model, const State& sta
 std::vector<RegionSums> region_sums(const Model& model, const State& state,
                                     const std::vector<double>& node_mass,
                                     const std::vector<ContactRecord>& contacts,
-                                    const std::vector<BodyStatistics>& bodies) {
+                                    const std::vector<BodyStatistics>& bodies, bool statics) {
   std::vector<RegionSums> result;
   for (const Region& region : model.regions) {
     RegionSums& sums = result.emplace_back();
@@ -171,20 +171,22 @@ std::vector<RegionSums> region_sums(const Model& model, const State& state,
       if (state.is_absent(b)) continue;
       const double solid = area_in(model, state, b, region);
       sums.solid_area += solid;
-      if (!is_free(model, b)) continue;
+      const bool free = is_free(model, b);
+      if (!free && (!statics || is_rigid(model, b))) continue;
       const Motions m = motions_of(model, state, node_mass, b);
       if (!region.contains(m.place)) continue;
       const BodyStatistics& own = bodies[static_cast<size_t>(b)];
+      const double volume = volume_of(model, b);
+      sums.stress.xx += volume * own.stress.xx;
+      sums.stress.yy += volume * own.stress.yy;
+      sums.stress.xy += volume * own.stress.xy;
+      if (!free) continue;
       ++sums.count;
       sums.mass += m.mass;
       sums.momentum += m.momentum;
       sums.translation += m.translation;
       sums.rotation += m.rotation;
       sums.coordination += own.coordination;
-      const double volume = volume_of(model, b);
-      sums.stress.xx += volume * own.stress.xx;
-      sums.stress.yy += volume * own.stress.yy;
-      sums.stress.xy += volume * own.stress.xy;
     }
     for (const ContactRecord& c : contacts) {
       if (!region.contains(c.point) || (!is_free(model, c.a) && !is_free(model, c.b))) continue;

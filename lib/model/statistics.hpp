@@ -97,11 +97,13 @@ inline constexpr std::array kRegionQuantities{
     RegionQuantity{"force_spread", "N", spread},
     RegionQuantity{"force_max", "N", [](const RegionSums& s) { return s.largest_force; }}};
 
-/// Of every region of the model. `node_mass` in kg; `bodies` from body_statistics.
+/// Of every region of the model. `node_mass` in kg; `bodies` from body_statistics. `statics`: in a
+/// static run supports are what bears a body, so the stress is that of all bodies with a mesh.
 std::vector<RegionSums> region_sums(const Model& model, const State& state,
                                     const std::vector<double>& node_mass,
                                     const std::vector<ContactRecord>& contacts,
-                                    const std::vector<BodyStatistics>& bodies);
+                                    const std::vector<BodyStatistics>& bodies,
+                                    bool statics = false);
 
 /// How many free bodies there are in a region of the model (-1: anywhere), and their kinetic
 /// energy, J. Cheap enough for every few steps.
