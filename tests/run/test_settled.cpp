@@ -85,8 +85,8 @@ TEST_CASE("no dashpot acts while bodies settle, with and without a mesh in the s
   Run run(scene_of(folder, text_of(parts)), {.folder = ""});
   CHECK(run.state().force(1)[1] == Approx(kWeight).epsilon(1e-8));
   const double deep = .1 - run.state().pose(1)[1];
-  // Flat: k_n (1/r_a + 1/r_b) d per length, and a little more at the ends.
-  const double slopes = 1 / .1 + 1 / .15;
+  // Flat: twice k_n d over the reference length, per length.
+  const double slopes = 2 / .02;
   CHECK(deep == Approx(kWeight / (1e7 * slopes * .3)).epsilon(1e-3));
   const Course course = course_of(run, 1);
   CHECK(course.force == Approx(kWeight).epsilon(1e-8));
@@ -171,7 +171,7 @@ TEST_CASE("a floor that moves drags a block along, with a mesh or without", "[se
   const RigidIndex stop = meshed ? 1 : 2;
   CHECK(run.state().force(stop)[0] > .4 * kWeight);
   CHECK(std::abs(run.state().force(0)[0]) ==
-        Approx(.5 * std::abs(run.state().force(0)[1])).epsilon(1e-6));
+        Approx(.5 * std::abs(run.state().force(0)[1])).epsilon(meshed ? 1e-4 : 1e-6));
   CHECK(std::abs(run.state().force(0)[0]) == Approx(run.state().force(stop)[0]).epsilon(1e-6));
 }
 
