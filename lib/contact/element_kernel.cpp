@@ -219,7 +219,7 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
   const double power_before = power(tangential_, now), damping_before = power(damping_, now);
   tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
   // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
-  const bool dashpots = table_.damped() && dt > 0;
+  const bool dashpots = table_.damped() && dt > 0 && !now.still;
   if (dashpots) {
     damping_.clear(static_cast<size_t>(surfaces_.body_count()));
     find_times(dt);

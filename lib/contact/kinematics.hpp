@@ -16,6 +16,10 @@ struct Kinematics {
   std::span<const double> node_velocity;  ///< x, y of each node, m/s
   /// The rates are differences from earlier places: bodies may have turned by finite angles.
   bool finite = false;
+  /// The part of pose_rate that is slip alone, by which no body has turned; empty if there is none.
+  std::span<const double> slip = {};
+  /// An equilibrium is sought: no dashpot acts.
+  bool still = false;
 };
 
 struct ForceViews {

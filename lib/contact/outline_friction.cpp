@@ -79,8 +79,9 @@ OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& no
   const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
   double drawn = 0, turned = 0;
   if (now.finite) {  // from where the vertex was, along the chord of its arc
-    const double angle = v[2] * step.dt, half = sine_cosine(angle / 2).sine;
-    turned = sine_cosine(angle).sine / step.dt - v[2], drawn = 2 * half * half / step.dt;
+    const double spin = v[2] - (now.slip.empty() ? 0 : now.slip[3 * size_t(body.rigid) + 2]);
+    const double angle = spin * step.dt, half = sine_cosine(angle / 2).sine;
+    turned = sine_cosine(angle).sine / step.dt - spin, drawn = 2 * half * half / step.dt;
   }
   for (int i = body.first; i < body.end; ++i) {
     const double x = o.x[i] - body.cx, y = o.y[i] - body.cy;
@@ -278,7 +279,8 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
 double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  const Step step{blocks, memory.before(outline_kernel), dt, now.finite, damped_ && dt > 0};
+  const Step step{blocks, memory.before(outline_kernel), dt, now.finite,
+                  damped_ && dt > 0 && !now.still};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
   drags_.resize(n), drags_before_.resize(n);

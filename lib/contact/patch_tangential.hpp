@@ -183,7 +183,8 @@ class PatchTangential {
   };
 
   [[nodiscard]] Tangential kind_of(const PairLaw& law) const {
-    return {law.friction.coefficient > 0, law.damping.normal > 0 || law.damping.tangential > 0};
+    const bool damped = law.damping.normal > 0 || law.damping.tangential > 0;
+    return {law.friction.coefficient > 0, damped && !kinematics_.still};
   }
   void make_room();
   void release(const Left& last, FrictionMemory& memory) const;

@@ -208,6 +208,8 @@ void ContactTerm::add_forces(const Evaluation& now) {
   State& state = now.state;
   Kinematics kinematics = state.kinematics(now.velocity);
   kinematics.finite = now.trial;
+  kinematics.still = now.still;
+  if (!now.slip.empty()) kinematics.slip = now.slip.first(state.layout.node(0));
   try {
     contacts_.place(kinematics);
   } catch (const NotFinite& error) {

@@ -94,7 +94,9 @@ void DegreesOfFreedom::set_present(BodyIndex body, bool present) {
 
 void DegreesOfFreedom::add_rigid(const RigidBody& body) {
   const size_t first = inverse_mass_.size();
-  const std::array<double, 3> inverse = body.inverse_mass();
+  // A servo moves its wall itself.
+  const std::array<double, 3> inverse =
+      body.motion == Motion::free ? body.inverse_mass() : std::array<double, 3>{};
   const std::array<double, 3> place{body.position.x(), body.position.y(), body.angle};
   const Vec2 arm = -turned(body.pivot, body.angle);
   for (int k = 0; k < 3; ++k) {

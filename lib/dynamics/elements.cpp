@@ -106,8 +106,11 @@ void Elements::find_limit(const DegreesOfFreedom& dofs, const State& state) {
 void Elements::add_forces(const Evaluation& now) {
   State& state = now.state;
   const Layout& layout = state.layout;
-  const double power = elements_.force(layout.of_nodes(state.x), layout.of_nodes(state.v),
-                                       layout.of_nodes(state.f), now.trial ? 0 : now.dt / 2);
+  if (now.still && at_rest_.empty()) at_rest_.resize(layout.of_nodes(state.v).size());
+  const std::span<const double> velocity =
+      now.still ? std::span<const double>(at_rest_) : layout.of_nodes(state.v);
+  const double power = elements_.force(layout.of_nodes(state.x), velocity, layout.of_nodes(state.f),
+                                       now.trial ? 0 : now.dt / 2);
   if (now.dt > 0 && !now.trial) {
     damping_power_ = power;
     summed_damping_loss_ += now.dt * power;

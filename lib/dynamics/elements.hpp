@@ -45,6 +45,7 @@ class Elements final : public Term {
   std::vector<double> bulk_damping_;  // of each body, s
   FiniteElements elements_;
   StepLimit limit_;
+  std::vector<double> at_rest_;     // velocities of nodes that do not move
   double summed_damping_loss_ = 0;  // J
   double damping_power_ = 0;        // at the last step, W
   double first_damping_power_ = 0;  // at the start, W

@@ -33,7 +33,9 @@ constexpr int kCheckedEvery = 10;
 constexpr int kRenewedEvery = 200;  // steps between looks at the stiffness
 constexpr double kRamp = 50;        // steps
 constexpr double kLeast = 1e-3;     // of a rigid body's mass if it lay flat on another one
-constexpr double kSlide = 1;        // s; of a velocity, saturates every spring
+// What bodies have slipped that move at a settled start, the fastest one, of the scene's size. It
+// saturates every spring: a body that is dragged along is lost before it has gone so far.
+constexpr double kSlide = 1e3 * kFar;
 constexpr std::int64_t kMostSteps = 300'000;
 
 }  // namespace
@@ -47,12 +49,14 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
       first_(dofs.layout().node(0)),
       shortest_(HUGE_VAL),
       lambda_(model.bodies.size()),
-      body_loads_(model.bodies.size() + model.deformables.size()) {
+      body_loads_(model.bodies.size() + model.deformables.size()),
+      body_loads_now_(body_loads_.size()) {
   const size_t n = dofs.layout().size();
   for (std::vector<double>* v :
        {&mass_, &inverse_, &rest_, &last_, &drive_, &velocity_, &displacement_}) {
     v->assign(n, 0);
   }
+  pushed_.assign(n, 0);
   stiffness_.elastic.assign(n - first_, 0);
   stiffness_.contact.assign((n - first_) / 2, 0);
   stiffness_.rigid.assign(first_, 0);
@@ -72,7 +76,12 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
     }
     radius_.push_back(radius);
     least_.push_back(kLeast * kMass * 2 * model.stiffness() * body.potential.steepest * longest);
-    if (body.motion == Motion::free) shortest_ = std::min(shortest_, body.inradius);
+    if (body.motion == Motion::free || body.servo) shortest_ = std::min(shortest_, body.inradius);
+    if (body.servo) {
+      const auto wall = static_cast<RigidIndex>(radius_.size()) - 1;
+      walls_.push_back(wall);
+      for (const size_t axis : {0, 1}) pushed_[dofs.layout().rigid(wall) + axis] = 1;
+    }
   }
   far_ = kFar * scene.extent();
 }
@@ -98,16 +107,41 @@ double Equilibrium::ramp(double from, double until) const {
 }
 
 // Friction follows the displacements since the start of the load step, in one step of 1 s.
-void Equilibrium::find_forces(State& state, const State& before, double sliding) {
+void Equilibrium::find_forces(State& state, const State& before) {
   std::ranges::fill(state.layout.of_rigid(state.f), 0.);
   std::fill(lambda_.begin(), lambda_.end(), 0.);
   for (size_t c = 0; c < displacement_.size(); ++c) {
-    displacement_[c] = state.x[c] - before.x[c] + sliding * before.v[c];
+    displacement_[c] = state.x[c] - before.x[c] + (slip_.empty() ? 0 : slip_[c]);
   }
   Stopwatch off;
   for (const auto& term : terms_)
-    term->add_forces({state, displacement_, 1, lambda_, off, 0, true});
+    term->add_forces({state, displacement_, 1, lambda_, off, 0, true, true, slip_});
   for (size_t c = 0; c < rest_.size(); ++c) rest_[c] = held(c) ? 0 : state.f[c] + weight(c);
+  push_walls(state);
+}
+
+// They move along their directions only.
+void Equilibrium::push_walls(const State& state) {
+  for (const RigidIndex wall : walls_) {
+    const Servo& servo = *model_.bodies[wall].servo;
+    const size_t c = state.layout.rigid(wall);
+    const double push = servo.excess(state.time, Vec2(&state.f[c]));
+    rest_[c] = push * servo.direction.x();
+    rest_[c + 1] = push * servo.direction.y();
+  }
+}
+
+// What moves at a settled start has slipped along its velocity.
+void Equilibrium::find_slip(const State& state) {
+  double fastest = 0;
+  for (size_t c = 0; c < state.v.size(); ++c) {
+    const bool turns = c < first_ && c % 3 == 2;
+    fastest = std::max(fastest, std::abs(state.v[c]) * (turns ? radius_[c / 3] : 1));
+  }
+  slip_.clear();
+  if (fastest == 0) return;
+  const double time = kSlide * (far_ / kFar) / fastest;
+  for (const double v : state.v) slip_.push_back(time * v);
 }
 
 void Equilibrium::find_masses(const State& state) {
@@ -132,11 +166,22 @@ void Equilibrium::raise_masses() {
     const size_t body = c / 3;
     const double inertia = dofs_.mass(c);
     const double least = least_[body] * inertia / model_.bodies[body].mass;
-    const double needed = std::max(least, kMass * (stiffness_.rigid[c] + lambda_[body] * inertia));
+    double stiffness = stiffness_.rigid[c] + lambda_[body] * inertia;
+    if (pushed_[c]) stiffness += stiffness_.rigid[c % 3 == 0 ? c + 1 : c - 1];  // obliquely
+    const double needed = std::max(least, kMass * stiffness);
     if (!(needed > mass_[c])) continue;
     velocity_[c] *= std::sqrt(mass_[c] / needed);
     mass_[c] = needed;
     inverse_[c] = 1 / needed;
+  }
+  for (const RigidIndex wall : walls_) {  // one mass for both, so that they keep their directions
+    const size_t c = 3 * static_cast<size_t>(wall);
+    const double both = std::max(mass_[c], mass_[c + 1]);
+    for (const size_t at : {c, c + 1}) {
+      if (mass_[at] > 0) velocity_[at] *= std::sqrt(mass_[at] / both);
+      mass_[at] = both;
+      inverse_[at] = 1 / both;
+    }
   }
 }
 
@@ -161,9 +206,13 @@ void Equilibrium::check_shapes(const State& state) const {
     if (std::max(std::abs(u.x()), std::abs(u.y())) < far_) return;
     throw Unstable(
         fmt::format("\"{}\" has moved {:.3g} m at t = {:.9g} s (load step {}) and finds no "
-                    "equilibrium: nothing holds it against its loads; support it, or press it "
-                    "against another body",
-                    name, u.norm(), state.time, state.step));
+                    "equilibrium: nothing holds it against its loads{}; support it, or press it "
+                    "against another body{}",
+                    name, u.norm(), state.time, state.step,
+                    slip_.empty() ? "" : " and the friction of bodies that move at time 0",
+                    settling_ && !slip_.empty() ? ", or let prescribed velocities begin at 0"
+                    : settling_                 ? ", or leave out time.start"
+                                                : ""));
   };
   for (RigidIndex i = 0; i < state.layout.rigid_bodies; ++i) {
     const RigidBody& body = model_.bodies[i];
@@ -237,8 +286,7 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
     sizes += hypotenuse(force.x(), force.y());
   }
   const BodyIndex number = static_cast<BodyIndex>(model_.bodies.size()) + b;
-  double& loads = body_loads_[number];
-  loads = std::max(loads, sizes);
+  const double loads = body_loads_now_[number] = std::max(body_loads_[number], sizes);
   return note_balance(number, sum.norm(), loads, residual, noise, result);
 }
 
@@ -247,11 +295,13 @@ bool Equilibrium::rigid_balanced(const State& state, RigidIndex b, double contac
                                  LoadStep& result) {
   const size_t c = state.layout.rigid(b);
   const double force = hypotenuse(rest_[c], rest_[c + 1]), moment = rest_[c + 2] / radius_[b];
-  const double own = hypotenuse(weight(c), weight(c + 1));
+  const RigidBody& body = model_.bodies[b];
+  const double own = body.servo ? std::abs(body.servo->force * body.servo->history.at(state.time))
+                                : hypotenuse(weight(c), weight(c + 1));
   result.load += own;
   sum_loads_ += own * own;
   const double place = std::abs(state.x[c]) + std::abs(state.x[c + 1]) + radius_[b];
-  const double noise = place * (stiffness_.rigid[c] + lambda_[b] * model_.bodies[b].mass);
+  const double noise = place * (stiffness_.rigid[c] + lambda_[b] * body.mass);
   return note_balance(b, force + std::abs(moment), own + contact, force * force + moment * moment,
                       noise * noise, result);
 }
@@ -271,16 +321,17 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
   std::vector<double> contact(body_loads_.size(), 0);
   for (const auto& term : terms_) term->add_force_sizes(contact);
   for (RigidIndex b = 0; b < state.layout.rigid_bodies; ++b) {
-    if (model_.bodies[b].motion != Motion::free) continue;
+    if (model_.bodies[b].motion != Motion::free && !model_.bodies[b].servo) continue;
     balanced = rigid_balanced(state, b, contact[b], result) && balanced;
   }
   for (size_t c = 0; c < first_; ++c) {  // of contact on rigid bodies
     if (c % 3 < 2) sum_loads_ += state.f[c] * state.f[c];
   }
-  loads_ = std::max(loads_, std::sqrt(sum_loads_));
+  // Of equilibria and this state, not of what came on the way to it.
+  loads_now_ = std::max(loads_, std::sqrt(sum_loads_));
   const double residual = std::sqrt(sum_residual_);
-  result.residual = loads_ > 0 ? residual / loads_ : 0;
-  return balanced && residual <= tolerance_ * loads_ + kNoise * std::sqrt(sum_noise_);
+  result.residual = loads_now_ > 0 ? residual / loads_now_ : 0;
+  return balanced && residual <= tolerance_ * loads_now_ + kNoise * std::sqrt(sum_noise_);
 }
 
 void Equilibrium::refuse(const State& state, const LoadStep& result) const {
@@ -330,7 +381,7 @@ void Equilibrium::move(State& state, bool first) {
   for (size_t c = 0; c < n; ++c) state.x[c] += kStep * velocity_[c];
 }
 
-LoadStep Equilibrium::relax(State& state, const State& before, double time, double sliding,
+LoadStep Equilibrium::relax(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   const double steps = ramp(state.time, time);
   LoadStep result{time};
@@ -344,7 +395,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time, doub
       dofs_.place_driven(state);
       dofs_.follow(state);
     }
-    find_forces(state, before, sliding);
+    find_forces(state, before);
     if (step % kRenewedEvery == 0 || revision() != revision_) {
       find_masses(state);
     } else {
@@ -366,19 +417,17 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time, doub
     }
   }
   check_shapes(state);
+  loads_ = loads_now_;
+  std::ranges::copy(body_loads_now_, body_loads_.begin());
   return result;
 }
 
 LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
                            const std::function<bool()>& stop) {
   const State before = state;
-  const double loads_before = loads_;
-  const std::vector<double> body_loads_before = body_loads_;
-  LoadStep result = relax(state, before, time, 0, stop);
+  LoadStep result = relax(state, before, time, stop);
   if (!result.complete) {
     state = before;
-    loads_ = loads_before;
-    body_loads_ = body_loads_before;
     for (const auto& term : terms_) term->drop_trial(state);
     return result;
   }
@@ -396,7 +445,8 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
 void Equilibrium::settle(State& state, const std::function<bool()>& stop) {
   const State before = state;
   settling_ = true;
-  if (!relax(state, before, state.time, kSlide, stop).complete) throw Stopped();
+  find_slip(state);
+  if (!relax(state, before, state.time, stop).complete) throw Stopped();
   state.step = before.step;
   state.v = before.v;
 }

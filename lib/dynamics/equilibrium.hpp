@@ -39,10 +39,11 @@ class Equilibrium {
   }
 
  private:
-  LoadStep relax(State& state, const State& before, double time, double sliding,
-                 const std::function<bool()>& stop);
+  LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
-  void find_forces(State& state, const State& before, double sliding);
+  void find_forces(State& state, const State& before);
+  void push_walls(const State& state);
+  void find_slip(const State& state);
   void find_masses(const State& state);
   void raise_masses();
   [[nodiscard]] std::int64_t revision() const;
@@ -60,7 +61,9 @@ class Equilibrium {
   [[noreturn]] void refuse(const State& state, const LoadStep& result) const;
   void move(State& state, bool first);
   [[nodiscard]] double speed(size_t coordinate) const;
-  [[nodiscard]] bool held(size_t coordinate) const { return !dofs_.can_move(coordinate); }
+  [[nodiscard]] bool held(size_t coordinate) const {
+    return !dofs_.can_move(coordinate) && !pushed_[coordinate];
+  }
   [[nodiscard]] double weight(size_t coordinate) const {
     return dofs_.weight().empty() ? 0 : dofs_.weight()[coordinate];
   }
@@ -70,20 +73,25 @@ class Equilibrium {
   const Terms& terms_;
   double tolerance_;
   bool settling_ = false;
-  size_t first_;     // coordinate of the nodes
-  double shortest_;  // edge of the elements, or inradius of a free rigid body, m
+  size_t first_;                      // coordinate of the nodes
+  std::vector<RigidIndex> walls_;     // that hold a force
+  std::vector<std::uint8_t> pushed_;  // 1: coordinates of their places
+  double shortest_;                   // edge of the elements, or inradius of a free rigid body, m
   NodeStiffness stiffness_;
   std::vector<double> mass_, inverse_;    // scaled; inverse 0 where held
   std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
   std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
   std::vector<double> displacement_;      // since the start of the load step
-  std::vector<double> outside_;           // loads on nodes at the last equilibrium, N
-  std::vector<double> lambda_;            // of rigid bodies: stiffness / inertia, 1/s^2
-  std::vector<double> radius_;            // of rigid bodies, m
-  std::vector<double> least_;             // scaled mass of rigid bodies
-  double far_ = 0;                        // m
-  double loads_ = 0;                      // largest norm so far, N
-  std::vector<double> body_loads_;        // largest sum of sizes so far, of all bodies, N
+  std::vector<double> slip_;            // what counts as displacement in contacts besides; or none
+  std::vector<double> outside_;         // loads on nodes at the last equilibrium, N
+  std::vector<double> lambda_;          // of rigid bodies: stiffness / inertia, 1/s^2
+  std::vector<double> radius_;          // of rigid bodies, m
+  std::vector<double> least_;           // scaled mass of rigid bodies
+  double far_ = 0;                      // m
+  double loads_ = 0;                    // largest norm in an equilibrium so far, N
+  std::vector<double> body_loads_;      // largest sum of sizes in one, of all bodies, N
+  double loads_now_ = 0;                // the same with the state that is tried
+  std::vector<double> body_loads_now_;  // likewise
   double sum_loads_ = 0, sum_residual_ = 0, sum_noise_ = 0, most_ = 0;  // in a look: see reached
   double kinetic_ = 0;                                                  // at the step before
   std::int64_t revision_ = -1;

@@ -4,6 +4,7 @@
 
 #include "apothem/geometry/spatial/boxes.hpp"
 #include "apothem/model/rotation.hpp"
+#include "apothem/model/statistics.hpp"
 
 namespace apothem {
 
@@ -33,7 +34,7 @@ Population::Change Population::look(const State& state) {
   const auto bodies = static_cast<BodyIndex>(state.absent.size());
   if (model_.world.outside != World::Outside::keep) {
     for (BodyIndex b = 0; b < bodies; ++b) {
-      if (state.is_absent(b) || !is_free(b) || !is_outside(state, b)) continue;
+      if (state.is_absent(b) || !is_free(model_, b) || !is_outside(state, b)) continue;
       if (model_.world.outside == World::Outside::stop) {
         if (outside_ < 0) outside_ = b;
       } else {
@@ -55,13 +56,6 @@ Population::Change Population::look(const State& state) {
   left_ += static_cast<std::int64_t>(change.leave.size());
   come_ += static_cast<std::int64_t>(change.come.size());
   return change;
-}
-
-// Nothing prescribes where the body is, not even of a part of it.
-bool Population::is_free(BodyIndex body) const {
-  const auto rigid = static_cast<BodyIndex>(model_.bodies.size());
-  if (body >= rigid) return model_.deformables[body - rigid].supports.empty();
-  return model_.bodies[body].motion == Motion::free;
 }
 
 Box Population::box_of(const State& state, BodyIndex body) const {
@@ -96,7 +90,7 @@ int Population::count_outside(const State& state) const {
   if (model_.world.outside == World::Outside::keep) return 0;
   int count = 0;
   for (BodyIndex b = 0; b < static_cast<BodyIndex>(state.absent.size()); ++b) {
-    if (!state.is_absent(b) && is_free(b) && is_outside(state, b)) ++count;
+    if (!state.is_absent(b) && is_free(model_, b) && is_outside(state, b)) ++count;
   }
   return count;
 }

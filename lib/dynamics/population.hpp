@@ -49,7 +49,6 @@ class Population {
     void fields(Archive& archive) { archive("next", next)("last", last); }
   };
   [[nodiscard]] Box box_of(const State& state, BodyIndex body) const;
-  [[nodiscard]] bool is_free(BodyIndex body) const;
   [[nodiscard]] bool is_outside(const State& state, BodyIndex body) const;
   [[nodiscard]] bool has_room(const State& state, const std::vector<BodyIndex>& batch) const;
 

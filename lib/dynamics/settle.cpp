@@ -34,7 +34,10 @@ class Relaxation {
         slip_(given_.size()) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     for (RigidIndex i = 0; i < state_.layout.rigid_bodies; ++i) {
-      if (model_.bodies[i].motion == Motion::free) free_.push_back(i);
+      if (model_.bodies[i].motion == Motion::free || model_.bodies[i].servo) free_.push_back(i);
+      const double* const rate = &given_[state_.layout.rigid(i)];
+      const bool moves = rate[0] != 0 || rate[1] != 0 || rate[2] != 0;
+      drags_ = drags_ || (moves && model_.bodies[i].motion == Motion::prescribed);
       double& radius = radius_.emplace_back(0);
       for (const Vec2& v : model_.bodies[i].potential.vertices) {
         radius = std::max(radius, v.norm());
@@ -81,8 +84,10 @@ class Relaxation {
       const double off =
           body.mass * hypotenuse(a[0], a[1]) + std::abs(body.inertia * a[2]) / radius_[i];
       const double place = std::abs(state_.x[at]) + std::abs(state_.x[at + 1]) + radius_[i];
-      const double may = kResidual * (body.mass * model_.strongest_gravity() +
-                                      std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +
+      const double own = body.servo
+                             ? std::abs(body.servo->force * body.servo->history.at(state_.time))
+                             : body.mass * model_.strongest_gravity();
+      const double may = kResidual * (own + std::abs(state_.f[at]) + std::abs(state_.f[at + 1])) +
                          kNoise * place * lambda_[i] * body.mass;
       if (!(off <= worst_share_ * may)) {
         worst_share_ = off / may;
@@ -97,10 +102,17 @@ class Relaxation {
     return kinetic;
   }
 
-  // Acceleration without the part along the given velocity.
+  // Acceleration without the part along the given velocity; of a servo wall that along its
+  // direction.
   [[nodiscard]] Eigen::Vector3d residual(RigidIndex i) const {
     const size_t at = state_.layout.rigid(i);
     Eigen::Vector3d a;
+    if (model_.bodies[i].servo) {
+      const Servo& servo = *model_.bodies[i].servo;
+      const double push = servo.excess(state_.time, Vec2(&state_.f[at])) / model_.bodies[i].mass;
+      a << push * servo.direction, 0;
+      return a;
+    }
     for (size_t k = 0; k < 3; ++k) {
       const double gravity = dofs_.acceleration().empty() ? 0 : dofs_.acceleration()[at + k];
       a[static_cast<Eigen::Index>(k)] = dofs_.inverse_mass()[at + k] * state_.f[at + k] + gravity;
@@ -117,10 +129,21 @@ class Relaxation {
   }
 
   [[noreturn]] void refuse() const {
+    const std::string name = worst_ < 0 ? "" : model_.bodies[worst_].name;
+    if (worst_ >= 0 && model_.bodies[worst_].servo) {
+      throw Unrunnable(
+          fmt::format("the servo wall \"{}\" does not come to rest in {} steps: what it "
+                      "presses on does not bear its force; put something in its way, "
+                      "let its history begin at 0, or leave out time.start",
+                      name, kMostSteps),
+          "time/start", -1);
+    }
     throw Unrunnable(
-        fmt::format("body \"{}\" does not come to rest in {} steps: it falls, slides or tips over; "
-                    "support it, or leave out time.start",
-                    worst_ < 0 ? "" : model_.bodies[worst_].name, kMostSteps),
+        fmt::format(
+            "body \"{}\" does not come to rest in {} steps: it falls, slides{} or tips over; "
+            "support it,{} or leave out time.start",
+            name, kMostSteps, drags_ ? ", is dragged along by a body that moves at time 0," : "",
+            drags_ ? " let prescribed velocities begin at 0," : ""),
         "time/start", -1);
   }
 
@@ -131,9 +154,10 @@ class Relaxation {
   double limit_;
   const std::vector<double> given_;
   std::vector<double> slip_;
-  std::vector<RigidIndex> free_;
-  std::vector<double> radius_;  // of each body, m
-  double worst_share_ = 0;      // of what the residual force of a body may be
+  std::vector<RigidIndex> free_;  // and servo walls
+  bool drags_ = false;            // a body of prescribed motion moves
+  std::vector<double> radius_;    // of each body, m
+  double worst_share_ = 0;        // of what the residual force of a body may be
   RigidIndex worst_ = -1;
 };
 

@@ -13,6 +13,7 @@
 #include "apothem/dynamics/loads.hpp"
 #include "apothem/dynamics/mass_damping.hpp"
 #include "apothem/dynamics/settle.hpp"
+#include "apothem/model/columns.hpp"
 
 namespace apothem {
 namespace {
@@ -63,6 +64,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
   }
+  if (!model.deformables.empty()) note_turns(model, node_mass(), state_);
   start_ledger();
 }
 
@@ -203,11 +205,12 @@ void Simulation::damp(double h) {
   for (const auto& term : terms_) term->damp(state_, h, ledger_);
 }
 
-void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit) {
+void Simulation::find_forces(std::span<const double> velocity, double dt, double lambda_limit,
+                             bool still) {
   std::ranges::fill(state_.layout.of_rigid(state_.f), 0.);
   std::fill(lambda_.begin(), lambda_.end(), 0.);
   for (const auto& term : terms_)
-    term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit});
+    term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit, false, still});
 }
 
 bool Simulation::watches_onsets() const {
@@ -248,6 +251,7 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
   dofs_.follow(state_);
   find_forces(state_.v, 0);
   ledger_.book_after_drift(state_, 0);
+  if (!state_.turns.empty()) note_turns(model_, node_mass(), state_);
   check_energy();
   return result;
 }
@@ -267,15 +271,16 @@ void Simulation::settle(const std::function<bool()>& stop) {
   if (model_.deformables.empty()) {
     apothem::settle(
         {model_, dofs_, state_, lambda_, step_choice().stability},
-        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt); }, stop);
+        [&](std::span<const double> velocity, double dt) { find_forces(velocity, dt, 0, true); },
+        stop);
   } else {
     try {
       Equilibrium(model_, dofs_, terms_, kSettled).settle(state_, stop);
     } catch (const Unstable& error) {
       throw Unrunnable(error.what(), "time/start", -1);
     }
-    find_forces(state_.v, 0);
   }
+  find_forces(state_.v, 0);
   for (const auto& term : terms_) term->start_ledger();
 }
 
@@ -284,6 +289,7 @@ void Simulation::watch() {
   if (regular) {
     if (!std::isfinite(dofs_.kinetic(state_))) refuse_infinite(state_, "a body");
     for (const auto& term : terms_) term->watch(state_);
+    if (!state_.turns.empty()) note_turns(model_, node_mass(), state_);
   }
   if (guard_.due(state_.step, losses(), counts().touching_now)) look_at_energy(false);
   if (!regular || !population_) return;

@@ -129,7 +129,8 @@ class Simulation {
   void take_absent_out();
   [[noreturn]] void explain(const Unstable& error) const;
   void damp(double h);
-  void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0);
+  void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0,
+                   bool still = false);
   [[nodiscard]] bool watches_onsets() const;
   [[nodiscard]] bool needs_forces_before() const;
   bool add_onsets(double dt);

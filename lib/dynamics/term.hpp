@@ -26,6 +26,10 @@ struct Evaluation {
   /// The static solver tries a state: nothing of it is recorded. `velocity` times `dt` is then the
   /// displacement since the start of the load step.
   bool trial = false;
+  /// An equilibrium is sought: no dashpot acts.
+  bool still = false;
+  /// The part of `velocity` that is slip alone, by which nothing has moved; may be empty.
+  std::span<const double> slip = {};
 };
 
 /// Bounds of the stiffness that acts on nodes, for the static solver.

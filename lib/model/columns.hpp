@@ -27,6 +27,10 @@ struct BodyMotion {
 BodyMotion motion_of(const Model& model, const State& state, BodyIndex body,
                      const BodyForce& contact, const std::vector<double>& node_mass);
 
+/// Looks how far the bodies with a mesh have turned. The angle of motion_of() is right as long as
+/// no body turns by half a turn more or less than its spin says between two looks.
+void note_turns(const Model& model, const std::vector<double>& node_mass, State& state);
+
 /// A quantity of a body. A new one is a line here: it becomes a column NAME.quantity of
 /// history.csv, and with `in_frames` an array of the cells in the frames.
 struct BodyQuantity {
@@ -81,6 +85,7 @@ std::vector<std::string> names_of(const Columns& columns) {
 struct HistoryColumn {
   std::string name;  ///< as in "beam.ux"
   const char* unit;
+  bool jumps = false;  ///< it changes at once, as where a body enters a region
 };
 
 /// After the time: rigid bodies, deformable ones, surfaces, points, regions.

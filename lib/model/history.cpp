@@ -78,8 +78,7 @@ double LoadHistory::largest() const {
 
 double Servo::rate(double time, const Vec2& contact_force, double before, double mass,
                    double dt) const {
-  const double excess = force * history.at(time) + contact_force.dot(direction);
-  return std::clamp(before + dt * excess / mass, -speed, speed);
+  return std::clamp(before + dt * excess(time, contact_force) / mass, -speed, speed);
 }
 
 }  // namespace apothem

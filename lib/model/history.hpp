@@ -52,6 +52,10 @@ struct Servo {
   double speed = 0;     ///< m/s, the highest one
   LoadHistory history;  ///< of the factor
 
+  /// What accelerates the wall along the direction against a contact force on it, N.
+  [[nodiscard]] double excess(double time, const Vec2& contact_force) const {
+    return force * history.at(time) + contact_force.dot(direction);
+  }
   /// The speed along the direction after dt (s), of a wall of that mass (kg) with the speed
   /// `before`, against a contact force on it (N).
   [[nodiscard]] double rate(double time, const Vec2& contact_force, double before, double mass,

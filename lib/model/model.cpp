@@ -1,10 +1,16 @@
 #include "apothem/model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace apothem {
 
 std::array<double, 3> RigidBody::inverse_mass() const {
+  if (servo) {
+    // d d^T/m for the direction d, or a matrix without other entries that is nowhere less.
+    const double dx = std::abs(servo->direction.x()), dy = std::abs(servo->direction.y());
+    return {dx * (dx + dy) / mass, dy * (dx + dy) / mass, 0};
+  }
   if (motion != Motion::free) return {0, 0, 0};
   return {held[0] ? 0 : 1 / mass, held[1] ? 0 : 1 / mass, held[2] ? 0 : 1 / inertia};
 }

@@ -45,7 +45,8 @@ struct RigidBody {
   [[nodiscard]] bool can_move() const { return motion != Motion::fixed; }
   /// The largest distance of a vertex from the pivot, m.
   [[nodiscard]] double reach() const;
-  /// 1/m, 1/m, 1/I for the degrees of freedom that forces can change, 0 for the others.
+  /// 1/m, 1/m, 1/I for the degrees of freedom that forces can change, 0 for the others. Contact
+  /// forces move a servo wall along its direction; if that is not along an axis, these are bounds.
   [[nodiscard]] std::array<double, 3> inverse_mass() const;
 };
 

@@ -65,6 +65,7 @@ struct Reduction {
   Take take = Take::last;
   std::optional<double> from, until;  ///< time window, s
   std::string unit = {};              ///< of the number; "1" if it has none
+  bool jumps = false;                 ///< the column does, so that nothing is known between rows
 };
 
 /// A result of a run that studies compare: a number, or whether a rule has stopped the run.

@@ -40,6 +40,14 @@ struct Layout {
   }
 };
 
+/// How far a body with a mesh had turned when somebody looked last, whole turns included.
+struct MeanTurn {
+  double angle = 0;  ///< rad
+  double spin = 0;   ///< rad/s
+  double time = 0;   ///< s
+  void fields(Archive& archive) { archive("angle", angle)("spin", spin)("time", time); }
+};
+
 struct State {
   Layout layout;
   double time = 0;  ///< s
@@ -55,6 +63,9 @@ struct State {
   /// Of each body, rigid ones first: 0 if it is there, 1 if it comes later, 2 if it has left the
   /// world. Empty in a scene where all bodies are always there.
   std::vector<std::uint8_t> absent;
+  /// Of each body with a mesh. Nodes tell its angle without whole turns: these follow from one look
+  /// to the next. Empty where nobody has looked.
+  std::vector<MeanTurn> turns;
 
   explicit State(Layout of = {})
       : layout(of), x(of.size()), v(of.size()), f(of.size()), remainder(of.node(0)) {}
@@ -89,6 +100,7 @@ struct State {
   void fields(Archive& archive) {
     archive("time", time)("step", step);
     archive.sized("x", x).sized("v", v).sized("f", f).sized("remainder", remainder);
+    if (!turns.empty()) archive("turns", turns);
     if (absent.empty()) return;
     std::string flags;
     for (const std::uint8_t flag : absent) flags += static_cast<char>('0' + flag);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apothem/geometry/polygon/ring_area.hpp"
+#include "apothem/mesh/measure.hpp"
 #include "apothem/model/columns.hpp"
 #include "apothem/model/rotation.hpp"
 
@@ -16,11 +17,6 @@ BodyIndex body_count(const Model& model) {
 
 bool is_rigid(const Model& model, BodyIndex body) {
   return body < static_cast<BodyIndex>(model.bodies.size());
-}
-
-// Bodies that nothing prescribes or holds are those that are counted.
-bool is_free(const Model& model, BodyIndex body) {
-  return !is_rigid(model, body) || model.bodies[body].motion == Motion::free;
 }
 
 const DeformableBody& meshed(const Model& model, BodyIndex body) {
@@ -101,7 +97,30 @@ double area_in(const Model& model, const State& state, BodyIndex body, const Reg
   return sum;
 }
 
+// Of the material without deformation, m^3.
+double volume_of(const Model& model, BodyIndex body) {
+  if (is_rigid(model, body)) return model.bodies[body].area * model.thickness;
+  const Mesh& mesh = meshed(model, body).mesh;
+  double area = 0;
+  for (ElementIndex e = 0; e < mesh.element_count(); ++e) area += element_area(mesh, e);
+  return area * model.thickness;
+}
+
 }  // namespace
+
+bool is_free(const Model& model, BodyIndex body) {
+  if (is_rigid(model, body)) {
+    const RigidBody& of = model.bodies[body];
+    return of.motion == Motion::free && !(of.held[0] && of.held[1]);
+  }
+  bool held_x = false, held_y = false;
+  for (const Support& support : meshed(model, body).supports) {
+    const bool moved = !support.motion.empty();
+    held_x = held_x || support.held[0] || moved;
+    held_y = held_y || support.held[1] || moved;
+  }
+  return !(held_x && held_y);
+}
 
 std::vector<BodyStatistics> body_statistics(const Model& model, const State& state,
                                             const std::vector<ContactRecord>& contacts,
@@ -142,7 +161,7 @@ std::vector<BodyStatistics> body_statistics(const Model& model, const State& sta
 std::vector<RegionSums> region_sums(const Model& model, const State& state,
                                     const std::vector<double>& node_mass,
                                     const std::vector<ContactRecord>& contacts,
-                                    const std::vector<BodyStatistics>& bodies) {
+                                    const std::vector<BodyStatistics>& bodies, bool statics) {
   std::vector<RegionSums> result;
   for (const Region& region : model.regions) {
     RegionSums& sums = result.emplace_back();
@@ -152,20 +171,22 @@ std::vector<RegionSums> region_sums(const Model& model, const State& state,
       if (state.is_absent(b)) continue;
       const double solid = area_in(model, state, b, region);
       sums.solid_area += solid;
-      if (!is_free(model, b)) continue;
+      const bool free = is_free(model, b);
+      if (!free && (!statics || is_rigid(model, b))) continue;
       const Motions m = motions_of(model, state, node_mass, b);
       if (!region.contains(m.place)) continue;
       const BodyStatistics& own = bodies[static_cast<size_t>(b)];
+      const double volume = volume_of(model, b);
+      sums.stress.xx += volume * own.stress.xx;
+      sums.stress.yy += volume * own.stress.yy;
+      sums.stress.xy += volume * own.stress.xy;
+      if (!free) continue;
       ++sums.count;
       sums.mass += m.mass;
       sums.momentum += m.momentum;
       sums.translation += m.translation;
       sums.rotation += m.rotation;
       sums.coordination += own.coordination;
-      const double volume = m.mass / model.materials[model.material_of(b)].density;
-      sums.stress.xx += volume * own.stress.xx;
-      sums.stress.yy += volume * own.stress.yy;
-      sums.stress.xy += volume * own.stress.xy;
     }
     for (const ContactRecord& c : contacts) {
       if (!region.contains(c.point) || (!is_free(model, c.a) && !is_free(model, c.b))) continue;

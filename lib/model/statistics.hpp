@@ -11,6 +11,10 @@
 
 namespace apothem {
 
+/// True if a body counts where free bodies are counted: neither its motion is prescribed, nor does
+/// `fix`, or do supports, hold it in both directions.
+bool is_free(const Model& model, BodyIndex body);
+
 struct BodyStatistics {
   int coordination = 0;  ///< number of bodies that it touches
   /// Mean stress, Pa, tension positive. Of a rigid body 1/V SUM f (x) l over its contacts, with the
@@ -56,6 +60,8 @@ struct RegionQuantity {
   const char* name;
   const char* unit;
   double (*value)(const RegionSums&);
+  /// It changes at once where a body enters the region or leaves it, or a contact begins or ends.
+  bool jumps = true;
 };
 constexpr double share_of(double part, double whole) { return whole > 0 ? part / whole : 0; }
 inline double spread(const RegionSums& s) {
@@ -73,8 +79,8 @@ inline constexpr std::array kRegionQuantities{
                    [](const RegionSums& s) { return share_of(s.translation, s.count); }},
     RegionQuantity{"rotation", "J",
                    [](const RegionSums& s) { return share_of(s.rotation, s.count); }},
-    RegionQuantity{"solid_fraction", "1",
-                   [](const RegionSums& s) { return s.solid_area / s.area; }},
+    RegionQuantity{"solid_fraction", "1", [](const RegionSums& s) { return s.solid_area / s.area; },
+                   false},
     RegionQuantity{"coordination", "1",
                    [](const RegionSums& s) { return share_of(s.coordination, s.count); }},
     RegionQuantity{"sxx", "Pa", [](const RegionSums& s) { return s.stress.xx / s.volume; }},
@@ -91,11 +97,13 @@ inline constexpr std::array kRegionQuantities{
     RegionQuantity{"force_spread", "N", spread},
     RegionQuantity{"force_max", "N", [](const RegionSums& s) { return s.largest_force; }}};
 
-/// Of every region of the model. `node_mass` in kg; `bodies` from body_statistics.
+/// Of every region of the model. `node_mass` in kg; `bodies` from body_statistics. `statics`: in a
+/// static run supports are what bears a body, so the stress is that of all bodies with a mesh.
 std::vector<RegionSums> region_sums(const Model& model, const State& state,
                                     const std::vector<double>& node_mass,
                                     const std::vector<ContactRecord>& contacts,
-                                    const std::vector<BodyStatistics>& bodies);
+                                    const std::vector<BodyStatistics>& bodies,
+                                    bool statics = false);
 
 /// How many free bodies there are in a region of the model (-1: anywhere), and their kinetic
 /// energy, J. Cheap enough for every few steps.

@@ -180,16 +180,33 @@ HistoryTable read_history_of(const std::string& folder, const std::string& colum
 
 namespace {
 
-// The extreme value of the parabola through row i and its neighbours; the value of the row itself
-// at the ends of the table.
-double refined(const std::vector<double>& t, const std::vector<double>& y, size_t i) {
-  if (i == 0 || i + 1 == y.size()) return y[i];
+// The parabola through a row and its neighbours.
+struct Parabola {
+  double left, right;  // slopes to the neighbours
+  double curvature;
+  double slope;  // at the row
+};
+Parabola parabola_at(const std::vector<double>& t, const std::vector<double>& y, size_t i) {
   const double left = (y[i] - y[i - 1]) / (t[i] - t[i - 1]);
   const double right = (y[i + 1] - y[i]) / (t[i + 1] - t[i]);
   const double curvature = (right - left) / (t[i + 1] - t[i - 1]);
-  if (curvature == 0 || left * right > 0) return y[i];
-  const double slope = left + curvature * (t[i] - t[i - 1]);  // of the parabola at row i
-  return y[i] - slope * slope / (4 * curvature);
+  return {left, right, curvature, left + curvature * (t[i] - t[i - 1])};
+}
+
+// The extreme value of the parabola through row i and its neighbours, if the column bends there
+// much as it does a row before and after; otherwise, and at the ends of the table, the value of the
+// row itself. A parabola through a jump or a kink has extremes that never occurred.
+double refined(const std::vector<double>& t, const std::vector<double>& y, size_t i) {
+  constexpr double kAlike = 0.5;
+  if (i == 0 || i + 1 == y.size()) return y[i];
+  const Parabola at = parabola_at(t, y, i);
+  if (!(at.left * at.right < 0)) return y[i];
+  const auto bends_alike = [&](size_t row) {
+    if (row == 0 || row + 1 == y.size()) return true;
+    return parabola_at(t, y, row).curvature / at.curvature >= kAlike;
+  };
+  if (!bends_alike(i - 1) || !bends_alike(i + 1)) return y[i];
+  return y[i] - at.slope * at.slope / (4 * at.curvature);
 }
 
 // Over time, between rows by the trapezoid rule.
@@ -230,10 +247,10 @@ double reduce(const Reduction& reduction, const std::string& folder) {
   const auto [least, most] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(from),
                                                  y.begin() + static_cast<std::ptrdiff_t>(until));
   const auto minimum = [&, at = static_cast<size_t>(least - y.begin())] {
-    return refined(t, y, at);
+    return reduction.jumps ? y[at] : refined(t, y, at);
   };
   const auto maximum = [&, at = static_cast<size_t>(most - y.begin())] {
-    return refined(t, y, at);
+    return reduction.jumps ? y[at] : refined(t, y, at);
   };
   switch (reduction.take) {
     case Reduction::Take::first:

@@ -85,8 +85,9 @@ struct Outcome {
 };
 
 /// A column of the histories in a folder of results, reduced to one number. Minima and maxima are
-/// those of the parabola through a row and its neighbours, which is exact in free flight. Throws
-/// std::runtime_error if no row lies in the time window.
+/// those of the parabola through a row and its neighbours, which is exact in free flight, where the
+/// column is smooth; otherwise those of the rows. Throws std::runtime_error if no row lies in the
+/// time window.
 double reduce(const Reduction& reduction, const std::string& folder);
 
 /// Evaluates an expectation, as `reduce` does.

@@ -320,8 +320,9 @@ void Run::write_row() {
   std::vector<RegionSums> regions;
   if (!model.regions.empty()) {
     const std::vector<ContactRecord> contacts = s.contacts();
-    regions = region_sums(model, s.state(), s.node_mass(), contacts,
-                          body_statistics(model, s.state(), contacts, s.stresses()));
+    regions =
+        region_sums(model, s.state(), s.node_mass(), contacts,
+                    body_statistics(model, s.state(), contacts, s.stresses()), scene_.time.statics);
   }
   history_->add(s.state(), s.energies_to_record(), s.momenta(),
                 {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),

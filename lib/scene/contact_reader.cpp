@@ -123,12 +123,13 @@ void ContactReader::damping_model(const JsonValue& value) {
   ContactLaw& law = model_.contact;
   const JsonValue& name = object.required("model", "viscous, normal_viscous or mass");
   const size_t model = in_.choice(name, {"viscous", "normal_viscous", "mass"});
-  const bool known = model == 2 ? law.mass_damping > 0 : law.damping.normal > 0;
+  bool& known = model == 2 ? mass_damped_ : damped_;
   if (known) in_.fail(name, "is damping of a kind that is given already");
+  known = true;
   if (model == 2) {
     law.mass_damping = in_.positive(object.required("rate", "a positive number in 1/s"), "1/s");
   } else {
-    law.damping = dashpots(object, model == 0, true);
+    law.damping = dashpots(object, model == 0);
     if (model == 0) {
       const JsonValue* bulk = object.optional("bulk");
       law.damping.bulk = bulk ? in_.number(*bulk, "") : kBulkDamping;
@@ -138,14 +139,13 @@ void ContactReader::damping_model(const JsonValue& value) {
   object.finish();
 }
 
-// `viscous` takes one ratio for both directions, or [normal, tangential]. A rule for a pair may say
-// that there is none.
-ContactDamping ContactReader::dashpots(JsonObject& object, bool tangential, bool of_scene) {
+// `viscous` takes one ratio for both directions, or [normal, tangential]. 0 says that there is
+// none.
+ContactDamping ContactReader::dashpots(JsonObject& object, bool tangential) {
   const JsonValue& value =
       object.required("ratio", tangential ? "a ratio of critical damping, or [normal, tangential]"
                                           : "a ratio of critical damping");
   const auto ratio = [&](const JsonValue& v) {
-    if (of_scene) return in_.positive(v, "");
     const double number = in_.number(v, "");
     if (!(number >= 0)) in_.fail(v, "must be 0 or more");
     return number;
@@ -192,7 +192,7 @@ void ContactReader::read_pairs() {
       JsonObject dashpot(in_, *v);
       const size_t model = in_.choice(dashpot.required("model", "viscous or normal_viscous"),
                                       {"viscous", "normal_viscous"});
-      rule.damping = dashpots(dashpot, model == 0, false);
+      rule.damping = dashpots(dashpot, model == 0);
       dashpot.finish();
     }
     if (const JsonValue* v = object.optional("normal_stiffness")) {

@@ -28,7 +28,7 @@ class ContactReader {
   void friction_law(const JsonValue& value);
   void damping(const JsonValue& value);
   void damping_model(const JsonValue& value);
-  ContactDamping dashpots(JsonObject& object, bool tangential, bool of_scene);
+  ContactDamping dashpots(JsonObject& object, bool tangential);
   void surface(const JsonValue* surface, const JsonValue* distribution);
   [[nodiscard]] ContactRule::Party party(const JsonValue& value) const;
 
@@ -36,6 +36,7 @@ class ContactReader {
   Model& model_;
   UsedFeatures& features_;
   const JsonValue* pairs_ = nullptr;
+  bool damped_ = false, mass_damped_ = false;  // kinds of damping that have been given
 };
 
 }  // namespace apothem

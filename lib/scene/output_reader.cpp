@@ -198,6 +198,7 @@ void OutputReader::reduction(JsonObject& object, const JsonValue& quantity,
     in_.fail(quantity, "no history has a column " + suggest(result.quantity, names_of(columns)));
   }
   result.unit = found->unit;
+  result.jumps = found->jumps;
   if (const JsonValue* v = object.optional("take")) {
     result.take = static_cast<Reduction::Take>(in_.choice(*v, {kTakes.begin(), kTakes.end()}));
   }

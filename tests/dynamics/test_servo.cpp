@@ -66,6 +66,48 @@ TEST_CASE("the force of a servo wall follows its history", "[servo]") {
   CHECK(run.state().force(1)[1] == Approx(3000).epsilon(1e-5));
 }
 
+TEST_CASE("a servo wall meets bodies that no force moves", "[servo]") {
+  // A mesh that does not touch anything makes outlines of all polygons.
+  const std::string other =
+      GENERATE(R"("motion": "fixed")", R"("motion": { "velocity": [[0, 0, 0.01]] })",
+               R"("fix": ["x", "y", "angle"])",
+               R"("motion": { "servo": { "direction": [0, 1], "force": 2000, "speed": 0.5 } })");
+  const bool mesh = GENERATE(false, true);
+  const double slope = GENERATE(0., .3);
+  CAPTURE(other, mesh, slope);
+  const Folder folder;
+  const std::string far = R"(, { "name": "far", "material": "m",
+      "mesh": { "rectangle": { "size": [0.2, 0.1], "cells": [4, 2], "origin": [-50, 0] } },
+      "supports": [{ "where": { "group": "bottom" }, "fix": ["x", "y"] }] })";
+  const Scene scene = read_scene(
+      folder.write("scene.json",
+                   R"({ "materials": { "m": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+    "contact": { "normal_stiffness": 1e7, "penetration_warning": 10, "damping": { "model": "viscous", "ratio": 0.5 } },
+    "bodies": [
+      { "name": "floor", "material": "m", "polygon": [[-1, -0.5], [1, -0.5], [1, 0], [-1, 0]], )" +
+                       other + R"( },
+      { "name": "wall", "material": "m", "polygon": [[-0.2, 0.001], [0.2, 0.001], [0.2, 0.3], [-0.2, 0.3]],
+        "motion": { "servo": { "direction": [)" +
+                       std::to_string(slope) + R"(, -1], "force": 2000, "speed": 0.5 } } })" +
+                       (mesh ? far : "") + R"( ],
+    "time": { "end": )" +
+                       (mesh ? "0.15" : "0.6") + R"( }, "output": { "frames": 1 } })"));
+  Run run(scene, {.folder = ""});
+  double most = 0;
+  while (run.state().time < scene.time.end - 1e-9) {
+    run.step();
+    const Energies e = run.simulation().energies();
+    most = std::max(most, std::abs(e.external_work));
+    REQUIRE(std::abs(e.total_error) < 5e-3 * std::max(most, 2.));  // 2 J: of 2000 N over the gap
+    // It never sinks in deeper than a falling wall would press.
+    REQUIRE(run.state().pose(1)[1] - .1495 - run.state().pose(0)[1] - .25 > -.005);
+  }
+  if (mesh) return;
+  const Vec2 along = Vec2(slope, -1).normalized();
+  if (slope > 0 && other.find("servo") != std::string::npos) return;  // they slide along each other
+  CHECK(-Vec2(run.state().force(1).head<2>()).dot(along) == Approx(2000).epsilon(.02));
+}
+
 TEST_CASE("a servo wall goes on bit for bit", "[servo]") {
   const Folder folder;
   const Scene scene = read_scene(folder.write("scene.json", box("", R"("force": 1000)", .4)));

@@ -396,6 +396,42 @@ TEST_CASE("free rigid bodies are in equilibrium in static runs", "[static_fricti
   }
 }
 
+TEST_CASE("a body that a prescribed one moves is as balanced as the tolerance says",
+          "[static_friction]") {
+  for (const bool turns : {true, false}) {
+    Model tilted;
+    tilted.materials = stone_on_block(true).materials;
+    tilted.contact.normal_stiffness = 1e7;
+    tilted.contact.friction = {.5, 8e6};
+    tilted.gravity = {0, -kG};
+    RigidBody floor;
+    floor.name = "floor";
+    floor.motion = Motion::prescribed;
+    set_shape(floor, samples::block(-1, -.3, 1, 0), tilted);
+    if (turns) {
+      floor.history.spin = {{0, 0}, {.5, .6}, {1, 0}};
+      floor.pivot = {-1, .15};
+    } else {
+      floor.history.velocity = {{0, {2, 3}}};
+    }
+    tilted.bodies = {floor};
+    DeformableBody block;
+    block.name = "block";
+    block.mesh = rectangle_mesh({.3, .2}, {6, 4}, {-.15, 0}, ElementShape::quadrilateral);
+    tilted.deformables = {block};
+    number_nodes(tilted);
+    Simulation simulation(tilted, load_steps(20, 1, 1e-6), 20, 1);
+    const double weight = .3 * .2 * tilted.materials[0].density * kG;
+    for (int i = 1; i <= 20; ++i) {
+      const LoadStep step = simulation.balance(i / 20.);
+      const BodyForce on = simulation.contact_forces()[1];
+      CAPTURE(turns, i, on.fx, on.fy, step.imbalance);
+      // The sum of its forces is the weight and the contact force.
+      CHECK(std::hypot(on.fx, on.fy - weight) < 2.5e-6 * weight);
+    }
+  }
+}
+
 TEST_CASE("bodies with a mesh start settled", "[static_friction]") {
   const Model model = stone_on_block(true);
   TimeSettings time;

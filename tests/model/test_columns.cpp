@@ -118,6 +118,33 @@ TEST_CASE("every quantity of a body with a mesh is that of its nodes together", 
   CHECK(other.velocity == Vec2::Zero());
 }
 
+TEST_CASE("the angle of a mesh goes on beyond half a turn", "[columns]") {
+  const Model model = model_of_four();
+  const std::vector<double> mass = masses(model);
+  const DeformableBody& body = model.deformables[1];
+  for (const double spin : {7., -11.}) {
+    State state(Layout{2, model.node_count()});
+    const auto turn = [&](double time) {
+      state.time = time;
+      for (int i = 0; i < static_cast<int>(body.mesh.nodes.size()); ++i) {
+        const NodeIndex node = body.first_node + i;
+        const Vec2 place = turned(body.mesh.nodes[i], spin * time);
+        state.node(node) = place - body.mesh.nodes[i];
+        state.v[state.layout.node(node)] = -spin * place.y();
+        state.v[state.layout.node(node) + 1] = spin * place.x();
+      }
+    };
+    turn(0);
+    note_turns(model, mass, state);
+    for (int i = 1; i <= 10; ++i) {
+      turn(.9 * i);  // a whole turn and more between two looks
+      CHECK(motion_of(model, state, 3, {}, mass).angle == Approx(spin * .9 * i).epsilon(1e-12));
+      note_turns(model, mass, state);
+    }
+    CHECK(motion_of(model, state, 2, {}, mass).angle == 0);
+  }
+}
+
 TEST_CASE("stretching a mesh turns nothing, and a lone node moves the mean by its mass",
           "[columns]") {
   const Model model = model_of_four();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apothem/geometry/exact/overlap.hpp"
+#include "apothem/mesh/rectangle_mesh.hpp"
 #include "apothem/model/statistics.hpp"
 #include "shapes.hpp"
 #include "support.hpp"
@@ -80,6 +81,62 @@ TEST_CASE("two patches between two bodies are one of the coordination number", "
   const auto bodies = body_statistics(model, start_of(model), contacts, {});
   CHECK(bodies[0].coordination == 1);
   CHECK(bodies[1].coordination == 2);
+}
+
+TEST_CASE("bodies that are held do not count, meshed or rigid", "[statistics]") {
+  Model model = empty();
+  const std::vector<std::array<bool, 3>> fixes{
+      {false, false, false}, {true, true, true}, {true, true, false}, {false, true, true}};
+  for (const auto& held : fixes) {
+    model.bodies.push_back(body_of(samples::block(0, 0, 1, 1), model));
+    model.bodies.back().held = held;
+  }
+  const auto moved = [] {
+    MotionHistory motion;
+    motion.velocity = {{0, {1, 0}}};
+    return motion;
+  }();
+  const auto hold = [](bool x, bool y, const MotionHistory& motion = {}) {
+    Support support;
+    support.nodes = {0, 1}, support.held = {x, y}, support.motion = motion;
+    return support;
+  };
+  const std::vector<std::vector<Support>> supports{{},
+                                                   {hold(true, true)},
+                                                   {hold(false, true), hold(true, false)},
+                                                   {hold(false, true)},
+                                                   {hold(true, false, moved)}};
+  for (const auto& of : supports) {
+    DeformableBody body;
+    body.mesh = rectangle_mesh({1, 1}, {1, 1}, {0, 0}, ElementShape::quadrilateral);
+    body.first_node = model.node_count();
+    body.supports = of;
+    model.deformables.push_back(body);
+  }
+  const std::vector<bool> free{true, false, false, true, true, false, false, true, false};
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(free.size()); ++b) {
+    INFO(b);
+    CHECK(is_free(model, b) == free[static_cast<size_t>(b)]);
+  }
+  model.regions = {region_of({{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}})};
+  State state({4, model.node_count()});
+  for (int i = 0; i < 4; ++i) state.pose(i) << model.bodies[static_cast<size_t>(i)].position, 0;
+  const std::vector<double> mass(static_cast<size_t>(model.node_count()), 250);
+  // 1 Pa in each mesh of 0.5 m^3.
+  const std::vector<CauchyStress> stress(5, {.xx = 1, .yy = 0, .xy = 0, .zz = 0});
+  const auto bodies = body_statistics(model, state, {}, stress);
+  const RegionSums sums = region_sums(model, state, mass, {}, bodies)[0];
+  CHECK(sums.count == 4);
+  CHECK(sums.mass == Approx(4 * 1000));
+  CHECK(sums.stress.xx == Approx(2 * .5));
+  CHECK(sums.solid_area == Approx(9));
+  CHECK(crowd_in(model, state, mass, 0).members == std::vector<BodyIndex>{0, 3, 4, 7});
+  // In equilibria supports bear what is looked at; a body of groups has the volume of its elements.
+  model.deformables[1].element_material = {1};
+  model.materials.push_back({"light", 400});
+  const RegionSums still = region_sums(model, state, mass, {}, bodies, true)[0];
+  CHECK(still.count == 4);
+  CHECK(still.stress.xx == Approx(5 * .5));
 }
 
 TEST_CASE("the solid fraction of a region is the exact overlap", "[statistics]") {

@@ -320,6 +320,49 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
   }
 }
 
+TEST_CASE("extremes are refined where a column is smooth, and nowhere else", "[output]") {
+  const Folder folder;
+  const auto extremes = [&](const std::vector<double>& rows, bool jumps = false) {
+    std::string text = "time [s],r.q [1]\n";
+    for (size_t i = 0; i < rows.size(); ++i)
+      text += fmt::format("{},{}\n", .1 * double(i), rows[i]);
+    folder.write("history.csv", text);
+    const auto of = [&](Reduction::Take take) {
+      Reduction reduction;
+      reduction.quantity = "r.q", reduction.take = take, reduction.jumps = jumps;
+      return reduce(reduction, folder.path());
+    };
+    using Take = Reduction::Take;
+    return std::array{of(Take::minimum), of(Take::maximum), of(Take::largest)};
+  };
+  using Three = std::array<double, 3>;
+  // A plateau and a jump, at either side; a jump from a slope, as of a velocity that bounces; a
+  // kink.
+  CHECK(extremes({3, 3, 3, 0, 0, 0}) == Three{0, 3, 3});
+  CHECK(extremes({3, 2, 2, 3, 0, 1}) == Three{0, 3, 3});
+  CHECK(extremes({-2.8, -2.9, -3, 3, 2.9, 2.8}) == Three{-3, 3, 3});
+  CHECK(extremes({0, 1, 2, 3, 2.5, 2, 1.5}) == Three{0, 3, 3});
+  CHECK(extremes({0, 0, 100, 60, 0, 0}) == Three{0, 100, 100});
+  // What is smooth: the top of a parabola is exact, also with the top between the first rows.
+  const auto parabola = [](double top) {
+    std::vector<double> rows;
+    for (int i = 0; i < 8; ++i) rows.push_back(5 - std::pow(i - top, 2));
+    return rows;
+  };
+  CHECK(extremes(parabola(3.3))[1] == Approx(5).epsilon(1e-14));
+  CHECK(extremes(parabola(1.3))[1] == Approx(5).epsilon(1e-14));
+  CHECK(extremes(parabola(3.3), true)[1] == 5 - .3 * .3);
+}
+
+TEST_CASE("extremes of what regions count are those of rows", "[output]") {
+  Model model;
+  model.regions = {{"r", {}, 1}};
+  for (const HistoryColumn& column : history_columns(model, {})) {
+    INFO(column.name);
+    CHECK(column.jumps == (column.name != "r.solid_fraction"));
+  }
+}
+
 TEST_CASE("expectations are judged by what was recorded", "[output]") {
   const Folder folder;
   const Model model = two_bodies();
@@ -334,13 +377,18 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   writer.flush();
   const double top = 3 + model.origin.y();
   using Take = Expectation::Take;
-  CHECK(evaluate({"one.y", Take::maximum, {}, {}, "m", top, 1e-12}, folder.path()).met);
-  CHECK_FALSE(evaluate({"one.y", Take::maximum, {}, {}, "m", top + 1e-3, 1e-4}, folder.path()).met);
-  CHECK(evaluate({"one.y", Take::first, {}, {}, "m", top - 1.03 * 1.03, 1e-12}, folder.path()).met);
-  CHECK(evaluate({"one.y", Take::last, {}, {}, "m", top - .97 * .97, 1e-12}, folder.path()).met);
+  CHECK(evaluate({"one.y", Take::maximum, {}, {}, "m", false, top, 1e-12}, folder.path()).met);
+  CHECK_FALSE(
+      evaluate({"one.y", Take::maximum, {}, {}, "m", false, top + 1e-3, 1e-4}, folder.path()).met);
   CHECK(
-      evaluate({"one.y", Take::maximum, {}, 0.55, "m", top - .53 * .53, 1e-12}, folder.path()).met);
-  CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, "m", 0, 1}, folder.path()));
+      evaluate({"one.y", Take::first, {}, {}, "m", false, top - 1.03 * 1.03, 1e-12}, folder.path())
+          .met);
+  CHECK(evaluate({"one.y", Take::last, {}, {}, "m", false, top - .97 * .97, 1e-12}, folder.path())
+            .met);
+  CHECK(evaluate({"one.y", Take::maximum, {}, 0.55, "m", false, top - .53 * .53, 1e-12},
+                 folder.path())
+            .met);
+  CHECK_THROWS(evaluate({"one.y", Take::maximum, 5, 6, "m", false, 0, 1}, folder.path()));
   const auto reduced = [&](Take take) { return reduce({"one.y", take, {}, {}}, folder.path()); };
   CHECK(reduced(Take::increase) == Approx(1.03 * 1.03 - .97 * .97));
   CHECK(reduced(Take::decrease) == Approx(.97 * .97 - 1.03 * 1.03));

@@ -82,6 +82,37 @@ TEST_CASE("what random runs write and what they say of their energy agree", "[ru
   if (count >= 40) CHECK(with_rows_near_the_largest > 0);
 }
 
+TEST_CASE("extremes are those of every step, beside a mesh as well", "[run][energy]") {
+  const Folder folder;
+  for (const char* floor :
+       {R"("mesh": { "rectangle": { "size": [1, 0.3], "cells": [8, 3], "origin": [-0.5, -0.3] } },
+           "supports": [{ "where": { "group": "bottom" }, "fix": ["x", "y"] }])",
+        R"("motion": "fixed", "polygon": [[-0.5, -0.3], [0.5, -0.3], [0.5, 0], [-0.5, 0]])"}) {
+    nlohmann::json first;
+    for (const char* interval : {"1e-5", "3e-4", "7e-3", "1"}) {
+      CAPTURE(floor, interval);
+      const Written written = run_and_read(folder, std::string(R"({ "gravity": [0, -9.81],
+        "materials": { "m": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+        "contact": { "normal_stiffness": 1e8, "reference": 0.02, "penetration_warning": 10 },
+        "bodies": [ { "name": "floor", "material": "m", )") +
+                                                       floor + R"( },
+          { "name": "a", "material": "m", "velocity": [0.2, -1], "spin": 0.7,
+            "polygon": [[-0.3, 0.005], [-0.1, 0.02], [-0.12, 0.2], [-0.3, 0.18]] },
+          { "name": "b", "material": "m", "velocity": [-0.3, -1],
+            "polygon": [[0.1, 0.003], [0.3, 0.05], [0.2, 0.2]] } ],
+        "time": { "end": 0.02, "step": 1e-5 },
+        "output": { "frames": 1, "history": { "interval": )" +
+                                                       interval + " } } }");
+      REQUIRE(written.status == Run::Status::done);
+      if (first.is_null()) first = written.summary;
+      CHECK(first.contains("largest_contact_force"));
+      for (const char* extreme : {"largest_contact_force", "largest_penetration"}) {
+        CHECK(written.summary[extreme] == first[extreme]);
+      }
+    }
+  }
+}
+
 namespace {
 
 // A push that does work and does not say so.

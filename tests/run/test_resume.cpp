@@ -234,6 +234,28 @@ TEST_CASE("damping, loads and driven supports continue bit for bit", "[resume]")
   check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv"});
 }
 
+TEST_CASE("the angle of a mesh goes on where a run goes on", "[resume]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, R"({
+    "materials": { "m": { "density": 1000, "young": 1e7, "poisson": 0.3 } },
+    "contact": { "normal_stiffness": 1e6 },
+    "bodies": [
+      { "name": "rigid", "material": "m", "spin": -12, "polygon": [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]] },
+      { "name": "mesh", "material": "m", "spin": -12,
+        "mesh": { "rectangle": { "size": [1, 1], "cells": [2, 2], "origin": [4.5, -0.5] } } } ],
+    "time": { "end": 1 }, "output": { "frames": 1, "history": { "interval": 0.4 } } })");
+  Run part(scene, {.folder = folder / "parts"});
+  part.run(.61);
+  Run rest(scene, {.folder = folder / "parts", .resume = true});
+  rest.run();
+  const HistoryTable table = read_history(folder / "parts/history.csv");
+  const std::vector<double>& rigid = *table.column("rigid.angle");
+  const std::vector<double>& mesh = *table.column("mesh.angle");
+  REQUIRE(rigid.size() == 4);
+  for (size_t i = 0; i < rigid.size(); ++i) CHECK(std::abs(mesh[i] - rigid[i]) < .02);
+  CHECK(rigid.back() == Approx(-12));
+}
+
 TEST_CASE("a static run continues between its load steps, bit for bit", "[resume]") {
   const Folder folder;
   const Scene scene = scene_of(folder, pressed_blocks(5));

@@ -549,6 +549,30 @@ TEST_CASE("friction takes its tangential stiffness from the normal one", "[scene
   CHECK(between(given, pair(", \"tangential_stiffness\": 7e9")).tangential_stiffness == 7e9);
 }
 
+TEST_CASE("a ratio of damping may be 0", "[scene]") {
+  const Folder folder;
+  const auto damping = [&](const std::string& value) {
+    const std::string text = R"({ "materials": { "rock": { "density": 2000 } },
+      "contact": { "normal_stiffness": 1e9, "damping": )" +
+                             value + R"( },
+      "bodies": [ { "name": "block", "material": "rock", "polygon": [[0, 0], [1, 0], [0, 1]] } ],
+      "time": { "end": 1 } })";
+    return read_scene(folder.write("scene.json", text)).model.contact.damping;
+  };
+  const auto are = [](const ContactDamping& d, double normal, double tangential) {
+    return d.normal == normal && d.tangential == tangential;
+  };
+  CHECK(are(damping(R"({ "model": "viscous", "ratio": 0 })"), 0, 0));
+  CHECK(are(damping(R"({ "model": "viscous", "ratio": [0.1, 0] })"), .1, 0));
+  CHECK(are(damping(R"({ "model": "viscous", "ratio": [0, 0.1] })"), 0, .1));
+  CHECK(are(damping(R"({ "model": "normal_viscous", "ratio": 0 })"), 0, 0));
+  CHECK_THROWS_WITH(damping(R"({ "model": "viscous", "ratio": -0.1 })"),
+                    Catch::Contains("/contact/damping/ratio"));
+  CHECK_THROWS_WITH(damping(R"([{ "model": "viscous", "ratio": 0 },
+                                { "model": "normal_viscous", "ratio": 0.1 }])"),
+                    Catch::Contains("given already"));
+}
+
 TEST_CASE("a static scene refuses what does not go with it", "[scene]") {
   const Folder folder;
   const std::string good =
