@@ -38,9 +38,9 @@ void say_bodies(const Model& model) {
 
 void say_imports(const Scene& scene) {
   for (const ImportReport& import : scene.imports) {
-    say("import",
-        fmt::format("{}: {} bodies from {}; its unit is {:.10g} m ({})", import.file, import.bodies,
-                    import.read_in_words(), import.scale, import.unit_source));
+    say("import", fmt::format("{}: {} {} from {}; its unit is {:.10g} m ({})", import.file,
+                              import.bodies, import.bodies == 1 ? "body" : "bodies",
+                              import.read_in_words(), import.scale, import.unit_source));
     const std::string left_out = import.left_out_in_words();
     if (!left_out.empty()) say("", "left out: " + left_out);
   }

@@ -74,7 +74,10 @@ void add_parts(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnS
 
 void add_geometry(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnShape>& shapes) {
   const Geometry straight(gdal().OGR_G_GetLinearGeometry(geometry, 0, nullptr));
+  const size_t first = shapes.size();
   add_parts(straight.get(), like, shapes);
+  if (like.entity.empty()) return;  // each of them is counted
+  for (size_t i = first + 1; i < shapes.size(); ++i) shapes[i].further = true;
 }
 
 Box extent_of(const std::vector<DrawnShape>& shapes) {

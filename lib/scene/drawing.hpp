@@ -23,12 +23,13 @@ struct DrawnShape {
   /// One point of a label, the vertices of a line, or the outer ring of an area and its holes. As
   /// in the file: the first vertex may be repeated at the end.
   std::vector<std::vector<Vec2>> rings;
-  std::string layer;    ///< empty if it has none
-  std::string name;     ///< by the attribute "name" or "id", or the text of a label; may be empty
-  std::string place;    ///< where it stands in the file, for messages
-  std::string entity;   ///< what the format calls it
-  std::string remark;   ///< why it is left out, or what is wrong with it, and a remedy
-  bool hidden = false;  ///< the drawing does not show it: its layer is off or frozen, or itself
+  std::string layer;     ///< empty if it has none
+  std::string name;      ///< by the attribute "name" or "id", or the text of a label; may be empty
+  std::string place;     ///< where it stands in the file, for messages
+  std::string entity;    ///< what the format calls it
+  std::string remark;    ///< why it is left out, or what is wrong with it, and a remedy
+  bool further = false;  ///< it belongs to the entity of the shape before it
+  bool hidden = false;   ///< the drawing does not show it: its layer is off or frozen, or itself
 };
 
 struct Drawing {

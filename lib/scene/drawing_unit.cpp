@@ -84,8 +84,8 @@ DrawingUnit degrees(const std::string& source, const std::string& file, const Bo
   const std::string name = path.filename().string(), stem = path.stem().string();
   return {1, "",
           fmt::format("is in degrees of longitude and latitude ({}); project it to metres (ogr2ogr "
-                      "-t_srs EPSG:{} {}-metres.geojson {}), or write \"scale\": 1 if its numbers "
-                      "are metres",
+                      "-t_srs EPSG:{} {}-metres.geojson {}), or import it with \"scale\": 1 if its "
+                      "numbers are metres",
                       source, utm_zone(box), stem, name)};
 }
 
@@ -123,6 +123,19 @@ DrawingUnit unit_of_geojson(const std::string& crs, const std::string& file, con
       std::hypot(std::max({box.x0, -box.x1, 0.0}), std::max({box.y0, -box.y1, 0.0}));
   if (away <= kFarAway * std::hypot(box.x1 - box.x0, box.y1 - box.y0)) return {};
   return degrees("as GeoJSON without a \"crs\" is, by RFC 7946", file, box);
+}
+
+DrawingUnit unit_of_polygon(const std::string& text, const std::string& file, const Box& box) {
+  if (text.find("\"coordinates\"") != std::string::npos) {
+    return unit_of_geojson(crs_of_geojson(text), file, box);
+  }
+  constexpr std::string_view kSystem = "SRID=";
+  const size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == std::string::npos || !std::string_view(text).substr(start).starts_with(kSystem))
+    return {};
+  const size_t number = start + kSystem.size();
+  const std::string system = text.substr(number, text.find_first_of("; \r\n", number) - number);
+  return system == "0" ? DrawingUnit() : unit_of_system("EPSG:" + system, file, box);
 }
 
 std::string crs_of_geojson(const std::string& text) {

@@ -25,6 +25,9 @@ DrawingUnit unit_of_system(const std::string& system, const std::string& file, c
 /// a map if all coordinates can be degrees and the drawing is far from 0, 0 for its extent.
 DrawingUnit unit_of_geojson(const std::string& crs, const std::string& file, const Box& box);
 
+/// Of a file with one polygon: GeoJSON, WKT, or a plain list of vertices, which states no unit.
+DrawingUnit unit_of_polygon(const std::string& text, const std::string& file, const Box& box);
+
 /// The name of the "crs" of a text of GeoJSON; empty if it has none, or null.
 std::string crs_of_geojson(const std::string& text);
 

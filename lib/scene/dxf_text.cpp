@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -493,11 +494,12 @@ class Preparation {
   }
 
   [[nodiscard]] std::string fault_of_spline(Range own) const {
-    size_t controls = 0, fits = 0, knots = 0;
+    size_t controls = 0, fits = 0;
+    std::vector<double> knots;
     for (size_t k = own.begin; k < own.end; ++k) {
       controls += tags_[k].code == 10;
       fits += tags_[k].code == 11;
-      knots += tags_[k].code == 40;
+      if (tags_[k].code == 40) knots.push_back(parse_decimal(value(k)));
     }
     const int degree = find_number(own, 71, 3);
     if (controls == 0 && fits > 0) {
@@ -505,11 +507,21 @@ class Preparation {
              "with control vertices (SPLINEDIT, or EXPLODE to a polyline), or leave its layer out";
     }
     if (degree < 1 || controls <= static_cast<size_t>(degree) ||
-        knots != controls + static_cast<size_t>(degree) + 1) {
+        knots.size() != controls + static_cast<size_t>(degree) + 1) {
       return fmt::format(
           "is a spline of degree {} with {} control points and {} knots, which do "
           "not fit together; draw it anew, or leave its layer out",
-          degree, controls, knots);
+          degree, controls, knots.size());
+    }
+    // GDAL draws the curve over all knots, which is right where it begins and ends at its control
+    // points: the knots at each end are one.
+    const double near = 1e-9 * std::abs(knots.back() - knots.front());
+    const auto last = knots.size() - 1, repeated = static_cast<size_t>(degree);
+    if (std::abs(knots[repeated] - knots[0]) > near ||
+        std::abs(knots[last] - knots[last - repeated]) > near) {
+      return "is a periodic spline, or another one that does not end at its control points, which "
+             "is "
+             "not supported yet; turn it into a polyline, or leave its layer out";
     }
     return "";
   }

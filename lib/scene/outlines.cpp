@@ -58,7 +58,7 @@ class OutlineMaker {
     for (const DrawnShape& shape : shapes_) {
       if (shape.kind == DrawnShape::Kind::area) add(shape);
       if (shape.kind == DrawnShape::Kind::line && !rules_.polygonize) add_line(shape);
-      ++report_.read[shape.entity];
+      report_.read[shape.entity] += shape.further ? 0 : 1;
     }
     if (rules_.polygonize) add_faces();
     if (outlines_.empty()) {
@@ -92,7 +92,7 @@ class OutlineMaker {
       reason = "no outline";
     }
     if (reason.empty()) return false;
-    ++report_.left_out[{shape.entity, reason}];
+    report_.left_out[{shape.entity, reason}] += shape.further ? 0 : 1;
     return true;
   }
 
