@@ -21,19 +21,19 @@ struct Unit {
   const char* name;
   double metres;
 };
-constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937;
+constexpr double kSurveyFoot = 1200.0 / 3937;
 // By their numbers in $INSUNITS.
 constexpr std::array<Unit, 25> kUnits{{{"", 1},
-                                       {"inches", kFoot / 12},
-                                       {"feet", kFoot},
-                                       {"miles", 5280 * kFoot},
+                                       {"inches", 0.0254},
+                                       {"feet", 0.3048},
+                                       {"miles", 1609.344},
                                        {"millimetres", 1e-3},
                                        {"centimetres", 1e-2},
                                        {"metres", 1},
                                        {"kilometres", 1e3},
-                                       {"microinches", kFoot / 12e6},
-                                       {"mils", kFoot / 12e3},
-                                       {"yards", 3 * kFoot},
+                                       {"microinches", 25.4e-9},
+                                       {"mils", 25.4e-6},
+                                       {"yards", 0.9144},
                                        {"angstroms", 1e-10},
                                        {"nanometres", 1e-9},
                                        {"micrometres", 1e-6},

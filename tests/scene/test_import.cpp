@@ -395,17 +395,24 @@ TEST_CASE("what a DXF file draws and cannot be read is refused, unless its layer
   const auto contains = [](const char* text) { return Catch::Contains(text); };
   CHECK_THAT(
       error_with(spline),
-      contains("a.dxf: the SPLINE at line 33 (handle 4F) on layer \"n\": is a spline that is "
+      contains("a.dxf: the SPLINE at line 31 (handle 4F) on layer \"n\": is a spline that is "
                "given by fit points alone, which is not supported yet; ") &&
           !contains(".cpp"));
+  const std::string controls = "73 4 72 8 10 5 20 0 10 6 20 1 10 7 20 0 10 5 20 0 ";
+  const auto with_knots = [&](const char* knots) {
+    return "0 SPLINE 8 n 71 3 " + controls + knots;
+  };
+  CHECK(error_with(with_knots("40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 ")) == "");
+  CHECK_THAT(error_with(with_knots("40 0 40 1 40 2 40 3 40 4 40 5 40 6 40 7 ")),
+             contains("the SPLINE at line 31 on layer \"n\": is a periodic spline"));
   CHECK_THAT(error_with("0 SPLINE 8 n 71 3 73 2 72 0 10 0 20 0 10 1 20 1 "),
              contains("degree 3 with 2 control points and 0 knots"));
   CHECK_THAT(error_with("0 REGION 8 n 70 1 "),
-             contains("the REGION at line 33 on layer \"n\": is not "
+             contains("the REGION at line 31 on layer \"n\": is not "
                       "supported yet; turn it into a closed polyline"));
-  CHECK_THAT(error_with("0 AEC_WALL 8 n "), contains("the AEC_WALL at line 33"));
+  CHECK_THAT(error_with("0 AEC_WALL 8 n "), contains("the AEC_WALL at line 31"));
   CHECK_THAT(error_with("0 CIRCLE 8 n 10 0,5 20 0 40 1 "),
-             contains("the CIRCLE at line 33 on layer \"n\": line 38: \"0,5\" is not a decimal"));
+             contains("the CIRCLE at line 31 on layer \"n\": line 36: \"0,5\" is not a decimal"));
   CHECK_THAT(error_with("0 INSERT 8 n 2 gone 10 0 20 0 "), contains("inserts the block \"gone\""));
   // In a block it has the layer of the insert, if its own is 0.
   const std::string in_block = "0 SPLINE 8 0 71 3 74 3 11 5 21 0 11 6 21 1 11 7 21 0 ";
@@ -434,7 +441,7 @@ TEST_CASE("a hatch over an outline is its hatching, and annotations are left out
   }
   // A hatch of a part of it is another body in the same place.
   folder.write("a.dxf", dxf(outline + hatch("10 0 20 0 10 1 20 0 10 1 20 1 10 0 20 1 ")));
-  CHECK(error_of(folder, keys).find("the HATCH at line 39 on layer \"h\": covers 100 % of") !=
+  CHECK(error_of(folder, keys).find("the HATCH at line 35 on layer \"h\": covers 100 % of") !=
         std::string::npos);
 
   folder.write("a.dxf",
@@ -445,7 +452,7 @@ TEST_CASE("a hatch over an outline is its hatching, and annotations are left out
         "1 DIMENSION (no outline), 1 LWPOLYLINE (in the paper space), 1 TEXT (no outline), 1 XLINE "
         "(no outline)");
   CHECK(error_of(folder, R"({ "file": "a.dxf", "material": "rock", "lines": "polygonize" })")
-            .find("the XLINE at line 65 on layer \"x\": is a line without an end") !=
+            .find("the XLINE at line 59 on layer \"x\": is a line without an end") !=
         std::string::npos);
 }
 
@@ -625,15 +632,14 @@ TEST_CASE("what cannot be imported is refused with its place and a remedy", "[im
       {"a.dxf",
        hatch_and_frame.c_str(),
        "",
-       {"a.dxf: the POLYLINE at line 47 on layer \"t\": covers 100 % of the POLYLINE at line 11 on "
+       {"a.dxf: the POLYLINE at line 45 on layer \"t\": covers 100 % of the POLYLINE at line 11 on "
         "layer \"s\"",
         "delete one of them"}},
       {"a.dxf",
        two_labels.c_str(),
        R"(, "lines": "polygonize")",
-       {"the TEXT at line 59 on layer \"v\": is a second label of one face, besides the TEXT at "
-        "line "
-        "47 on layer \"u\""}},
+       {"the TEXT at line 57 on layer \"v\": is a second label of one face, besides the TEXT at "
+        "line 45 on layer \"u\""}},
       {"a.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n", "", {"a.dxf: is not valid DXF"}},
       {"a.dxf", "PK\003", "", {"a.dxf: is not valid DXF"}},
       {"a.wkt",
