@@ -36,6 +36,16 @@ void say_bodies(const Model& model) {
   }
 }
 
+void say_imports(const Scene& scene) {
+  for (const ImportReport& import : scene.imports) {
+    say("import", fmt::format("{}: {} {} from {}; its unit is {:.10g} m ({})", import.file,
+                              import.bodies, import.bodies == 1 ? "body" : "bodies",
+                              import.read_in_words(), import.scale, import.unit_source));
+    const std::string left_out = import.left_out_in_words();
+    if (!left_out.empty()) say("", "left out: " + left_out);
+  }
+}
+
 void say_step(const Scene& scene, const Simulation& simulation) {
   const StepChoice& choice = simulation.step_choice();
   say("run", fmt::format("{:g} s in {:.0f} steps", scene.time.end,
@@ -115,6 +125,7 @@ int check_command(const CheckOptions& options) {
   fmt::print("{}: a valid scene\n", scene.file);
   say("name", model.name);
   say_bodies(model);
+  say_imports(scene);
   if (model.gravity != Vec2::Zero()) {
     std::string factors;
     for (const LoadHistory::Point& p : model.gravity_history.points) {

@@ -55,6 +55,23 @@ Json bodies(const Model& model) {
   return list;
 }
 
+Json imports(const Scene& scene) {
+  Json list = Json::array();
+  for (const ImportReport& import : scene.imports) {
+    Json left_out = Json::array();
+    for (const auto& [what, count] : import.left_out) {
+      left_out.push_back({{"entity", what.first}, {"reason", what.second}, {"count", count}});
+    }
+    list.push_back({{"file", import.file},
+                    {"bodies", import.bodies},
+                    {"scale", import.scale},
+                    {"unit", import.unit_source},
+                    {"read", import.read},
+                    {"left_out", left_out}});
+  }
+  return list;
+}
+
 // JSON knows no infinity: where nothing limits the step, the limit is null.
 Json time_step(const Scene& scene, const Simulation& simulation) {
   const StepChoice& choice = simulation.step_choice();
@@ -143,15 +160,11 @@ std::string plan_json(const Scene& scene, const Simulation& simulation,
   for (const Setting& s : scene.settings) settings[s.path] = Json::parse(s.value);
   int elements = 0;
   for (const DeformableBody& body : model.deformables) elements += body.mesh.element_count();
-  Json json{{"name", model.name},
-            {"scene", scene.file},
-            {"set", settings},
-            {"mode", scene.time.statics ? "static" : "dynamic"},
-            {"end", scene.time.end},
-            {"gravity", {model.gravity.x(), model.gravity.y()}},
-            {"bodies", bodies(model)},
-            {"elements", elements},
-            {"nodes", model.node_count()}};
+  Json json{{"name", model.name},      {"scene", scene.file},
+            {"set", settings},         {"mode", scene.time.statics ? "static" : "dynamic"},
+            {"end", scene.time.end},   {"gravity", {model.gravity.x(), model.gravity.y()}},
+            {"bodies", bodies(model)}, {"imports", imports(scene)},
+            {"elements", elements},    {"nodes", model.node_count()}};
   for (const LoadHistory::Point& p : model.gravity_history.points) {
     json["gravity_history"].push_back({p.time, p.factor});
   }

@@ -90,6 +90,7 @@ set(APOTHEM_PUBLIC_HEADERS
   run/start.hpp
   run/stop_watch.hpp
   scene/error.hpp
+  scene/import_report.hpp
   scene/json.hpp
   scene/json_value.hpp
   scene/scene.hpp

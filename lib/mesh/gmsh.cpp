@@ -13,6 +13,11 @@
 namespace apothem {
 namespace {
 
+constexpr const char* kSurfaceGroup =
+    "where a mesh has physical groups, gmsh saves only what is in one: put the surface into a "
+    "group "
+    "(Physical Surface(\"body\") = {...};), or save all elements (-save_all, or Mesh.SaveAll = 1)";
+
 // Makes the mesh of a file, and says what is wrong with it in gmsh's tags.
 class GmshMesh {
  public:
@@ -32,6 +37,14 @@ class GmshMesh {
 
   void number_nodes() {
     const size_t count = file_.nodes.size();
+    const bool has_elements = std::any_of(file_.parts.begin(), file_.parts.end(),
+                                          [](const Part& part) { return part.dimension == 2; });
+    if (!has_elements) {
+      throw BadMeshText(std::string("has no triangles or quadrilaterals; mesh the surface (gmsh "
+                                    "-2); ") +
+                            kSurfaceGroup,
+                        0);
+    }
     // Per dimension of parts and per node: whether such a part has the node.
     std::array<std::vector<bool>, 3> used;
     used.fill(std::vector<bool>(count, false));
@@ -47,7 +60,9 @@ class GmshMesh {
         file_node_.push_back(static_cast<int>(i));
       } else if (!(node.at_point || used[0][i]) || used[1][i]) {
         throw BadMeshText(
-            "the " + gmsh_name("node", node.tag) + " belongs to no triangle or quadrilateral",
+            "the " + gmsh_name("node", node.tag) +
+                " belongs to no triangle or quadrilateral; delete it, or, if it is of a surface: " +
+                kSurfaceGroup,
             node.line);
       }
     }

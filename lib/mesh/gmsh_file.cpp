@@ -116,14 +116,22 @@ class GmshReader {
       if (section.front() != '$') rows_.fail("\"" + section + "\" stands outside of all sections");
       if (section == "$MeshFormat") {
         format();
+      } else if (section == "$NOD" || section == "$ELM") {
+        rows_.fail(
+            "is of version 1, which is not read; save it as 4.1 or 2.2 (gmsh FILE -save -format "
+            "msh41)");
       } else if (version_ == 0 && section != "$Comments") {
         rows_.fail("is no gmsh file: $MeshFormat must come before " + section);
       } else if (section == "$PhysicalNames") {
         physical_names();
       } else if (section == "$Entities") {
         entities();
+      } else if (section == "$PartitionedEntities") {
+        partitioned_entities();
       } else if (section == "$Nodes") {
-        version_ == 4 ? node_blocks() : node_list();
+        version_ == 4 ? node_blocks() : node_list(false);
+      } else if (section == "$ParametricNodes") {
+        node_list(true);
       } else if (section == "$Elements") {
         version_ == 4 ? element_blocks() : element_list();
       } else {
@@ -185,23 +193,58 @@ class GmshReader {
       for (Tag n = counts[dimension]; n > 0; --n) {
         rows_.require_next("an entity");
         const Tag tag = rows_.integer("the tag of an entity");
-        for (int k = dimension == 0 ? 3 : 6; k > 0; --k) rows_.number<double>("a coordinate");
-        std::vector<Tag>& physical = physical_of_[{dimension, tag}];
-        for (Tag k = rows_.count("the number of physical groups"); k > 0; --k) {
-          physical.push_back(std::abs(rows_.integer("the tag of a physical group")));
-        }
+        groups_of_entity(dimension, tag);
       }
     }
   }
 
-  void node_list() {
+  // Behind its box, which is a place for a point.
+  void groups_of_entity(int dimension, Tag tag) {
+    for (int k = dimension == 0 ? 3 : 6; k > 0; --k) rows_.number<double>("a coordinate");
+    std::vector<Tag>& physical = physical_of_[{dimension, tag}];
+    for (Tag k = rows_.count("the number of physical groups"); k > 0; --k) {
+      physical.push_back(std::abs(rows_.integer("the tag of a physical group")));
+    }
+  }
+
+  // In a mesh that is partitioned, elements belong to parts of the entities, with tags of their
+  // own.
+  void partitioned_entities() {
+    rows_.require_next("the number of partitions");
+    rows_.count("the number of partitions");
+    rows_.require_next("the number of ghost entities");
+    for (Tag n = rows_.count("the number of ghost entities"); n > 0; --n) {
+      rows_.require_next("a ghost entity");
+    }
+    rows_.require_next("the numbers of entities");
+    std::array<Tag, 4> counts;
+    for (Tag& n : counts) n = rows_.count("a number of entities");
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      for (Tag n = counts[dimension]; n > 0; --n) {
+        rows_.require_next("a part of an entity");
+        const Tag tag = rows_.integer("the tag of an entity");
+        const bool is_part = rows_.number<int>("the dimension of an entity") == dimension;
+        rows_.integer("the tag of the whole entity");
+        for (Tag k = rows_.count("the number of partitions"); k > 0; --k) {
+          rows_.integer("the tag of a partition");
+        }
+        groups_of_entity(dimension, tag);
+        // What lies between parts has the groups of what it divides, which are of another
+        // dimension.
+        if (!is_part) physical_of_[{dimension, tag}].clear();
+      }
+    }
+  }
+
+  // With its parameters on the geometry or without them.
+  void node_list(bool parametric) {
     rows_.require_next("the number of nodes");
     for (Tag n = rows_.count("the number of nodes"); n > 0; --n) {
       rows_.require_next("a node");
       const Tag tag = rows_.integer("the tag of a node");
       add_node(tag, rows_.line(), false);
       place(file_.nodes.back());
-      rows_.require_end();
+      if (!parametric) rows_.require_end();
     }
   }
 

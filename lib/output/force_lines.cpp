@@ -56,32 +56,37 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIntArray> a = integers("body_a"), b = integers("body_b");
+  vtkNew<vtkIntArray> chain = integers("chain"), a = integers("body_a"), b = integers("body_b");
   vtkNew<vtkDoubleArray> normal = doubles("normal_force", 1);
   vtkNew<vtkDoubleArray> tangential = doubles("tangential_force", 1);
   const auto add_point = [&](const Vec2& world) {
-    cells->InsertCellPoint(points->InsertNextPoint(world.x(), world.y(), 0));
+    return points->InsertNextPoint(world.x(), world.y(), 0);
   };
   const auto free_centre = [&](BodyIndex body) -> std::optional<Vec2> {
     const bool rigid = body < static_cast<BodyIndex>(model.bodies.size());
     if (rigid && model.bodies[body].motion != Motion::free) return {};
     return motion_of(model, frame.state, body, {}, frame.node_mass).place;
   };
-  for (const ContactRecord& c : frame.contacts) {
+  for (size_t i = 0; i < frame.contacts.size(); ++i) {
+    const ContactRecord& c = frame.contacts[i];
+    const auto add_line = [&](vtkIdType first, vtkIdType second) {
+      cells->InsertNextCell({first, second});
+      chain->InsertNextValue(static_cast<int>(i));
+      a->InsertNextValue(c.a);
+      b->InsertNextValue(c.b);
+      normal->InsertNextValue((c.normal + c.damping).norm());
+      tangential->InsertNextValue(c.tangential.norm());
+    };
     const std::optional<Vec2> from = free_centre(c.a), to = free_centre(c.b);
-    const Vec2 point = c.point + model.origin;
-    cells->InsertNextCell(1 + (from ? 1 : 0) + (to ? 1 : 0));
-    if (from) add_point(*from);
-    add_point(point);
-    if (to) add_point(*to);
-    a->InsertNextValue(c.a);
-    b->InsertNextValue(c.b);
-    normal->InsertNextValue((c.normal + c.damping).norm());
-    tangential->InsertNextValue(c.tangential.norm());
+    const vtkIdType first = from ? add_point(*from) : -1;
+    const vtkIdType middle = add_point(c.point + model.origin);
+    if (from) add_line(first, middle);
+    if (to) add_line(middle, add_point(*to));
   }
   grid->SetPoints(points);
-  grid->SetCells(VTK_POLY_LINE, cells);
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, normal, tangential}) {
+  grid->SetCells(VTK_LINE, cells);
+  for (vtkDataArray* array :
+       std::initializer_list<vtkDataArray*>{chain, a, b, normal, tangential}) {
     grid->GetCellData()->AddArray(array);
   }
   return grid;
@@ -105,22 +110,24 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
     const double unit = std::sqrt(region.area) / 4;
     const RoseCounts rose = rose_of(region, frame.contacts);
     const vtkIdType first = points->GetNumberOfPoints();
-    cells->InsertNextCell(2 * static_cast<int>(kSectors) + 1);
     for (size_t s = 0; s < kSectors; ++s) {
       for (const size_t end : {s, s + 1}) {
         const double angle = 2 * M_PI * static_cast<double>(end) / kSectors;
         const double radius = unit * rose.frequency(s);
-        cells->InsertCellPoint(points->InsertNextPoint(middle.x() + radius * std::cos(angle),
-                                                       middle.y() + radius * std::sin(angle), 0));
+        points->InsertNextPoint(middle.x() + radius * std::cos(angle),
+                                middle.y() + radius * std::sin(angle), 0);
         frequency->InsertNextValue(rose.frequency(s));
         force->InsertNextValue(rose.mean_force(s));
       }
     }
-    cells->InsertCellPoint(first);
-    of_region->InsertNextValue(static_cast<int>(r));
+    constexpr auto kPoints = static_cast<vtkIdType>(2 * kSectors);
+    for (vtkIdType i = 0; i < kPoints; ++i) {
+      cells->InsertNextCell({first + i, first + (i + 1) % kPoints});
+      of_region->InsertNextValue(static_cast<int>(r));
+    }
   }
   grid->SetPoints(points);
-  grid->SetCells(VTK_POLY_LINE, cells);
+  grid->SetCells(VTK_LINE, cells);
   grid->GetCellData()->AddArray(of_region);
   grid->GetPointData()->AddArray(frequency);
   grid->GetPointData()->AddArray(force);

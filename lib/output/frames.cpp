@@ -8,7 +8,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <array>
@@ -38,16 +37,6 @@ void add_time(vtkUnstructuredGrid* grid, double time) {
   vtkNew<vtkDoubleArray> value = doubles("TimeValue", 1);  // the name that VTK's readers know
   value->InsertNextValue(time);
   grid->GetFieldData()->AddArray(value);
-}
-
-// `name_of`: gives the name of each of so many things.
-template <class NameOf>
-void add_names(vtkUnstructuredGrid* grid, const char* name, size_t count, const NameOf& name_of) {
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(count));
-  for (size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), name_of(i));
-  grid->GetFieldData()->AddArray(array);
 }
 
 // The stresses of elements or nodes as VTK arrays.
@@ -138,13 +127,6 @@ class BodyGrid {
     grid->GetPointData()->AddArray(velocity_);
     for (vtkDataArray* array : of_cells()) grid->GetCellData()->AddArray(array);
     add_time(grid, frame_.state.time);
-    vtkNew<vtkIntArray> rigid = integers("rigid_bodies");
-    rigid->InsertNextValue(static_cast<int>(model_.bodies.size()));
-    grid->GetFieldData()->AddArray(rigid);
-    add_names(grid, "body_names", model_.bodies.size() + model_.deformables.size(),
-              [&](size_t i) { return model_.name_of(static_cast<BodyIndex>(i)); });
-    add_names(grid, "material_names", model_.materials.size(),
-              [&](size_t i) { return model_.materials[i].name; });
     return grid;
   }
 
@@ -279,8 +261,8 @@ class BodyGrid {
   StressArrays of_cells_, of_points_;
 };
 
-// The lines around all bodies: a closed line for the polygon of a rigid one, and for each of the
-// `loops` around a mesh.
+// The lines around all bodies: around the polygon of a rigid one, and along each of the `loops`
+// around a mesh. Each edge is a cell, because not all readers know lines of several edges.
 vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
                                      const std::vector<Cells>& loops) {
   vtkNew<vtkUnstructuredGrid> grid;
@@ -290,13 +272,13 @@ vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
   vtkNew<vtkIntArray> of_cells = integers("body");
   const auto add = [&](BodyIndex body, size_t corners, const auto& place_of) {
     const vtkIdType first = points->GetNumberOfPoints();
-    cells->InsertNextCell(static_cast<int>(corners) + 1);
     for (size_t i = 0; i < corners; ++i) {
       const Vec2 p = place_of(i) + model.origin;
-      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+      points->InsertNextPoint(p.x(), p.y(), 0);
+      cells->InsertNextCell(
+          {first + static_cast<vtkIdType>(i), first + static_cast<vtkIdType>((i + 1) % corners)});
+      of_cells->InsertNextValue(body);
     }
-    cells->InsertCellPoint(first);
-    of_cells->InsertNextValue(body);
   };
   const auto rigid = static_cast<RigidIndex>(model.bodies.size());
   for (RigidIndex i = 0; i < rigid; ++i) {
@@ -317,7 +299,7 @@ vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
     }
   }
   grid->SetPoints(points);
-  grid->SetCells(VTK_POLY_LINE, cells);
+  grid->SetCells(VTK_LINE, cells);
   grid->GetCellData()->AddArray(of_cells);
   add_time(grid, state.time);
   return grid;
@@ -415,6 +397,27 @@ void work_on(const Threads& threads, size_t count, const Write& write) {
   }
 }
 
+std::string csv_text(const std::string& name) {
+  std::string result = "\"";
+  for (const char c : name) result.append(c == '"' ? 2 : 1, c);
+  return result + '"';
+}
+
+// The names of the bodies and materials that frames number. Frames hold numbers only, because not
+// all readers of VTK files read text in them.
+std::string names_table(const Model& model) {
+  std::string text = "kind,number,name\n";
+  const size_t rigid = model.bodies.size();
+  for (size_t i = 0; i < rigid + model.deformables.size(); ++i) {
+    text += fmt::format("{},{},{}\n", i < rigid ? "rigid_body" : "deformable_body", i,
+                        csv_text(model.name_of(static_cast<BodyIndex>(i))));
+  }
+  for (size_t i = 0; i < model.materials.size(); ++i) {
+    text += fmt::format("material,{},{}\n", i, csv_text(model.materials[i].name));
+  }
+  return text;
+}
+
 std::string file_name(const char* series, size_t frame) {
   return fmt::format("frames/{}_{:06}.vtu", series, frame);
 }
@@ -435,6 +438,7 @@ FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<dou
                          int threads)
     : folder_(std::move(folder)), model_(model), threads_(threads), times_(std::move(times)) {
   create_folder(folder_ + "/frames");
+  write_file(folder_ + "/names.csv", names_table(model_));
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     Cells cells = convex_cells(model_.bodies[i].potential.vertices);
     if (cells.size() > 1 || cells[0].size() < model_.bodies[i].potential.vertices.size()) {

@@ -2,7 +2,8 @@
 // frame for the bodies, outlines.pvd for the lines around them, contacts.pvd for the contact
 // patches, chains.pvd for the lines along which they carry force, roses.pvd for the directions of
 // contacts in regions, and surfaces.pvd for the boundaries of bodies that are in contact with
-// meshes. Bodies that are not there are left out. Also writes a mesh as a .vtu file.
+// meshes. names.csv has the names of what frames number. Bodies that are not there are left out.
+// Also writes a mesh as a .vtu file. VTK, ParaView, PyVista and meshio read all of these files.
 //
 // Cells are convex, because many viewers fill a polygon as if it were. A body or an element that is
 // not convex is several cells with the same values, numbered by the cell data `part`.

@@ -6,6 +6,8 @@
 #include <boost/locale/encoding_utf.hpp>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "apothem/output/convex_cells.hpp"
 #include "apothem/output/vtu_file.hpp"
@@ -18,12 +20,6 @@ std::vector<Vec2> vectors(const VtuArray& array, size_t count) {
   result.reserve(count);
   for (size_t i = 0; i < count; ++i) result.push_back(array.vector(i));
   return result;
-}
-
-const std::vector<std::string>& texts(const VtuFile& file, const char* name) {
-  static const std::vector<std::string> none;
-  const auto found = file.texts.find(name);
-  return found == file.texts.end() ? none : found->second;
 }
 
 // The arrays of the cells of a frame.
@@ -51,14 +47,25 @@ void read_body(const CellArrays& arrays, size_t c, FrameBody& body) {
   body.motion = static_cast<Motion>(std::lround(arrays.motion(c)));
 }
 
-void read_bodies(const VtuFile& file, Frame& frame) {
-  for (const std::string& name : texts(file, "body_names")) frame.bodies.emplace_back().name = name;
-  frame.material_names = texts(file, "material_names");
-  const auto rigid = file.of_file.find("rigid_bodies");
-  const size_t first_meshed = rigid == file.of_file.end() || rigid->second.values.empty()
-                                  ? frame.bodies.size()
-                                  : static_cast<size_t>(rigid->second(0));
-  for (size_t b = first_meshed; b < frame.bodies.size(); ++b) frame.bodies[b].meshed = true;
+// Of the quotes at `at`; goes behind the closing one.
+std::string unquoted(const std::string& text, size_t& at) {
+  std::string result;
+  for (++at; at < text.size(); ++at) {
+    if (text[at] == '"' && text.compare(at, 2, "\"\"") != 0) break;
+    if (text[at] == '"') ++at;
+    result += text[at];
+  }
+  ++at;
+  return result;
+}
+
+void name_bodies(const FrameNames& names, Frame& frame) {
+  for (const std::string& name : names.bodies) {
+    FrameBody& body = frame.bodies.emplace_back();
+    body.name = name;
+    body.meshed = frame.bodies.size() > names.rigid_bodies;
+  }
+  frame.material_names = names.materials;
 }
 
 // Adds the element or rigid body of cell `c`.
@@ -92,6 +99,32 @@ bool all_rigid(const Frame& frame) {
                       [](const FrameBody& body) { return body.meshed; });
 }
 
+FrameNames read_names(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    throw ResultsError(file +
+                       ": there is no such file, which has the names of the bodies; these are no "
+                       "results of a run, or those of an older version of the program");
+  }
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto damaged = [&] {
+    return ResultsError(file + ": is no table of names, or a damaged one");
+  };
+  const std::string head = "kind,number,name\n";
+  if (!text.starts_with(head)) throw damaged();
+  FrameNames names;
+  for (size_t at = head.size(); at < text.size();) {
+    const size_t comma = text.find(',', at), quote = text.find('"', at);
+    if (comma == std::string::npos || quote == std::string::npos || comma > quote) throw damaged();
+    const std::string kind = text.substr(at, comma - at);
+    at = quote;
+    (kind == "material" ? names.materials : names.bodies).push_back(unquoted(text, at));
+    names.rigid_bodies += kind == "rigid_body";
+    if (at >= text.size() || text[at++] != '\n') throw damaged();
+  }
+  return names;
+}
+
 RunFolder::RunFolder(std::string folder) : folder_(std::move(folder)) {
   if (!std::filesystem::is_directory(folder_)) {
     throw ResultsError(folder_ + ": there is no such folder");
@@ -105,6 +138,7 @@ RunFolder::RunFolder(std::string folder) : folder_(std::move(folder)) {
     files_.push_back(std::move(file));
   }
   if (times_.empty()) throw ResultsError(list + ": there is no frame in it yet");
+  names_ = read_names(folder_ + "/names.csv");
 }
 
 size_t RunFolder::nearest(double time) const {
@@ -133,7 +167,7 @@ Frame RunFolder::frame(size_t number) const {
   const VtuFile file = read_vtu(file_of("bodies", number));
   Frame frame;
   frame.time = times_.at(number);
-  read_bodies(file, frame);
+  name_bodies(names_, frame);
   frame.position = file.points;
   frame.displacement = vectors(file.point_array("displacement", 2), file.points.size());
   frame.velocity = vectors(file.point_array("velocity", 2), file.points.size());
@@ -167,12 +201,15 @@ std::vector<ForceChain> RunFolder::chains(size_t number) const {
   const VtuFile file = read_vtu(file_of("chains", number));
   const VtuArray &a = file.cell_array("body_a"), &b = file.cell_array("body_b");
   const VtuArray& normal = file.cell_array("normal_force");
+  const VtuArray& chain = file.cell_array("chain");
   std::vector<ForceChain> chains;
-  chains.reserve(file.cells());
   for (size_t c = 0; c < file.cells(); ++c) {
-    chains.push_back({static_cast<int>(a(c)), static_cast<int>(b(c)), file.line(c), normal(c)});
-    if (chains.back().line.size() < 2) {
-      throw ResultsError(file.name + ": a chain has fewer than two points");
+    const std::vector<Vec2> line = file.line(c);
+    if (line.size() != 2) throw ResultsError(file.name + ": a part of a chain is no line");
+    if (c > 0 && chain(c) == chain(c - 1)) {
+      chains.back().line.push_back(line[1]);
+    } else {
+      chains.push_back({static_cast<int>(a(c)), static_cast<int>(b(c)), line, normal(c)});
     }
   }
   return chains;
@@ -198,11 +235,20 @@ bool RunFolder::has(const std::string& file) const {
 std::vector<Rose> RunFolder::roses(size_t number) const {
   const VtuFile file = read_vtu(file_of("roses", number));
   const VtuArray& frequency = file.point_array("frequency");
+  const VtuArray& region = file.cell_array("region");
   std::vector<Rose> roses;
+  const auto add = [&](int point) {
+    roses.back().line.push_back(file.points[static_cast<size_t>(point)]);
+    roses.back().frequency.push_back(frequency(static_cast<size_t>(point)));
+  };
   for (size_t c = 0; c < file.cells(); ++c) {
-    Rose& rose = roses.emplace_back();
-    rose.line = file.line(c);
-    for (const int point : file.cell(c)) rose.frequency.push_back(frequency(point));
+    const std::vector<int> edge = file.cell(c);
+    if (edge.size() != 2) throw ResultsError(file.name + ": a part of a rose is no line");
+    if (c == 0 || region(c) != region(c - 1)) {
+      roses.emplace_back();
+      add(edge[0]);
+    }
+    add(edge[1]);
   }
   return roses;
 }

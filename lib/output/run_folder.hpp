@@ -78,6 +78,16 @@ std::string folder_title(const std::string& folder);
 /// One of kHistoryFiles in a folder of results. Throws ResultsError.
 HistoryTable read_table(const std::string& folder, const std::string& file);
 
+/// The names of what frames number.
+struct FrameNames {
+  std::vector<std::string> bodies, materials;
+  size_t rigid_bodies = 0;  ///< which come first among the bodies
+};
+
+/// Reads names.csv of a folder of results: rows with a kind (rigid_body, deformable_body or
+/// material), a number and a name. Throws ResultsError.
+FrameNames read_names(const std::string& file);
+
 /// The results of a run. All functions throw ResultsError.
 class RunFolder {
  public:
@@ -109,6 +119,7 @@ class RunFolder {
   [[nodiscard]] std::string file_of(const char* series, size_t number) const;
 
   std::string folder_;
+  FrameNames names_;
   std::vector<double> times_;
   std::vector<std::string> files_;  // of the bodies in each frame, relative to the folder
 };

@@ -1,6 +1,8 @@
 // Private header of the VTK writers: named arrays, and a grid as XML text.
 #pragma once
 
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
@@ -35,13 +37,27 @@ inline void keep_to_one_thread() {
       setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", /*overwrite=*/0);
 }
 
+/// Gives a grid without cells a polygon without points, because meshio reads no file without cells.
+/// Its integers are -1 and its other values 0.
+inline void add_cell_without_points(vtkUnstructuredGrid* grid) {
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell(0);
+  grid->SetCells(VTK_POLYGON, cells);
+  for (int i = 0; i < grid->GetCellData()->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = grid->GetCellData()->GetArray(i);
+    array->SetNumberOfTuples(1);
+    array->Fill(vtkIntArray::SafeDownCast(array) ? -1 : 0);
+  }
+}
+
 /// The grid as the text of a .vtu file. Data are base64 and zlib, which readers other than VTK's
-/// accept as well.
+/// accept as well, or text where there are none.
 inline std::string xml(vtkUnstructuredGrid* grid) {
   keep_to_one_thread();
+  if (grid->GetNumberOfCells() == 0) add_cell_without_points(grid);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);
-  writer->SetDataModeToBinary();
+  grid->GetNumberOfPoints() > 0 ? writer->SetDataModeToBinary() : writer->SetDataModeToAscii();
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);  // higher ones take up to twice as long for 2 %
   writer->WriteToOutputStringOn();

@@ -12,7 +12,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLDataParser.h>
@@ -67,19 +66,10 @@ VtuArray array_of(vtkDataArray* data) {
 VtuFile::Arrays arrays_of(vtkFieldData* data) {
   VtuFile::Arrays arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
-    vtkDataArray* array = data->GetArray(i);  // null for strings
+    vtkDataArray* array = data->GetArray(i);  // null where it has no numbers
     if (array && array->GetName()) arrays[array->GetName()] = array_of(array);
   }
   return arrays;
-}
-
-void read_texts(vtkFieldData* data, VtuFile& result) {
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
-    auto* array = vtkStringArray::SafeDownCast(data->GetAbstractArray(i));
-    if (!array || !array->GetName()) continue;
-    std::vector<std::string>& texts = result.texts[array->GetName()];
-    for (vtkIdType k = 0; k < array->GetNumberOfValues(); ++k) texts.push_back(array->GetValue(k));
-  }
 }
 
 const VtuArray& find(const VtuFile& file, const VtuFile::Arrays& arrays, const char* name,
@@ -134,7 +124,8 @@ VtuFile read_vtu(const std::string& file) {
     const VtuArray places = array_of(grid->GetPoints()->GetData());
     for (size_t i = 0; i < count; ++i) result.points.push_back(places.vector(i));
   }
-  const auto cells = static_cast<size_t>(grid->GetNumberOfCells());
+  // A file without points has a cell for readers that need one, see vtk_grid.hpp.
+  const auto cells = count > 0 ? static_cast<size_t>(grid->GetNumberOfCells()) : 0;
   result.first.reserve(cells + 1);
   const vtkIdType* corners = nullptr;
   for (size_t c = 0; c < cells; ++c) {
@@ -149,7 +140,6 @@ VtuFile read_vtu(const std::string& file) {
   result.of_points = arrays_of(grid->GetPointData());
   result.of_cells = arrays_of(grid->GetCellData());
   result.of_file = arrays_of(grid->GetFieldData());
-  read_texts(grid->GetFieldData(), result);
   return result;
 }
 

@@ -30,7 +30,6 @@ struct VtuFile {
   std::vector<int> first{0};   ///< cell c has the corners first[c] ... first[c + 1] - 1
   Arrays of_points, of_cells;  ///< by name
   Arrays of_file;
-  std::map<std::string, std::vector<std::string>> texts;  ///< arrays of strings, by name
 
   [[nodiscard]] size_t cells() const { return first.size() - 1; }
   [[nodiscard]] std::vector<int> cell(size_t c) const {

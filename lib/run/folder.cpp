@@ -14,10 +14,10 @@ namespace apothem {
 
 void prepare_folder(const std::string& folder, bool overwrite) {
   namespace fs = std::filesystem;
-  constexpr std::array ours{"run.json",   "frames.pvd",   "outlines.pvd", "contacts.pvd",
-                            "chains.pvd", "roses.pvd",    "surfaces.pvd", "history.csv",
-                            "energy.csv", "momentum.csv", "final.json",   "checkpoint.json",
-                            "picture.png"};
+  constexpr std::array ours{"run.json",        "frames.pvd",   "outlines.pvd", "contacts.pvd",
+                            "chains.pvd",      "roses.pvd",    "surfaces.pvd", "history.csv",
+                            "energy.csv",      "momentum.csv", "names.csv",    "final.json",
+                            "checkpoint.json", "picture.png"};
   constexpr std::array series{"bodies_", "outlines_", "contacts_",
                               "chains_", "roses_",    "surfaces_"};
   std::vector<fs::path> old;

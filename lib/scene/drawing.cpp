@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <cstring>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <string_view>
 
 #include "apothem/scene/decimal.hpp"
+#include "apothem/scene/dxf_text.hpp"
 #include "apothem/scene/gdal.hpp"
 #include "apothem/scene/json.hpp"
 
@@ -39,6 +41,11 @@ void add_parts(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnS
   const auto add = [&](DrawnShape::Kind kind) -> DrawnShape& {
     shapes.push_back(like);
     shapes.back().kind = kind;
+    if (like.entity.empty()) {
+      shapes.back().entity = kind == DrawnShape::Kind::label  ? "point"
+                             : kind == DrawnShape::Kind::line ? "line"
+                                                              : "polygon";
+    }
     return shapes.back();
   };
   const int parts = gdal().OGR_G_GetGeometryCount(geometry);
@@ -67,7 +74,26 @@ void add_parts(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnS
 
 void add_geometry(OGRGeometryH geometry, const DrawnShape& like, std::vector<DrawnShape>& shapes) {
   const Geometry straight(gdal().OGR_G_GetLinearGeometry(geometry, 0, nullptr));
+  const size_t first = shapes.size();
   add_parts(straight.get(), like, shapes);
+  if (like.entity.empty()) return;  // each of them is counted
+  for (size_t i = first + 1; i < shapes.size(); ++i) shapes[i].further = true;
+}
+
+Box extent_of(const std::vector<DrawnShape>& shapes) {
+  Box box;
+  for (const DrawnShape& shape : shapes) {
+    for (const Points& ring : shape.rings) {
+      for (const Vec2& v : ring) box.include(v.x(), v.y());
+    }
+  }
+  return box;
+}
+
+DrawnShape shape_at(std::string place) {
+  DrawnShape shape{};
+  shape.place = std::move(place);
+  return shape;
 }
 
 // Geometries of WKT, one after the other, usually one in each line.
@@ -75,7 +101,7 @@ class WktDrawing {
  public:
   explicit WktDrawing(const std::string& file) : file_(file), text_(read_text(file)) {}
 
-  std::vector<DrawnShape> read() {
+  Drawing read() {
     char* at = text_.data();
     const char* counted = at;
     int line = 1;
@@ -90,29 +116,47 @@ class WktDrawing {
                          "is not valid WKT; write POLYGON ((x y, x y, ...)) with points in "
                          "decimals, one in each line");
       }
-      add_geometry(geometry, {{}, {}, "", "", fmt::format("line {}", line)}, shapes_);
+      add_geometry(geometry, shape_at(fmt::format("line {}", line)), drawing_.shapes);
     }
-    return std::move(shapes_);
+    if (!system_.empty()) {
+      drawing_.unit = unit_of_system(system_, file_, extent_of(drawing_.shapes));
+    }
+    return std::move(drawing_);
   }
 
  private:
   // White space, comments, and a coordinate system in front ("SRID=4326;").
-  static char* skip(char* at) {
+  char* skip(char* at) {
     for (;;) {
       at += std::strspn(at, " \t\r\n;");
       if (*at == '#') {
         at += std::strcspn(at, "\n");
       } else if (std::strncmp(at, "SRID=", 5) == 0) {
-        at += std::strcspn(at, "\n;");
+        const size_t size = std::strcspn(at, "\n;");
+        coordinate_system("EPSG:" + std::string(at + 5, size - 5));
+        at += size;
       } else {
         return at;
       }
     }
   }
 
+  // 0 says that none is known.
+  void coordinate_system(const std::string& system) {
+    if (system == "EPSG:0") return;
+    if (!system_.empty() && system != system_) {
+      throw SceneError(file_, 0, "",
+                       fmt::format("holds two coordinate systems, {} and {} (SRID), which is not "
+                                   "supported yet; write all geometries in one of them",
+                                   system_, system));
+    }
+    system_ = system;
+  }
+
   const std::string& file_;
   std::string text_;
-  std::vector<DrawnShape> shapes_;
+  std::string system_;
+  Drawing drawing_;
 };
 
 // The attributes of a feature, whose names may be in upper or lower case.
@@ -139,34 +183,60 @@ class Attributes {
   OGRFeatureH feature_;
 };
 
+// A text that GDAL reads like a file.
+class FileInMemory {
+ public:
+  explicit FileInMemory(std::string& text) {
+    static std::atomic<int> count{0};
+    name_ = fmt::format("/vsimem/apothem-{}", ++count);
+    auto* bytes = reinterpret_cast<GByte*>(text.data());
+    gdal().VSIFCloseL(gdal().VSIFileFromMemBuffer(name_.c_str(), bytes, text.size(), FALSE));
+  }
+  ~FileInMemory() { gdal().VSIUnlink(name_.c_str()); }
+  FileInMemory(const FileInMemory&) = delete;
+  FileInMemory& operator=(const FileInMemory&) = delete;
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
 // The formats that GDAL reads as lists of features.
 class FeatureDrawing {
  public:
   FeatureDrawing(const std::string& file, const char* driver) : file_(file), driver_(driver) {
     open_text(file);  // says what is wrong where the file cannot be opened
+    if (is("DXF")) {
+      dxf_ = read_dxf(file);
+      in_memory_.emplace(dxf_.text);
+    }
     const std::array<const char*, 2> drivers{driver, nullptr};
     const std::array<const char*, 3> options{"HEADERS=YES", "GEOM_POSSIBLE_NAMES=WKT", nullptr};
-    set_.reset(gdal().GDALOpenEx(file.c_str(), GDAL_OF_VECTOR, drivers.data(),
-                                 is("CSV") ? options.data() : nullptr, nullptr));
+    set_.reset(gdal().GDALOpenEx((in_memory_ ? in_memory_->name() : file).c_str(), GDAL_OF_VECTOR,
+                                 drivers.data(), is("CSV") ? options.data() : nullptr, nullptr));
+    refuse_entity();
     if (!set_ && is("CSV")) fail("is not valid CSV; give it a header and two columns or more");
     if (!set_) fail(fmt::format("is not valid {}{}", driver, reason()));
   }
 
-  std::vector<DrawnShape> read() {
+  Drawing read() {
     for (int i = 0; i < gdal().GDALDatasetGetLayerCount(set_.get()); ++i) {
       OGRLayerH layer = gdal().GDALDatasetGetLayer(set_.get(), i);
       const auto next = [&] { return gdal().OGR_L_GetNextFeature(layer); };
       for (OGRFeatureH feature = next(); feature != nullptr; feature = next()) {
         const std::unique_ptr<void, decltype(gdal().OGR_F_Destroy)> owner(feature,
                                                                           gdal().OGR_F_Destroy);
+        refuse_entity();
         ++number_;
         add_feature(feature);
       }
+      refuse_entity();
       if (gdal().CPLGetLastErrorType() >= CE_Failure) {
         fail(fmt::format("is not valid {} behind {} {}{}", driver_, noun(), number_, reason()));
       }
     }
-    return std::move(shapes_);
+    finish();
+    return std::move(drawing_);
   }
 
  private:
@@ -175,9 +245,7 @@ class FeatureDrawing {
   };
 
   [[nodiscard]] bool is(std::string_view driver) const { return driver_ == driver; }
-  [[nodiscard]] const char* noun() const {
-    return is("DXF") ? "entity" : is("CSV") ? "row" : "feature";
-  }
+  [[nodiscard]] const char* noun() const { return is("CSV") ? "row" : "feature"; }
   [[nodiscard]] static std::string reason() {
     const std::string text = gdal().CPLGetLastErrorMsg();
     return text.empty() ? "" : " (" + text + ")";
@@ -187,22 +255,40 @@ class FeatureDrawing {
     fail(fmt::format("{} {}: {}", noun(), number_, what));
   }
 
+  // GDAL says where it stopped by a place in its source and the line of the text.
+  void refuse_entity() const {
+    if (!is("DXF") || gdal().CPLGetLastErrorType() < CE_Failure) return;
+    const std::string text = gdal().CPLGetLastErrorMsg();
+    constexpr std::string_view kLine = "error at line ";
+    const size_t found = text.find(kLine);
+    if (found != std::string::npos) {
+      const int line = std::atoi(text.c_str() + found + kLine.size());
+      const size_t pair = static_cast<size_t>(std::max(line - 1, 0)) / 2;
+      const int owner = pair < dxf_.owners.size() ? dxf_.owners[pair] : -1;
+      if (owner >= 0) {
+        const DxfEntity& entity = dxf_.entities[static_cast<size_t>(owner)];
+        fail(fmt::format("{} on layer \"{}\": cannot be read; draw it anew, or take it out",
+                         entity.place, entity.layer));
+      }
+    }
+    fail("is not valid DXF; save it anew as DXF (ASCII)");
+  }
+
   void add_feature(OGRFeatureH feature) {
     const Attributes attributes(feature);
-    // The paper space of a DXF file is the sheet to be printed, with its frame and its title.
-    if (attributes.find("paperspace") == "1") return;
     OGRGeometryH geometry = gdal().OGR_F_GetGeometryRef(feature);
     if (geometry != nullptr) {
-      DrawnShape like;
+      DrawnShape like = shape_at(fmt::format("{} {}", noun(), number_));
       like.layer = attributes.first({"layer"});
       // Other shapes of a DXF file have their pattern there.
       const bool is_label =
           gdal().OGR_GT_Flatten(gdal().OGR_G_GetGeometryType(geometry)) == wkbPoint;
       like.name = attributes.first({"name", "id", is_label ? "text" : "name"});
-      const std::string handle = attributes.first({"entityhandle"});
-      like.place = fmt::format("{} {}{}", noun(), number_,
-                               handle.empty() ? "" : fmt::format(" (handle {})", handle));
-      add_geometry(geometry, like, shapes_);
+      if (is("DXF")) {
+        add_entity(feature, attributes, geometry, std::move(like));
+      } else {
+        add_geometry(geometry, like, drawing_.shapes);
+      }
     } else if (is("CSV") && attributes.find("x") && attributes.find("y")) {
       add_vertex(attributes);
     } else if (is("CSV")) {
@@ -212,6 +298,54 @@ class FeatureDrawing {
           "columns x and y with a vertex in each row and a column id");
     } else if (!is("DXF")) {
       fail_here("has no shape, or no valid one; give it a geometry, or take it out");
+    }
+  }
+
+  void add_entity(OGRFeatureH feature, const Attributes& attributes, OGRGeometryH geometry,
+                  DrawnShape like) {
+    const auto index = static_cast<size_t>(parse_count(attributes.first({"linetype"})));
+    const DxfEntity& entity = dxf_.entities.at(index);
+    like.entity = entity.type;
+    like.place = entity.place;
+    like.remark = entity.remark;
+    like.hidden = is_transparent(gdal().OGR_F_GetStyleString(feature));
+    if (entity.use == DxfEntity::Use::read) {
+      add_geometry(geometry, like, drawing_.shapes);
+      return;
+    }
+    like.kind = kind_of(entity.use);
+    drawing_.shapes.push_back(std::move(like));
+  }
+
+  static DrawnShape::Kind kind_of(DxfEntity::Use use) {
+    return use == DxfEntity::Use::left_out    ? DrawnShape::Kind::left_out
+           : use == DxfEntity::Use::unbounded ? DrawnShape::Kind::unbounded
+                                              : DrawnShape::Kind::unsupported;
+  }
+
+  // GDAL gives what a drawing does not show a colour without opacity, "#RRGGBB00".
+  static bool is_transparent(const char* style) {
+    const std::string_view text = style != nullptr ? style : "";
+    const size_t colour = text.find('#');
+    return colour != std::string_view::npos && text.size() >= colour + 9 &&
+           text.substr(colour + 7, 2) == "00";
+  }
+
+  void finish() {
+    if (is("DXF")) {
+      drawing_.layers = std::move(dxf_.layers);
+      drawing_.unit = unit_of_dxf(dxf_.unit);
+      for (const DxfEntity& entity : dxf_.paper_space) {
+        DrawnShape shape = shape_at(entity.place);
+        shape.kind = DrawnShape::Kind::left_out;
+        shape.layer = entity.layer;
+        shape.entity = entity.type;
+        shape.remark = entity.remark;
+        drawing_.shapes.push_back(std::move(shape));
+      }
+    } else if (is("GeoJSON")) {
+      drawing_.unit =
+          unit_of_geojson(crs_of_geojson(read_text(file_)), file_, extent_of(drawing_.shapes));
     }
   }
 
@@ -225,28 +359,32 @@ class FeatureDrawing {
       }
     }
     const std::string id = attributes.first({"id"});
-    const auto [found, is_new] = by_id_.try_emplace(id, shapes_.size());
+    const auto [found, is_new] = by_id_.try_emplace(id, drawing_.shapes.size());
     if (is_new) {
-      shapes_.push_back({DrawnShape::Kind::area,
-                         {{}},
-                         attributes.first({"layer"}),
-                         attributes.first({"name", "id"}),
-                         fmt::format("the outline \"{}\" from row {}", id, number_)});
+      DrawnShape shape = shape_at(fmt::format("the outline \"{}\" from row {}", id, number_));
+      shape.kind = DrawnShape::Kind::area;
+      shape.rings.emplace_back();
+      shape.layer = attributes.first({"layer"});
+      shape.name = attributes.first({"name", "id"});
+      shape.entity = "polygon";
+      drawing_.shapes.push_back(std::move(shape));
     }
-    shapes_[found->second].rings[0].push_back(vertex);
+    drawing_.shapes[found->second].rings[0].push_back(vertex);
   }
 
   const std::string& file_;
   const char* driver_;
+  DxfText dxf_;
+  std::optional<FileInMemory> in_memory_;  // lives longer than what reads it
   std::unique_ptr<void, Close> set_;
   int number_ = 0;
-  std::vector<DrawnShape> shapes_;
+  Drawing drawing_;
   std::map<std::string, size_t> by_id_;  // shapes of a list of vertices
 };
 
 }  // namespace
 
-std::vector<DrawnShape> read_drawing(const std::string& file) {
+Drawing read_drawing(const std::string& file) {
   struct Format {
     const char *ending, *driver;  // without a driver: WKT
   };

@@ -12,6 +12,8 @@ namespace {
 
 // Blocks of a DXF file are taken apart, so that every part of them keeps its own layer.
 constexpr const char* kMergeBlocks = "DXF_MERGE_BLOCK_GEOMETRIES";
+// DXF files are in UTF-8 when GDAL gets them, see dxf_text.hpp.
+constexpr const char* kEncoding = "DXF_ENCODING";
 
 template <class Function>
 void find_function(void* library, const char* name, Function& function) {
@@ -51,11 +53,13 @@ const Gdal& gdal() {
 QuietGdal::QuietGdal() {
   gdal().CPLPushErrorHandler(gdal().CPLQuietErrorHandler);
   gdal().CPLSetThreadLocalConfigOption(kMergeBlocks, "NO");
+  gdal().CPLSetThreadLocalConfigOption(kEncoding, "UTF-8");
   gdal().CPLErrorReset();
 }
 
 QuietGdal::~QuietGdal() {
   gdal().CPLSetThreadLocalConfigOption(kMergeBlocks, nullptr);
+  gdal().CPLSetThreadLocalConfigOption(kEncoding, nullptr);
   gdal().CPLPopErrorHandler();
 }
 

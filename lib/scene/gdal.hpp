@@ -4,8 +4,10 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_vsi.h>
 #include <gdal.h>
 #include <ogr_api.h>
+#include <ogr_srs_api.h>
 
 // The functions of GDAL that are used, by their own names.
 #define APOTHEM_GDAL_FUNCTIONS(F)  \
@@ -26,6 +28,7 @@
   F(OGR_F_GetFieldCount)           \
   F(OGR_F_GetFieldDefnRef)         \
   F(OGR_F_GetGeometryRef)          \
+  F(OGR_F_GetStyleString)          \
   F(OGR_Fld_GetNameRef)            \
   F(OGR_GT_Flatten)                \
   F(OGR_G_AddGeometry)             \
@@ -42,7 +45,15 @@
   F(OGR_G_GetY)                    \
   F(OGR_G_Polygonize)              \
   F(OGR_G_Union)                   \
-  F(OGR_L_GetNextFeature)
+  F(OGR_L_GetNextFeature)          \
+  F(OSRDestroySpatialReference)    \
+  F(OSRGetLinearUnits)             \
+  F(OSRIsGeographic)               \
+  F(OSRNewSpatialReference)        \
+  F(OSRSetFromUserInput)           \
+  F(VSIFCloseL)                    \
+  F(VSIFileFromMemBuffer)          \
+  F(VSIUnlink)
 
 namespace apothem {
 

@@ -24,7 +24,7 @@ class Import {
  public:
   Import(const JsonReader& in, const JsonValue& value) : in_(in), value_(value), make_(value) {}
 
-  void append(std::vector<JsonValue>& bodies) {
+  ImportReport append(std::vector<JsonValue>& bodies) {
     JsonObject object(in_, value_);
     read_keys(object);
     object.finish();
@@ -33,13 +33,18 @@ class Import {
     for (size_t i = 0; i < outlines.size(); ++i) {
       bodies.push_back(body(outlines[i], names[i]));
     }
+    report_.file = in_.string(*file_);
+    report_.bodies = static_cast<int>(outlines.size());
+    report_.scale = rules_.scale;
+    return std::move(report_);
   }
 
  private:
   void read_keys(JsonObject& object) {
     file_ = &object.required("file", "the name of a drawing: .dxf, .wkt, .geojson or .csv");
     name_ = std::filesystem::path(in_.string(*file_)).stem().string();
-    if (const JsonValue* v = object.optional("scale")) rules_.scale = in_.positive(*v, "m");
+    scale_ = object.optional("scale");
+    if (scale_ != nullptr) rules_.scale = in_.positive(*scale_, "m");
     if (const JsonValue* v = object.optional("offset")) rules_.offset = in_.vec2(*v, "m");
     if (const JsonValue* v = object.optional("name")) name_ = in_.string(*v);
     if (const JsonValue* v = object.optional("lines")) {
@@ -96,9 +101,10 @@ class Import {
   std::vector<Outline> read_outlines_of_file() {
     rules_.may_have_holes = [this](const std::string& layer) { return mesh_of(layer) != nullptr; };
     try {
-      const std::vector<DrawnShape> shapes = read_drawing(file_beside(in_, file_->string()));
-      check_layers(shapes);
-      return outlines_of(shapes, rules_);
+      const Drawing drawing = read_drawing(file_beside(in_, file_->string()));
+      check_layers(drawing);
+      take_unit(drawing.unit);
+      return outlines_of(drawing.shapes, rules_, report_);
     } catch (const BadOutline& error) {
       in_.fail(*file_, fmt::format("{}: {}", file_->string(), error.what()));
     } catch (const SceneError& error) {
@@ -107,15 +113,38 @@ class Import {
     }
   }
 
-  void check_layers(const std::vector<DrawnShape>& shapes) const {
+  // What the scene says goes before what the drawing says.
+  void take_unit(const DrawingUnit& unit) {
+    if (scale_ != nullptr) {
+      report_.unit_source = "by the scene";
+      return;
+    }
+    if (!unit.problem.empty()) {
+      in_.fail(*file_, fmt::format("{}: {}", file_->string(), unit.problem));
+    }
+    rules_.scale = unit.metres;
+    report_.unit_source = unit.source.empty() ? "the drawing states no unit" : unit.source;
+  }
+
+  void check_layers(const Drawing& drawing) const {
     if (layers_ == nullptr) return;
-    std::vector<std::string> known;
-    for (const DrawnShape& shape : shapes) {
+    std::vector<std::string> known = drawing.layers;
+    std::map<std::string, bool> shown;  // layers with shapes: whether one of them can be seen
+    for (const DrawnShape& shape : drawing.shapes) {
       const bool is_new = std::find(known.begin(), known.end(), shape.layer) == known.end();
       if (!shape.layer.empty() && is_new) known.push_back(shape.layer);
+      shown[shape.layer] |= !shape.hidden;
     }
     for (size_t i = 0; i < layers_->keys().size(); ++i) {
       const std::string& layer = layers_->keys()[i];
+      const auto seen = shown.find(layer);
+      if (seen != shown.end() && !seen->second && !rules_.ignored.count(layer)) {
+        in_.fail(
+            layers_->items()[i],
+            fmt::format("the layer \"{}\" is off or frozen in the drawing, so nothing on it is "
+                        "read; switch it on there, or say false",
+                        layer));
+      }
       if (std::find(known.begin(), known.end(), layer) != known.end()) continue;
       in_.fail(layers_->items()[i],
                known.empty() ? "the drawing has no layers; leave \"layers\" out"
@@ -171,15 +200,22 @@ class Import {
   const JsonValue& value_;
   ValueMaker make_;
   const JsonValue* file_ = nullptr;
+  const JsonValue* scale_ = nullptr;
   const JsonValue* layers_ = nullptr;
   std::string name_;
   OutlineRules rules_;
+  ImportReport report_;
 };
 
 }  // namespace
 
-void append_imports(const JsonReader& in, const JsonValue& list, std::vector<JsonValue>& bodies) {
-  for (const JsonValue& value : in.array(list)) Import(in, value).append(bodies);
+std::vector<ImportReport> append_imports(const JsonReader& in, const JsonValue& list,
+                                         std::vector<JsonValue>& bodies) {
+  std::vector<ImportReport> reports;
+  for (const JsonValue& value : in.array(list)) {
+    reports.push_back(Import(in, value).append(bodies));
+  }
+  return reports;
 }
 
 }  // namespace apothem

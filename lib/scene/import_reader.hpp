@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "apothem/scene/import_report.hpp"
 #include "apothem/scene/json.hpp"
 
 namespace apothem {
@@ -13,6 +14,8 @@ namespace apothem {
 ///     "polygonize", "tolerance": m, "layers": { "LAYER": { ... } or false }, ... }
 /// with further keys of a body, which a layer may replace. The bodies stand at the import's place
 /// in the scene. Throws SceneError, for drawings with what they are, where, and what to do.
-void append_imports(const JsonReader& in, const JsonValue& list, std::vector<JsonValue>& bodies);
+/// Returns what it has read of each drawing.
+std::vector<ImportReport> append_imports(const JsonReader& in, const JsonValue& list,
+                                         std::vector<JsonValue>& bodies);
 
 }  // namespace apothem

@@ -15,6 +15,8 @@ namespace {
 
 // An outline that covers this part of another one is drawn twice, or over it.
 constexpr double kCovered = 0.01;
+// A hatch that covers this part of an outline, and is covered so, is the hatching of its area.
+constexpr double kSame = 0.99;
 constexpr double kTolerance = 1e-6;  // of the extent
 
 std::string shown_place(const std::string& place, const std::string& layer) {
@@ -35,10 +37,12 @@ template <class Shape>
 
 class OutlineMaker {
  public:
-  OutlineMaker(const std::vector<DrawnShape>& shapes, const OutlineRules& rules) : rules_(rules) {
+  OutlineMaker(const std::vector<DrawnShape>& shapes, const OutlineRules& rules,
+               ImportReport& report)
+      : rules_(rules), report_(report) {
     Box box;
     for (const DrawnShape& shape : shapes) {
-      if (rules.ignored.count(shape.layer)) continue;
+      if (is_left_out(shape)) continue;
       shapes_.push_back(shape);
       for (auto& ring : shapes_.back().rings) {
         for (Vec2& v : ring) {
@@ -54,19 +58,44 @@ class OutlineMaker {
     for (const DrawnShape& shape : shapes_) {
       if (shape.kind == DrawnShape::Kind::area) add(shape);
       if (shape.kind == DrawnShape::Kind::line && !rules_.polygonize) add_line(shape);
+      report_.read[shape.entity] += shape.further ? 0 : 1;
     }
     if (rules_.polygonize) add_faces();
     if (outlines_.empty()) {
-      throw BadOutline(rules_.polygonize
-                           ? "its lines enclose no face; check that they meet, or raise "
-                             "\"tolerance\" (m)"
-                           : "holds no closed outline; draw closed polylines or polygons");
+      const std::string left_out = report_.left_out_in_words();
+      throw BadOutline((rules_.polygonize
+                            ? "its lines enclose no face; check that they meet, or raise "
+                              "\"tolerance\" (m)"
+                            : "holds no closed outline; draw closed polylines or polygons") +
+                       (left_out.empty() ? "" : fmt::format(" (left out: {})", left_out)));
     }
-    refuse_covered();
+    look_for_covered();
+    take_out_hatches();
     return std::move(outlines_);
   }
 
  private:
+  // Counts what is left out, and refuses what cannot be read and is not left out.
+  bool is_left_out(const DrawnShape& shape) {
+    using Kind = DrawnShape::Kind;
+    std::string reason;
+    if (rules_.ignored.count(shape.layer)) {
+      reason = "on layers that the scene leaves out";
+    } else if (shape.hidden) {
+      reason = "off or frozen in the drawing";
+    } else if (shape.kind == Kind::left_out) {
+      reason = shape.remark;
+    } else if (shape.kind == Kind::unsupported ||
+               (shape.kind == Kind::unbounded && rules_.polygonize)) {
+      refuse(shape, shape.remark);
+    } else if (!rules_.polygonize && (shape.kind == Kind::label || shape.kind == Kind::unbounded)) {
+      reason = "no outline";
+    }
+    if (reason.empty()) return false;
+    report_.left_out[{shape.entity, reason}] += shape.further ? 0 : 1;
+    return true;
+  }
+
   // Closing vertices are left out, and vertices that repeat the one before: programs write both
   // where arcs meet lines, and not always with the same digits.
   [[nodiscard]] std::vector<Vec2> cleaned(const std::vector<Vec2>& drawn) const {
@@ -90,7 +119,7 @@ class OutlineMaker {
   }
 
   void add(const DrawnShape& shape) {
-    Outline outline{{}, shape.layer, shape.name, shape.place};
+    Outline outline{{}, shape.layer, shape.name, shape.place, shape.entity};
     if (shape.rings.size() > 1 && !rules_.may_have_holes(shape.layer)) {
       refuse(shape,
              "has a hole, and rigid bodies have none; divide it into outlines without "
@@ -114,7 +143,9 @@ class OutlineMaker {
       if (shape.kind == DrawnShape::Kind::line) lines.push_back(shape.rings[0]);
     }
     for (auto& rings : faces_between(std::move(lines), tolerance_)) {
-      DrawnShape face{DrawnShape::Kind::area, std::move(rings), "", "", ""};
+      DrawnShape face{};
+      face.kind = DrawnShape::Kind::area;
+      face.rings = std::move(rings);
       const Vec2& corner = face.rings[0][0];
       face.place =
           fmt::format("the face with the corner ({:.6g}, {:.6g}) m", corner.x(), corner.y());
@@ -139,7 +170,7 @@ class OutlineMaker {
     face.name = found->name;
   }
 
-  void refuse_covered() const {
+  void look_for_covered() {
     std::vector<Box> boxes;
     for (const Polygon& polygon : polygons_) boxes.push_back(bounding_box(polygon));
     std::vector<BoxPair> pairs;
@@ -151,26 +182,44 @@ class OutlineMaker {
       for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
         shared += area(part.vertices);
       }
-      const double smaller = std::min(area_moments(a).area, area_moments(b).area);
+      const double areas[]{area_moments(a).area, area_moments(b).area};
+      const double smaller = std::min(areas[0], areas[1]), larger = std::max(areas[0], areas[1]);
       if (!(shared > kCovered * smaller)) continue;
       const Outline &first = outlines_[pair.first], &second = outlines_[pair.second];
-      refuse(second, fmt::format("covers {:.2g} % of {} (or is covered so); delete one of them, "
+      if (shared > kSame * larger && (first.entity == "HATCH" || second.entity == "HATCH")) {
+        hatches_.insert(second.entity == "HATCH" ? pair.second : pair.first);
+        continue;
+      }
+      refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
                                  "move them apart, or leave a layer out",
                                  100 * shared / smaller, shown_place(first.place, first.layer)));
     }
   }
 
+  void take_out_hatches() {
+    for (auto i = hatches_.rbegin(); i != hatches_.rend(); ++i) {
+      outlines_.erase(outlines_.begin() + *i);
+    }
+    if (hatches_.empty()) return;
+    const int count = static_cast<int>(hatches_.size());
+    report_.left_out[{"HATCH", "over an outline that is drawn"}] = count;
+    if ((report_.read["HATCH"] -= count) == 0) report_.read.erase("HATCH");
+  }
+
   const OutlineRules& rules_;
+  ImportReport& report_;
   std::vector<DrawnShape> shapes_;  // in m
   double tolerance_ = 0;
   std::vector<Outline> outlines_;
-  std::vector<Polygon> polygons_;  // the outer rings of the outlines
+  std::vector<Polygon> polygons_;   // the outer rings of the outlines
+  std::set<std::int32_t> hatches_;  // outlines that are the hatching of another one
 };
 
 }  // namespace
 
-std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules) {
-  return OutlineMaker(shapes, rules).make();
+std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules,
+                                 ImportReport& report) {
+  return OutlineMaker(shapes, rules, report).make();
 }
 
 }  // namespace apothem

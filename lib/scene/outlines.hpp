@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apothem/scene/drawing.hpp"
+#include "apothem/scene/import_report.hpp"
 
 namespace apothem {
 
@@ -34,12 +35,16 @@ struct Outline {
   std::vector<std::vector<Vec2>> rings;  ///< m; the outer one, then holes; not closed by a vertex
   std::string layer, name;               ///< may be empty
   std::string place;                     ///< in the drawing
+  std::string entity;                    ///< what the format calls it
 };
 
 /// The simple polygons of a drawing. Equal coordinates stay equal to the bit. A line is an outline
 /// if its ends meet; with `polygonize` the faces between lines are outlines, and a label inside of
-/// a face gives it its layer and name. Throws BadOutline for open lines, holes, rings that are no
-/// simple polygons, outlines that cover each other, and drawings without any.
-std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules);
+/// a face gives it its layer and name. A hatch over an outline is left out, and so is what the
+/// drawing does not show. `report` counts what is read and left out. Throws BadOutline for open
+/// lines, holes, rings that are no simple polygons, outlines that cover each other, entities that
+/// cannot be read, and drawings without any outline.
+std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules,
+                                 ImportReport& report);
 
 }  // namespace apothem

@@ -70,7 +70,7 @@ class SceneReader {
     const JsonValue* imports = top.find("import");
     if (imports == nullptr) return;
     std::vector<JsonValue> bodies;
-    append_imports(in_, *imports, bodies);
+    scene_.imports = append_imports(in_, *imports, bodies);
     if (top.find("bodies") == nullptr) {
       ValueMaker::add(top, "bodies", ValueMaker(*imports).make(JsonValue::Type::array));
     }

@@ -6,6 +6,7 @@
 
 #include "apothem/model/model.hpp"
 #include "apothem/model/settings.hpp"
+#include "apothem/scene/import_report.hpp"
 #include "apothem/scene/json.hpp"
 #include "apothem/scene/setting.hpp"
 
@@ -21,6 +22,7 @@ struct Scene {
   std::vector<Expectation> expectations;
   std::vector<StopRule> stops;
   std::vector<Measure> measures;
+  std::vector<ImportReport> imports;        ///< what was read of each drawing
   std::vector<std::string> rigid_pointers;  ///< of each rigid body, its JSON pointer
   JsonValue document;                       ///< what the file says; a run frees it
 

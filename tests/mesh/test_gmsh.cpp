@@ -169,6 +169,48 @@ TEST_CASE("clockwise elements are turned, repeated ones are one", "[mesh]") {
   CHECK(group(mesh, "surface-8").nodes == std::vector<int>{0, 1, 4, 5});
 }
 
+TEST_CASE("a partitioned mesh has the groups of the whole", "[mesh]") {
+  // A square in two triangles, each of them a part, with two parts of the curve around it. The
+  // curve between the parts has the tag of the surface's group, which is that of no curve.
+  const std::string text =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+      "$PhysicalNames\n3\n1 1 \"rim\"\n1 2 \"other\"\n2 2 \"body\"\n$EndPhysicalNames\n"
+      "$Entities\n0 1 1 0\n1 0 0 0 1 1 0 1 1 0\n1 0 0 0 1 1 0 1 2 1 1\n$EndEntities\n"
+      "$PartitionedEntities\n2\n1\n7 1\n1 3 2 0\n3 1 1 2 1 2 0 0 0 1 1\n"
+      "2 1 1 1 1 0 0 0 1 1 0 1 1 0\n3 1 1 1 2 0 0 0 1 1 0 1 1 0\n4 2 1 2 1 2 0 0 0 1 1 0 1 2 0\n"
+      "2 2 1 1 1 0 0 0 1 1 0 1 2 3 2 3 4\n3 2 1 1 2 0 0 0 1 1 0 1 2 3 2 3 4\n"
+      "$EndPartitionedEntities\n"
+      "$Nodes\n1 4 1 4\n2 2 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n"
+      "$Elements\n5 7 1 7\n1 2 1 2\n1 1 2\n2 2 3\n1 3 1 2\n3 3 4\n4 4 1\n1 4 1 1\n5 1 3\n"
+      "2 2 2 1\n6 1 2 3\n2 3 2 1\n7 1 3 4\n$EndElements\n"
+      "$GhostElements\n1\n6 1 1 2\n$EndGhostElements\n";
+  const Mesh mesh = parse_gmsh(text);
+  REQUIRE(mesh.groups.size() == 2);
+  CHECK(group(mesh, "rim").edges.size() == 4);
+  CHECK(group(mesh, "body").elements == std::vector<int>{0, 1});
+}
+
+TEST_CASE("nodes with their parameters on the geometry are read", "[mesh]") {
+  const Mesh mesh = parse_gmsh(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 1 0.5\n"
+      "3 1 1 0 2 1 0.5 0.25\n4 0 1 0 2 1 0 1\n$EndParametricNodes\n"
+      "$Elements\n2\n1 2 2 0 1 1 2 3\n2 2 2 0 1 1 3 4\n$EndElements\n");
+  CHECK(mesh.element_count() == 2);
+  CHECK(mesh.nodes[2] == Vec2(1, 1));
+}
+
+TEST_CASE("a file that gmsh saved without its surface says why", "[mesh]") {
+  const std::string start =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"rim\"\n$EndPhysicalNames\n"
+      "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n";
+  CHECK_THROWS_WITH(parse_gmsh(start + "$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n"),
+                    Contains("has no triangles or quadrilaterals; mesh the surface (gmsh -2); ") &&
+                        Contains("Physical Surface") && Contains("Mesh.SaveAll"));
+  CHECK_THROWS_WITH(parse_gmsh(start), Contains("has no triangles or quadrilaterals"));
+  CHECK_THROWS_WITH(parse_gmsh("$NOD\n1\n1 0 0 0\n$ENDNOD\n"),
+                    Contains("is of version 1, which is not read; save it as 4.1 or 2.2"));
+}
+
 TEST_CASE("bad gmsh files are refused with line and tag", "[mesh]") {
   struct Case {
     const char* what;

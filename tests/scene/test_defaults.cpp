@@ -223,7 +223,6 @@ std::vector<Default> population_defaults() {
       {"/definitions/fill/properties/mesh/properties/element", meshes, "/fill/0/mesh/element",
        "T3"},
       {"/definitions/fill/properties/repeat/properties/every", batches, "/fill/0/repeat/every", 1},
-      {"/definitions/import/properties/scale", imported(), "/import/0/scale", 2},
       {"/definitions/import/properties/offset", imported(), "/import/0/offset", {1, 0}},
       {"/definitions/import/properties/lines", imported(kOpenLines), "/import/0/lines",
        "polygonize"},

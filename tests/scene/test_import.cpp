@@ -246,6 +246,263 @@ TEST_CASE("arcs, hatches and blocks of a DXF file become bodies", "[import]") {
   CHECK((blocks.model.bodies[1].position - blocks.model.bodies[0].position).norm() == Approx(3));
 }
 
+TEST_CASE("what a drawing does not show is not read", "[import]") {
+  const Folder folder;
+  const std::string ring = "90 3 70 1 10 0 20 0 10 1 20 0 10 0 20 1 ";
+  const auto stone = [&](const char* layer) {
+    return fmt::format("0 LWPOLYLINE 8 {} {}", layer, ring);
+  };
+  // Names of layers and blocks are the same in upper and lower case.
+  const std::string tables =
+      "0 SECTION 2 TABLES 0 TABLE 2 LAYER 70 9 0 LAYER 2 on 70 0 62 7 0 LAYER 2 frozen 70 1 62 7 "
+      "0 LAYER 2 off 70 0 62 -7 0 LAYER 2 locked 70 4 62 7 0 ENDTAB 0 ENDSEC ";
+  const std::string blocks =
+      "0 SECTION 2 BLOCKS 0 BLOCK 8 0 2 B 70 0 10 0 20 0 0 LWPOLYLINE 8 0 90 3 70 1 10 10 20 0 10 "
+      "11 "
+      "20 0 10 10 20 1 0 LWPOLYLINE 8 on 90 3 70 1 10 20 20 0 10 21 20 0 10 20 20 1 0 ENDBLK 0 "
+      "ENDSEC ";
+  const std::string keys = R"({ "file": "a.dxf", "material": "rock" })";
+  using Counts = std::map<std::pair<std::string, std::string>, int>;
+  const std::pair<std::string, std::string> hidden{"LWPOLYLINE", "off or frozen in the drawing"};
+
+  folder.write(
+      "a.dxf",
+      dxf(stone("on") + stone("FROZEN") + stone("off") + "0 LWPOLYLINE 60 1 8 on " + ring, tables));
+  Scene scene = imported(folder, keys);
+  CHECK(scene.model.bodies.size() == 1);
+  REQUIRE(scene.imports.size() == 1);
+  CHECK(scene.imports[0].read == std::map<std::string, int>{{"LWPOLYLINE", 1}});
+  CHECK(scene.imports[0].left_out == Counts{{hidden, 3}});
+  folder.write("a.dxf", dxf(stone("locked"), tables));
+  CHECK(imported(folder, keys).model.bodies.size() == 1);
+
+  // A block on a frozen layer is not shown at all, on one that is off only what is on its layer 0.
+  folder.write("a.dxf", dxf("0 INSERT 8 frozen 2 b 10 0 20 0 " + stone("on"), tables + blocks));
+  CHECK(imported(folder, keys).imports[0].left_out == Counts{{hidden, 2}});
+  folder.write("a.dxf", dxf("0 INSERT 8 off 2 b 10 0 20 0 " + stone("on"), tables + blocks));
+  CHECK(imported(folder, keys).imports[0].left_out == Counts{{hidden, 1}});
+  folder.write("a.dxf", dxf("0 INSERT 8 on 2 b 10 0 20 0 ", tables + blocks));
+  CHECK(imported(folder, R"({ "file": "a.dxf", "material": "rock",
+                             "layers": { "on": { "material": "clay" } } })")
+            .model.bodies[0]
+            .material == 1);
+
+  // A scene that asks for a layer that is not shown is told so.
+  folder.write("a.dxf", dxf(stone("on") + stone("frozen"), tables));
+  const std::string error = error_of(
+      folder,
+      R"({ "file": "a.dxf", "material": "rock", "layers": { "frozen": { "motion": "fixed" } } })");
+  CHECK(error.find("/import/0/layers/frozen: the layer \"frozen\" is off or frozen") !=
+        std::string::npos);
+  CHECK(
+      imported(folder, R"({ "file": "a.dxf", "material": "rock", "layers": { "frozen": false } })")
+          .model.bodies.size() == 1);
+}
+
+TEST_CASE("the unit of a DXF file is taken, unless the scene gives a scale", "[import]") {
+  const Folder folder;
+  const std::string stone = "0 LWPOLYLINE 8 a 90 4 70 1 10 0 20 0 10 1 20 0 10 1 20 1 10 0 20 1";
+  const auto write = [&](const std::string& unit) {
+    std::string text = dxf(stone);
+    const std::string start = "HEADER\n";
+    if (!unit.empty()) {
+      text.insert(text.find(start) + start.size(), fmt::format("9\n$INSUNITS\n70\n{}\n", unit));
+    }
+    folder.write("a.dxf", text);
+  };
+  const std::string keys = R"({ "file": "a.dxf", "material": "rock")";
+  for (const auto& [unit, metres] :
+       std::vector<std::pair<const char*, double>>{{"", 1},
+                                                   {"0", 1},
+                                                   {"1", 0.0254},
+                                                   {"2", 0.3048},
+                                                   {"4", 1e-3},
+                                                   {"5", 1e-2},
+                                                   {"6", 1},
+                                                   {"7", 1e3},
+                                                   {"10", 0.9144},
+                                                   {"13", 1e-6},
+                                                   {"14", 0.1},
+                                                   {"21", 1200.0 / 3937}}) {
+    INFO("$INSUNITS " << unit);
+    write(unit);
+    const Scene scene = imported(folder, keys + " }");
+    CHECK(scene.model.bodies[0].area == Approx(metres * metres).epsilon(1e-12));
+    CHECK(scene.imports[0].scale == metres);
+    const bool stated = *unit != '\0' && *unit != '0';
+    CHECK((scene.imports[0].unit_source.find("$INSUNITS") != std::string::npos) == stated);
+    CHECK(imported(folder, keys + R"(, "scale": 3 })").model.bodies[0].area == Approx(9));
+  }
+  write("99");
+  CHECK(
+      error_of(folder, keys + " }").find("a.dxf: states a unit that is not known ($INSUNITS 99)") !=
+      std::string::npos);
+  CHECK(imported(folder, keys + R"(, "scale": 3 })").model.bodies[0].area == Approx(9));
+
+  // The program says it.
+  write("4");
+  const std::string file = folder.write("scene.json", scene_with(keys + " }"));
+  const test::Result plan = test::run({"check", file}, folder);
+  CHECK(plan.out.find("a.dxf: 1 body from 1 LWPOLYLINE; its unit is 0.001 m (millimetres, by "
+                      "$INSUNITS 4)") != std::string::npos);
+}
+
+TEST_CASE("names of a DXF file are read in its encoding", "[import]") {
+  const Folder folder;
+  const auto read_as = [&](const std::string& header, const std::string& layer,
+                           const std::string& name) {
+    const std::string entity =
+        fmt::format("0 LWPOLYLINE 8 {} 90 3 70 1 10 0 20 0 10 1 20 0 10 0 20 1", layer);
+    std::string text = dxf(entity);
+    const std::string start = "HEADER\n";
+    text.insert(text.find(start) + start.size(), header);
+    folder.write("a.dxf", text);
+    const Scene scene = imported(folder, R"({ "file": "a.dxf", "material": "rock", "layers": { ")" +
+                                             name + R"(": { "material": "clay" } } })");
+    return scene.model.bodies[0].material == 1;
+  };
+  const auto header = [](const char* version, const char* page) {
+    return fmt::format("9\n$ACADVER\n1\n{}\n9\n$DWGCODEPAGE\n3\n{}\n", version, page);
+  };
+  CHECK(read_as(header("AC1024", "ANSI_1252"), "Gew\u00f6lbe", "Gew\u00f6lbe"));
+  CHECK(read_as(header("AC1015", "ANSI_1252"), "Gew\xf6lbe", "Gew\u00f6lbe"));
+  CHECK(read_as(header("AC1024", "ANSI_1252"), "Gew\xf6lbe", "Gew\u00f6lbe"));
+  CHECK(read_as(header("AC1015", "ANSI_1251"), "\xf1\xf2\xe5\xed\xe0",
+                "\u0441\u0442\u0435\u043d\u0430"));
+  CHECK(read_as(header("AC1015", "ANSI_932"), "\x90\xce", "\u77f3"));
+  CHECK(read_as(header("AC1015", "ANSI_1252"), "\\U+77F3\\U+00f6", "\u77f3\u00f6"));
+  CHECK(read_as(header("AC1015", "ANSI_1252"), "\\M+190CE", "\u77f3"));
+  CHECK(read_as("", "Gew\u00f6lbe", "Gew\u00f6lbe"));
+  CHECK(read_as("", "Gew\xf6lbe", "Gew\u00f6lbe"));
+  CHECK_THROWS_WITH(
+      read_as(header("AC1015", "ANSI_932"), "\x90", "\u77f3"),
+      Catch::Contains("not in the code page \"ANSI_932\"") && Catch::Contains("DXF of 2007"));
+}
+
+TEST_CASE("what a DXF file draws and cannot be read is refused, unless its layer is left out",
+          "[import]") {
+  const Folder folder;
+  const std::string stone = "0 LWPOLYLINE 8 s 90 3 70 1 10 0 20 0 10 1 20 0 10 0 20 1 ";
+  const std::string spline =
+      "0 SPLINE 5 4F 8 n 70 8 71 3 72 0 73 0 74 3 11 5 21 0 11 6 21 1 11 7 21 0 ";
+  const auto error_with = [&](const std::string& entities, const std::string& blocks = "") {
+    folder.write("a.dxf", dxf(stone + entities, blocks));
+    const std::string left_out =
+        R"({ "file": "a.dxf", "material": "rock", "layers": { "n": false } })";
+    CHECK(error_of(folder, left_out) == "");
+    return error_of(folder, R"({ "file": "a.dxf", "material": "rock" })");
+  };
+  const auto contains = [](const char* text) { return Catch::Contains(text); };
+  CHECK_THAT(
+      error_with(spline),
+      contains("a.dxf: the SPLINE at line 31 (handle 4F) on layer \"n\": is a spline that is "
+               "given by fit points alone, which is not supported yet; ") &&
+          !contains(".cpp"));
+  const std::string controls = "73 4 72 8 10 5 20 0 10 6 20 1 10 7 20 0 10 5 20 0 ";
+  const auto with_knots = [&](const char* knots) {
+    return "0 SPLINE 8 n 71 3 " + controls + knots;
+  };
+  CHECK(error_with(with_knots("40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 ")) == "");
+  CHECK_THAT(error_with(with_knots("40 0 40 1 40 2 40 3 40 4 40 5 40 6 40 7 ")),
+             contains("the SPLINE at line 31 on layer \"n\": is a periodic spline"));
+  CHECK_THAT(error_with("0 SPLINE 8 n 71 3 73 2 72 0 10 0 20 0 10 1 20 1 "),
+             contains("degree 3 with 2 control points and 0 knots"));
+  CHECK_THAT(error_with("0 REGION 8 n 70 1 "),
+             contains("the REGION at line 31 on layer \"n\": is not "
+                      "supported yet; turn it into a closed polyline"));
+  CHECK_THAT(error_with("0 AEC_WALL 8 n "), contains("the AEC_WALL at line 31"));
+  CHECK_THAT(error_with("0 CIRCLE 8 n 10 0,5 20 0 40 1 "),
+             contains("the CIRCLE at line 31 on layer \"n\": line 36: \"0,5\" is not a decimal"));
+  CHECK_THAT(error_with("0 INSERT 8 n 2 gone 10 0 20 0 "), contains("inserts the block \"gone\""));
+  // In a block it has the layer of the insert, if its own is 0.
+  const std::string in_block = "0 SPLINE 8 0 71 3 74 3 11 5 21 0 11 6 21 1 11 7 21 0 ";
+  CHECK_THAT(error_with("0 INSERT 8 n 2 B 10 0 20 0 ",
+                        "0 SECTION 2 BLOCKS 0 BLOCK 8 0 2 B 70 0 10 0 20 0 " + in_block +
+                            "0 ENDBLK 0 ENDSEC "),
+             contains("on layer \"n\": is a spline that is given by fit points"));
+}
+
+TEST_CASE("a hatch over an outline is its hatching, and annotations are left out", "[import]") {
+  const Folder folder;
+  const std::string ring = "10 0 20 0 10 2 20 0 10 2 20 1 10 0 20 1 ";
+  const std::string outline = "0 LWPOLYLINE 8 a 90 4 70 1 " + ring;
+  const auto hatch = [](const std::string& of) {
+    return "0 HATCH 8 h 10 0 20 0 30 0 210 0 220 0 230 1 2 SOLID 70 1 71 0 91 1 92 2 72 0 73 1 93 "
+           "4 " +
+           of + "97 0 75 0 76 1 98 0 ";
+  };
+  const std::string keys = R"({ "file": "a.dxf", "material": "rock" })";
+  for (const bool first : {true, false}) {
+    folder.write("a.dxf", dxf(first ? hatch(ring) + outline : outline + hatch(ring)));
+    const Scene scene = imported(folder, keys);
+    CHECK(scene.model.bodies.size() == 1);
+    CHECK(scene.imports[0].read == std::map<std::string, int>{{"LWPOLYLINE", 1}});
+    CHECK(scene.imports[0].left_out_in_words() == "1 HATCH (over an outline that is drawn)");
+  }
+  // A hatch of a part of it is another body in the same place.
+  folder.write("a.dxf", dxf(outline + hatch("10 0 20 0 10 1 20 0 10 1 20 1 10 0 20 1 ")));
+  CHECK(error_of(folder, keys).find("the HATCH at line 35 on layer \"h\": covers 100 % of") !=
+        std::string::npos);
+
+  folder.write("a.dxf",
+               dxf(outline + "0 TEXT 8 t 10 1 20 0.5 40 0.1 1 a 0 DIMENSION 8 d 2 *D1 10 0 20 "
+                             "0 70 0 0 XLINE 8 x 10 0 20 0 11 1 21 0 0 LWPOLYLINE 67 1 8 p 90 2 "
+                             "70 0 10 0 20 0 10 1 20 0"));
+  CHECK(imported(folder, keys).imports[0].left_out_in_words() ==
+        "1 DIMENSION (no outline), 1 LWPOLYLINE (in the paper space), 1 TEXT (no outline), 1 XLINE "
+        "(no outline)");
+  CHECK(error_of(folder, R"({ "file": "a.dxf", "material": "rock", "lines": "polygonize" })")
+            .find("the XLINE at line 59 on layer \"x\": is a line without an end") !=
+        std::string::npos);
+}
+
+TEST_CASE("a map in degrees is refused, and a plan in metres is read", "[import]") {
+  const Folder folder;
+  const auto write = [&](double x, double y, double size, const std::string& crs = "") {
+    folder.write(
+        "a.geojson",
+        fmt::format(R"({{"type": "Polygon", {}"coordinates": [[[{}, {}], [{}, {}], [{}, {}]]]}})",
+                    crs, x, y, x + size, y, x, y + size));
+  };
+  const auto named = [](const char* name) {
+    return fmt::format(R"("crs": {{"type": "name", "properties": {{"name": "{}"}}}}, )", name);
+  };
+  const std::string keys = R"({ "file": "a.geojson", "material": "rock")";
+  const auto is_refused = [&] {
+    const std::string error = error_of(folder, keys + " }");
+    CHECK((error.empty() || (error.find("degrees of longitude and latitude") != std::string::npos &&
+                             error.find("\"scale\": 1") != std::string::npos &&
+                             error.find("ogr2ogr -t_srs EPSG:32") != std::string::npos)));
+    CHECK(imported(folder, keys + R"(, "scale": 1 })").model.bodies.size() == 1);
+    return !error.empty();
+  };
+  for (const auto& [x, y, size] : {std::tuple(7.1, 50.9, 1e-4),
+                                   {7.1, 50.9, 0.5},
+                                   {-70.5, -33.4, 1e-3},
+                                   {0.1, 51.5, 0.01},
+                                   {144.9, -37.8, 2.0}}) {
+    write(x, y, size);
+    CHECK(is_refused());
+  }
+  for (const auto& [x, y, size] : {std::tuple(0.0, 0.0, 1.0),
+                                   {-2, 3, 4},
+                                   {10, 5, 30},
+                                   {400, 30, 1},
+                                   {32 * 1e4, 565 * 1e4, 10}}) {
+    write(x, y, size);
+    CHECK_FALSE(is_refused());
+  }
+  write(1, 2, 3, named("urn:ogc:def:crs:OGC:1.3:CRS84"));
+  CHECK(is_refused());
+  write(7, 50, 0.1, named("urn:ogc:def:crs:EPSG::25832"));
+  CHECK_FALSE(is_refused());
+  write(7, 50, 0.1, R"("crs": null, )");
+  CHECK(is_refused());
+  write(3, 4, 1, named("EPSG:2225"));
+  CHECK(imported(folder, keys + " }").model.bodies[0].area ==
+        Approx(0.5 * std::pow(1200.0 / 3937, 2)).epsilon(1e-9));
+}
+
 TEST_CASE("outlines that are closed but for a small gap are closed", "[import]") {
   const Folder folder;
   folder.write(
@@ -263,7 +520,7 @@ TEST_CASE("outlines that are closed but for a small gap are closed", "[import]")
 TEST_CASE("a file of WKT holds geometries of several kinds", "[import]") {
   const Folder folder;
   folder.write("a.wkt",
-               "# two triangles\r\nSRID=4326;MULTIPOLYGON (((0 0, 1 0, 0 1, 0 0)),\n((2 0, 4 0, 2 "
+               "# two triangles\r\nSRID=25832;MULTIPOLYGON (((0 0, 1 0, 0 1, 0 0)),\n((2 0, 4 0, 2 "
                "1, 2 0)))\n"
                "GEOMETRYCOLLECTION (POINT (9 9), POLYGON ((5 0, 8 0, 5 1, 5 0)))\n"
                "CURVEPOLYGON (COMPOUNDCURVE (CIRCULARSTRING (10 0, 11 1, 12 0), (12 0, 10 0)))\n");
@@ -370,17 +627,19 @@ TEST_CASE("what cannot be imported is refused with its place and a remedy", "[im
       {"a.dxf",
        open.c_str(),
        "",
-       {":4: /import/0/file: a.dxf: entity 1 on layer \"s\": ",
+       {":4: /import/0/file: a.dxf: the POLYLINE at line 11 on layer \"s\": ",
         "the line is open, with 1.41 m between its ends", "polygonize"}},
       {"a.dxf",
        hatch_and_frame.c_str(),
        "",
-       {"a.dxf: entity 2 on layer \"t\": covers 1e+02 % of entity 1 on layer \"s\"",
+       {"a.dxf: the POLYLINE at line 45 on layer \"t\": covers 100 % of the POLYLINE at line 11 on "
+        "layer \"s\"",
         "delete one of them"}},
       {"a.dxf",
        two_labels.c_str(),
        R"(, "lines": "polygonize")",
-       {"entity 3 on layer \"v\": is a second label of one face, besides entity 2 on layer \"u\""}},
+       {"the TEXT at line 57 on layer \"v\": is a second label of one face, besides the TEXT at "
+        "line 45 on layer \"u\""}},
       {"a.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n", "", {"a.dxf: is not valid DXF"}},
       {"a.dxf", "PK\003", "", {"a.dxf: is not valid DXF"}},
       {"a.wkt",
@@ -426,6 +685,20 @@ TEST_CASE("what cannot be imported is refused with its place and a remedy", "[im
        R"({"type": "Feature", "properties": {}, "geometry": null})",
        "",
        {"a.geojson: feature 1: has no shape"}},
+      {"a.dxf", "AC1032", "", {"a.dxf: is not valid DXF but a DWG file", "DXF (ASCII)"}},
+      {"a.dxf",
+       "AutoCAD Binary DXF\r\n",
+       "",
+       {"a.dxf: is a binary DXF file, which is not supported yet", "DXF (ASCII)"}},
+      {"a.wkt",
+       "SRID=4326;POLYGON ((7 50, 7.1 50, 7 50.1))",
+       "",
+       {"a.wkt: is in degrees of longitude and latitude (EPSG:4326)", "EPSG:32632",
+        "\"scale\": 1"}},
+      {"a.wkt",
+       "SRID=4326;POLYGON ((7 50, 7.1 50, 7 50.1))\nSRID=25832;POLYGON ((7 50, 7.1 50, 7 50.1))",
+       "",
+       {"a.wkt: holds two coordinate systems, EPSG:4326 and EPSG:25832"}},
       {"a.dwg", "AC1032", "", {"a.dwg: is of no known format; drawings are .dxf"}},
       {"wall.dxf",
        nullptr,
