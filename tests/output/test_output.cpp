@@ -22,6 +22,7 @@
 
 #include "apothem/fem/finite_elements.hpp"
 #include "apothem/mesh/rectangle_mesh.hpp"
+#include "apothem/model/columns.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
