@@ -237,7 +237,7 @@ TEST_CASE("damping, loads and driven supports continue bit for bit", "[resume]")
 TEST_CASE("the angle of a mesh goes on where a run goes on", "[resume]") {
   const Folder folder;
   const Scene scene = scene_of(folder, R"({
-    "materials": { "m": { "density": 1000, "young": 1e7, "poisson": 0.3 } },
+    "materials": { "m": { "density": 1000, "young": 1e8, "poisson": 0.3 } },
     "contact": { "normal_stiffness": 1e6 },
     "bodies": [
       { "name": "rigid", "material": "m", "spin": -12, "polygon": [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]] },

@@ -52,6 +52,8 @@ TEST_CASE("an unlikely value is named by its key, with its line", "[plausibility
            ":3: /contact/normal_stiffness", "time step"},
           {"\"coefficient\": 0.5", "\"coefficient\": 30", ":3: /contact/friction/coefficient",
            "tangent"},
+          {"\"coefficient\": 0.5", "\"coefficient\": 0.8", ":3: /contact/friction",
+           "may begin to rock"},
           {"\"angle\": 0.5", "\"angle\": 30", ":6: /bodies/1/angle", "30 degrees are 0.523599 rad"},
           {"[0, -3]", "[0, -3000]", ":6: /bodies/1/velocity", "m/s"},
           {"[0, -9.81]", "[0, -9810]", ":1: /gravity", "9.81"},
