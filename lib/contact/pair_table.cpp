@@ -28,6 +28,7 @@ PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& ma
       const PairLaw& pair = table_.back();
       rough_ = rough_ || pair.friction.coefficient > 0;
       damped_ = damped_ || pair.damping.normal > 0 || pair.damping.tangential > 0;
+      largest_damping_ = std::max(largest_damping_, pair.damping.normal);
       stiffest_ = std::max(stiffest_, pair.normal_stiffness);
       softest_ = std::min(softest_, pair.normal_stiffness);
       if (!(pair.friction.coefficient > 0)) continue;

@@ -24,6 +24,8 @@ class PairTable {
   [[nodiscard]] bool rough() const { return rough_; }
   /// True if there is viscous damping between any two bodies.
   [[nodiscard]] bool damped() const { return damped_; }
+  /// The largest ratio of normal damping between any two bodies.
+  [[nodiscard]] double largest_damping() const { return largest_damping_; }
   /// The largest and the smallest normal stiffness between any two bodies, Pa.
   [[nodiscard]] double stiffest() const { return stiffest_; }
   [[nodiscard]] double softest() const { return softest_; }
@@ -35,6 +37,7 @@ class PairTable {
   size_t kinds_ = 0;
   std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
   bool self_, rough_ = false, damped_ = false;
+  double largest_damping_ = 0;
   double stiffest_ = 0, softest_ = HUGE_VAL, stiffest_friction_ = 0;
 };
 

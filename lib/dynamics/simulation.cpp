@@ -14,6 +14,7 @@
 #include "apothem/dynamics/mass_damping.hpp"
 #include "apothem/dynamics/settle.hpp"
 #include "apothem/model/columns.hpp"
+#include "apothem/model/pairs.hpp"
 
 namespace apothem {
 namespace {
@@ -29,6 +30,21 @@ constexpr std::int64_t kWatchedEvery = 64;  // steps between looks at places and
 const std::vector<double>& mass_of(const Elements* elements) {
   static const std::vector<double> kNone;
   return elements ? elements->elements().mass() : kNone;
+}
+
+}  // namespace
+
+namespace {
+
+// The part of the relative speed of two rigid bodies that a dashpot may take in a step, at most, if
+// impulses of contacts that begin or end are worth finding. Beyond it the speeds that they are
+// found with are not those of the step, and in dense flows they make energy.
+constexpr double kGently = .75;
+
+// With the damping ratio zeta and the frequency w a dashpot takes 2 zeta w h in a step of h.
+bool damps_gently(const Model& model, const StepChoice& choice, const StepBounds& bounds) {
+  if (!choice.damped) return true;
+  return 4 * pair_table(model).largest_damping() * choice.step / bounds.bodies.step <= kGently;
 }
 
 }  // namespace
@@ -54,6 +70,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   StepBounds bounds;
   for (const auto& term : terms_) term->bound_step(bounds);
   control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
+  onsets_ = onsets_ && damps_gently(model, step_choice(), bounds);
   if (time.statics) {
     equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, time.tolerance);
   }
