@@ -32,10 +32,6 @@ const std::vector<double>& mass_of(const Elements* elements) {
   return elements ? elements->elements().mass() : kNone;
 }
 
-}  // namespace
-
-namespace {
-
 // The part of the relative speed of two rigid bodies that a dashpot may take in a step, at most, if
 // impulses of contacts that begin or end are worth finding. Beyond it the speeds that they are
 // found with are not those of the step, and in dense flows they make energy.
