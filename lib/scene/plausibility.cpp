@@ -26,7 +26,7 @@ constexpr Range kCoefficient{"coefficient", 0, 2, "",
                              "it is the tangent of the friction angle, not an angle in degrees"};
 // Sliding blocks begin to rock above this coefficient unless the damping ratio of their contacts is
 // as large as the second number (docs/theory.md, "Sliding blocks that rock").
-constexpr double kRocks = .65, kCalms = .2;
+constexpr double kRocks = .65, kCalms = .3;
 constexpr double kFastest = 1000;          // m/s
 constexpr double kStrongestGravity = 1e3;  // m/s^2
 constexpr double kLargest = 100;           // extent of the smallest body that is not fixed, m
