@@ -184,11 +184,17 @@ class GmshReader {
     }
   }
 
-  // The physical groups of points, curves, surfaces and volumes (version 4.1).
-  void entities() {
+  // Of points, curves, surfaces and volumes.
+  std::array<Tag, 4> entity_counts() {
     rows_.require_next("the numbers of entities");
     std::array<Tag, 4> counts;
     for (Tag& n : counts) n = rows_.count("a number of entities");
+    return counts;
+  }
+
+  // The physical groups of points, curves, surfaces and volumes (version 4.1).
+  void entities() {
+    const std::array<Tag, 4> counts = entity_counts();
     for (int dimension = 0; dimension < 4; ++dimension) {
       for (Tag n = counts[dimension]; n > 0; --n) {
         rows_.require_next("an entity");
@@ -216,9 +222,7 @@ class GmshReader {
     for (Tag n = rows_.count("the number of ghost entities"); n > 0; --n) {
       rows_.require_next("a ghost entity");
     }
-    rows_.require_next("the numbers of entities");
-    std::array<Tag, 4> counts;
-    for (Tag& n : counts) n = rows_.count("a number of entities");
+    const std::array<Tag, 4> counts = entity_counts();
     for (int dimension = 0; dimension < 4; ++dimension) {
       for (Tag n = counts[dimension]; n > 0; --n) {
         rows_.require_next("a part of an entity");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -12,8 +11,8 @@
 #include <string_view>
 
 #include "apothem/scene/decimal.hpp"
+#include "apothem/scene/dxf_names.hpp"
 #include "apothem/scene/json.hpp"
-#include "apothem/scene/text_encoding.hpp"
 
 namespace apothem {
 namespace {
@@ -32,13 +31,6 @@ std::string_view trimmed(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-// Names of DXF files are the same in upper and lower case.
-std::string folded(std::string_view name) {
-  std::string result(name);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
 }
 
 int whole_number(std::string_view text, int otherwise) {
@@ -105,85 +97,6 @@ void refuse_other_files(const std::string& file, std::string_view text) {
     what = "is not valid DXF: it is not text; save it as DXF (ASCII)";
   }
   if (!what.empty()) throw SceneError(file, 0, "", what);
-}
-
-// ---------------------------------------------------------------------------- names
-
-// The code page of a header, by the name that iconv has for it.
-std::string encoding_of(const std::string& page) {
-  const std::string name = folded(page);
-  const auto behind = [&](std::string_view start) { return name.substr(start.size()); };
-  if (name == "ANSI_1361") return "JOHAB";
-  if (name.starts_with("ANSI_")) return "CP" + behind("ANSI_");
-  if (name.starts_with("DOS")) return "CP" + behind("DOS");
-  if (name.starts_with("ISO8859")) return "ISO-8859-" + behind("ISO8859-");
-  if (name == "MACINTOSH" || name == "MAC-ROMAN") return "MACINTOSH";
-  if (name.empty() || name == "ASCII" || name == "US_ASCII") return "CP1252";
-  return name;
-}
-
-void append_utf8(std::string& text, unsigned long code) {
-  const auto add = [&](unsigned long byte) { text += static_cast<char>(byte); };
-  if (code < 0x80) {
-    add(code);
-  } else if (code < 0x800) {
-    add(0xC0 | code >> 6);
-    add(0x80 | (code & 0x3F));
-  } else {
-    add(0xE0 | code >> 12);
-    add(0x80 | (code >> 6 & 0x3F));
-    add(0x80 | (code & 0x3F));
-  }
-}
-
-// \U+XXXX stands for a character of Unicode, \M+NXXXX for one of an East Asian code page.
-std::string unescaped(const std::string& text) {
-  constexpr std::array kPages{"", "CP932", "CP950", "CP949", "JOHAB", "CP936"};
-  const auto hexadecimal = [&](size_t from) -> std::optional<unsigned long> {
-    const std::string digits = text.substr(std::min(from, text.size()), 4);
-    const bool good = digits.size() == 4 && std::all_of(digits.begin(), digits.end(), [](char c) {
-                        return std::isxdigit(static_cast<unsigned char>(c)) != 0;
-                      });
-    if (!good) return {};
-    return std::stoul(digits, nullptr, 16);
-  };
-  std::string result;
-  for (size_t i = 0; i < text.size();) {
-    if (text.compare(i, 3, "\\U+") == 0 || text.compare(i, 3, "\\u+") == 0) {
-      if (const auto code = hexadecimal(i + 3)) {
-        append_utf8(result, *code);
-        i += 7;
-        continue;
-      }
-    }
-    if (text.compare(i, 3, "\\M+") == 0 && i + 3 < text.size() && text[i + 3] >= '1' &&
-        text[i + 3] <= '5') {
-      if (const auto code = hexadecimal(i + 4)) {
-        const std::string bytes{static_cast<char>(*code >> 8), static_cast<char>(*code & 0xFF)};
-        if (const auto character = to_utf8(bytes, kPages[static_cast<size_t>(text[i + 3] - '0')])) {
-          result += *character;
-          i += 8;
-          continue;
-        }
-      }
-    }
-    result += text[i++];
-  }
-  return result;
-}
-
-// The text in UTF-8. DXF files of 2007 and later are in UTF-8 whatever their code page says.
-std::string decoded(const std::string& file, std::string text, const std::string& version,
-                    const std::string& page) {
-  const bool is_ascii = std::all_of(text.begin(), text.end(),
-                                    [](char c) { return static_cast<unsigned char>(c) < 0x80; });
-  if (is_ascii) return text;
-  if ((version >= "AC1021" || page.empty()) && is_utf8(text)) return text;
-  if (auto result = to_utf8(text, encoding_of(page))) return std::move(*result);
-  throw SceneError(file, 0, "",
-                   fmt::format("its names are not in the code page \"{}\" that its header states; "
-                               "save it as DXF of 2007 or later, which is in UTF-8",
-                               page.empty() ? "ANSI_1252" : page));
 }
 
 // ---------------------------------------------------------------------------- kinds of entities
@@ -290,12 +203,12 @@ class Preparation {
       } else if (type == "TABLE") {
         table = find(range, 2).value_or("");
       } else if (section == "TABLES" && table == "LAYER" && type == "LAYER") {
-        const std::string name = unescaped(std::string(find(range, 2).value_or("0")));
+        const std::string name = unescaped(find(range, 2).value_or("0"));
         if (!layers_.try_emplace(folded(name), name).second) continue;
         result_.layers.push_back(name);
         table_.push_back({name, find_number(range, 70, 0), find_number(range, 62, 7)});
       } else if (section == "BLOCKS" && type == "BLOCK") {
-        const std::string name = unescaped(std::string(find(range, 2).value_or("")));
+        const std::string name = unescaped(find(range, 2).value_or(""));
         blocks_.try_emplace(folded(name), Block{name, find_number(range, 70, 0)});
       }
     }
@@ -342,7 +255,7 @@ class Preparation {
       const size_t end = next_of_code_0(i + 1);
       const std::string_view type = value(i);
       if (type == "BLOCK" || type == "ENDBLK") {
-        const std::string block = unescaped(std::string(find({i + 1, end}, 2).value_or("")));
+        const std::string block = unescaped(find({i + 1, end}, 2).value_or(""));
         if (type == "BLOCK") in_paper_space = folded(block).starts_with("*PAPER_SPACE");
         if (!in_paper_space) copy(i, end, {2, 10, 20, 30, 70});
         i = end;
@@ -364,9 +277,9 @@ class Preparation {
   // Names of layers and blocks as they are first written.
   std::string written(const Tag& tag) {
     if (tag.code != 2 && tag.code != 8) {
-      return tag.code < 10 ? unescaped(std::string(tag.value)) : std::string(trimmed(tag.value));
+      return tag.code < 10 ? unescaped(tag.value) : std::string(trimmed(tag.value));
     }
-    const std::string name = unescaped(std::string(trimmed(tag.value)));
+    const std::string name = unescaped(trimmed(tag.value));
     if (tag.code == 8) return layers_.try_emplace(folded(name), name).first->second;
     const auto block = blocks_.find(folded(name));
     return block != blocks_.end() ? block->second.name : name;
@@ -475,7 +388,7 @@ class Preparation {
     }
     if (type == "SPLINE") return fault_of_spline(own);
     if (type == "INSERT") {
-      const std::string name = unescaped(std::string(find(own, 2).value_or("")));
+      const std::string name = unescaped(find(own, 2).value_or(""));
       const auto block = blocks_.find(folded(name));
       if (block == blocks_.end()) {
         return fmt::format(

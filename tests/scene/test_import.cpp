@@ -372,6 +372,8 @@ TEST_CASE("names of a DXF file are read in its encoding", "[import]") {
   CHECK(read_as(header("AC1015", "ANSI_932"), "\x90\xce", "\u77f3"));
   CHECK(read_as(header("AC1015", "ANSI_1252"), "\\U+77F3\\U+00f6", "\u77f3\u00f6"));
   CHECK(read_as(header("AC1015", "ANSI_1252"), "\\M+190CE", "\u77f3"));
+  CHECK(read_as(header("AC1015", "ANSI_1252"), "\\U+D83E\\U+DEA8", "\U0001FAA8"));
+  CHECK(read_as(header("AC1015", "ANSI_1252"), "\\U+D83E", R"(\\U+D83E)"));  // half a pair
   CHECK(read_as("", "Gew\u00f6lbe", "Gew\u00f6lbe"));
   CHECK(read_as("", "Gew\xf6lbe", "Gew\u00f6lbe"));
   CHECK_THROWS_WITH(
