@@ -15,7 +15,7 @@ namespace {
 
 // The code page of a header, by the name that iconv has for it.
 std::string encoding_of(const std::string& page) {
-  const std::string name = folded(page);
+  std::string name = folded(page);
   const auto behind = [&](std::string_view start) { return name.substr(start.size()); };
   if (name == "ANSI_1361") return "JOHAB";
   if (name.starts_with("ANSI_")) return "CP" + behind("ANSI_");
