@@ -167,6 +167,7 @@ StepLimit contact_step_limit(const Model& model) {
   };
   // Bodies in the order of what they could reach at worst, so that the search may stop early.
   std::vector<std::pair<double, int>> order;
+  order.reserve(all.size());
   for (int i = 0; i < static_cast<int>(all.size()); ++i) order.emplace_back(-bound(i), i);
   std::ranges::sort(order);
   double worst = 0;

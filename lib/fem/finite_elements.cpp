@@ -37,7 +37,7 @@ struct Blocks {
 // The vectors (x, y) of nodes: loads of 16 bytes and a transposition, which is faster than a gather
 // instruction.
 APOTHEM_INLINE Pair load(const double* from, std::uint16_t node) {
-  return *reinterpret_cast<const Pair*>(from + 2 * node);
+  return *reinterpret_cast<const Pair*>(from + 2 * static_cast<ptrdiff_t>(node));
 }
 APOTHEM_INLINE void gather(const double* from, const std::uint16_t* n, Point<PackOf<4>>& to) {
   const FourWide a = __builtin_shufflevector(load(from, n[0]), load(from, n[1]), 0, 1, 2, 3);
@@ -54,7 +54,7 @@ APOTHEM_INLINE void gather(const double* from, const std::uint16_t* n, Point<Pac
 }
 
 APOTHEM_INLINE void add_pair(double* to, std::uint16_t node, Pair value) {
-  *reinterpret_cast<Pair*>(to + 2 * node) += value;
+  *reinterpret_cast<Pair*>(to + 2 * static_cast<ptrdiff_t>(node)) += value;
 }
 // Adds the forces of one lane after the other, because two lanes may share a node.
 APOTHEM_INLINE void add(const Point<PackOf<4>>& f, double* to, const std::uint16_t* node) {
@@ -99,9 +99,9 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
       const int lane = part * lanes;
       const Stored<Number> data{blocks.data + block * stored + lane};
       Point<Number> u[kMost], v[damped ? kMost : 1];
-      for (int i = 0; i < corners; ++i) gather(blocks.u, local + i * kLanes + lane, u[i]);
+      for (ptrdiff_t i = 0; i < corners; ++i) gather(blocks.u, local + i * kLanes + lane, u[i]);
       if constexpr (damped && forces) {
-        for (int i = 0; i < corners; ++i) gather(blocks.v, local + i * kLanes + lane, v[i]);
+        for (ptrdiff_t i = 0; i < corners; ++i) gather(blocks.v, local + i * kLanes + lane, v[i]);
       }
       Number value(0.);
       if constexpr (forces) {
@@ -116,8 +116,8 @@ APOTHEM_INLINE double work_through(const Blocks& blocks) {
       }
     }
     if constexpr (forces) {
-      for (int i = 0; i < corners; ++i) {
-        for (int part = 0; part < kParts; ++part) {
+      for (ptrdiff_t i = 0; i < corners; ++i) {
+        for (ptrdiff_t part = 0; part < kParts; ++part) {
           add(f[part][i], blocks.f, local + i * kLanes + part * lanes);
         }
       }
@@ -310,7 +310,7 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       const int* nodes = &nodes_[chunk.nodes];
       const auto take = [&](std::span<const double> from, Aligned& to) {
         if (chunk.apart) {
-          std::copy_n(from.begin() + 2 * nodes[0], 2 * n, to.begin());
+          std::copy_n(from.begin() + 2 * static_cast<ptrdiff_t>(nodes[0]), 2 * n, to.begin());
         } else {
           for (size_t i = 0; i < n; ++i) {
             to[2 * i] = from[2 * static_cast<size_t>(nodes[i])];
@@ -348,7 +348,7 @@ double FiniteElements::run(Task task, std::span<const double> u, std::span<const
       if (task == Task::energy) continue;
       if (chunk.apart) {
         std::transform(s.f.begin(), s.f.begin() + static_cast<ptrdiff_t>(2 * n),
-                       f.begin() + 2 * nodes[0], std::negate<>());
+                       f.begin() + 2 * static_cast<ptrdiff_t>(nodes[0]), std::negate<>());
         continue;
       }
       const int* target = &target_[chunk.nodes];

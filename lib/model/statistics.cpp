@@ -71,7 +71,7 @@ Motions motions_of(const Model& model, const State& state, const std::vector<dou
   }
   const DeformableBody& of = meshed(model, body);
   for (int i = 0; i < static_cast<int>(of.mesh.nodes.size()); ++i) {
-    const double mass = node_mass[static_cast<size_t>(of.first_node + i)];
+    const double mass = node_mass[static_cast<size_t>(of.first_node) + static_cast<size_t>(i)];
     const Vec2 v = state.node_velocity(of.first_node + i);
     m.mass += mass;
     m.place += mass * (of.mesh.nodes[i] + state.node(of.first_node + i));

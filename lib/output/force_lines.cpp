@@ -67,11 +67,11 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
     if (rigid && model.bodies[body].motion != Motion::free) return {};
     return motion_of(model, frame.state, body, {}, frame.node_mass).place;
   };
-  for (size_t i = 0; i < frame.contacts.size(); ++i) {
-    const ContactRecord& c = frame.contacts[i];
+  int number = 0;  // of the contact
+  for (const ContactRecord& c : frame.contacts) {
     const auto add_line = [&](vtkIdType first, vtkIdType second) {
       cells->InsertNextCell({first, second});
-      chain->InsertNextValue(static_cast<int>(i));
+      chain->InsertNextValue(number);
       a->InsertNextValue(c.a);
       b->InsertNextValue(c.b);
       normal->InsertNextValue((c.normal + c.damping).norm());
@@ -82,6 +82,7 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
     const vtkIdType middle = add_point(c.point + model.origin);
     if (from) add_line(first, middle);
     if (to) add_line(middle, add_point(*to));
+    ++number;
   }
   grid->SetPoints(points);
   grid->SetCells(VTK_LINE, cells);
