@@ -144,8 +144,7 @@ std::vector<BodyStatistics> body_statistics(const Model& model, const State& sta
     }
   }
   std::ranges::sort(touching);
-  const auto repeated = std::ranges::unique(touching);
-  touching.erase(repeated.begin(), repeated.end());
+  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
   for (const auto& [a, b] : touching) {
     ++result[static_cast<size_t>(a)].coordination;
     ++result[static_cast<size_t>(b)].coordination;
