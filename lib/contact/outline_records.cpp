@@ -15,8 +15,25 @@ namespace {
 struct PatchSum {
   ContactRecord record;
   double weight = 0, deepest = 0;
+  double moment = 0;         // of the normal force on a, about the origin, N m
   int edge = -1, face = -1;  // first ones
+
+  /// A force that acts on a.
+  void add(const Vec2& point, const Vec2& force) {
+    record.normal += force;
+    moment += cross(point, force);
+  }
 };
+
+// The mean of where edges are pushed, moved across the force until the force has the moment there
+// that it has. Where forces nearly cancel there is no line of action, and the mean stays.
+Vec2 loading_point(const PatchSum& patch) {
+  if (!(patch.weight > 0)) return patch.record.point;
+  const Vec2 mean = patch.record.point / patch.weight, force = patch.record.normal;
+  const double squared = force.squaredNorm();
+  if (!(squared > 1e-6 * patch.weight * patch.weight)) return mean;
+  return mean + (patch.moment - cross(mean, force)) / squared * Vec2(force.y(), -force.x());
+}
 
 // The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
 // outline, or goes on inside the top.
@@ -105,6 +122,12 @@ int steps_between(const Outlines& outlines, int vertex, int other) {
   return std::min(steps, loop->end - loop->first - steps);
 }
 
+// At the part u of an edge.
+Vec2 point_of(const Outlines& outlines, int edge, double u) {
+  const Vec2 start = outlines.point(edge);
+  return start + u * (outlines.point(outlines.next[edge]) - start);
+}
+
 bool is_a(const Outlines& outlines, const PatchSum& patch, int edge) {
   if (patch.record.a != patch.record.b) return outlines.body[edge] == patch.record.a;
   return steps_between(outlines, edge, patch.edge) <= steps_between(outlines, edge, patch.face);
@@ -132,10 +155,14 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
     const Vec2 inward(-o.ty[edge], o.tx[edge]);
     const double area = slope * p.area;
     const Vec2 gives(-o.ty[face], o.tx[face]);
-    // What the edge of a feels, or what the face of a gives.
-    sum.normal += own_is_a ? Vec2(force * inward) : Vec2(area * gives);
-    const double u = p.sum > 0 ? p.first / p.sum : 0;
-    sum.point += force * (o.point(edge) + u * (o.point(o.next[edge]) - o.point(edge)));
+    const Vec2 on_edge = point_of(o, edge, p.sum > 0 ? p.first / p.sum : 0);
+    if (own_is_a) {
+      of_patch.add(on_edge, force * inward);
+    } else {
+      of_patch.add(point_of(o, face, p.area > 0 ? p.along / (p.area * o.length[face]) : 0),
+                   area * gives);
+    }
+    sum.point += force * on_edge;
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, p.deepest);
     sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
@@ -150,10 +177,9 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
     const double depth = o.bodies[on.in].depth;
     const double force = slopes(on.in, o.body[on.edge]) * depth * on.sum * o.length[on.edge];
     const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
-    if (is_a(o, of_patch, on.edge)) sum.normal += force * inward;
-    const double u = on.sum > 0 ? on.first / on.sum : 0;
-    const Vec2 start = o.point(on.edge);
-    sum.point += force * (start + u * (o.point(o.next[on.edge]) - start));
+    const Vec2 on_edge = point_of(o, on.edge, on.sum > 0 ? on.first / on.sum : 0);
+    if (is_a(o, of_patch, on.edge)) of_patch.add(on_edge, force * inward);
+    sum.point += force * on_edge;
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, depth);
     sum.penetration = depths.of_edge(on.edge, on.in, sum.penetration);
@@ -163,11 +189,12 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
     if (!is_a(o, of_patch, on.face)) continue;
-    sum.normal +=
-        slopes(o.body[on.face], on.in) * on.moment.area * Vec2(-o.ty[on.face], o.tx[on.face]);
+    const double area = on.moment.area;
+    of_patch.add(point_of(o, on.face, area > 0 ? on.moment.along / (area * o.length[on.face]) : 0),
+                 slopes(o.body[on.face], on.in) * area * Vec2(-o.ty[on.face], o.tx[on.face]));
   }
   for (PatchSum& sum : found) {
-    if (sum.weight > 0) sum.record.point /= sum.weight;
+    sum.record.point = loading_point(sum);
     const BodyIndex a = sum.record.a, b = sum.record.b;
     sum.record.phi = sum.deepest * std::max(o.bodies[a].slope(), o.bodies[b].slope());
     records.push_back(sum.record);
