@@ -1,28 +1,23 @@
 """Energy error against the number of steps of three scenes, as programs choose the step by `time.accuracy`:
 
-    python3 docs/images/accuracy-of-runs.py NAME=PROGRAM [NAME=PROGRAM ...]
+    python3 docs/images/accuracy-of-runs.py [--picture FILE] NAME=PROGRAM [NAME=PROGRAM ...]
 
 runs a gas of polygons, a pack that comes to rest and a cradle with each of the programs, at accuracies of 1e-2 to
-1e-6, prints a table and draws docs/images/accuracy-of-runs.png. Of the gas and the cradle the error is the largest
+1e-6, prints a table and draws it where a picture is asked for. Of the gas and the cradle the error is the largest
 total error in energy.csv of rows in which no bodies touch, over the kinetic energy at the start; of the pack it is the
 largest of all rows, over the energy that friction and damping have taken. Every number is the median of five runs
 that begin differently.
 """
 
+import argparse
 import csv
 import json
 import math
 import random
 import statistics
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 ACCURACIES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 
@@ -105,26 +100,41 @@ def middle(program, make, accuracy):
     return tuple(statistics.median(values) for values in zip(*runs))
 
 
-def main():
-    programs = dict(argument.split("=", 1) for argument in sys.argv[1:])
-    if not programs:
-        sys.exit(__doc__)
-    scenes = {"gas of 16 polygons": gas, "64 blocks come to rest": pack, "cradle of five 50-gons": cradle}
-    figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained")
-    print("| scene | program | " + " | ".join(f"{a:.0e}" for a in ACCURACIES) + " |")
-    for axis, (title, make) in zip(axes, scenes.items()):
-        for (name, program), colour, mark in zip(programs.items(), ["#ee6677", "#4477aa", "#228833"], "sov"):
-            found = [middle(program, make, accuracy) for accuracy in ACCURACIES]
-            cells = [f"{steps} steps, {error:.1e}" for steps, error in found]
-            print(f"| {title} | {name} | " + " | ".join(cells) + " |", flush=True)
-            axis.loglog([f[0] for f in found], [f[1] for f in found], marker=mark, color=colour, label=name)
-            for (steps, error), accuracy in zip(found, ACCURACIES):
-                axis.annotate(f"{accuracy:.0e}", (steps, error), textcoords="offset points", xytext=(4, 4), fontsize=7)
+def draw(found, file):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, len(found), figsize=(4 * len(found), 4), layout="constrained")
+    for axis, (title, curves) in zip(axes, found.items()):
+        for (name, points), colour, mark in zip(curves.items(), ["#ee6677", "#4477aa", "#228833"], "sov"):
+            axis.loglog(*zip(*points), marker=mark, color=colour, label=name)
+            for point, accuracy in zip(points, ACCURACIES):
+                axis.annotate(f"{accuracy:.0e}", point, textcoords="offset points", xytext=(4, 4), fontsize=7)
         axis.xaxis.set_minor_formatter("")
         axis.set(title=title, xlabel="steps", ylabel="largest energy error")
         axis.grid(color="#dddddd")
         axis.legend(loc="lower left", fontsize=8)
-    figure.savefig(Path(__file__).with_suffix(".png"), dpi=100)
+    figure.savefig(file, dpi=100)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--picture", metavar="FILE")
+    parser.add_argument("programs", metavar="NAME=PROGRAM", nargs="+")
+    options = parser.parse_args()
+    programs = dict(argument.split("=", 1) for argument in options.programs)
+    scenes = {"gas of 16 polygons": gas, "64 blocks come to rest": pack, "cradle of five 50-gons": cradle}
+    found = {title: {} for title in scenes}
+    print("| program | run | " + " | ".join(f"{a:.0e}" for a in ACCURACIES) + " |")
+    for title, make in scenes.items():
+        for name, program in programs.items():
+            points = found[title][name] = [middle(program, make, accuracy) for accuracy in ACCURACIES]
+            print(f"| {name} | {title}: steps | " + " | ".join(f"{steps}" for steps, _ in points) + " |")
+            print(f"| {name} | {title}: error | " + " | ".join(f"{error:.1e}" for _, error in points) + " |", flush=True)
+    if options.picture:
+        draw(found, options.picture)
 
 
 main()
