@@ -73,7 +73,7 @@ TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
   samples::Random random(17);
   EdgeWorkspace workspace;
   int shallow = 0;
-  const int pairs = test::scaled(4000);
+  const int pairs = test::scaled(test::long_run() ? 4000 : 1000);
   for (int i = 0; i < pairs; ++i) {
     const Polygon a = test::any_shape(random), b = test::any_shape(random);
     const Field field = Field(random.integer(0, 1));
@@ -160,7 +160,7 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
   samples::Random random(18);
   const Potential other = make_potential(samples::cross_of_squares());
   for (const Field field : {Field::roof, Field::distance}) {
-    for (int k = 0; k < test::scaled(100); ++k) {
+    for (int k = 0; k < test::scaled(test::long_run() ? 100 : 40); ++k) {
       const double turn_x = random.uniform(0, 6), turn_y = random.uniform(0, 6);
       const double direction = random.uniform(0, 6);
       const Vec2 between = random.uniform(2, 2.6) * Vec2(std::cos(direction), std::sin(direction));

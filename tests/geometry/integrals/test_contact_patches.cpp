@@ -466,7 +466,7 @@ TEST_CASE("a polygon inside the other is one patch", "[patches]") {
 TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][near]") {
   samples::Random random(91);
   int apart = 0, touching = 0, skipped = 0;
-  const int pairs = test::long_run() ? 20'000 : test::scaled(3000);
+  const int pairs = test::long_run() ? 20'000 : test::scaled(1000);
   for (int i = 0; i < pairs; ++i) {
     const auto shape = [&] {
       return random.integer(0, 2) ? samples::random_star_shaped(random, random.integer(4, 70), .5)

@@ -287,7 +287,7 @@ Polygon equal_arms(int arms, double length) {
 TEST_CASE("turned shapes of equal arms always get a skeleton", "[skeleton]") {
   Random random(4);
   int retried = 0;
-  const int cases = test::long_run() ? 20000 : test::scaled(1000);
+  const int cases = test::long_run() ? 20000 : test::scaled(400);
   for (int i = 0; i < cases; ++i) {
     const double angle = random.uniform(0, 2 * M_PI);
     if (i % 4 == 0) {
