@@ -47,7 +47,8 @@ TEST_CASE("mass damping has the same bits for any number of threads", "[deformab
   State first{Layout{0, 0}};
   Energies energies;
   Momenta momenta;
-  for (const int threads : {1, 2, 3, 7}) {
+  for (const int threads : {1, 3, 7}) {
+    if (kSanitized && threads > 3) continue;
     Simulation simulation(model, {.end = 1}, 1, threads);
     const double kinetic = simulation.energies().kinetic;
     for (int i = 0; i < 5; ++i) simulation.step();

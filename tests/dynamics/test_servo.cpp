@@ -74,6 +74,7 @@ TEST_CASE("a servo wall meets bodies that no force moves", "[servo]") {
                R"("motion": { "servo": { "direction": [0, 1], "force": 2000, "speed": 0.5 } })");
   const bool mesh = GENERATE(false, true);
   const double slope = GENERATE(0., .3);
+  if (kSanitized && (mesh || slope > 0)) return;
   CAPTURE(other, mesh, slope);
   const Folder folder;
   const std::string far = R"(, { "name": "far", "material": "m",
@@ -91,7 +92,7 @@ TEST_CASE("a servo wall meets bodies that no force moves", "[servo]") {
                        std::to_string(slope) + R"(, -1], "force": 2000, "speed": 0.5 } } })" +
                        (mesh ? far : "") + R"( ],
     "time": { "end": )" +
-                       (mesh ? "0.15" : "0.6") + R"( }, "output": { "frames": 1 } })"));
+                       (mesh || kSanitized ? "0.15" : "0.6") + R"( }, "output": { "frames": 1 } })"));
   Run run(scene, {.folder = ""});
   double most = 0;
   while (run.state().time < scene.time.end - 1e-9) {
@@ -102,7 +103,7 @@ TEST_CASE("a servo wall meets bodies that no force moves", "[servo]") {
     // It never sinks in deeper than a falling wall would press.
     REQUIRE(run.state().pose(1)[1] - .1495 - run.state().pose(0)[1] - .25 > -.005);
   }
-  if (mesh) return;
+  if (mesh || kSanitized) return;
   const Vec2 along = Vec2(slope, -1).normalized();
   if (slope > 0 && other.find("servo") != std::string::npos) return;  // they slide along each other
   CHECK(-Vec2(run.state().force(1).head<2>()).dot(along) == Approx(2000).epsilon(.02));
