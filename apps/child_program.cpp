@@ -1,8 +1,8 @@
 #include "child_program.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,28 +39,48 @@ class Buffer {
   int descriptor_;
 };
 
+// In the new process; returns if the program cannot begin. Only calls that are safe after a fork.
+void become(const std::vector<char*>& arguments, int output, int messages, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(127);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 || dup2(output, STDOUT_FILENO) < 0 ||
+      dup2(messages, STDERR_FILENO) < 0) {
+    return;
+  }
+  if (nothing > STDERR_FILENO) ::close(nothing);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv(arguments[0], arguments.data());
+}
+
 }  // namespace
 
+// A child of a program that is killed would go on alone: it is asked to end instead.
 int start_program(std::vector<std::string> words, int output, int messages, pid_t& process) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, messages, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  const int error =
-      posix_spawn(&process, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+  std::array<int, 2> failure{};  // through which the child says why it could not begin
+  if (pipe2(failure.data(), O_CLOEXEC) != 0) return errno;
+  const pid_t parent = getpid();
+  process = fork();
+  if (process == 0) {
+    become(arguments, output, messages, parent);
+    const int error = errno;
+    static_cast<void>(!::write(failure[1], &error, sizeof error));
+    _exit(127);
+  }
+  int error = process < 0 ? errno : 0;
+  ::close(failure[1]);
+  if (process > 0) {
+    ssize_t count = 0;
+    while ((count = ::read(failure[0], &error, sizeof error)) < 0 && errno == EINTR) continue;
+    if (count > 0) waitpid(process, nullptr, 0);
+  }
+  ::close(failure[0]);
   return error;
 }
 

@@ -41,7 +41,7 @@ struct RunOptions {
   std::string folder;  ///< folder of results; empty: out/NAME
   int threads = 1;
   std::optional<double> until;  ///< end of this run instead of the scene's, s
-  bool resume = false;          ///< continue from the checkpoint in the folder
+  bool resume = false;          ///< continue from the checkpoint in the folder, or begin
   bool overwrite = false;       ///< replace the results in the folder
   bool quiet = false;
   bool verify = false;

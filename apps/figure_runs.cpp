@@ -157,7 +157,7 @@ int FigureRuns::run(const std::string& figure, const std::string& scene) {
     run.folder = planned.folder;
     run.threads = threads_;
     run.quiet = true;
-    run.resume = planned.begun && exists(state_file(run.folder, StateFile::checkpoint));
+    run.resume = planned.begun && has_checkpoint(run.folder);
     run.overwrite = !run.resume;
     begin(scene);
     code = run_command(run);

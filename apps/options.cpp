@@ -69,13 +69,14 @@ void add_run(CLI::App& app, RunOptions& o) {
   sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
       ->check(kPositive);
   CLI::Option* resume =
-      sub->add_flag("--resume", o.resume, "Continue from the checkpoint in the output folder");
+      sub->add_flag("--resume", o.resume,
+                    "Continue from the checkpoint in the output folder, or begin if there is "
+                    "nothing yet");
   sub->add_option(
          "--from", o.from,
          "Begin with the last state of the run in this folder, at this time in s if given: "
          "of bodies of the same name and shape")
-      ->type_name("DIR[@TIME]")
-      ->excludes(resume);
+      ->type_name("DIR[@TIME]");
   add_settings(sub, o.set);
   sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
       ->excludes(resume);

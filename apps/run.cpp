@@ -14,6 +14,8 @@
 
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_picture.hpp"
+#include "apothem/run/folder.hpp"
+#include "apothem/run/hash.hpp"
 #include "apothem/run/other_run.hpp"
 #include "apothem/run/summary.hpp"
 #include "apothem/scene/decimal.hpp"
@@ -161,11 +163,13 @@ void print_json(const Run& run) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+constexpr const char* kPicture = "picture.png";
+
 // The results stand without a picture, too. False if the system has failed.
-bool draw_end(const Run& run, bool quiet) {
-  const std::string file = run.settings().folder + "/picture.png";
+bool draw_end(const std::string& folder, bool quiet) {
+  const std::string file = folder + "/" + kPicture;
   try {
-    const RunFolder results(run.settings().folder);
+    const RunFolder results(folder);
     write_file(file, draw_fields(picture_of(results, {strip(results, 1)}), PictureFormat::png));
     if (!quiet) fmt::print("picture of the end: {}\n", file);
   } catch (const ResultsError& error) {
@@ -181,12 +185,55 @@ std::string folder_of(const RunOptions& options, const Scene& scene) {
   return options.folder.empty() ? "out/" + scene.model.name : options.folder;
 }
 
+// Of the run that has left a state in the folder.
+std::vector<Setting> settings_in(const std::string& folder) {
+  StateOrigin origin;
+  const std::string final = state_file(folder, StateFile::final);
+  std::error_code error;
+  if (has_checkpoint(folder)) {
+    use_checkpoint(folder, [&](const std::string& file) { origin = origin_of(file); });
+  } else if (std::filesystem::exists(final, error)) {
+    origin = origin_of(final);
+  }
+  return origin.settings;
+}
+
 // A run that goes on keeps the settings it was started with, unless they are given again.
 Scene scene_of(const RunOptions& options) {
   Scene scene = read_scene(options.scene, settings_of(options.set, options.scene));
   if (!options.resume || !options.set.empty()) return scene;
-  const std::vector<Setting> before = settings_of_checkpoint(folder_of(options, scene));
+  const std::vector<Setting> before = settings_in(folder_of(options, scene));
   return before.empty() ? scene : read_scene(options.scene, before);
+}
+
+// --resume goes on, or begins where there is nothing to go on from: the same command can be given
+// again and again until the run has ended. What is no part of this run stays, and is an error.
+void choose_start(Found found, RunSettings& settings) {
+  settings.resume = found == Found::checkpoint || found == Found::other;
+  settings.overwrite = found == Found::broken_off;
+}
+
+// A run that had ended before this call.
+int report_ended(const RunOptions& options, const std::string& folder) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_text(folder + "/run.json"));
+  if (options.json) {
+    json["message"] = "";
+    json["folder"] = folder;
+    fmt::print("{}\n", json.dump(2));
+  } else if (!options.quiet) {
+    fmt::print("the run has ended before, results in {}\n", folder);
+  }
+  std::fflush(stdout);
+  int code = exit_code::done;
+  for (const auto& expectation : json["expectations"]) {
+    if (options.verify && !expectation.value("met", false)) code = exit_code::missed;
+  }
+  std::error_code error;
+  const bool drawn = std::filesystem::exists(folder + "/" + kPicture, error);
+  if (options.picture && !drawn && !draw_end(folder, options.quiet || options.json)) {
+    return exit_code::system_failed;
+  }
+  return code;
 }
 
 // --from DIR, or DIR@TIME if there is no folder of that name.
@@ -218,6 +265,12 @@ int run_command(const RunOptions& options) {
   RunSettings settings{folder_of(options, scene), options.threads, options.resume,
                        options.overwrite};
   if (!options.from.empty()) read_from(options.from, settings);
+  if (options.picture) settings.other_files = {kPicture};
+  if (options.resume) {
+    const Found found = look_into(settings.folder, scene_hash(scene));
+    if (found == Found::ended) return report_ended(options, settings.folder);
+    choose_start(found, settings);
+  }
   settings.stop_if = [] { return stop_asked.load(); };
   Run run(std::move(scene), settings);
   ProgressLine line(std::min(options.until.value_or(run.scene().time.end), run.scene().time.end));
@@ -230,7 +283,7 @@ int run_command(const RunOptions& options) {
       }
     });
   }
-  if (!options.quiet && !options.json && !options.resume) {
+  if (!options.quiet && !options.json && !settings.resume) {
     const std::string overlaps = describe_overlaps(run.simulation());
     if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
   }
@@ -248,7 +301,7 @@ int run_command(const RunOptions& options) {
   std::fflush(stdout);
   if (!options.json) print_warnings(run, known);
   const int code = exit_code_of(run, options.verify);
-  if (!options.picture || draw_end(run, options.quiet || options.json)) return code;
+  if (!options.picture || draw_end(settings.folder, options.quiet || options.json)) return code;
   return code == exit_code::done ? exit_code::system_failed : code;
 }
 

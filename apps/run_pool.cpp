@@ -10,11 +10,11 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <sstream>
 #include <string_view>
 
 #include "apothem/output/files.hpp"
+#include "apothem/run/checkpoint.hpp"
 #include "child_program.hpp"
 #include "commands.hpp"
 
@@ -108,10 +108,9 @@ void RunPool::start(const PlannedRun& run) {
     ++progress_.skipped;
     return;
   }
-  std::error_code error;
   const bool resume =
       (state == RunState::interrupted || state == RunState::crashed || state == RunState::failed) &&
-      std::filesystem::exists(folder + "/checkpoint.json", error);
+      has_checkpoint(folder);
   launch({&run, messages, resume, 0});
 }
 
@@ -147,6 +146,8 @@ void RunPool::collect() {
       continue;
     }
     // Its checkpoint was of no use: damaged, or of another version of the program.
+    fmt::print(stderr, "apothem: {}: the run begins anew: {}\n", ended[i].run->key,
+               last_error(messages_of(study_.folder_of(*ended[i].run))));
     ended[i].resumed = false;
     launch(ended[i]);
   }

@@ -80,6 +80,8 @@ set(APOTHEM_PUBLIC_HEADERS
   model/settings.hpp
   model/state.hpp
   model/statistics.hpp
+  output/checksum.hpp
+  output/file_list.hpp
   output/files.hpp
   output/frames.hpp
   output/history.hpp

@@ -418,6 +418,9 @@ std::string names_table(const Model& model) {
   return text;
 }
 
+// The names of all series of files that frames have.
+constexpr std::array kSeries{"bodies", "contacts", "chains", "outlines", "roses", "surfaces"};
+
 std::string file_name(const char* series, size_t frame) {
   return fmt::format("frames/{}_{:06}.vtu", series, frame);
 }
@@ -435,8 +438,12 @@ std::string collection(const char* series, const std::vector<double>& times) {
 }  // namespace
 
 FrameWriter::FrameWriter(std::string folder, const Model& model, std::vector<double> times,
-                         int threads)
-    : folder_(std::move(folder)), model_(model), threads_(threads), times_(std::move(times)) {
+                         int threads, FileList* list)
+    : folder_(std::move(folder)),
+      model_(model),
+      threads_(threads),
+      times_(std::move(times)),
+      list_(list) {
   create_folder(folder_ + "/frames");
   write_file(folder_ + "/names.csv", names_table(model_));
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
@@ -473,9 +480,13 @@ void FrameWriter::write(const FrameContents& frame) {
   if (!frame.surfaces.empty()) {
     all.push_back({"surfaces", [&] { return xml(boundaries(model_, time, frame.surfaces)); }});
   }
-  work_on(threads_, all.size(), [&](size_t i) {
-    write_file(folder_ + "/" + file_name(all[i].name, number), all[i].text());
-  });
+  std::vector<std::string> names;
+  names.reserve(all.size());
+  for (const Series& series : all) names.push_back(file_name(series.name, number));
+  if (list_) list_->add(names);
+  work_on(threads_, all.size(),
+          [&](size_t i) { write_file(folder_ + "/" + names[i], all[i].text()); });
+  fresh_.insert(fresh_.end(), names.begin(), names.end());
   times_.push_back(time);
   if (!frame.surfaces.empty()) {
     write_file(folder_ + "/surfaces.pvd", collection("surfaces", times_));
@@ -485,6 +496,28 @@ void FrameWriter::write(const FrameContents& frame) {
   write_file(folder_ + "/contacts.pvd", collection("contacts", times_));
   write_file(folder_ + "/chains.pvd", collection("chains", times_));
   if (!model_.regions.empty()) write_file(folder_ + "/roses.pvd", collection("roses", times_));
+}
+
+void FrameWriter::make_last() {
+  if (fresh_.empty()) return;
+  std::error_code ignored;
+  for (const std::string& name : fresh_) {
+    const std::string file = folder_ + "/" + name;
+    if (std::filesystem::exists(file, ignored)) apothem::make_last(file);
+  }
+  apothem::make_last(folder_ + "/frames");
+  fresh_.clear();
+}
+
+bool is_frame_file(const std::string& name) {
+  constexpr std::string_view kDigits = "0123456789", kStart = "frames/", kEnd = ".vtu";
+  if (!name.starts_with(kStart) || !name.ends_with(kEnd)) return false;
+  const size_t line = name.rfind('_');
+  if (line == std::string::npos || line < kStart.size()) return false;
+  const std::string series = name.substr(kStart.size(), line - kStart.size());
+  const std::string number = name.substr(line + 1, name.size() - kEnd.size() - line - 1);
+  return std::ranges::find(kSeries, series) != kSeries.end() && number.size() >= 6 &&
+         number.find_first_not_of(kDigits) == std::string::npos;
 }
 
 void write_mesh(const std::string& file, const PolygonMesh& mesh) {

@@ -19,6 +19,7 @@
 #include "apothem/model/model.hpp"
 #include "apothem/model/state.hpp"
 #include "apothem/model/statistics.hpp"
+#include "apothem/output/file_list.hpp"
 
 namespace apothem {
 
@@ -38,14 +39,18 @@ struct FrameContents {
 class FrameWriter {
  public:
   /// Creates the folder. `times` (s) are those of the frames that it already contains, if a run is
-  /// continued. `model` must outlive the writer. Throws SystemFailure.
+  /// continued. `list`: gets the names of the files; null: none. Model and list must outlive the
+  /// writer. Throws SystemFailure.
   FrameWriter(std::string folder, const Model& model, std::vector<double> times = {},
-              int threads = 1);
+              int threads = 1, FileList* list = nullptr);
 
   /// Writes the next frame and then the .pvd files, so that every file that these list is complete.
   /// Threads make files of the frame at the same time.
   /// Throws SystemFailure; the earlier frames are then intact.
   void write(const FrameContents& frame);
+
+  /// Sees to it that all frames outlast a machine that stops. Throws SystemFailure.
+  void make_last();
 
   /// Times of all frames so far, s.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -58,7 +63,12 @@ class FrameWriter {
   std::map<RigidIndex, std::vector<std::vector<int>>> cells_;
   std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes
   std::vector<double> times_;
+  FileList* list_;
+  std::vector<std::string> fresh_;  // files since the last call of make_last()
 };
+
+/// Whether frames have files of this name, relative to the folder of results.
+bool is_frame_file(const std::string& name);
 
 /// Writes a tiling as a .vtu file of convex polygons with shared points, with the cell data `cell`
 /// (index), `part` (of a cell that is not convex) and `area` (of the whole cell, m^2). Throws

@@ -63,13 +63,13 @@ std::string header(const Columns& columns) {
 }  // namespace
 
 HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
-                             const OutputSettings& settings, const Sizes& sizes)
+                             const OutputSettings& settings, const Parts& parts)
     : model_(model),
       settings_(settings),
-      history_{AppendedFile(folder + "/history.csv", sizes[0]), ""},
-      energy_{AppendedFile(folder + "/energy.csv", sizes[1]), ""},
-      momentum_{AppendedFile(folder + "/momentum.csv", sizes[2]), ""} {
-  if (sizes[0] > 0) return;
+      history_{AppendedFile(folder + "/history.csv", parts[0]), ""},
+      energy_{AppendedFile(folder + "/energy.csv", parts[1]), ""},
+      momentum_{AppendedFile(folder + "/momentum.csv", parts[2]), ""} {
+  if (parts[0].size > 0) return;
   energy_.rows = header(kEnergyColumns);
   momentum_.rows = header(kMomentumColumns);
   history_.rows = header(history_columns(model, settings));
@@ -129,6 +129,11 @@ void HistoryWriter::flush() {
     rows.swap(table->rows);
     table->file.append(rows);
   }
+}
+
+void HistoryWriter::make_last() {
+  flush();
+  for (const Table* table : {&history_, &energy_, &momentum_}) table->file.make_last();
 }
 
 const std::vector<double>* HistoryTable::column(const std::string& name) const {

@@ -27,24 +27,26 @@ struct Observed {
 /// Writes the three files of a run.
 class HistoryWriter {
  public:
-  /// Sizes of the three files in bytes, from which a later run can continue them.
-  using Sizes = std::array<std::int64_t, 3>;
+  /// The three files up to now, behind which a later run can continue them.
+  using Parts = std::array<FilePart, 3>;
 
-  /// Starts the three files with their headers or, if `sizes` are given, continues them from those
-  /// sizes. `model` and `settings` must outlive the writer. Throws SystemFailure.
+  /// Starts the three files with their headers or, if `parts` are given, continues them behind
+  /// those. `model` and `settings` must outlive the writer. Throws SystemFailure.
   HistoryWriter(const std::string& folder, const Model& model, const OutputSettings& settings,
-                const Sizes& sizes = {});
+                const Parts& parts = {});
 
   /// Adds one row to each file. Rows stay in memory until there are enough of them, or until
-  /// flush(). Throws SystemFailure.
+  /// flush(). Throws SystemFailure, also if a file has been deleted or cut meanwhile.
   void add(const State& state, const Energies& energies, const Momenta& momenta,
            const Observed& observed);
   /// Writes the rows that are still in memory. Throws SystemFailure.
   void flush();
 
-  /// The sizes of the files. Valid after flush().
-  [[nodiscard]] Sizes sizes() const {
-    return {history_.file.size(), energy_.file.size(), momentum_.file.size()};
+  /// Flushes, and sees to it that the files outlast a machine that stops. Throws SystemFailure.
+  void make_last();
+  /// The files. Valid after flush().
+  [[nodiscard]] Parts parts() const {
+    return {history_.file.part(), energy_.file.part(), momentum_.file.part()};
   }
 
  private:

@@ -1,11 +1,16 @@
 #include "apothem/run/checkpoint.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
 
 #include "apothem/dynamics/inheritance.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/run/json_archive.hpp"
+#include "apothem/run/sealed_file.hpp"
 #include "apothem/scene/json.hpp"
 
 namespace apothem {
@@ -44,11 +49,11 @@ void with_state(const std::string& name, const Load& load) {
     throw SceneError(name, 0, "",
                      ended ? "the run has ended, so there is no checkpoint to resume from; give "
                              "--overwrite in place of --resume to run it anew"
-                           : "there is no checkpoint to resume from; run without --resume, and "
-                             "with --overwrite where there are results");
+                           : "there is no checkpoint to resume from; give --overwrite in place of "
+                             "--resume to run it anew");
   }
   try {
-    const nlohmann::json json = nlohmann::json::parse(read_text(name));
+    const nlohmann::json json = nlohmann::json::parse(read_sealed(name));
     JsonLoader archive(json);
     load(archive);
   } catch (const nlohmann::json::exception& error) {
@@ -61,7 +66,34 @@ void with_state(const std::string& name, const Load& load) {
 }  // namespace
 
 std::string state_file(const std::string& folder, StateFile kind) {
-  return folder + (kind == StateFile::final ? "/final.json" : "/checkpoint.json");
+  switch (kind) {
+    case StateFile::checkpoint:
+      return folder + "/checkpoint.json";
+    case StateFile::previous:
+      return folder + "/checkpoint.previous.json";
+    case StateFile::final:
+      break;
+  }
+  return folder + "/final.json";
+}
+
+bool has_checkpoint(const std::string& folder) {
+  std::error_code error;
+  return std::filesystem::exists(state_file(folder, StateFile::checkpoint), error) ||
+         std::filesystem::exists(state_file(folder, StateFile::previous), error);
+}
+
+// At no time is there none: the last one gets a second name until the next one takes its place.
+void keep_checkpoint(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const std::string last = state_file(folder, StateFile::checkpoint);
+  const std::string previous = state_file(folder, StateFile::previous);
+  std::error_code error;
+  if (!fs::exists(last, error)) return;
+  fs::remove(previous, error);
+  fs::create_hard_link(last, previous, error);
+  if (error) fs::rename(last, previous, error);  // a file system without second names
+  if (error) throw SystemFailure(previous, error.value());
 }
 
 void write_state(const std::string& file, const Scene& scene, const std::string& scene_hash,
@@ -69,16 +101,13 @@ void write_state(const std::string& file, const Scene& scene, const std::string&
   std::string hash = scene_hash;
   std::vector<Setting> settings = scene.settings;
   ModelRecord record = record_of(simulation);
-  write_file(file, [&](const auto& sink) {
-    JsonWriter archive(sink);
+  write_sealed(file, [&](Archive& archive) {
     if (with_scene) {
       SavedScene saved{std::filesystem::absolute(scene.file).string(), scene.text};
       archive("scene", saved);
     }
     archive("scene_hash", hash)("settings", settings)("model", record)("progress", progress)(
         "simulation", simulation);
-    archive.finish();
-    sink("\n");
   });
 }
 
@@ -88,11 +117,32 @@ RunProgress read_progress(const std::string& file) {
   return progress;
 }
 
-std::vector<Setting> settings_of_checkpoint(const std::string& folder) {
-  std::vector<Setting> settings;
-  with_state(state_file(folder, StateFile::checkpoint),
-             [&](Archive& archive) { archive("settings", settings); });
-  return settings;
+StateOrigin origin_of(const std::string& file) {
+  StateOrigin origin;
+  with_state(file, [&](Archive& archive) {
+    archive("settings", origin.settings)("scene_hash", origin.scene_hash);
+  });
+  return origin;
+}
+
+std::string use_checkpoint(const std::string& folder,
+                           const std::function<void(const std::string&)>& use) {
+  const std::string last = state_file(folder, StateFile::checkpoint);
+  const std::string previous = state_file(folder, StateFile::previous);
+  try {
+    use(last);
+    return {};
+  } catch (const SceneError& first) {
+    std::error_code error;
+    if (!std::filesystem::exists(previous, error)) throw;
+    try {
+      use(previous);
+    } catch (const SceneError&) {
+      // The first one is the one to be mended.
+      throw first;
+    }
+    return first.what();
+  }
 }
 
 Scene read_saved_scene(const std::string& file) {
@@ -118,21 +168,61 @@ void read_state(const std::string& file, const std::string& scene_hash, Simulati
   simulation.refresh();
 }
 
-void require_histories(const std::string& folder, const RunProgress& progress) {
-  for (size_t i = 0; i < kHistoryFiles.size(); ++i) {
-    const std::string history = folder + "/" + kHistoryFiles[i];
-    std::error_code error_code;
-    const auto length = std::filesystem::file_size(history, error_code);
-    if (error_code || static_cast<double>(length) < progress.history_sizes[i]) {
-      throw SceneError(history, 0, "",
-                       "is missing or shorter than the checkpoint says; run it anew");
+namespace {
+
+// The first line of the part that is no row of a table, in words; empty: all are.
+std::string bad_line(const std::string& file, std::int64_t size) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  for (int number = 1; size > 0 && std::getline(stream, line); ++number) {
+    size -= static_cast<std::int64_t>(line.size()) + 1;
+    const auto odd = [&](unsigned char c) {
+      return std::iscntrl(c) != 0 || (number > 1 && std::isalpha(c) != 0 && c != 'e');
+    };
+    if (line.empty() || std::any_of(line.begin(), line.end(), odd)) {
+      return fmt::format(", first seen in line {}", number);
     }
   }
+  return {};
+}
+
+}  // namespace
+
+HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress) {
+  HistoryWriter::Parts parts;
+  if (progress.histories.size() != parts.size()) {
+    throw SceneError(folder, 0, "", "holds a checkpoint of a run without histories; run it anew");
+  }
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const HistoryPart& kept = progress.histories[i];
+    const std::string file = folder + "/" + kHistoryFiles[i];
+    constexpr const char* kRemedy = "put the file back as it was, or run anew with --overwrite";
+    std::error_code error;
+    const auto fail = [&](const std::string& what) {
+      throw SceneError(file, 0, "", what + "; " + kRemedy);
+    };
+    if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, error))) {
+      fail("is missing, so that the run cannot go on from its checkpoint");
+    }
+    parts[i] = part_of(file, kept.size);
+    if (parts[i].size < kept.size) {
+      fail(fmt::format("is shorter than the checkpoint says: {} bytes of {}", parts[i].size,
+                       kept.size));
+    }
+    if (kept.file != kHistoryFiles[i] || parts[i].checksum.text() != kept.checksum) {
+      fail(fmt::format("is not as the run has written it, in its first {} bytes{}", kept.size,
+                       bad_line(file, kept.size)));
+    }
+  }
+  return parts;
 }
 
 void remove_checkpoint(const std::string& folder) {
   std::error_code ignored;  // a checkpoint left behind does no harm
-  std::filesystem::remove(state_file(folder, StateFile::checkpoint), ignored);
+  // The last one goes last: a run that is killed in between goes on from there.
+  for (const StateFile kind : {StateFile::previous, StateFile::checkpoint}) {
+    std::filesystem::remove(state_file(folder, kind), ignored);
+  }
 }
 
 }  // namespace apothem

@@ -1,8 +1,9 @@
 // The whole state of a run in a file: checkpoint.json says where a run was stopped, so that it
-// continues bit for bit as if it never had; final.json is where it has ended, for runs that begin
-// there.
+// continues bit for bit as if it never had, and checkpoint.previous.json is the one before;
+// final.json is where it has ended, for runs that begin there.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,10 +30,18 @@ struct AddedForce {
   bool operator==(const AddedForce&) const = default;
 };
 
+/// The part of a history that a checkpoint goes with.
+struct HistoryPart {
+  std::string file;
+  std::int64_t size = 0;  ///< bytes
+  std::string checksum;
+  void fields(Archive& archive) { archive("file", file)("size", size)("checksum", checksum); }
+};
+
 /// What a run keeps besides its simulation.
 struct RunProgress {
-  std::vector<double> history_sizes = std::vector<double>(kHistoryFiles.size());  ///< bytes
-  std::vector<double> frame_times;                                                ///< s
+  std::vector<HistoryPart> histories;  ///< of kHistoryFiles; empty: of a run without files
+  std::vector<double> frame_times;     ///< s
   std::int64_t next_row = 1, next_frame = 1;
   std::vector<LoadStep> load_steps;  ///< of static runs
   Beginning beginning;
@@ -40,26 +49,41 @@ struct RunProgress {
   StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
 
   void fields(Archive& archive) {
-    archive.sized("history_sizes", history_sizes);
-    archive("frame_times", frame_times)("next_row", next_row)("next_frame", next_frame)(
-        "load_steps", load_steps)("beginning", beginning)("forces", forces);
+    archive("histories", histories)("frame_times", frame_times)("next_row", next_row)(
+        "next_frame", next_frame)("load_steps", load_steps)("beginning", beginning)("forces",
+                                                                                    forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };
 
-enum class StateFile { checkpoint, final };
+enum class StateFile { checkpoint, previous, final };
 std::string state_file(const std::string& folder, StateFile kind);
+/// Whether there is a checkpoint in a folder, whole or damaged.
+bool has_checkpoint(const std::string& folder);
 
-/// Writes a state to a file, and the text of the scene as well if asked to. Throws SystemFailure;
-/// an older file is then intact.
+/// Writes a state to a file, and the text of the scene as well if asked to. It ends with its
+/// checksum and outlasts a machine that stops. Throws SystemFailure; an older file is then intact.
 void write_state(const std::string& file, const Scene& scene, const std::string& scene_hash,
                  Simulation& simulation, RunProgress& progress, bool with_scene = false);
+
+/// Before a checkpoint is written: keeps the last one as the previous one. Throws SystemFailure.
+void keep_checkpoint(const std::string& folder);
 
 /// What the file of a state says about the run, before there is a simulation. Throws SceneError if
 /// there is none, or if it is damaged.
 RunProgress read_progress(const std::string& file);
-/// The settings of the run that has left the checkpoint in a folder. Throws as read_progress().
-std::vector<Setting> settings_of_checkpoint(const std::string& folder);
+/// The settings, and the hash of the scene, of the run that has left a state. Throws as
+/// read_progress().
+struct StateOrigin {
+  std::vector<Setting> settings;
+  std::string scene_hash;
+};
+StateOrigin origin_of(const std::string& file);
+/// Calls use(file) for the checkpoint in a folder or, if it throws SceneError, for the previous
+/// one. Returns what was wrong with the first one, or nothing. Throws what the first call has
+/// thrown if the second one throws as well.
+std::string use_checkpoint(const std::string& folder,
+                           const std::function<void(const std::string&)>& use);
 /// The scene of a state that was written with its scene. Throws as read_progress(), and as
 /// read_scene().
 Scene read_saved_scene(const std::string& file);
@@ -68,9 +92,11 @@ Scene read_saved_scene(const std::string& file);
 /// is damaged or belongs to another scene.
 void read_state(const std::string& file, const std::string& scene_hash, Simulation& simulation,
                 RunProgress& progress);
-/// Throws SceneError if the histories in a folder that a run goes on with are not there any more.
-void require_histories(const std::string& folder, const RunProgress& progress);
+/// The histories in a folder that a run goes on with, which need not end there. Throws SceneError
+/// if they are not as they were.
+HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress);
 
+/// Both of them.
 void remove_checkpoint(const std::string& folder);
 
 }  // namespace apothem

@@ -1,26 +1,17 @@
 #include "apothem/run/hash.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdint>
+#include "apothem/output/checksum.hpp"
 
 namespace apothem {
 namespace {
 
-// FNV-1a, 64 bits.
-class Hash {
+// Of values as they lie in memory.
+class Hash : public Checksum {
  public:
-  void add(const void* data, size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3U;
-  }
+  using Checksum::add;
   void add(std::span<const double> values) { add(values.data(), values.size_bytes()); }
   void add(const std::string& text) { add(text.data(), text.size() + 1); }
   void add(const Vec2& v) { add(v.data(), 2 * sizeof(double)); }
-  [[nodiscard]] std::string text() const { return fmt::format("fnv1a64:{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
 }  // namespace

@@ -24,6 +24,11 @@ class JsonWriter final : public Archive {
   /// Collects the text if there is no sink.
   explicit JsonWriter(Sink sink = {}) : sink_(std::move(sink)) {}
 
+  /// Hands over what has been collected so far.
+  void flush() {
+    sink_(text_);
+    text_.clear();
+  }
   /// Writes the end of the object. Nothing may be written after that.
   void finish() {
     text_ += '}';
@@ -93,10 +98,6 @@ class JsonWriter final : public Archive {
     text_ += shortest;
     // A whole number stays a floating-point number, because an integer has no -0.
     if (shortest.find_first_of(".e") == std::string_view::npos) text_ += ".0";
-  }
-  void flush() {
-    sink_(text_);
-    text_.clear();
   }
 
   Sink sink_;

@@ -8,6 +8,7 @@
 
 #include "apothem/run/checkpoint.hpp"
 #include "apothem/run/json_archive.hpp"
+#include "apothem/run/sealed_file.hpp"
 
 namespace apothem {
 namespace {
@@ -68,7 +69,7 @@ OtherRun::OtherRun(const std::string& folder, std::optional<double> time) {
 }
 
 void OtherRun::load(const std::string& file) {
-  const nlohmann::json json = nlohmann::json::parse(read_text(file));
+  const nlohmann::json json = nlohmann::json::parse(read_sealed(file));
   JsonLoader archive(json);
   archive("model", record_);
   state_ = State(record_.layout());

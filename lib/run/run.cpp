@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 
 #include "apothem/dynamics/unstable.hpp"
 #include "apothem/output/files.hpp"
@@ -43,7 +44,7 @@ Run::Run(Scene scene, const RunSettings& settings)
     : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
   for (std::string& unlikely : unlikely_values(scene_)) warn(std::move(unlikely));
   scene_.drop_rings();
-  start();
+  const HistoryWriter::Parts histories = start();
   scene_.document = JsonValue();  // only errors at the start need their places
   const std::string& folder = settings_.folder;
   rows_ =
@@ -52,27 +53,71 @@ Run::Run(Scene scene, const RunSettings& settings)
   start_ = last_checkpoint_ = Clock::now();
   processor_start_ = processor_time();
   if (folder.empty()) return;
-  HistoryWriter::Sizes sizes{};
-  std::copy(progress_.history_sizes.begin(), progress_.history_sizes.end(), sizes.begin());
-  history_.emplace(folder, scene_.model, scene_.output, sizes);
-  frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads);
+  history_.emplace(folder, scene_.model, scene_.output, histories);
+  frames_.emplace(folder, scene_.model, progress_.frame_times, settings_.threads, files_.get());
 }
 
-// The simulation where it begins, or where it goes on.
-void Run::start() {
+// Takes the folder for a run that begins there.
+void Run::prepare() {
   const std::string& folder = settings_.folder;
-  progress_.stop_watch = &stop_watch_;
-  if (settings_.resume) {
-    go_on(state_file(folder, StateFile::checkpoint));
-    require_histories(folder, progress_);
-    return;
+  if (folder.empty()) return;
+  std::vector<std::string> others;
+  if (!settings_.saved.empty()) others.push_back(settings_.saved);
+  if (!settings_.from.empty()) {
+    for (const StateFile kind : {StateFile::final, StateFile::checkpoint}) {
+      others.push_back(state_file(settings_.from, kind));
+    }
   }
+  files_ = std::make_unique<FileList>(folder);
+  prepare_folder(
+      folder, {scene_hash_, settings_.overwrite, inputs_of(scene_, others), settings_.other_files},
+      *files_);
+}
+
+// The simulation where the run in the folder has left it, and the histories up to there.
+HistoryWriter::Parts Run::resume() {
+  const std::string& folder = settings_.folder;
+  const std::string checkpoint = state_file(folder, StateFile::checkpoint);
+  if (!has_checkpoint(folder)) read_progress(checkpoint);  // says what helps
+  files_ = std::make_unique<FileList>(folder);
+  lock_folder(*files_, folder);
+  HistoryWriter::Parts histories;
+  const std::string fault = use_checkpoint(folder, [&](const std::string& file) {
+    histories = required_histories(folder, read_progress(file));
+    go_on(file);
+    refuse_other_beginning();
+  });
+  reopen_folder(folder, {scene_hash_, false, {}, settings_.other_files}, *files_);
+  if (!fault.empty()) {
+    std::error_code error;
+    std::filesystem::rename(state_file(folder, StateFile::previous), checkpoint, error);
+    if (error) throw SystemFailure(checkpoint, error.value());
+    warn(fmt::format(
+        "the run goes on from the checkpoint before the last one, at t = {:.9g} s, and does again "
+        "what came after: {}",
+        state().time, fault));
+  }
+  return histories;
+}
+
+void Run::refuse_other_beginning() const {
+  if (settings_.from.empty() || settings_.from == progress_.beginning.folder) return;
+  throw SceneError(settings_.folder, 0, "",
+                   fmt::format("holds a run that has not begun with that in \"{}\"; leave out "
+                               "--from, or choose another folder",
+                               settings_.from));
+}
+
+// The simulation where it begins, or where it goes on, and the histories up to there.
+HistoryWriter::Parts Run::start() {
+  progress_.stop_watch = &stop_watch_;
+  if (settings_.resume) return resume();
   if (!settings_.saved.empty()) {
     go_on(settings_.saved);
-    progress_.history_sizes.assign(kHistoryFiles.size(), 0);
+    progress_.histories.clear();
     progress_.frame_times.clear();
-    if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
-    return;
+    prepare();
+    return {};
   }
   std::optional<OtherRun> other;
   if (!settings_.from.empty()) {
@@ -92,7 +137,8 @@ void Run::start() {
     warn(fmt::format("{} {} outside of the world: check \"box\" in \"world\"", outside,
                      outside == 1 ? "body begins" : "bodies begin"));
   }
-  if (!folder.empty()) prepare_folder(folder, settings_.overwrite);
+  prepare();
+  return {};
 }
 
 void Run::go_on(const std::string& file) {
@@ -241,6 +287,7 @@ void Run::look_for_stop() {
 }
 
 void Run::advance(std::optional<double> until) {
+  if (files_) lock_folder(*files_, settings_.folder);
   note_failures([&] {
     loop(std::min(until.value_or(scene_.time.end), scene_.time.end));
     flush();
@@ -259,6 +306,7 @@ Run::Status Run::finish() {
     write_summary(*this);
     // Last of all: a run that is killed before goes on from there.
     if (status_ != Status::unstable && ended()) remove_checkpoint(settings_.folder);
+    files_->unlock();
   }
   return status_;
 }
@@ -347,8 +395,11 @@ void Run::flush() {
 void Run::update_progress() {
   if (history_) {
     history_->flush();
-    const HistoryWriter::Sizes sizes = history_->sizes();
-    progress_.history_sizes.assign(sizes.begin(), sizes.end());
+    const HistoryWriter::Parts parts = history_->parts();
+    progress_.histories.clear();
+    for (size_t i = 0; i < parts.size(); ++i) {
+      progress_.histories.push_back({kHistoryFiles[i], parts[i].size, parts[i].checksum.text()});
+    }
     progress_.frame_times = frames_->times();
   }
   progress_.next_row = rows_.next();
@@ -358,6 +409,11 @@ void Run::update_progress() {
 
 void Run::write(StateFile kind) {
   if (!history_) return;
+  // What a state goes with is on the disk before it.
+  history_->make_last();
+  frames_->make_last();
+  files_->make_last();
+  if (kind == StateFile::checkpoint) keep_checkpoint(settings_.folder);
   update_progress();
   write_state(state_file(settings_.folder, kind), scene_, scene_hash_, *simulation_, progress_);
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apothem/dynamics/simulation.hpp"
+#include "apothem/output/file_list.hpp"
 #include "apothem/output/frames.hpp"
 #include "apothem/output/history.hpp"
 #include "apothem/run/applied_force.hpp"
@@ -27,10 +28,10 @@ namespace apothem {
 struct RunSettings {
   std::string folder = {};  ///< of the results; empty: no files are written
   int threads = 1;
-  bool resume = false;     ///< continue from the checkpoint of the folder
+  bool resume = false;     ///< continue from the checkpoint of the folder, which must be there
   bool overwrite = false;  ///< results of an earlier run in the folder may be replaced
   /// Folder of another run whose last state bodies of the same name and shape begin with; empty:
-  /// none. It goes without `resume`.
+  /// none. With `resume` the run must have begun there.
   std::string from = {};
   std::optional<double> from_time = {};  ///< s; the time that this state must have
   /// File of Run::save() to go on from; empty: none. It goes without `resume` and `from`. Results
@@ -39,6 +40,8 @@ struct RunSettings {
   /// Asked after every step, within load steps, and while bodies settle at the start: true stops
   /// the run, which can go on later.
   std::function<bool()> stop_if = {};
+  /// Names of files that the caller is going to write to the folder, besides those of the run.
+  std::vector<std::string> other_files = {};
 };
 
 /// Says when the next record is due; a record falls on the first step at or after its time.
@@ -61,7 +64,8 @@ class Run {
 
   /// Throws SceneError if the scene cannot be run, if the folder holds results or no checkpoint
   /// against the settings, or if there is no other run to begin with; SystemFailure if files cannot
-  /// be written; Stopped if stop_if says so while bodies settle.
+  /// be written; Stopped if stop_if says so while bodies settle. No other process may write to the
+  /// folder from here to finish().
   Run(Scene scene, const RunSettings& settings);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -127,7 +131,10 @@ class Run {
   [[nodiscard]] double processor_seconds() const;
 
  private:
-  void start();
+  HistoryWriter::Parts start();
+  HistoryWriter::Parts resume();
+  void prepare();
+  void refuse_other_beginning() const;
   [[nodiscard]] bool reached(double time) const;
   void require_forces() const;
   void loop(double until);
@@ -153,7 +160,8 @@ class Run {
   std::unique_ptr<Simulation> simulation_;
   std::string scene_hash_;
   RunProgress progress_;
-  std::optional<HistoryWriter> history_;  // only with a folder
+  std::unique_ptr<FileList> files_;       // only with a folder
+  std::optional<HistoryWriter> history_;  // likewise
   std::optional<FrameWriter> frames_;     // likewise
   Schedule rows_, pictures_;
   std::int64_t last_row_ = -1, last_frame_ = -1;  // steps

@@ -195,7 +195,7 @@ std::string summary_text(const Run& run) {
 }
 
 void write_summary(const Run& run) {
-  write_file(run.settings().folder + "/run.json", summary_text(run));
+  write_file(run.settings().folder + "/run.json", summary_text(run), Lasting::yes);
 }
 
 }  // namespace apothem

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apothem/output/files.hpp"
+#include "apothem/run/checkpoint.hpp"
 #include "apothem/run/hash.hpp"
 
 namespace apothem {
@@ -225,7 +226,7 @@ RunState Study::state_of(const PlannedRun& run) const {
   const std::string folder = folder_of(run);
   const Json note = json_of(folder + kNote);
   if (!note.is_object()) {
-    const bool results = there(folder + "/run.json") || there(folder + "/checkpoint.json");
+    const bool results = there(folder + "/run.json") || has_checkpoint(folder);
     return results ? RunState::changed : RunState::missing;
   }
   if (note.value("identity", "") != identity_of(run)) return RunState::changed;
@@ -242,7 +243,7 @@ void Study::begin(const PlannedRun& run, bool resume) const {
   const std::string folder = folder_of(run);
   create_folder(folder);
   take_away(folder + "/run.json");
-  if (!resume) take_away(folder + "/checkpoint.json");
+  if (!resume) remove_checkpoint(folder);
   write_file(folder + kNote, Json{{"identity", identity_of(run)}}.dump(2) + "\n");
 }
 

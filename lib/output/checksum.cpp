@@ -1,0 +1,9 @@
+#include "apothem/output/checksum.hpp"
+
+#include <fmt/format.h>
+
+namespace apothem {
+
+std::string Checksum::text() const { return fmt::format("fnv1a64:{:016x}", value_); }
+
+}  // namespace apothem

@@ -1,0 +1,58 @@
+#include "apothem/run/sealed_file.hpp"
+
+#include "apothem/output/checksum.hpp"
+#include "apothem/output/files.hpp"
+#include "apothem/run/json_archive.hpp"
+#include "apothem/scene/json.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr const char* kKey = "checksum";
+
+// What stands behind the part of a text that has this checksum.
+std::string seal(const Checksum& checksum) {
+  return std::string(",\"") + kKey + "\":\"" + checksum.text() + "\"}\n";
+}
+
+}  // namespace
+
+void write_sealed(const std::string& file, const std::function<void(Archive&)>& write) {
+  write_file(
+      file,
+      [&](const FileSink& sink) {
+        Checksum checksum;
+        JsonWriter archive([&](std::string_view part) {
+          checksum.add(part);
+          sink(part);
+        });
+        write(archive);
+        archive.flush();
+        sink(seal(checksum));
+      },
+      Lasting::yes);
+}
+
+std::string sealed(std::string object) {
+  object.resize(object.rfind('}'));
+  Checksum checksum;
+  checksum.add(object);
+  return object + seal(checksum);
+}
+
+std::string read_sealed(const std::string& file) {
+  std::string text = read_text(file);
+  if (text.empty()) throw Damaged(file, 0, "", "is damaged: it is empty; run it anew");
+  const size_t length = seal({}).size();
+  Checksum checksum;
+  if (text.size() > length) checksum.add(text.data(), text.size() - length);
+  if (text.size() > length && text.ends_with(seal(checksum))) return text;
+  const size_t key = text.rfind(std::string(",\"") + kKey);
+  throw Damaged(file, 0, "",
+                key == std::string::npos || key + length < text.size()
+                    ? "is damaged, or of an older version of the program: it does not end with "
+                      "its checksum; run it anew"
+                    : "is damaged: its content does not have the checksum at its end");
+}
+
+}  // namespace apothem

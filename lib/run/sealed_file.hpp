@@ -1,0 +1,31 @@
+// Files of JSON that end with a checksum of all that stands before it, so that damage is found.
+// Private to the room.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "apothem/archive/archive.hpp"
+#include "apothem/scene/error.hpp"
+
+namespace apothem {
+
+/// A sealed file that is not as it was written.
+class Damaged : public SceneError {
+ public:
+  using SceneError::SceneError;
+};
+
+/// Writes a file that outlasts a machine that stops: an object with what `write` writes and its
+/// checksum. Throws SystemFailure; an older file is then intact.
+void write_sealed(const std::string& file, const std::function<void(Archive&)>& write);
+
+/// The text of an object with its checksum.
+std::string sealed(std::string object);
+
+/// The text of a sealed file. Throws Damaged, also if it has no checksum, and SceneError if it
+/// cannot be read.
+std::string read_sealed(const std::string& file);
+
+}  // namespace apothem
