@@ -141,7 +141,8 @@ std::string use_checkpoint(const std::string& folder,
       // The first one is the one to be mended.
       throw first;
     }
-    return first.what();
+    const auto* damaged = dynamic_cast<const Damaged*>(&first);
+    return damaged ? damaged->fault() : first.what();
   }
 }
 

@@ -42,17 +42,16 @@ std::string sealed(std::string object) {
 
 std::string read_sealed(const std::string& file) {
   std::string text = read_text(file);
-  if (text.empty()) throw Damaged(file, 0, "", "is damaged: it is empty; run it anew");
+  if (text.empty()) throw Damaged(file, "is damaged: it is empty");
   const size_t length = seal({}).size();
   Checksum checksum;
   if (text.size() > length) checksum.add(text.data(), text.size() - length);
   if (text.size() > length && text.ends_with(seal(checksum))) return text;
   const size_t key = text.rfind(std::string(",\"") + kKey);
-  throw Damaged(file, 0, "",
-                key == std::string::npos || key + length < text.size()
-                    ? "is damaged, or of an older version of the program: it does not end with "
-                      "its checksum; run it anew"
-                    : "is damaged: its content does not have the checksum at its end");
+  throw Damaged(file, key == std::string::npos || key + length < text.size()
+                          ? "is damaged, or of an older version of the program: it does not end "
+                            "with its checksum"
+                          : "is damaged: its content does not have the checksum at its end");
 }
 
 }  // namespace apothem

@@ -14,7 +14,13 @@ namespace apothem {
 /// A sealed file that is not as it was written.
 class Damaged : public SceneError {
  public:
-  using SceneError::SceneError;
+  Damaged(const std::string& file, const std::string& fault)
+      : SceneError(file, 0, "", fault + "; run it anew"), fault_(file + ": " + fault) {}
+  /// The file and what is wrong, without the remedy.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  std::string fault_;
 };
 
 /// Writes a file that outlasts a machine that stops: an object with what `write` writes and its

@@ -196,7 +196,9 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
   CHECK(rest.err.find("load step 4 of 5") != std::string::npos);
   CHECK(rest.err.find("load step 3 of 5") == std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "blocks/checkpoint.json"));
-  CHECK(run({"run", scene, "-o", folder / "blocks", "--resume"}, folder).code == 2);
+  const Result ended = run({"run", scene, "-o", folder / "blocks", "--resume", "--verify"}, folder);
+  CHECK(ended.code == 0);
+  CHECK(ended.out.find("has ended before") != std::string::npos);
 }
 
 TEST_CASE("Ctrl-C ends the search for a settled start, and no run has begun", "[program]") {
@@ -486,9 +488,20 @@ TEST_CASE("a run may begin with the last state of another one", "[program]") {
     CHECK(bad.err.find(says) != std::string::npos);
     CHECK_FALSE(std::filesystem::exists(folder / "bad"));
   }
-  CHECK(
-      run({"run", file, "-o", folder / "two", "--resume", "--from", folder / "one"}, folder).code ==
-      2);
+  // The same command again and again, until the run has ended.
+  const std::vector<std::string> again{"run",      file,     "-o",           folder / "three",
+                                       "--resume", "--from", folder / "one", "--until"};
+  for (const char* until : {"0.05", "1", "1"}) {
+    std::vector<std::string> command = again;
+    command.emplace_back(until);
+    CHECK(run(command, folder).code == 0);
+  }
+  CHECK((content(folder / "two/history.csv") == content(folder / "three/history.csv")));
+  REQUIRE(run({"run", file, "-o", folder / "four", "--until", "0.05"}, folder).code == 0);
+  const Result other =
+      run({"run", file, "-o", folder / "four", "--resume", "--from", folder / "one"}, folder);
+  CHECK(other.code == 2);
+  CHECK(other.err.find("has not begun with that in") != std::string::npos);
 }
 
 TEST_CASE("a resumed run of elements with damping continues bit for bit", "[program]") {
@@ -671,8 +684,10 @@ TEST_CASE("a resumed run continues bit for bit", "[program][slow]") {
     CHECK((content(folder / (std::string("slide/") + name)) ==
            content(folder / (std::string("slide2/") + name))));
   }
-  // Nothing to resume any more; and never from another scene's checkpoint.
-  CHECK(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 2);
+  // Nothing is left to do; and never from another scene's checkpoint.
+  const std::string before = content(folder / "parts/run.json");
+  CHECK(run({"run", file, "-o", folder / "parts", "--resume"}, folder).code == 0);
+  CHECK(content(folder / "parts/run.json") == before);
   REQUIRE(run({"run", file, "-o", folder / "other", "--until", "0.01"}, folder).code == 0);
   CHECK(
       run({"run", kScene, "-o", folder / "other", "--resume"}, folder).err.find("another scene") !=

@@ -5,6 +5,7 @@
 
 #include "apothem/output/files.hpp"
 #include "apothem/run/hash.hpp"
+#include "apothem/run/sealed_file.hpp"
 #include "archive/saved.hpp"
 #include "dynamics/term_of.hpp"
 #include "scenes.hpp"
@@ -366,7 +367,7 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
   const std::string good = content(checkpoint_of(folder));
   const Json json = Json::parse(good);
   const auto write = [&](const Json& damaged) {
-    write_file(checkpoint_of(folder), damaged.dump());
+    write_file(checkpoint_of(folder), sealed(damaged.dump()));
   };
   const auto without = [&](const std::string& pointer) {
     Json damaged = json;
@@ -399,14 +400,18 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
   refused("is damaged");
   write(with("/simulation/step_control/size", 0));
   refused("is damaged");
-  write(with("/progress/history_sizes", {0}));
-  refused("is damaged");
+  write(with("/progress/histories", Json::array()));
+  refused("without histories");
+  write(with("/progress/histories/1/checksum", "fnv1a64:0123456789abcdef"));
+  refused("energy.csv: is not as the run has written it");
   write(with("/scene_hash", "fnv1a64:0123456789abcdef"));
   refused("belongs to another scene");
   write_file(checkpoint_of(folder), good.substr(0, good.size() / 2));
-  refused("is not a checkpoint");
+  refused("is damaged");
   write_file(checkpoint_of(folder), "");
-  refused("is not a checkpoint");
+  refused("it is empty");
+  write_file(checkpoint_of(folder), json.dump());
+  refused("is damaged");
   std::filesystem::remove(checkpoint_of(folder));
   refused("no checkpoint to resume from");
 
@@ -435,7 +440,7 @@ TEST_CASE("a checkpoint of a static run with another number of bodies is refused
     Json damaged = json;
     REQUIRE(damaged.contains(Json::json_pointer(pointer)));
     damaged[Json::json_pointer(pointer)] = value;
-    write_file(checkpoint_of(folder), damaged.dump());
+    write_file(checkpoint_of(folder), sealed(damaged.dump()));
     CHECK_THROWS_WITH(Run(scene, {.folder = folder / "parts", .resume = true}),
                       Catch::Contains("is damaged"));
   }
