@@ -10,6 +10,8 @@ namespace apothem {
 namespace {
 
 constexpr std::int32_t kEmpty = INT32_MIN;  // level of an empty box
+constexpr double kFarthest = 0x1p1000;      // where coordinates of cells end, m
+constexpr int kBits = 50;                   // of the numbers of cells
 constexpr size_t kFew = 4;                  // boxes are few if they are less than one in so many
 // ns, of a box:
 constexpr double kLocateTime = 8, kLookTime = 150, kSortTime = 20, kMergeTime = 8;
@@ -38,6 +40,31 @@ std::int64_t floor_of(double x) {
 
 double farthest(const Box& box) {
   return std::max({std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
+}
+
+// The exponents of the coordinates of all boxes but a few lie below the returned one by so much
+// that a bound there leaves them as they are.
+int common_exponent(const std::vector<Box>& boxes) {
+  std::vector<int> exponents;
+  for (const Box& box : boxes) {
+    if (is_empty(box)) continue;
+    const double far = farthest(box);
+    exponents.push_back(far > 0 ? std::ilogb(std::min(far, kFarthest)) : -1000);
+  }
+  constexpr std::ptrdiff_t kShare = 16;  // one box in so many may lie farther out
+  constexpr int kRoom = 4;
+  const auto place = exponents.end() - 1 - std::ssize(exponents) / kShare;
+  std::nth_element(exponents.begin(), place, exponents.end());
+  return *place + kRoom;
+}
+
+// The box with no coordinate beyond a bound. Boxes that overlap still do so afterwards.
+Box bounded(const Box& box, double bound) {
+  Box result = box;
+  for (double* x : {&result.x0, &result.y0, &result.x1, &result.y1}) {
+    *x = std::clamp(*x, -bound, bound);
+  }
+  return result;
 }
 
 }  // namespace
@@ -103,30 +130,45 @@ void BoxGrid::find_pairs(const std::vector<Box>& boxes, std::vector<BoxPair>& pa
   levels_.clear();
   found_.begin(threads);
   const auto n = static_cast<std::int32_t>(boxes.size());
-  reach_ = 0;
-  for (const Box& box : boxes) {
-    if (!is_empty(box)) reach_ = std::max(reach_, farthest(box));
-  }
+  const std::vector<Box>& bounded_boxes = find_reach(boxes);
   // No level is finer than 2^-50 of the largest coordinate, so that cell indices stay below 2^52.
-  finest_ = std::max(reach_ > 0 ? std::ilogb(reach_) - 50 : 0, -1000);
+  finest_ = std::max(reach_ > 0 ? std::ilogb(reach_) - kBits : 0, -1000);
   mask_ = std::bit_ceil(2 * boxes.size()) - 1;
   heads_.assign(mask_ + 1, -1);
   entries_.resize(boxes.size());
   is_changed_.assign(boxes.size(), 0);
   threads.chunks(n, kLocateTime, [&](int first, int end, int) {
-    for (std::int32_t i = first; i < end; ++i) locate(i, boxes[i]);
+    for (std::int32_t i = first; i < end; ++i) locate(i, bounded_boxes[i]);
   });
   for (std::int32_t i = 0; i < n; ++i) enter(i);
   threads.chunks(n, kLookTime, [&](int first, int end, int worker) {
     for (std::int32_t i = first; i < end; ++i) {
-      find_partners(boxes, i, found_.of(worker));
+      find_partners(boxes, bounded_boxes[i], i, found_.of(worker));
     }
   });
   sort(pairs, threads);
 }
 
+// The boxes in the bounds of the grid. A few that lie far outside, or that have no end, would leave
+// all others in one cell of it: they are cut off there, and come into its outermost cells.
+const std::vector<Box>& BoxGrid::find_reach(const std::vector<Box>& boxes) {
+  double smallest = HUGE_VAL;
+  reach_ = 0;
+  for (const Box& box : boxes) {
+    if (is_empty(box)) continue;
+    reach_ = std::max(reach_, farthest(box));
+    smallest = std::min(smallest, box.extent());
+  }
+  if (reach_ <= kFarthest && reach_ * power_of_two(-kBits) <= smallest) return boxes;
+  reach_ = std::min(reach_, std::ldexp(1., common_exponent(boxes)));
+  bounded_.clear();
+  for (const Box& box : boxes) bounded_.push_back(is_empty(box) ? box : bounded(box, reach_));
+  return bounded_;
+}
+
 // Of a box with those of its own level that come behind it in the grid, and with larger ones.
-void BoxGrid::find_partners(const std::vector<Box>& boxes, std::int32_t i,
+// `in_grid`: the box in the bounds of the grid.
+void BoxGrid::find_partners(const std::vector<Box>& boxes, const Box& in_grid, std::int32_t i,
                             std::vector<BoxPair>& found) const {
   const Box& box = boxes[i];
   const Entry& own = entries_[i];
@@ -135,9 +177,9 @@ void BoxGrid::find_partners(const std::vector<Box>& boxes, std::int32_t i,
     if (!apart(box, boxes[j])) found.push_back({std::min(i, j), std::max(i, j)});
   };
   for (const int level : levels_) {
-    if (level > own.level) each_near(box, level, nullptr, report);
+    if (level > own.level) each_near(in_grid, level, nullptr, report);
   }
-  each_near(box, own.level, &own, [&](std::int32_t j) {
+  each_near(in_grid, own.level, &own, [&](std::int32_t j) {
     const Entry& other = entries_[j];
     // In one cell both find each other.
     if (other.column == own.column && other.row == own.row && j >= i) return;

@@ -26,11 +26,11 @@ struct BoxPair {
 };
 
 /// A hierarchical hash grid. It takes time linear in the number of boxes and of pairs, also if the
-/// sizes of the boxes differ by orders of magnitude. Each box is stored once: in the grid level
-/// whose cells are just larger than the box, in the cell that contains its centre. It looks for
-/// partners in its own level and in all coarser ones. Each thread looks for the partners of a range
-/// of boxes; what they have found is put in order afterwards, so that it does not depend on their
-/// number.
+/// sizes of the boxes differ by orders of magnitude, and if a few are far away or have no end. Each
+/// box is stored once: in the grid level whose cells are just larger than the box, in the cell that
+/// contains its centre. It looks for partners in its own level and in all coarser ones. Each thread
+/// looks for the partners of a range of boxes; what they have found is put in order afterwards, so
+/// that it does not depend on their number.
 class BoxGrid {
  public:
   /// Replaces the content of `pairs` by all pairs of boxes that overlap or touch, in ascending
@@ -56,8 +56,9 @@ class BoxGrid {
   /// Puts a box into the slot of its cell, or takes it out again.
   void enter(std::int32_t i);
   void leave(std::int32_t i);
-  void find_partners(const std::vector<Box>& boxes, std::int32_t i,
+  void find_partners(const std::vector<Box>& boxes, const Box& in_grid, std::int32_t i,
                      std::vector<BoxPair>& found) const;
+  const std::vector<Box>& find_reach(const std::vector<Box>& boxes);
   /// Makes `pairs` all that has been found, in ascending order.
   void sort(std::vector<BoxPair>& pairs, const Threads& threads);
   /// Takes pairs of changed boxes out of `pairs`, and puts those of `added` in; both ascend.
@@ -72,7 +73,8 @@ class BoxGrid {
   std::vector<std::int32_t> heads_;  // first box of each slot of the hash table, or -1
   std::vector<int> levels_;          // that have boxes, or have had some
   size_t mask_ = 0;                  // number of slots, a power of two, less one
-  double reach_ = 0;                 // largest coordinate
+  double reach_ = 0;                 // largest coordinate in the grid
+  std::vector<Box> bounded_;         // memory of `find_reach`
   int finest_ = 0;                   // level
   WorkerLists<BoxPair> found_;
   std::vector<std::int32_t> ends_;  // memory of `sort`: behind the pairs of each first box
