@@ -10,16 +10,20 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
 
 #include "apothem/dynamics/unstable.hpp"
+#include "apothem/execution/standard_files.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_folder.hpp"
 #include "apothem/scene/error.hpp"
 #include "completion.hpp"
 #include "manual.hpp"
 #include "options.hpp"
+#include "signals.hpp"
 #include "usage.hpp"
 #include "work_line.hpp"
 
@@ -78,7 +82,9 @@ class Failure {
  public:
   Failure(int argc, char** argv)
       : json_(std::any_of(argv, argv + argc,
-                          [](const char* word) { return std::string(word) == "--json"; })) {}
+                          [](const char* word) { return std::string(word) == "--json"; })) {
+    if (json_) say_endings_in_json();
+  }
 
   int operator()(int code, const std::string& message) const {
     return operator()(code, message, {{"error", message}});
@@ -112,10 +118,26 @@ void keep_memory() {
 #endif
 }
 
+// Memory may also run out where no exception can pass, as in a thread of a library.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    std::fputs("apothem: out of memory\n", stderr);
+    std::_Exit(exit_code::system_failed);
+  } catch (...) {
+    // A mistake in the program, which is to be seen.
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  heed_signals();
+  open_standard_files();
   keep_memory();
+  std::set_terminate(end_without_memory);
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a limit on file sizes becomes an error of write()
   const Failure fail(argc, argv);
   try {

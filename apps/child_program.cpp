@@ -11,6 +11,7 @@
 #include <csignal>
 
 #include "apothem/output/files.hpp"
+#include "signals.hpp"
 
 namespace apothem {
 namespace {
@@ -90,10 +91,12 @@ ProgramResult run_program(const std::vector<std::string>& words) {
   pid_t process = 0;
   result.start_error = start_program(words, out.descriptor(), err.descriptor(), process);
   if (result.start_error != 0) return result;
+  end_with_program(process);
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {
     if (errno != EINTR) throw SystemFailure(words[0], errno);
   }
+  end_with_program(0);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = out.text();
   result.err = err.text();

@@ -84,7 +84,7 @@ void write_movie(const ViewOptions& options) {
   words.insert(words.end(), format.begin(), format.end());
   words.push_back(partial);
   const ProgramResult made = ffmpeg(words);
-  WorkLine::check();
+  line.check();
   std::ifstream stream(partial, std::ios::binary);
   if (made.start_error != 0 || made.code != 0 || !stream) {
     throw std::runtime_error("ffmpeg has failed: " + made.err);

@@ -47,7 +47,7 @@ Analysis analyse(Polygon polygon, const PotentialChoice& choice) {
                            : choice.reference == Reference::inscribed_circle ? circle.radius
                                                                              : skeleton.roof_height;
   SingularArea singular = singular_area(skeleton, reference);
-  WorkLine::check();
+  line.check();
   const AreaMoments moments = area_moments(polygon);
   return {std::move(polygon),  moments,   std::move(circle),
           std::move(skeleton), reference, std::move(singular)};

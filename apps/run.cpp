@@ -6,12 +6,11 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apothem/dynamics/unstable.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_picture.hpp"
 #include "apothem/run/folder.hpp"
@@ -20,19 +19,10 @@
 #include "apothem/run/summary.hpp"
 #include "apothem/scene/decimal.hpp"
 #include "commands.hpp"
+#include "signals.hpp"
 
 namespace apothem {
 namespace {
-
-std::atomic<bool> stop_asked = false;
-
-// Ctrl-C asks the run to finish its step.
-void install_signal_handlers() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { stop_asked = true; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 // One line on a terminal, redrawn; a plain line every few seconds elsewhere.
 class ProgressLine {
@@ -260,7 +250,6 @@ std::vector<Setting> settings_of(const std::vector<std::string>& texts, const st
 }
 
 int run_command(const RunOptions& options) {
-  install_signal_handlers();
   Scene scene = scene_of(options);
   RunSettings settings{folder_of(options, scene), options.threads, options.resume,
                        options.overwrite};
@@ -271,7 +260,8 @@ int run_command(const RunOptions& options) {
     if (found == Found::ended) return report_ended(options, settings.folder);
     choose_start(found, settings);
   }
-  settings.stop_if = [] { return stop_asked.load(); };
+  Finishing signals;  // Ctrl-C asks the run to finish its step
+  settings.stop_if = [&] { return signals.asked(); };
   Run run(std::move(scene), settings);
   ProgressLine line(std::min(options.until.value_or(run.scene().time.end), run.scene().time.end));
   if (!options.quiet) {
@@ -288,7 +278,13 @@ int run_command(const RunOptions& options) {
     if (!overlaps.empty()) fmt::print(stderr, "overlaps at the start: {}\n", overlaps);
   }
   const size_t known = options.json ? 0 : print_warnings(run, 0);
-  run.run(options.until);
+  try {
+    run.advance(options.until);
+  } catch (const Unstable&) {
+    // Its status and message say so.
+  }
+  signals.take_time();
+  run.finish();
   line.clear();
   if (!run.message().empty()) {
     fmt::print(stderr, "apothem: {}: {}\n", run.scene().file, run.message());

@@ -79,7 +79,6 @@ bool RunPool::work(const std::vector<const PlannedRun*>& runs,
     if (children_.empty()) break;
     const int signal = signals_.next();
     interrupted_ = interrupted_ || signal == SIGINT || signal == SIGTERM;
-    // Again and again: a run that is still reading its scene does not heed the signal.
     for (const Child& child : children_) {
       if (interrupted_) kill(child.process, SIGINT);
     }

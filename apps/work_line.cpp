@@ -3,21 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <utility>
 
 namespace apothem {
 namespace {
-
-volatile std::sig_atomic_t signalled = 0;
-
-void handle(void (*handler)(int)) {
-  struct sigaction action = {};
-  action.sa_handler = handler;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 std::string describe(const Stage& stage, double seconds) {
   if (!stage.done) return fmt::format("{}, {:.0f} s, end not known", stage.name, seconds);
@@ -33,16 +23,13 @@ WorkLine::WorkLine(std::string work)
     : work_(std::move(work)),
       terminal_(isatty(STDERR_FILENO) != 0),
       stage_start_(Clock::now()),
-      next_(stage_start_ + std::chrono::seconds(1)) {
-  handle([](int) { signalled = 1; });
-}
+      next_(stage_start_ + std::chrono::seconds(1)) {}
 
 WorkLine::~WorkLine() {
   if (drawn_ && terminal_) {
     std::fputs("\r\033[K", stderr);
     std::fflush(stderr);
   }
-  handle(SIG_DFL);
 }
 
 void WorkLine::report(const Stage& stage) {
@@ -63,7 +50,7 @@ void WorkLine::report(const Stage& stage) {
 }
 
 void WorkLine::check() {
-  if (signalled != 0) throw Interrupted();
+  if (signals_.asked()) throw Interrupted();
 }
 
 }  // namespace apothem

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apothem/geometry/polygon/progress.hpp"
+#include "signals.hpp"
 
 namespace apothem {
 
@@ -30,10 +31,11 @@ class WorkLine {
   /// Shows a report. Throws Interrupted after a signal.
   void report(const Stage& stage);
   /// Throws Interrupted after a signal.
-  static void check();
+  void check();
 
  private:
   using Clock = std::chrono::steady_clock;
+  Finishing signals_;
   std::string work_;
   bool terminal_;
   bool drawn_ = false;

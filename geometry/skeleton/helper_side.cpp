@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "apothem/execution/standard_files.hpp"
+
 namespace apothem {
 namespace {
 
@@ -81,6 +83,7 @@ void limit_memory() {
 }  // namespace
 
 void serve_request(int argc, char** argv, const HelperWork& work) {
+  open_standard_files();
   const long parent = argc == 3 ? std::strtol(argv[1], nullptr, 10) : 0;
   const double seconds = argc == 3 ? std::strtod(argv[2], nullptr) : 0;
   if (parent <= 0 || !(seconds > 0)) {

@@ -3,9 +3,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace apothem {
@@ -54,9 +56,11 @@ class Pool {
     wake_.notify_all();
     work_on(next.round);
     const auto done = [&] { return left_ == 0; };
-    if (look_for(done)) return;
-    std::unique_lock lock(mutex_);
-    done_.wait(lock, done);
+    if (!look_for(done)) {
+      std::unique_lock lock(mutex_);
+      done_.wait(lock, done);
+    }
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
  private:
@@ -95,7 +99,12 @@ class Pool {
       Ticket next = ticket;
       ++next.worker;
       if (!ticket_.compare_exchange_weak(ticket, next)) continue;
-      work_(task_, ticket.worker);
+      try {
+        work_(task_, ticket.worker);
+      } catch (...) {  // out of memory
+        const std::scoped_lock lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+      }
       if (left_.fetch_sub(1) == 1) {
         const std::scoped_lock lock(mutex_);
         done_.notify_one();
@@ -109,7 +118,8 @@ class Pool {
   std::mutex mutex_;  // guards sleeping
   std::condition_variable wake_, done_;
   std::atomic<Ticket> ticket_;
-  std::atomic<int> left_{0};  // parts of the loop that are not done
+  std::atomic<int> left_{0};    // parts of the loop that are not done
+  std::exception_ptr failure_;  // the first of the loop; guarded while it runs
   Work work_ = nullptr;
   void* task_ = nullptr;
 };

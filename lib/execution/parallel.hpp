@@ -31,7 +31,7 @@ class Threads {
   }
 
   /// f(first, end, worker) for chunks of [0, items), with worker in [0, count()) different for
-  /// chunks that run at the same time; see worth(). f must not throw.
+  /// chunks that run at the same time; see worth(). What f throws is thrown in the end.
   template <class F>
   void chunks(int items, double each, F&& f) const {
     if (!worth(items, each)) {
