@@ -10,19 +10,18 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
 
 #include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/standard_files.hpp"
 #include "apothem/output/files.hpp"
 #include "apothem/output/run_folder.hpp"
 #include "apothem/scene/error.hpp"
+#include "apothem/system/standard_files.hpp"
 #include "completion.hpp"
 #include "manual.hpp"
 #include "options.hpp"
+#include "out_of_memory.hpp"
 #include "signals.hpp"
 #include "usage.hpp"
 #include "work_line.hpp"
@@ -118,26 +117,13 @@ void keep_memory() {
 #endif
 }
 
-// Memory may also run out where no exception can pass, as in a thread of a library.
-[[noreturn]] void end_without_memory() {
-  try {
-    if (std::current_exception()) std::rethrow_exception(std::current_exception());
-  } catch (const std::bad_alloc&) {
-    std::fputs("apothem: out of memory\n", stderr);
-    std::_Exit(exit_code::system_failed);
-  } catch (...) {
-    // A mistake in the program, which is to be seen.
-  }
-  std::abort();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   heed_signals();
   open_standard_files();
   keep_memory();
-  std::set_terminate(end_without_memory);
+  heed_lack_of_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a limit on file sizes becomes an error of write()
   const Failure fail(argc, argv);
   try {

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "apothem/run/cost.hpp"
 #include "apothem/run/run.hpp"
 #include "commands.hpp"
 #include "plan_json.hpp"
@@ -67,6 +71,11 @@ void say_step(const Scene& scene, const Simulation& simulation) {
                                how, choice.limit.reason, choice.stability));
 }
 
+double steps_of(const Scene& scene, const Simulation& simulation) {
+  return scene.time.statics ? static_cast<double>(scene.time.load_steps)
+                            : std::ceil(scene.time.end / simulation.step_choice().step);
+}
+
 std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.2g} s", seconds);
   if (seconds < 6000) return fmt::format("{:.2g} min", seconds / 60);
@@ -115,8 +124,10 @@ int check_command(const CheckOptions& options) {
   Scene scene = read_scene(options.scene, settings_of(options.set, options.scene));
   scene.drop_rings();
   // First the trial, so that its simulation is gone when the other one is made.
-  const PlanEstimates estimates = estimates_of(scene);
+  PlanEstimates estimates = estimates_of(scene);
   const std::unique_ptr<Simulation> simulation = make_simulation(scene, 1);
+  std::ranges::move(excessive_costs(scene, steps_of(scene, *simulation)),
+                    std::back_inserter(estimates.warnings));
   if (options.json) {
     fmt::print("{}\n", plan_json(scene, *simulation, estimates));
     return exit_code::done;

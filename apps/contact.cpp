@@ -80,9 +80,10 @@ int batch(const ContactOptions& options) {
   potential_choice(options);  // a wrong option is reported once, not for each line
   int code = exit_code::done;
   for_each_line(options.batch, kPairForm, [&](const BatchLine& line) {
-    Json object{{"name", line.name}};
+    const Json name = line.has_count ? Json(line.name) : Json();
+    Json object{{"name", name}};
     const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
-      object = {{"name", line.name},
+      object = {{"name", name},
                 {"error", reason},
                 {"polygon", which},
                 {"vertex", vertex},

@@ -175,7 +175,8 @@ constexpr const char* kRingForm = "name n x y ...";
 int batch(const PolygonOptions& options, const PotentialChoice& choice) {
   int code = exit_code::done;
   for_each_line(options.batch, kRingForm, [&](const BatchLine& line) {
-    Json object{{"name", line.name}};
+    const Json name = line.has_count ? Json(line.name) : Json();
+    Json object{{"name", name}};
     try {
       std::istringstream words(line.text.substr(line.text.find(line.name) + line.name.size()));
       std::vector<Vec2> ring = read_ring(words);

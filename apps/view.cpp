@@ -6,6 +6,7 @@
 
 #include "apothem/output/files.hpp"
 #include "apothem/player/player.hpp"
+#include "apothem/system/input_file.hpp"
 #include "commands.hpp"
 #include "movie.hpp"
 #include "version.hpp"
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 // The name of the scene, as far as the run has got to say it; otherwise that of the folder.
 std::string name_of(const std::string& folder) {
+  if (!refusal_of_input(folder + "/run.json").empty()) return folder_title(folder);
   std::ifstream stream(folder + "/run.json");
   const auto json = nlohmann::json::parse(stream, nullptr, false);
   const auto name = json.is_object() ? json.find("name") : json.end();

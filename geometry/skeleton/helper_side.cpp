@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "apothem/execution/standard_files.hpp"
+#include "apothem/system/standard_files.hpp"
 
 namespace apothem {
 namespace {

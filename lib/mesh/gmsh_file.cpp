@@ -113,7 +113,7 @@ class GmshReader {
     if (rows_.rest().front() != '$') rows_.fail("is no gmsh file: it must start with $MeshFormat");
     do {
       const std::string section(rows_.word("the name of a section"));
-      if (section.front() != '$') rows_.fail("\"" + section + "\" stands outside of all sections");
+      if (section.front() != '$') rows_.fail("a line stands outside of all sections");
       if (section == "$MeshFormat") {
         format();
       } else if (section == "$NOD" || section == "$ELM") {
@@ -121,7 +121,7 @@ class GmshReader {
             "is of version 1, which is not read; save it as 4.1 or 2.2 (gmsh FILE -save -format "
             "msh41)");
       } else if (version_ == 0 && section != "$Comments") {
-        rows_.fail("is no gmsh file: $MeshFormat must come before " + section);
+        rows_.fail("is no gmsh file: $MeshFormat must come before all other sections");
       } else if (section == "$PhysicalNames") {
         physical_names();
       } else if (section == "$Entities") {

@@ -23,12 +23,16 @@ constexpr int kPanelHeight = 330;   // of one of several panels, pixels
 constexpr int kSingleHeight = 560;  // of a single panel, pixels
 
 // The text as a gnuplot string. In single quotes, gnuplot takes everything literally except the
-// quote and the end of a line.
+// quote and the end of a line. A doubled quote stands for one, but not at the start of the title of
+// a curve (gnuplot 5.4), so that an apostrophe gets its typographic form.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
-    if (c == '\'') result += c;
-    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (c == '\'') {
+      result += "\u2019";
+    } else {
+      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
   }
   return result + "'";
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "apothem/model/columns.hpp"
+#include "apothem/system/input_file.hpp"
 
 namespace apothem {
 namespace {
@@ -144,6 +145,8 @@ const std::vector<double>* HistoryTable::column(const std::string& name) const {
 }
 
 HistoryTable read_history(const std::string& file) {
+  const std::string refusal = refusal_of_input(file);
+  if (!refusal.empty()) throw std::runtime_error(file + ": " + refusal);
   std::ifstream stream(file);
   std::string line;
   if (!std::getline(stream, line)) throw std::runtime_error(file + ": cannot be read");

@@ -11,6 +11,7 @@
 
 #include "apothem/output/convex_cells.hpp"
 #include "apothem/output/vtu_file.hpp"
+#include "apothem/system/input_file.hpp"
 
 namespace apothem {
 namespace {
@@ -100,8 +101,9 @@ bool all_rigid(const Frame& frame) {
 }
 
 FrameNames read_names(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
+  std::ifstream in;
+  if (refusal_of_input(file).empty()) in.open(file, std::ios::binary);
+  if (!in.is_open()) {
     throw ResultsError(file +
                        ": there is no such file, which has the names of the bodies; these are no "
                        "results of a run, or those of an older version of the program");

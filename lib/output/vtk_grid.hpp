@@ -1,15 +1,18 @@
-// Private header of the VTK writers: named arrays, and a grid as XML text.
+// Private header of the files that use VTK: named arrays, and a grid as XML text.
 #pragma once
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
 #include <vtkIntArray.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstdlib>
+#include <new>
 #include <string>
 
 namespace apothem {
@@ -28,6 +31,9 @@ inline vtkNew<vtkIntArray> integers(const char* name) {
   array->SetName(name);
   return array;
 }
+
+/// Has VTK print nothing: what has failed is said by an exception.
+inline void keep_vtk_silent() { vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF); }
 
 /// Has VTK use one thread in all that it does. It would wake others for the extremes of every
 /// array, which takes longer than to find them.
@@ -54,6 +60,7 @@ inline void add_cell_without_points(vtkUnstructuredGrid* grid) {
 /// accept as well, or text where there are none.
 inline std::string xml(vtkUnstructuredGrid* grid) {
   keep_to_one_thread();
+  keep_vtk_silent();
   if (grid->GetNumberOfCells() == 0) add_cell_without_points(grid);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);
@@ -62,6 +69,8 @@ inline std::string xml(vtkUnstructuredGrid* grid) {
   writer->SetCompressionLevel(1);  // higher ones take up to twice as long for 2 %
   writer->WriteToOutputStringOn();
   writer->Write();
+  // A text can only fail for lack of memory. Zlib says so, and VTK passes it on as an error.
+  if (writer->GetErrorCode() != vtkErrorCode::NoError) throw std::bad_alloc();
   return writer->GetOutputString();
 }
 

@@ -17,16 +17,28 @@
 #include <vtkXMLDataParser.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
+#include <charconv>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string_view>
 
 #include "apothem/output/run_folder.hpp"
+#include "apothem/output/vtk_grid.hpp"
+#include "apothem/system/input_file.hpp"
 
 namespace apothem {
 namespace {
 
+constexpr size_t kMostComponents = 64, kMostInCharacter = 1000;
+
 // For a missing file VTK would print a message of its own.
 void require_file(const std::string& file) {
   if (!std::filesystem::exists(file)) throw ResultsError(file + ": there is no such file");
+  const std::string refusal = refusal_of_input(file);
+  if (!refusal.empty()) throw ResultsError(file + ": " + refusal);
 }
 
 // Counts the errors of a reader in place of printing them.
@@ -47,6 +59,67 @@ class Errors {
 
 ResultsError damaged(const std::string& file) {
   return ResultsError(file + ": is no VTK file, or a damaged one");
+}
+
+// The value of an attribute in a tag, empty if there is none.
+std::string_view attribute(std::string_view tag, std::string_view name) {
+  const size_t at = tag.find(name);
+  if (at == std::string_view::npos) return {};
+  const size_t begin = at + name.size(), end = tag.find('"', begin);
+  return end == std::string_view::npos ? std::string_view() : tag.substr(begin, end - begin);
+}
+
+// Whether an attribute is not there or a number from 0 to `most`.
+bool is_count(std::string_view tag, std::string_view name, size_t most) {
+  if (tag.find(name) == std::string_view::npos) return true;
+  const std::string_view word = attribute(tag, name);
+  size_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && value <= most;
+}
+
+// VTK's reader does not survive an array of a kind that it does not know, or numbers of items that
+// are none.
+void require_known_arrays(const std::string& file) {
+  static const std::set<std::string_view> known{"Int8",    "Int16",   "Int32",  "Int64",
+                                                "UInt8",   "UInt16",  "UInt32", "UInt64",
+                                                "Float32", "Float64", "String", "Bit"};
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const auto each = [&](std::string_view name, const auto& judge) {
+    for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+      const size_t end = std::min(text.find('>', at), text.size());
+      if (!judge(std::string_view(text).substr(at, end - at))) throw damaged(file);
+    }
+  };
+  each("Array ", [&](std::string_view tag) {
+    return known.contains(attribute(tag, " type=\"")) &&
+           is_count(tag, " NumberOfComponents=\"", kMostComponents) &&
+           is_count(tag, " NumberOfTuples=\"", text.size());
+  });
+  // Every point and every cell has numbers of its own, of which a file packs a few hundred in a
+  // character at most.
+  each("<Piece ", [&](std::string_view tag) {
+    return is_count(tag, " NumberOfPoints=\"", kMostInCharacter * text.size()) &&
+           is_count(tag, " NumberOfCells=\"", kMostInCharacter * text.size());
+  });
+}
+
+// The arrays that tell where the corners of each cell begin in the list of all corners.
+void require_order(const std::string& file, vtkUnstructuredGrid* grid) {
+  vtkCellArray* const cells = grid->GetCells();
+  vtkDataArray* const offsets = cells ? cells->GetOffsetsArray() : nullptr;
+  if (!offsets || offsets->GetNumberOfTuples() != grid->GetNumberOfCells() + 1) {
+    throw damaged(file);
+  }
+  double before = 0;
+  for (vtkIdType c = 0; c < offsets->GetNumberOfTuples(); ++c) {
+    const double offset = offsets->GetComponent(c, 0);
+    if (offset < before || offset > static_cast<double>(cells->GetNumberOfConnectivityIds())) {
+      throw damaged(file);
+    }
+    before = offset;
+  }
 }
 
 VtuArray array_of(vtkDataArray* data) {
@@ -104,6 +177,8 @@ const VtuArray& VtuFile::cell_array(const char* array, int components) const {
 
 VtuFile read_vtu(const std::string& file) {
   require_file(file);
+  require_known_arrays(file);
+  keep_vtk_silent();
   const Errors errors;
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   for (const unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
@@ -116,6 +191,7 @@ VtuFile read_vtu(const std::string& file) {
   reader->Update();
   if (!errors.none()) throw damaged(file);
   vtkUnstructuredGrid* grid = reader->GetOutput();
+  if (grid->GetNumberOfCells() > 0) require_order(file, grid);
   VtuFile result;
   result.name = file;
   const auto count = static_cast<size_t>(grid->GetNumberOfPoints());

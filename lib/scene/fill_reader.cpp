@@ -17,11 +17,14 @@
 #include "apothem/scene/body_reader.hpp"
 #include "apothem/scene/polygon_value.hpp"
 #include "apothem/scene/value_maker.hpp"
+#include "apothem/system/memory.hpp"
 
 namespace apothem {
 namespace {
 
 constexpr int kMostBlocks = 10'000'000;
+// What a body and an element of a scene take in memory, measured with meshes of squares, bytes.
+constexpr double kBodyBytes = 4e3, kElementBytes = 1.1e3;
 constexpr double kTouching = 1e-7;  // of the size of a cell
 constexpr double kSharpest = 50 * M_PI / 180, kBluntest = 130 * M_PI / 180;  // of quadrilaterals
 
@@ -84,9 +87,14 @@ class Fill {
     } else {
       // Batches do not keep clear of each other: a later one waits until nothing is in its way.
       std::vector<std::vector<Vec2>> first;
+      if (count_) refuse_too_many(*count_, 0, filled.batches);
       for (int batch = 0; batch < filled.batches; ++batch) {
         std::vector<std::vector<Vec2>> rings = add_blocks(obstacles, random, filled);
-        if (batch == 0) first = std::move(rings);
+        if (batch > 0) continue;
+        first = std::move(rings);
+        double area = 0;
+        for (const std::vector<Vec2>& ring : first) area += ring_area(ring);
+        refuse_too_many(filled.count, area, filled.batches);
       }
       obstacles.insert(obstacles.end(), first.begin(), first.end());
     }
@@ -393,6 +401,21 @@ class Fill {
     PackingSpace space(*outline_, holes_, gap_, size);
     for (const std::vector<Vec2>& ring : obstacles) space.add_obstacle(ring);
     return space;
+  }
+
+  // Before they are made: `count` blocks, of this area together, in each of some batches.
+  void refuse_too_many(int count, double area, int batches) const {
+    const double elements = element_ ? area / (mesh_size_ * mesh_size_) : 0;  // of a batch
+    const double bytes = batches * (kBodyBytes * count + kElementBytes * elements);
+    const double there = memory_limit();
+    if (bytes < there) return;
+    const JsonValue* const times = value_.find("repeat");
+    in_.fail(times && batches > 1 ? *times : value_,
+             fmt::format("{}{} bodies{} take about {:.2g} GB of memory, and there are "
+                         "{:.2g} GB; give fewer",
+                         batches > 1 ? fmt::format("{} batches of ", batches) : "", count,
+                         element_ ? fmt::format(" with {:.2g} elements", std::ceil(elements)) : "",
+                         bytes / 1e9, there / 1e9));
   }
 
   std::vector<std::vector<Vec2>> add_blocks(const std::vector<std::vector<Vec2>>& obstacles,

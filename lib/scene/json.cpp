@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <system_error>
 
 #include "apothem/scene/ring_text.hpp"
+#include "apothem/system/input_file.hpp"
 
 namespace apothem {
 namespace {
@@ -79,6 +79,7 @@ class Builder {
     std::string what = error.what();
     if (const size_t colon = what.find(": "); colon != std::string::npos) what.erase(0, colon + 2);
     if (error.id == 406) what = "number out of the range of double precision";
+    if (root.type() == JsonValue::Type::null) what = "it must begin with { or [";
     throw SceneError(file_, line_at(position), "", "not valid JSON: " + what);
   }
 
@@ -187,10 +188,8 @@ JsonValue parse_json(const std::string& text, const std::string& file) {
 }
 
 std::ifstream open_text(const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw SceneError(file, 0, "", "is a directory; give a file");
-  }
+  const std::string refusal = refusal_of_input(file, kLargestText);
+  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
@@ -209,14 +208,17 @@ void strip_byte_order_mark(std::string& text, const std::string& file) {
 }
 
 std::string read_text(const std::string& file, size_t limit) {
+  const std::string refusal = refusal_of_input(file, limit);
+  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
   std::ifstream stream = open_text(file);
+  limit = input_limit(limit);
   std::string text;
   std::vector<char> block(1 << 16);
   while (stream.read(block.data(), static_cast<std::streamsize>(block.size())),
          stream.gcount() > 0) {
     text.append(block.data(), static_cast<size_t>(stream.gcount()));
     if (text.size() > limit) {
-      throw SceneError(file, 0, "", fmt::format("is larger than {} MiB", limit >> 20));
+      throw SceneError(file, 0, "", too_large(limit));
     }
   }
   if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");

@@ -89,9 +89,9 @@ std::vector<PolygonPair> read_pair_file(const std::string& file) {
           error.polygon().empty()
               ? ""
               : fmt::format(", polygon {}, vertex {}", error.polygon(), error.vertex());
-      throw SceneError(
-          file, line.number, "",
-          fmt::format("{}{}: {}; write {}", line.name, place, error.what(), kPairForm));
+      throw SceneError(file, line.number, "",
+                       fmt::format("{}{}: {}; write {}", line.has_count ? line.name : "the pair",
+                                   place, error.what(), kPairForm));
     }
   });
   return pairs;

@@ -11,6 +11,18 @@
 #include "apothem/scene/ring_text.hpp"
 
 namespace apothem {
+namespace {
+
+bool is_count(const std::string& word) {
+  try {
+    parse_count(word);
+    return true;
+  } catch (const BadNumber&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 void for_each_line(const std::string& file, const char* form,
                    const std::function<void(const BatchLine&)>& evaluate) {
@@ -28,6 +40,8 @@ void for_each_line(std::istream& text, const std::string& file, const char* form
     std::istringstream words(line.text);
     if (!(words >> line.name) || line.name == "#") continue;
     any = true;
+    std::string count;
+    line.has_count = words >> count && is_count(count);
     evaluate(line);
   }
   if (!any) throw SceneError(file, 0, "", std::string("is empty; write on each line ") + form);
@@ -39,8 +53,8 @@ std::vector<Vec2> read_ring(std::istream& line) {
   int n = 0;
   try {
     n = parse_count(word);
-  } catch (const BadNumber& error) {
-    throw InvalidPolygon(fmt::format("the number of vertices: {}", error.what()), 0);
+  } catch (const BadNumber&) {  // the word is not quoted: the file may be any other one
+    throw InvalidPolygon("the number of vertices is not a whole number", 0);
   }
   std::vector<Vec2> ring;
   for (int i = 0; i < n; ++i) {

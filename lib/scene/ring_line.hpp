@@ -15,6 +15,9 @@ struct BatchLine {
   std::string name;  ///< the first word
   std::string text;  ///< the whole line
   int number;        ///< in the file, counted from 1
+  /// Whether a number of vertices follows the name. Otherwise the line may be that of any file, and
+  /// no message quotes it.
+  bool has_count = false;
 };
 
 /// Calls evaluate() for each line but those that are blank or begin with the word #, which are

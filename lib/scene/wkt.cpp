@@ -119,11 +119,16 @@ class Reader {
       const bool other = std::any_of(kOtherShapes.begin(), kOtherShapes.end(),
                                      [&](const char* name) { return shape.starts_with(name); });
       fail(other ? fmt::format("is a {}; give a POLYGON ((x y, x y, ...))", shape)
-                 : fmt::format("is not a polygon as WKT or JSON: it begins with {}",
-                               suggest(in_.now().substr(0, 40), {"POLYGON", "MULTIPOLYGON"})));
+                 : "is not a polygon as WKT or JSON" + meant());
     }
     in_.next();
     return shape;
+  }
+
+  // Only a word that looks like the name of a shape is quoted: the file may be any other one.
+  [[nodiscard]] std::string meant() const {
+    const std::string quoted = suggest(in_.now().substr(0, 40), {"POLYGON", "MULTIPOLYGON"});
+    return quoted.ends_with('?') ? ": it begins with " + quoted : "";
   }
 
   void read_dimension() {

@@ -38,18 +38,19 @@ std::vector<Include> includes(const std::string& folder) {
 
 // As in docs/architecture.md: a room may include itself and these.
 const std::map<std::string, std::set<std::string>> kMayInclude{
+    {"system", {}},
     {"execution", {}},
-    {"geometry", {"execution"}},
+    {"geometry", {"system", "execution"}},
     {"archive", {"geometry"}},
     {"mesh", {"execution", "geometry"}},
     {"fem", {"execution", "geometry", "mesh"}},
     {"contact", {"execution", "archive", "geometry", "mesh"}},
     {"model", {"execution", "archive", "geometry", "mesh", "fem", "contact"}},
     {"dynamics", {"execution", "archive", "geometry", "mesh", "fem", "contact", "model"}},
-    {"scene", {"execution", "geometry", "mesh", "fem", "contact", "model"}},
-    {"output", {"execution", "geometry", "mesh", "model"}},
+    {"scene", {"system", "execution", "geometry", "mesh", "fem", "contact", "model"}},
+    {"output", {"system", "execution", "geometry", "mesh", "model"}},
     {"player", {"geometry", "mesh", "model", "output"}},
-    {"run", {"archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
+    {"run", {"system", "archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
     {"sweep", {"scene", "output", "run"}},
 };
 

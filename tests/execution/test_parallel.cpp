@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <set>
 #include <thread>
@@ -46,6 +47,24 @@ TEST_CASE("chunks cover every item exactly once, for any number of threads", "[p
         for (int i = first; i < end; ++i) ++visits[static_cast<size_t>(i)];
       });
       CHECK(std::all_of(visits.begin(), visits.end(), [](const auto& n) { return n == 1; }));
+    }
+  }
+}
+
+TEST_CASE("what a chunk throws is thrown when all have ended", "[parallel]") {
+  for (int count = 1; count <= 4; ++count) {
+    const Threads threads(count);
+    for (int round = 0; round < 20; ++round) {
+      std::atomic<int> ended = 0;
+      const auto work = [&](int first, int, int) {
+        ++ended;
+        if (first == 0) throw std::bad_alloc();
+      };
+      CHECK_THROWS_AS(threads.chunks(1000, kLong, work), std::bad_alloc);
+      CHECK(ended == count);
+      ended = 0;
+      threads.chunks(1000, kLong, [&](int, int, int) { ++ended; });
+      CHECK(ended == count);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include <array>
 #include <catch2/catch.hpp>
+#include <chrono>
 
 #include "apothem/geometry/spatial/boxes.hpp"
 #include "support.hpp"
@@ -73,6 +74,50 @@ TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes
     }
   }
   CHECK(few > test::scaled(300));
+}
+
+TEST_CASE("boxes far away and without end are found, and the others as fast", "[boxes]") {
+  samples::Random random(6);
+  for (int round = 0; round < test::scaled(100); ++round) {
+    std::vector<Box> boxes;
+    const int n = random.integer(1, 200);
+    for (int i = 0; i < n; ++i) {
+      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+      boxes.push_back({x, y, x + random.uniform(0, .1), y + random.uniform(0, .1)});
+      const double far = std::pow(10., random.integer(10, 308));
+      if (random.integer(0, 39) == 0) boxes.back().x1 = far;
+      if (random.integer(0, 39) == 0) boxes.back().y0 = -far;
+      if (random.integer(0, 79) == 0) boxes.back().x0 = -HUGE_VAL;
+      if (random.integer(0, 79) == 0) boxes.back() = {-HUGE_VAL, -.5, HUGE_VAL, HUGE_VAL};
+      if (random.integer(0, 79) == 0) boxes.back() = {far, far, HUGE_VAL, HUGE_VAL};
+    }
+    std::vector<BoxPair> expected, found;
+    const auto expect = [&] {
+      expected.clear();
+      for (int i = 0; i < n; ++i) {
+        for (int j = i + 1; j < n; ++j) {
+          if (!apart(boxes[i], boxes[j])) expected.push_back({i, j});
+        }
+      }
+    };
+    BoxGrid grid;
+    grid.find_pairs(boxes, found);
+    expect();
+    REQUIRE(found == expected);
+    const std::vector<std::int32_t> changed{random.integer(0, n - 1)};
+    boxes[changed[0]] = {0, 0, .1, random.integer(0, 2) == 0 ? HUGE_VAL : .1};
+    grid.find_pairs_again(boxes, changed, found);
+    expect();
+    REQUIRE(found == expected);
+  }
+  // One box without end would leave all others in one cell: 2e9 pairs to look at.
+  std::vector<Box> many{{-HUGE_VAL, 2, HUGE_VAL, HUGE_VAL}};
+  for (int i = 0; i < 60000; ++i) many.push_back({1. * i, 0, i + .5, 1});
+  std::vector<BoxPair> none;
+  const auto start = std::chrono::steady_clock::now();
+  BoxGrid().find_pairs(many, none);
+  CHECK(none.empty());
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(2));
 }
 
 TEST_CASE("the box grid finds the same on any number of threads", "[boxes][parallel]") {

@@ -1,4 +1,4 @@
-#include "apothem/execution/standard_files.hpp"
+#include "apothem/system/standard_files.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
