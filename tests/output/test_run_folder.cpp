@@ -162,3 +162,27 @@ TEST_CASE("results that are missing or damaged are refused by name", "[results]"
                         folder / "run/frames/chains_000000.vtu");
   CHECK_THROWS_WITH(run.chains(0), Catch::Contains("has no array"));
 }
+
+// VTK's reader would not survive them.
+TEST_CASE("frames with arrays or cells that VTK does not know are damaged files", "[results]") {
+  const Folder folder;
+  const Model model = model_of_results(true);
+  write_results(folder.path(), model, 1);
+  const std::string file = folder / "frames/bodies_000000.vtu", good = content(file);
+  const auto with = [&](const std::string& what, const std::string& by) {
+    std::string text = good;
+    const size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    folder.write("frames/bodies_000000.vtu", text.replace(at, what.size(), by));
+  };
+  for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
+           {"type=\"Float64\"", "type=\"Float14\""},
+           {"type=\"Int64\"", "type=\"\""},
+           {"NumberOfComponents=\"", "NumberOfComponents=\"9999999"},
+           {"NumberOfPoints=\"", "NumberOfPoints=\"-"},
+           {"NumberOfCells=\"", "NumberOfCells=\"99999999999"}}) {
+    with(what, by);
+    INFO(what);
+    CHECK_THROWS_WITH(RunFolder(folder.path()).frame(0), Catch::Contains("damaged"));
+  }
+}

@@ -4,6 +4,7 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <sstream>
 
 #include "apothem/output/canvas.hpp"
@@ -242,4 +243,17 @@ TEST_CASE("a plot does not hold more curves than can be told apart", "[results]"
   const std::string png = draw_curves(figure, PictureFormat::png).value();
   CHECK(decode(png).width == 1000);
   require_xml(draw_curves(figure, PictureFormat::svg).value());
+}
+
+TEST_CASE("curves of any name are plotted, and no name is a command", "[picture]") {
+  const Folder folder;
+  const std::string name =
+      "';system('touch " + folder / "gone" + "');# `touch " + folder / "gone" + "` \"x\\";
+  CurvePanel panel;
+  panel.title = panel.x_label = panel.y_label = name;
+  panel.curves.push_back({name, CurveStyle::line, 0, {0, 1}, {0, 1}});
+  const std::optional<std::string> picture = draw_curves({name, {panel}}, PictureFormat::svg);
+  if (!picture) return;  // there is no gnuplot
+  CHECK(picture->find("system(") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "gone"));
 }

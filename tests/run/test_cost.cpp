@@ -1,0 +1,62 @@
+// What results take, and what is said of numbers that are absurd.
+#include "apothem/run/cost.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "apothem/run/run.hpp"
+#include "folder.hpp"
+#include "run/hopper.hpp"
+#include "run/scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+TEST_CASE("the files and bytes of results are as many as estimated, to a factor", "[run][cost]") {
+  const Folder folder;
+  std::string text = hopper("keep");
+  const std::string end = "\"end\": 3", frames = "\"frames\": 6";
+  text.replace(text.find(end), end.size(), "\"end\": 0.3");
+  text.replace(text.find(frames), frames.size(), "\"frames\": 60");
+  Run run(scene_of(folder, text), {.folder = folder / "out"});
+  REQUIRE(run.run() == Run::Status::done);
+  const OutputCost cost = output_cost(run.scene(), static_cast<double>(run.state().step));
+  double files = 0, bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "out/frames")) {
+    ++files;
+    bytes += static_cast<double>(entry.file_size());
+  }
+  CHECK(cost.frames == 61);
+  CHECK(cost.files == files);
+  CHECK(cost.bytes > .4 * bytes);
+  CHECK(cost.bytes < 2.5 * bytes);
+  CHECK(excessive_costs(run.scene(), 1e4).empty());
+}
+
+TEST_CASE("absurd numbers of frames are named, but for those that no step has", "[run][cost]") {
+  const Folder folder;
+  Scene scene = scene_of(folder, hopper("keep"));
+  scene.output.frames = 20'000'000;
+  CHECK(excessive_costs(scene, 1e3).empty());
+  const std::vector<std::string> costs = excessive_costs(scene, 1e8);
+  REQUIRE(costs.size() == 1);
+  for (const char* word : {"2e+07 frames", "GB of disk", "days to write", "\"frames\""}) {
+    CHECK(costs[0].find(word) != std::string::npos);
+  }
+  scene.time.statics = true;
+  CHECK(excessive_costs(scene, 1e9)[0].find("load_steps") != std::string::npos);
+}
+
+TEST_CASE("a fill for which there is no memory is refused before it is made", "[run][cost]") {
+  const Folder folder;
+  const std::string times = "\"times\": 3", count = "\"count\": 12";
+  std::string often = hopper("keep", "", R"(, "mesh": { "size": 0.05 })");
+  often.replace(often.find(times), times.size(), "\"times\": 100000000");
+  CHECK_THROWS_WITH(scene_of(folder, often), Catch::Contains("/fill/0/repeat") &&
+                                                 Catch::Contains("GB of memory") &&
+                                                 Catch::Contains("100000000 batches of 12"));
+  std::string many = hopper("keep");
+  many.replace(many.find(count), count.size(), "\"count\": 1000000000");
+  CHECK_THROWS_WITH(scene_of(folder, many),
+                    Catch::Contains("/fill/0") && Catch::Contains("1000000000 bodies"));
+}
