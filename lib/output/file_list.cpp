@@ -88,18 +88,23 @@ void FileList::begin(const std::string& identity, const std::vector<std::string>
   names_.clear();
   known_.clear();
   identity_ = identity;
-  append(std::string(kHead) + identity + '\n');
-  add(names);
+  append(std::string(kHead) + identity + '\n' + take_in(names));
 }
 
 void FileList::add(const std::vector<std::string>& names) {
+  const std::string lines = take_in(names);
+  if (!lines.empty()) append(lines);
+}
+
+// The lines of the names that are new.
+std::string FileList::take_in(const std::vector<std::string>& names) {
   std::string lines;
   for (const std::string& name : names) {
     if (!known_.insert(name).second) continue;
     names_.push_back(name);
     lines += name + '\n';
   }
-  if (!lines.empty()) append(lines);
+  return lines;
 }
 
 void FileList::append(const std::string& lines) {

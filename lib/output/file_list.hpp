@@ -47,6 +47,7 @@ class FileList {
  private:
   void open();
   void read();
+  std::string take_in(const std::vector<std::string>& names);
   void append(const std::string& lines);
 
   std::string folder_, file_;

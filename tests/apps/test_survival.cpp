@@ -34,6 +34,18 @@ size_t readable_frames(const std::string& folder) {
 
 using Files = std::map<std::string, std::string>;
 
+// Of the state at the end: what counts the work of the pair search begins anew where a run goes on.
+std::string without_counts(const std::string& text) {
+  Json json = Json::parse(text);
+  json.erase("checksum");
+  for (auto& [name, member] : json["simulation"].items()) {
+    if (!name.starts_with("term_") || !member.contains("counts")) continue;
+    member["counts"].erase("searches");
+    member["counts"].erase("candidate_pairs");
+  }
+  return json.dump();
+}
+
 // All files of a folder but those that tell the time that the run has taken.
 Files files_in(const std::string& folder) {
   Files files;
@@ -43,6 +55,7 @@ Files files_in(const std::string& folder) {
     if (!entry.is_regular_file() || last == "run.json" || last == "runs.csv") continue;
     if (last == "messages.txt" || last == "sweep.json") continue;
     files[name] = content(entry.path().string());
+    if (last == "final.json") files[name] = without_counts(files[name]);
   }
   return files;
 }
@@ -71,7 +84,7 @@ std::string exchanged_all(std::string text, const std::string& what, const std::
 }
 
 std::vector<Victim> victims() {
-  const std::string often = R"("checkpoint": { "wall_clock": 0.005 }, )";
+  const std::string often = R"("checkpoint": { "wall_clock": 0.02 }, )";
   const auto with = [&](const std::string& text) {
     return exchanged(text, "\"output\": {", "\"output\": { " + often);
   };
@@ -82,10 +95,7 @@ std::vector<Victim> victims() {
           {"sliding block", with(slide), .2},
           {"meshes", with(rubbing_scenes()[9].text), .2},
           {"meshes and rigid bodies", with(rubbing_scenes()[11].text), .2},
-          {"static",
-           with(exchanged(pressed_blocks(40), "\"output\": { \"history",
-                          "\"output\": { \"frames\": 40, \"history")),
-           .3}};
+          {"static", with(pressed_blocks(40)), .3}};
 }
 
 }  // namespace
@@ -98,7 +108,7 @@ TEST_CASE("a run that is killed at random ends with the same files", "[survival]
     const Folder folder;
     const std::string scene = folder.write("scene.json", victim.text);
     REQUIRE(run({"run", scene, "-o", folder / "whole", "--quiet"}, folder).code == 0);
-    const int wanted = long_run() ? 40 : 3;
+    const int wanted = long_run() ? 40 : 2;
     int kills = 0;
     for (int tries = 0; kills < wanted && tries < 10 * wanted; ++tries) {
       std::filesystem::remove_all(folder / "parts");
@@ -129,7 +139,7 @@ TEST_CASE("the runs of a sweep that is killed end with it, and the same command 
   };
   REQUIRE(run(sweep("whole"), folder).code == 0);
   std::mt19937 random(42);
-  const int wanted = long_run() ? 30 : 2;
+  const int wanted = long_run() ? 30 : 1;
   for (int kills = 0; kills < wanted; ++kills) {
     std::filesystem::remove_all(folder / "parts");
     const double delay = .05 + .4 * (static_cast<double>(random()) / 4.3e9);

@@ -73,7 +73,7 @@ int outcome(const Scene& scene, const Folder& folder, const std::string& file) {
 
 }  // namespace
 
-// 60 cases; 1 000 with APOTHEM_LONG=1.
+// 40 cases; 1 000 with APOTHEM_LONG=1.
 TEST_CASE("no damage of a checkpoint or a history passes silently", "[damage]") {
   const Folder folder;
   Scene scene = scene_of(folder, rubbing_scenes()[1].text);
@@ -85,7 +85,7 @@ TEST_CASE("no damage of a checkpoint or a history passes silently", "[damage]") 
   std::vector<std::string> files = kHistories;
   files.insert(files.end(), {"checkpoint.json", "checkpoint.previous.json"});
   int refused = 0;
-  const int cases = long_run() ? 1000 : scaled(60);
+  const int cases = long_run() ? 1000 : scaled(40);
   for (int i = 0; i < cases; ++i) {
     const std::string& file = files[random() % files.size()];
     const std::string good = content(folder / ("stopped/" + file));
