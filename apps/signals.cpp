@@ -51,6 +51,7 @@ void on_signal(int signal) {
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // a file that is being opened is none that has failed
   sigaction(signal, &action, nullptr);
 }
 

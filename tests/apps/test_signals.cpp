@@ -1,9 +1,13 @@
 // SIGINT and SIGTERM end the program wherever it is, with exit code 130.
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "program.hpp"
+#include "run/hopper.hpp"
 
 using namespace apothem;
 using namespace apothem::test;
@@ -71,6 +75,32 @@ TEST_CASE("a signal ends whatever takes long before anything is written", "[sign
       CHECK_FALSE(std::filesystem::exists(folder / "out"));
     }
   }
+}
+
+TEST_CASE("a step that does not end is broken off, and its run goes on later", "[signals]") {
+  const Folder folder;
+  const std::string scene = folder.write(
+      "pile.json", exchanged(hopper("remove"), "\"frames\": 6",
+                             "\"frames\": 600, \"checkpoint\": { \"wall_clock\": 0.01 }"));
+  const std::string out = folder / "out", blocked = out + "/frames/bodies_000150.vtu.partial";
+  std::thread blocker([&] {
+    for (int i = 0; i < 6000 && !std::filesystem::exists(out + "/checkpoint.json"); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    mkfifo(blocked.c_str(), 0600);  // whoever opens it waits for a reader
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const Result r = run({"run", scene, "-o", out, "--quiet"}, folder,
+                       {.interrupt_after = 3, .signal = SIGTERM, .most_seconds = 60});
+  blocker.join();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  INFO(r.err);
+  CHECK(r.code == 130);
+  CHECK(r.err.find("before what was under way was finished") != std::string::npos);
+  CHECK(lines(r.err) == 1);
+  CHECK(seconds.count() > 6);
+  std::filesystem::remove(blocked);
+  CHECK(run({"run", scene, "-o", out, "--quiet", "--resume"}, folder).code == 0);
 }
 
 // Before that, the system loads libraries, and the signal ends the process itself.
