@@ -43,6 +43,7 @@ inline void set_up(const Limits& limits, const std::string& out, const std::stri
     const rlimit both{most, most};
     if (most != RLIM_INFINITY) setrlimit(kind, &both);
   };
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);  // not Catch2's
   for (const std::string& variable : limits.environment) {
     const size_t at = variable.find('=');
     setenv(variable.substr(0, at).c_str(), variable.substr(at + 1).c_str(), 1);
