@@ -53,8 +53,12 @@ std::vector<Vec2> read_ring(std::istream& line) {
   int n = 0;
   try {
     n = parse_count(word);
-  } catch (const BadNumber&) {  // the word is not quoted: the file may be any other one
-    throw InvalidPolygon("the number of vertices is not a whole number", 0);
+  } catch (const BadNumber& error) {
+    // Nothing but a number is quoted: the file may be any other one.
+    const bool is_number = word.find_first_not_of("0123456789.eE+-") == std::string::npos;
+    throw InvalidPolygon(is_number ? fmt::format("the number of vertices: {}", error.what())
+                                   : "the number of vertices is not a whole number",
+                         0);
   }
   std::vector<Vec2> ring;
   for (int i = 0; i < n; ++i) {
