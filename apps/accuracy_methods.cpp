@@ -140,15 +140,15 @@ void time_rounds(std::string_view method, const std::vector<PreparedPair>& pairs
   });
 }
 
-// How long a child process may be silent, s.
+// Processor time in which a child process may be silent, s.
 double patience_with(std::string_view method) { return method == "exact" ? 600 : 20; }
 
 std::string describe(const HelperAnswer& answer, double patience) {
   switch (answer.end) {
     case HelperAnswer::End::crashed:
       return fmt::format("crashed with signal {}", answer.signal);
-    case HelperAnswer::End::silent:
-      return fmt::format("did not return within {:.0f} s", patience);
+    case HelperAnswer::End::overran:
+      return fmt::format("did not return within {:.0f} s of processor time", patience);
     default:
       return "ended without an answer";
   }

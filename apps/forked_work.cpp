@@ -30,7 +30,7 @@ HelperAnswer run_forked(const std::function<void(const SendNumbers&)>& work, dou
     leave_program(output);
     work_as_helper(parent, seconds, work);
   };
-  return std::move(run_processes({start}, seconds).front());
+  return std::move(run_processes({start}).front());
 }
 
 }  // namespace apothem

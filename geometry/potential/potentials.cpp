@@ -37,6 +37,16 @@ Skeleton Potentials::skeleton_of(size_t polygon) const {
   return straight_skeleton(*polygons_[polygon]);
 }
 
+std::vector<Potentials::Repeated> Potentials::repeated() const {
+  std::vector<Repeated> list;
+  for (size_t i = 0; i < sources_.size(); ++i) {
+    if (!sources_[i] || sources_[i]->map) continue;
+    const auto* skeleton = std::get_if<Skeleton>(&skeletons_[sources_[i]->skeleton]);
+    if (skeleton && skeleton->attempts > 1) list.push_back({i, skeleton->attempts});
+  }
+  return list;
+}
+
 Potential Potentials::make(size_t polygon) const {
   if (!sources_[polygon]) return make_potential(*polygons_[polygon], choice_);
   return make_potential(*polygons_[polygon], choice_,

@@ -25,6 +25,13 @@ class Potentials {
   /// several threads at the same time.
   [[nodiscard]] Potential make(size_t polygon) const;
 
+  /// A polygon whose first construction of a skeleton has failed, and the one that has not.
+  struct Repeated {
+    size_t polygon;
+    int attempts;
+  };
+  [[nodiscard]] std::vector<Repeated> repeated() const;
+
   /// Number of distinct polygons whose skeletons were constructed.
   [[nodiscard]] size_t distinct() const { return skeletons_.size(); }
 

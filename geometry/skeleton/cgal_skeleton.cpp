@@ -45,6 +45,7 @@ CgalAnswer answer_of(const Message& message) {
 struct Share {
   std::vector<size_t> rings;
   size_t done = 0;
+  int asked = 0;  // without an answer, for the next ring
 
   [[nodiscard]] bool finished() const { return done == rings.size(); }
 };
@@ -59,7 +60,18 @@ std::vector<double> request_of(const Share& share, const std::vector<Ring>& ring
   return request;
 }
 
-// Takes the answers from what a helper has sent. If it has failed, so has the next ring.
+// How often a helper is asked the same.
+constexpr int kTries = 3;
+
+[[noreturn]] void give_up(const HelperAnswer& sent) {
+  throw HelperFailure("the helper program " + skeleton_program() + " " + sent.failure() + ", " +
+                      std::to_string(kTries) +
+                      " times for the same polygon: nothing is known against the polygon; look at "
+                      "the load and the memory of the machine, and run it again");
+}
+
+// Takes the answers from what a helper has sent. If it has failed, so has the next ring; if it was
+// kept from its work, the next ring is asked again.
 void take_answers(Share& share, const HelperAnswer& sent, std::vector<CgalAnswer>& answers) {
   const Message& numbers = sent.numbers;
   for (size_t at = 0; at < numbers.size() && !share.finished(); ++share.done) {
@@ -69,8 +81,14 @@ void take_answers(Share& share, const HelperAnswer& sent, std::vector<CgalAnswer
     answers[share.rings[share.done]] =
         answer_of(Message(first, first + static_cast<std::ptrdiff_t>(size)));
     at += 1 + size;
+    share.asked = 0;
   }
   if (share.finished()) return;
+  if (!sent.is_certain()) {
+    if (++share.asked == kTries) give_up(sent);
+    return;
+  }
+  share.asked = 0;
   const std::string failure = sent.failure();
   answers[share.rings[share.done]] = {
       std::nullopt, failure.empty() ? "CGAL's answer was cut off" : "CGAL " + failure};

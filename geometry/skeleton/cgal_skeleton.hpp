@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@
 
 namespace apothem {
 
+/// Thrown if the helper program does not do its work although it was asked several times. What it
+/// would have answered is not known then, and there is no other answer.
+class HelperFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// What CGAL has found.
 struct CgalAnswer {
   std::optional<SkeletonParts> parts;
@@ -18,7 +26,9 @@ struct CgalAnswer {
 };
 
 /// Asks CGAL for the skeleton of a simple counter-clockwise ring. CGAL may crash, return nothing or
-/// a wrong skeleton. It is killed after `seconds` of processor time, and if `progress` throws.
+/// a wrong skeleton. It is killed after `seconds` of processor time, and if `progress` throws. The
+/// answer follows from the ring alone: a helper that stalls or is kept from its work is asked again
+/// unchanged. Throws HelperFailure where that does not help.
 CgalAnswer ask_cgal(const std::vector<Vec2>& ring, bool exact, double seconds,
                     const Progress& progress);
 

@@ -13,15 +13,19 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <system_error>
+
+#include "apothem/geometry/skeleton/helper_side.hpp"
 
 namespace apothem {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kWait = 10;  // limit of the time by the clock over that of the processor time
+constexpr int kFailed = 1;  // exit code of helper_side.cpp where the work has failed
 constexpr std::chrono::milliseconds kLook{100};  // between two calls of `meanwhile`
 constexpr int kFree = 3;  // file descriptors below are standard input, output and error
 
@@ -98,6 +102,23 @@ pid_t start(const std::string& program, int input, int output, double seconds) {
   return id;
 }
 
+// How long the machine has been up, by what the kernel says in a file: programs that are shown
+// another time by their environment wait as long as others.
+class Uptime {
+ public:
+  Uptime() : file_(open("/proc/uptime", O_RDONLY | O_CLOEXEC)) {}
+  [[nodiscard]] Clock::duration now() const {
+    char text[64] = {};
+    if (pread(file_.number(), text, sizeof text - 1, 0) <= 0)
+      return Clock::now().time_since_epoch();
+    const double seconds = std::strtod(text, nullptr);
+    return std::chrono::milliseconds(static_cast<long long>(1000 * seconds));
+  }
+
+ private:
+  File file_;
+};
+
 // A child process, killed at the end of its scope unless it has been waited for.
 class Child {
  public:
@@ -110,6 +131,13 @@ class Child {
     wait();
   }
   void end() const { kill(id_, SIGKILL); }
+  // That it has used, s.
+  [[nodiscard]] double processor_time() const {
+    clockid_t clock{};
+    timespec used{};
+    if (clock_getcpuclockid(id_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+  }
   int wait() {
     int status = 0;
     while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -127,8 +155,8 @@ class Child {
 class Worker {
  public:
   // Starts the helper.
-  Worker(const StartProcess& start, double seconds)
-      : patience_(std::chrono::milliseconds(static_cast<long long>(1000 * kWait * seconds))),
+  Worker(const StartProcess& start, double patience)
+      : patience_(std::chrono::milliseconds(static_cast<long long>(1000 * patience))),
         left_(patience_) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) fail(errno, "pipe of a helper program");
@@ -139,14 +167,20 @@ class Worker {
 
   [[nodiscard]] bool reading() const { return reading_; }
   [[nodiscard]] int file() const { return pipe_->number(); }
-  // Nothing was there to be read for this long. A helper that has sent nothing for too long is
-  // ended.
+  // Nothing was there to be read for this long. A helper that has done nothing for too long is
+  // ended. One that works is left to its limit of processor time, however slow the machine is.
   void wait(Clock::duration time) {
+    const double used = child_->processor_time();
+    if (used > used_) {
+      used_ = used;
+      left_ = patience_;
+      return;
+    }
     left_ -= time;
     if (left_.count() > 0) return;
     child_->end();
     reading_ = false;
-    silent_ = true;
+    stalled_ = true;
   }
   // Reads what is there.
   void read() {
@@ -166,24 +200,32 @@ class Worker {
     std::copy_n(bytes_.data(), answer.numbers.size() * sizeof(double),
                 reinterpret_cast<char*>(answer.numbers.data()));
     const int status = child_->wait();
-    if (silent_) {
-      answer.end = End::silent;
-    } else if (WIFSIGNALED(status)) {
-      answer.end = WTERMSIG(status) == SIGXCPU ? End::silent : End::crashed;
-      answer.signal = WTERMSIG(status);
-    } else {
-      answer.end = WEXITSTATUS(status) == 0 ? End::finished : End::failed;
-    }
+    answer.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    answer.code = WIFSIGNALED(status) ? 0 : WEXITSTATUS(status);
+    answer.end = stalled_                 ? End::stalled
+                 : answer.signal != 0     ? end_by(answer.signal)
+                 : answer.code == 0       ? End::finished
+                 : answer.code == kFailed ? End::failed
+                                          : End::prevented;
     return answer;
   }
 
  private:
+  // Signals that a program raises by what it does itself; others come from outside.
+  static HelperAnswer::End end_by(int signal) {
+    using End = HelperAnswer::End;
+    if (signal == SIGXCPU) return End::overran;
+    constexpr std::array kOwn{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
+    return std::ranges::find(kOwn, signal) != kOwn.end() ? End::crashed : End::prevented;
+  }
+
   Clock::duration patience_, left_;  // to the next sign of life
   std::unique_ptr<File> pipe_;
   std::unique_ptr<Child> child_;
   std::vector<char> bytes_;
   bool reading_ = true;
-  bool silent_ = false;
+  double used_ = 0;  // processor time at the last sign of work, s
+  bool stalled_ = false;
 };
 
 }  // namespace
@@ -196,29 +238,37 @@ std::string HelperAnswer::failure() const {
       return "failed with an exception or for lack of memory";
     case End::crashed:
       return "crashed with signal " + std::to_string(signal);
-    case End::silent:
-      return "did not return in time";
+    case End::overran:
+      return "did not return in its processor time";
+    case End::stalled:
+      return "did nothing for a long time";
+    case End::prevented:
+      return signal != 0              ? "was killed by signal " + std::to_string(signal)
+             : code == kWithoutMemory ? "was refused memory"
+                                      : "ended with the code " + std::to_string(code);
   }
   return "";
 }
 
 std::vector<HelperAnswer> run_helpers(const std::string& program,
                                       const std::vector<std::vector<double>>& requests,
-                                      double seconds, const std::function<void()>& meanwhile) {
+                                      double seconds, const std::function<void()>& meanwhile,
+                                      double patience) {
   std::vector<StartProcess> starts;
   starts.reserve(requests.size());
   for (const std::vector<double>& request : requests) {
     starts.emplace_back(
         [&](int output) { return start(program, file_of(request)->number(), output, seconds); });
   }
-  return run_processes(starts, seconds, meanwhile);
+  return run_processes(starts, meanwhile, patience);
 }
 
-std::vector<HelperAnswer> run_processes(const std::vector<StartProcess>& starts, double seconds,
-                                        const std::function<void()>& meanwhile) {
+std::vector<HelperAnswer> run_processes(const std::vector<StartProcess>& starts,
+                                        const std::function<void()>& meanwhile, double patience) {
+  const Uptime uptime;
   std::vector<Worker> workers;
   workers.reserve(starts.size());
-  for (const StartProcess& start : starts) workers.emplace_back(start, seconds);
+  for (const StartProcess& start : starts) workers.emplace_back(start, patience);
   while (true) {
     std::vector<pollfd> waits;
     std::vector<Worker*> waiting;
@@ -228,11 +278,11 @@ std::vector<HelperAnswer> run_processes(const std::vector<StartProcess>& starts,
       waiting.push_back(&worker);
     }
     if (waits.empty()) break;
-    const Clock::time_point before = Clock::now();
+    const Clock::duration before = uptime.now();
     const int ready = poll(waits.data(), waits.size(), static_cast<int>(kLook.count()));
     if (meanwhile) meanwhile();
     // Time in which this program was stopped does not count: its helpers may have been, too.
-    const auto waited = std::min<Clock::duration>(2 * kLook, Clock::now() - before);
+    const auto waited = std::min<Clock::duration>(2 * kLook, uptime.now() - before);
     for (size_t i = 0; i < waits.size(); ++i) {
       if (ready > 0 && waits[i].revents != 0) {
         waiting[i]->read();

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 
 #include "apothem/system/standard_files.hpp"
 
@@ -71,13 +72,17 @@ double mapped_bytes() {
   return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-void limit_memory() {
+// False if this process may not have as much as its work may map.
+bool limit_memory() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   rlimit memory{};
   getrlimit(RLIMIT_AS, &memory);
-  memory.rlim_cur = std::min(memory.rlim_max, static_cast<rlim_t>(mapped_bytes() + kMemory));
+  const auto wanted = static_cast<rlim_t>(mapped_bytes() + kMemory);
+  const bool enough = memory.rlim_max >= wanted;
+  memory.rlim_cur = std::min(memory.rlim_max, wanted);
   setrlimit(RLIMIT_AS, &memory);
+  return enough;
 }
 
 }  // namespace
@@ -99,12 +104,14 @@ void work_as_helper(int parent, double seconds,
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it has died already
   limit_processor_time(seconds);
-  limit_memory();
+  const bool enough = limit_memory();
   try {
     work([&](const std::vector<double>& numbers) {
       write_all(numbers);
       limit_processor_time(seconds);
     });
+  } catch (const std::bad_alloc&) {
+    _exit(enough ? 1 : kWithoutMemory);  // with enough of it, the work asks for too much
   } catch (...) {
     _exit(1);
   }

@@ -6,6 +6,9 @@
 
 namespace apothem {
 
+/// Exit code of a helper that the machine has refused memory below its own limit.
+inline constexpr int kWithoutMemory = 3;
+
 /// Sends numbers to the program that has started the helper. The work may call it any number of
 /// times; each time the limit of the processor time begins anew.
 using SendNumbers = std::function<void(const std::vector<double>&)>;

@@ -48,6 +48,12 @@ bool Contacts::search_if_stale() {
   if (!search_.stale(surfaces_, threads_)) return false;
   search_.search(surfaces_, threads_);
   ++searches_;
+  hand_out_pairs();
+  return true;
+}
+
+// To the kernels that serve them.
+void Contacts::hand_out_pairs() {
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
   for (const BoxPair& pair : search_.pairs()) {
     pairs_of[kernel_of(surfaces_.kind(pair.first), surfaces_.kind(pair.second))].push_back(pair);
@@ -60,7 +66,6 @@ bool Contacts::search_if_stale() {
   for (size_t k = 0; k < kernels_.size(); ++k) {
     if (kernels_[k]) kernels_[k]->take(pairs_of[k]);
   }
-  return true;
 }
 
 void Contacts::evaluate() {
@@ -291,14 +296,23 @@ void Contacts::forget_search() {
 }
 
 void Contacts::refresh(const Kinematics& now) {
-  place_all(now);
-  forget_search();
-  search_if_stale();
+  Kinematics kinematics = now;
+  kinematics.restored = loaded_.has_value();
+  if (loaded_) {
+    search_.search_at(*loaded_, surfaces_, threads_);
+    hand_out_pairs();
+    loaded_.reset();
+    place_all(now);
+  } else {
+    place_all(now);
+    forget_search();
+    search_if_stale();
+  }
   evaluate();
   if (!tangential_) return;
   FrictionMemory memory = memory_;
   memory.begin_step();
-  each([&](Kernel& kernel) { kernel.refresh(now, memory); });
+  each([&](Kernel& kernel) { kernel.refresh(kinematics, memory); });
 }
 
 ContactNumbers Contacts::numbers() const {
@@ -332,6 +346,9 @@ void Contacts::fields(Archive& archive) {
   archive("friction", memory_);
   if (tangential_) archive("beside", beside_);
   each([&](Kernel& kernel) { kernel.fields(archive); });
+  SearchPlaces places = search_.places(surfaces_);
+  archive("search", places);
+  if (archive.loads()) loaded_ = std::move(places);
 }
 
 }  // namespace apothem

@@ -122,7 +122,8 @@ class Contacts {
 
   /// Has the next step search anew.
   void forget_search();
-  /// Finds candidates, contacts and forces again after `fields` has been loaded.
+  /// Finds candidates, contacts and forces again. After `fields` has been loaded the candidates are
+  /// those that its simulation had.
   void refresh(const Kinematics& now);
   void fields(Archive& archive);
 
@@ -132,6 +133,7 @@ class Contacts {
   void inherit(const ContactMemory& memory);
 
  private:
+  void hand_out_pairs();
   // Those that may be deeper than `least`, m, and all that kernels have appended.
   void visit(double least, const ContactVisitor& show) const;
   [[nodiscard]] const std::vector<Contact>& list(double least) const;
@@ -153,6 +155,7 @@ class Contacts {
   PairTable table_;
   FrictionLaw friction_law_;
   Search search_;
+  std::optional<SearchPlaces> loaded_;  // and not used yet
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   bool tangential_;                      // there is friction or damping
   std::vector<Contact> contacts_;        // without those that kernels add when they are asked for

@@ -254,7 +254,8 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     if (rough) {
       const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
       const double stiffness = friction.tangential_stiffness * thickness_;
-      const double slip = rate.dot(tangent), limit = friction.coefficient * (size + push);
+      const double slip = rate.dot(tangent),
+                   limit = now.restored ? HUGE_VAL : friction.coefficient * (size + push);
       const double force =
           apothem::slide(before.empty() ? 0 : before[0].force, slip * dt, stiffness, limit);
       memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});

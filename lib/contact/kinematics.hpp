@@ -20,6 +20,9 @@ struct Kinematics {
   std::span<const double> slip = {};
   /// An equilibrium is sought: no dashpot acts.
   bool still = false;
+  /// The state has been loaded. Springs have the forces that they had, also where dashpots, which
+  /// go by velocities of within the step, had raised their limits.
+  bool restored = false;
 };
 
 struct ForceViews {

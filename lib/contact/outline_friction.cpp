@@ -198,7 +198,7 @@ APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUn
     }
     transpose(rows, sums);
     sums[SlipSums::stiffness].store(stiffness.data());
-    find_springs(sums, memory, step.dt, springs);
+    find_springs(sums, memory, step.dt, step.limited ? 0 : HUGE_VAL, springs);
     for (size_t l = 0; l < count; ++l) {
       const EdgeFaceGroup& group = groups[first + l];
       energy += springs.energy[l];
@@ -279,8 +279,8 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
 double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  const Step step{blocks, memory.before(outline_kernel), dt, now.finite,
-                  damped_ && dt > 0 && !now.still};
+  const Step step{blocks,     memory.before(outline_kernel),   dt,
+                  now.finite, damped_ && dt > 0 && !now.still, !now.restored};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
   drags_.resize(n), drags_before_.resize(n);

@@ -67,6 +67,7 @@ class OutlineFriction {
     double dt;
     bool finite;    ///< see Kinematics
     bool dashpots;  ///< whether there are any
+    bool limited;   ///< false: springs keep forces above their limits
   };
   /// Of the forces of springs and dashpots on the bodies, W.
   struct Powers {

@@ -129,16 +129,17 @@ struct SlipMemory {
   Numbers time;              ///< strength of the dashpots along the face, s
 };
 
-/// Finds springs and dashpots after a slip of dt (s). `sums` are SlipSums.
+/// Finds springs and dashpots after a slip of dt (s). `sums` are SlipSums. `beyond`: how far forces
+/// may be above their limits, N.
 APOTHEM_INLINE void find_springs(const FourOf<PackOf<kBlock>>& sums, const SlipMemory& memory,
-                                 double dt, SlipSprings& springs) {
+                                 double dt, double beyond, SlipSprings& springs) {
   using Pack = PackOf<kBlock>;
   const Pack zero(0.), one(1.);
   const Pack &normal = sums[SlipSums::normal], &stiffness = sums[SlipSums::stiffness];
   const Pack mu = Pack::load(memory.coefficient.data()), time = Pack::load(memory.time.data());
   const auto exists = (mu > zero) & (normal > zero);
   const Pack above = normal + sums[SlipSums::push];
-  const Pack limit = mu * select(above < zero, zero, above);
+  const Pack limit = mu * select(above < zero, zero, above) + Pack(beyond);
   const auto clamped = [&](const Pack& force) APOTHEM_LAMBDA {
     return select(force < -limit, -limit, select(limit < force, limit, force));
   };

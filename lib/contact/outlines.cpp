@@ -346,6 +346,12 @@ void Outlines::prepare_search() {
   }
 }
 
+void Outlines::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
+  x = px, y = py;
+  find_edges(active_);
+  prepare_search();
+}
+
 std::optional<Outlines::Notch> Outlines::closed_notch() const {
   constexpr double kSharp = 3;  // length of the bisector, over the height: an angle of 39 degrees
   std::optional<Notch> found;

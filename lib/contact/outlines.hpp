@@ -86,6 +86,11 @@ class Outlines {
   }
   /// Renews the boxes for the search.
   void prepare_search();
+  /// Where the vertices were at the last search, m.
+  [[nodiscard]] const std::vector<double>& searched_x() const { return kept_.x; }
+  [[nodiscard]] const std::vector<double>& searched_y() const { return kept_.y; }
+  /// Puts the vertices where they were at a search, and renews the boxes for it.
+  void prepare_search_at(const std::vector<double>& px, const std::vector<double>& py);
   /// After a search: only bodies of these pairs are active, as others are near nothing. Until the
   /// first call all are.
   void activate(std::span<const BoxPair> pairs);

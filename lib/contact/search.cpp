@@ -1,6 +1,9 @@
 #include "apothem/contact/search.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 
 namespace apothem {
 namespace {
@@ -29,6 +32,10 @@ bool Search::stale(const Surfaces& surfaces, const Threads& threads) const {
 
 void Search::search(Surfaces& surfaces, const Threads& threads) {
   if (surfaces.has_outlines() || !search_again(surfaces, threads)) search_all(surfaces, threads);
+  choose(surfaces, threads);
+}
+
+void Search::choose(const Surfaces& surfaces, const Threads& threads) {
   pairs_of_workers_.begin(threads);
   threads.chunks(static_cast<int>(near_.size()), kChoiceTime, [&](int first, int end, int worker) {
     std::vector<BoxPair>& chosen = pairs_of_workers_.of(worker);
@@ -40,6 +47,29 @@ void Search::search(Surfaces& surfaces, const Threads& threads) {
     }
   });
   pairs_of_workers_.join(pairs_);
+}
+
+SearchPlaces Search::places(const Surfaces& surfaces) const {
+  SearchPlaces places;
+  places.boxes.assign(4 * static_cast<size_t>(surfaces.size()), HUGE_VAL);
+  for (size_t i = 0; i < kept_.size(); ++i) {
+    const Box& box = kept_[i];
+    const std::array sides{box.x0, box.y0, box.x1, box.y1};
+    std::ranges::copy(sides, places.boxes.begin() + 4 * static_cast<std::ptrdiff_t>(i));
+  }
+  places.x = surfaces.outlines().searched_x(), places.y = surfaces.outlines().searched_y();
+  return places;
+}
+
+void Search::search_at(const SearchPlaces& places, Surfaces& surfaces, const Threads& threads) {
+  kept_.assign(static_cast<size_t>(surfaces.size()), Box());
+  for (size_t i = 0; i < kept_.size(); ++i) {
+    const double* side = &places.boxes[4 * i];
+    if (std::isfinite(side[0])) kept_[i] = {side[0], side[1], side[2], side[3]};
+  }
+  if (surfaces.has_outlines()) surfaces.outlines().prepare_search_at(places.x, places.y);
+  grid_.find_pairs(kept_, near_, threads);
+  choose(surfaces, threads);
 }
 
 void Search::search_all(Surfaces& surfaces, const Threads& threads) {

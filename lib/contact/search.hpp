@@ -8,11 +8,24 @@
 #include <span>
 #include <vector>
 
+#include "apothem/archive/archive.hpp"
 #include "apothem/contact/surfaces.hpp"
 #include "apothem/execution/worker_lists.hpp"
 #include "apothem/geometry/spatial/boxes.hpp"
 
 namespace apothem {
+
+/// What the pairs and the candidates in them follow from. It belongs to the state of a run: sums
+/// over candidates are rounded in the order in which these stand, and other candidates, which touch
+/// nothing, would shift them.
+struct SearchPlaces {
+  std::vector<double> boxes;  ///< x0, y0, x1, y1 of each surface, m; infinite where it is absent
+  std::vector<double> x, y;   ///< of the vertices of outlines at the last search, m
+
+  void fields(Archive& archive) {
+    archive.sized("boxes", boxes).sized("outline_x", x).sized("outline_y", y);
+  }
+};
 
 class Search {
  public:
@@ -23,6 +36,11 @@ class Search {
   /// Finds all pairs of near surfaces of two bodies, at least one of which forces can move. All
   /// polygons must be at finite places.
   void search(Surfaces& surfaces, const Threads& threads = Threads());
+  /// Those of the last search.
+  [[nodiscard]] SearchPlaces places(const Surfaces& surfaces) const;
+  /// Finds again what a search has found that had these places. Leaves outlines there.
+  void search_at(const SearchPlaces& places, Surfaces& surfaces,
+                 const Threads& threads = Threads());
   /// Ascending, with first < second.
   [[nodiscard]] std::span<const BoxPair> pairs() const { return pairs_; }
 
@@ -30,6 +48,7 @@ class Search {
   static constexpr size_t kFew = 4;  // surfaces are few if they are less than one in so many
 
   void search_all(Surfaces& surfaces, const Threads& threads);
+  void choose(const Surfaces& surfaces, const Threads& threads);
   /// False if too many have moved.
   bool search_again(const Surfaces& surfaces, const Threads& threads);
 

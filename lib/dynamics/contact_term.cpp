@@ -345,6 +345,7 @@ void ContactTerm::bound_step(StepBounds& bounds) {
 void ContactTerm::fields(Archive& archive) {
   archive("contacts", contacts_)("penetration", penetration_)(
       "relative_penetration", relative_penetration_)("force", force_)("counts", counts_);
+  archive("closed_notch", closed_notch_)("looks_without_notch", looks_without_notch_);
 }
 
 }  // namespace apothem

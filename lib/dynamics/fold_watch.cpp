@@ -47,6 +47,18 @@ void FoldWatch::watch(const State& state) {
   }
 }
 
+// Where it has looked last: it looks again when nodes have moved far from there.
+void FoldWatch::fields(Archive& archive) {
+  std::vector<double> x = outlines_.searched_x(), y = outlines_.searched_y();
+  archive("looked_at_x", x)("looked_at_y", y);
+  if (!archive.loads()) return;
+  if (x.size() != y.size()) throw ArchiveMismatch("looked_at_y");
+  outlines_.forget();
+  if (x.empty()) return;
+  if (x.size() != static_cast<size_t>(outlines_.size())) throw ArchiveMismatch("looked_at_x");
+  outlines_.prepare_search_at(x, y);
+}
+
 // Where edges of a body cross.
 std::optional<Vec2> FoldWatch::crossing(const Outlines::Body& body) {
   const Outlines& o = outlines_;

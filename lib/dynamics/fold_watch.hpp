@@ -18,6 +18,7 @@ class FoldWatch final : public Term {
   }
   /// Throws Unstable where a boundary crosses itself. Nothing to do while no node has moved far.
   void watch(const State& state) override;
+  void fields(Archive& archive) override;
 
  private:
   [[nodiscard]] std::optional<Vec2> crossing(const Outlines::Body& body);

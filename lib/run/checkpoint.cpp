@@ -9,6 +9,7 @@
 
 #include "apothem/dynamics/inheritance.hpp"
 #include "apothem/output/files.hpp"
+#include "apothem/run/hash.hpp"
 #include "apothem/run/json_archive.hpp"
 #include "apothem/run/sealed_file.hpp"
 #include "apothem/scene/json.hpp"
@@ -98,7 +99,7 @@ void keep_checkpoint(const std::string& folder) {
 
 void write_state(const std::string& file, const Scene& scene, const std::string& scene_hash,
                  Simulation& simulation, RunProgress& progress, bool with_scene) {
-  std::string hash = scene_hash;
+  std::string hash = scene_hash, potentials = potentials_hash(simulation.model());
   std::vector<Setting> settings = scene.settings;
   ModelRecord record = record_of(simulation);
   write_sealed(file, [&](Archive& archive) {
@@ -106,8 +107,8 @@ void write_state(const std::string& file, const Scene& scene, const std::string&
       SavedScene saved{std::filesystem::absolute(scene.file).string(), scene.text};
       archive("scene", saved);
     }
-    archive("scene_hash", hash)("settings", settings)("model", record)("progress", progress)(
-        "simulation", simulation);
+    archive("scene_hash", hash)("potentials", potentials)("settings", settings)("model", record)(
+        "progress", progress)("simulation", simulation);
   });
 }
 
@@ -156,12 +157,19 @@ Scene read_saved_scene(const std::string& file) {
 void read_state(const std::string& file, const std::string& scene_hash, Simulation& simulation,
                 RunProgress& progress) {
   with_state(file, [&](Archive& archive) {
-    std::string hash;
+    std::string hash, potentials;
     archive("scene_hash", hash);
     if (hash != scene_hash) {
       throw SceneError(file, 0, "",
                        "belongs to another scene, or the scene or its settings have been changed; "
                        "run it anew");
+    }
+    archive("potentials", potentials);
+    if (potentials != potentials_hash(simulation.model())) {
+      throw SceneError(file, 0, "",
+                       "was written with other potentials of these polygons: their straight "
+                       "skeletons were constructed by another version of apothem-skeleton; go on "
+                       "with the version that began the run, or run it anew");
     }
     archive("progress", progress)("simulation", simulation);
     require_fitting(simulation, progress);

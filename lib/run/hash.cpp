@@ -1,5 +1,7 @@
 #include "apothem/run/hash.hpp"
 
+#include <type_traits>
+
 #include "apothem/output/checksum.hpp"
 
 namespace apothem {
@@ -11,7 +13,17 @@ class Hash : public Checksum {
   using Checksum::add;
   void add(std::span<const double> values) { add(values.data(), values.size_bytes()); }
   void add(const std::string& text) { add(text.data(), text.size() + 1); }
+  template <class T>
+  void add(const std::vector<T>& list) requires(std::is_trivially_copyable_v<T>) {
+    const size_t size = list.size();
+    add(&size, sizeof size);
+    add(list.data(), size * sizeof(T));
+  }
+  void add(const std::vector<Vec2>& points) {
+    for (const Vec2& v : points) add(v);
+  }
   void add(const Vec2& v) { add(v.data(), 2 * sizeof(double)); }
+  void add(double value) { add(&value, sizeof value); }
 };
 
 }  // namespace
@@ -35,6 +47,22 @@ std::string scene_hash(const Scene& scene) {
     hash.add(&body.material, sizeof body.material);
     for (const Vec2& v : body.mesh.nodes) hash.add(v);
     hash.add(body.element_material.data(), body.element_material.size() * sizeof(MaterialIndex));
+  }
+  return hash.text();
+}
+
+std::string potentials_hash(const Model& model) {
+  Hash hash;
+  for (const RigidBody& body : model.bodies) {
+    const Potential& p = body.potential;
+    hash.add(p.vertices), hash.add(p.gradients), hash.add(p.top_points);
+    hash.add(p.top), hash.add(p.steepest);
+    if (p.roof) {
+      hash.add(p.roof->points), hash.add(p.roof->values), hash.add(p.roof->arcs);
+      for (const std::vector<int>& face : p.roof->faces) hash.add(face);
+    }
+    if (p.distance) hash.add(p.distance->slope), hash.add(p.distance->corners);
+    if (p.cells) hash.add(p.cells->depth), hash.add(p.cells->side);
   }
   return hash.text();
 }

@@ -13,6 +13,10 @@ namespace apothem {
 /// and drawings.
 std::string scene_hash(const Scene& scene);
 
+/// Of the potentials of all rigid bodies, from which the forces of contact come. They follow from
+/// the scene, but for what constructs straight skeletons, which may be of another version.
+std::string potentials_hash(const Model& model);
+
 /// Of a text.
 std::string text_hash(std::string_view text);
 

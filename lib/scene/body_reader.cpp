@@ -54,6 +54,7 @@ void BodyReader::read() {
     if (series == series_.end() || i < series->first) return;
     series->value.find("name")->set(numbered(series->name, static_cast<int>(i - series->first)));
   };
+  const auto first = model_.bodies.size();
   for (size_t i = 0; i < shapes_.size(); ++i) {
     name_of_series(i);
     if (const auto* polygon = std::get_if<Polygon>(&shapes_[i])) {
@@ -62,6 +63,12 @@ void BodyReader::read() {
     } else {
       deformable_body(*values_[i], std::move(std::get<MeshSpec>(shapes_[i])));
     }
+  }
+  for (const auto& [polygon, attempts] : potentials.repeated()) {
+    warnings_.push_back(fmt::format(
+        "the straight skeleton of \"{}\" was found in attempt {}, after constructions with its "
+        "vertices as given had failed: they are moved there by at most 1e-9 of its size",
+        model_.bodies[first + polygon].name, attempts));
   }
 }
 

@@ -42,6 +42,8 @@ class BodyReader {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// JSON pointers of the rigid bodies of the model.
   [[nodiscard]] const std::vector<std::string>& rigid_pointers() const { return rigid_pointers_; }
+  /// What was not made at once, one sentence each.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// The number in the model of the body at a place of the list.
   [[nodiscard]] BodyIndex body_at(size_t place) const;
 
@@ -91,6 +93,7 @@ class BodyReader {
   std::vector<std::string> names_;
   std::unordered_set<std::string> known_names_;
   std::vector<std::string> rigid_pointers_;
+  std::vector<std::string> warnings_;
   std::vector<int> numbers_;  // among the rigid bodies, or -1 - number among the deformable ones
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace apothem {
@@ -168,6 +169,10 @@ class Inspection {
 
 }  // namespace
 
-std::vector<std::string> unlikely_values(const Scene& scene) { return Inspection(scene).run(); }
+std::vector<std::string> unlikely_values(const Scene& scene) {
+  std::vector<std::string> all = scene.warnings;
+  std::ranges::move(Inspection(scene).run(), std::back_inserter(all));
+  return all;
+}
 
 }  // namespace apothem

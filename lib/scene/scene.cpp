@@ -52,6 +52,7 @@ class SceneReader {
     }
     bodies.read();
     scene_.rigid_pointers = bodies.rigid_pointers();
+    scene_.warnings = bodies.warnings();
     add_inflows(bodies, list ? list->items().size() : 0, filled);
     contact.read_pairs();
     population(top);

@@ -23,6 +23,7 @@ struct Scene {
   std::vector<StopRule> stops;
   std::vector<Measure> measures;
   std::vector<ImportReport> imports;        ///< what was read of each drawing
+  std::vector<std::string> warnings;        ///< of how it was made, one sentence each
   std::vector<std::string> rigid_pointers;  ///< of each rigid body, its JSON pointer
   JsonValue document;                       ///< what the file says; a run frees it
 

@@ -5,6 +5,6 @@ namespace apothem::test {
 
 /// What goes wrong after the other numbers of the request have been sent back. `report`: nothing,
 /// but the process group follows, whether interrupts are ignored, and whether file 3 is open.
-enum class Fault { none, crash, loop, sleep, greed, exception, report };
+enum class Fault { none, crash, kill, loop, sleep, greed, exception, report };
 
 }  // namespace apothem::test

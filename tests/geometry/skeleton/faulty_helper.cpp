@@ -19,6 +19,9 @@ void work(const std::vector<double>& request, const SendNumbers& send) {
     case Fault::none:
       break;
     case Fault::crash:
+      std::raise(SIGABRT);
+      break;
+    case Fault::kill:
       std::raise(SIGKILL);
       break;
     case Fault::loop: {

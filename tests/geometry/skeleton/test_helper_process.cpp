@@ -8,10 +8,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <system_error>
 
 #include "apothem/geometry/skeleton/skeleton.hpp"
 #include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "folder.hpp"
 #include "geometry/nonconvex_pairs.hpp"
 #include "geometry/skeleton/faults.hpp"
 #include "shapes.hpp"
@@ -31,8 +33,9 @@ Numbers request(Fault fault, const Numbers& numbers) {
 }
 
 HelperAnswer ask(Fault fault, const Numbers& numbers, double seconds = 1,
-                 const std::function<void()>& meanwhile = {}) {
-  return run_helpers(APOTHEM_FAULTY_HELPER, {request(fault, numbers)}, seconds, meanwhile).front();
+                 const std::function<void()>& meanwhile = {}, double patience = kHelperPatience) {
+  return run_helpers(APOTHEM_FAULTY_HELPER, {request(fault, numbers)}, seconds, meanwhile, patience)
+      .front();
 }
 
 // Sets an environment variable for a while.
@@ -61,19 +64,63 @@ TEST_CASE("a helper program hands over its numbers", "[helper]") {
 TEST_CASE("what goes wrong in a helper program stays there", "[helper]") {
   const HelperAnswer crashed = ask(Fault::crash, {1});
   CHECK(crashed.end == End::crashed);
-  CHECK(crashed.signal == SIGKILL);
+  CHECK(crashed.signal == SIGABRT);
+  CHECK(crashed.is_certain());
   CHECK(crashed.numbers == Numbers{1});
-  const HelperAnswer silent = ask(Fault::loop, {1});
-  CHECK(silent.end == End::silent);
-  CHECK(silent.numbers == Numbers{1});
-  const HelperAnswer asleep = ask(Fault::sleep, {});
-  CHECK(asleep.end == End::silent);
+  const HelperAnswer endless = ask(Fault::loop, {1}, 1, {}, .2);  // it works, so it may go on
+  CHECK(endless.end == End::overran);
+  CHECK(endless.numbers == Numbers{1});
+  CHECK(endless.is_certain());
   const HelperAnswer greedy = ask(Fault::greed, {});
   CHECK(greedy.end != End::finished);
   CHECK(!greedy.failure().empty());
   const HelperAnswer failed = ask(Fault::exception, {1});
   CHECK(failed.end == End::failed);
   CHECK(failed.numbers == Numbers{1});
+}
+
+TEST_CASE("what comes from outside says nothing about the request", "[helper]") {
+  const HelperAnswer killed = ask(Fault::kill, {1});
+  CHECK(killed.end == End::prevented);
+  CHECK(killed.signal == SIGKILL);
+  CHECK(killed.numbers == Numbers{1});
+  CHECK_FALSE(killed.is_certain());
+  const HelperAnswer asleep = ask(Fault::sleep, {}, 100, {}, .5);
+  CHECK(asleep.end == End::stalled);
+  CHECK_FALSE(asleep.is_certain());
+}
+
+namespace {
+
+// A helper that is killed in its first calls, and is then the right one.
+std::string killed_at_first(const test::Folder& folder, int calls) {
+  const std::string count = folder / "count";
+  const std::string script =
+      folder.write("helper.sh", "#!/bin/sh\necho >> " + count + "\n[ $(wc -l < " + count +
+                                    ") -gt " + std::to_string(calls) + " ] || kill -9 $$\nexec " +
+                                    skeleton_program() + " \"$@\"\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  return script;
+}
+
+}  // namespace
+
+TEST_CASE("a helper that was kept from its work is asked the same again", "[helper]") {
+  const Skeleton expected = straight_skeleton(test::cross_shape());
+  const test::Folder folder;
+  {
+    const Variable variable("APOTHEM_SKELETON_PROGRAM", killed_at_first(folder, 2).c_str());
+    const Skeleton found = straight_skeleton(test::cross_shape());
+    CHECK(found.attempts == expected.attempts);
+    REQUIRE(found.nodes.size() == expected.nodes.size());
+    for (size_t i = 0; i < found.nodes.size(); ++i) {
+      CHECK((found.nodes[i].point == expected.nodes[i].point));
+      CHECK(found.nodes[i].height == expected.nodes[i].height);
+    }
+  }
+  const Variable variable("APOTHEM_SKELETON_PROGRAM", killed_at_first(folder, 1000).c_str());
+  CHECK_THROWS_WITH(straight_skeleton(test::cross_shape()),
+                    Catch::Contains("was killed by signal 9, 3 times for the same polygon"));
 }
 
 TEST_CASE("several helpers work at the same time, and each fails for itself", "[helper]") {
@@ -89,7 +136,7 @@ TEST_CASE("several helpers work at the same time, and each fails for itself", "[
   CHECK(answers[1].numbers == Numbers{3});
   CHECK(answers[2].end == End::finished);
   CHECK(answers[2].numbers == Numbers{4});
-  CHECK(answers[3].end == End::silent);
+  CHECK(answers[3].end == End::overran);
 }
 
 TEST_CASE("a program may lose patience with its helper", "[helper]") {
