@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "apothem/scene/plausibility.hpp"
@@ -143,7 +144,8 @@ PlanEstimates estimates_of(const Scene& scene) {
   estimates.empty_history = scene.model.regions.empty() && output.track.empty() &&
                             output.track_deformables.empty() && output.points.empty() &&
                             output.track_surfaces.empty();
-  estimates.warnings = unlikely_values(scene);
+  estimates.warnings = scene.warnings;
+  std::ranges::move(unlikely_values(scene), std::back_inserter(estimates.warnings));
   return estimates;
 }
 

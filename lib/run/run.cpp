@@ -42,6 +42,7 @@ bool Schedule::due(double time, double step) {
 
 Run::Run(Scene scene, const RunSettings& settings)
     : scene_(std::move(scene)), settings_(settings), scene_hash_(scene_hash(scene_)) {
+  for (const std::string& made : scene_.warnings) warn(made);
   for (std::string& unlikely : unlikely_values(scene_)) warn(std::move(unlikely));
   scene_.drop_rings();
   const HistoryWriter::Parts histories = start();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 namespace apothem {
@@ -169,10 +168,6 @@ class Inspection {
 
 }  // namespace
 
-std::vector<std::string> unlikely_values(const Scene& scene) {
-  std::vector<std::string> all = scene.warnings;
-  std::ranges::move(Inspection(scene).run(), std::back_inserter(all));
-  return all;
-}
+std::vector<std::string> unlikely_values(const Scene& scene) { return Inspection(scene).run(); }
 
 }  // namespace apothem
