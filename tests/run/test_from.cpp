@@ -7,6 +7,7 @@
 
 #include "apothem/output/files.hpp"
 #include "apothem/run/hash.hpp"
+#include "apothem/run/sealed_file.hpp"
 #include "dynamics/term_of.hpp"
 #include "scenes.hpp"
 
@@ -142,7 +143,7 @@ TEST_CASE("bodies keep their springs where others come, go, or stand in another 
     // Without what contacts remember, friction would begin anew.
     Json forgetful = Json::parse(content(folder / "first/checkpoint.json"));
     forgetful["simulation"]["term_0"]["contacts"]["tangential"]["springs"] = Json::array();
-    write_file(folder / "first/checkpoint.json", forgetful.dump());
+    write_file(folder / "first/checkpoint.json", sealed(forgetful.dump()));
     Run third(scene_of(folder, other), {.folder = folder / "third", .from = folder / "first"});
     CHECK(third.simulation().contact_forces()[1].friction < .01 * on.friction);
   }
@@ -243,10 +244,10 @@ TEST_CASE("a state that is not there is refused, with the time that is", "[run][
   const std::string good = content(folder / "first/final.json");
   write_file(folder / "first/final.json", good.substr(0, good.size() / 2));
   CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "first"}),
-                    Catch::Contains("is not the state of a run"));
+                    Catch::Contains("is damaged"));
   Json damaged = Json::parse(good);
   damaged["simulation"]["state"]["x"] = {1.};
-  write_file(folder / "first/final.json", damaged.dump());
+  write_file(folder / "first/final.json", sealed(damaged.dump()));
   CHECK_THROWS_WITH(Run(scene, RunSettings{.folder = "", .from = folder / "first"}),
                     Catch::Contains("is damaged"));
   write_file(folder / "first/final.json", good);
@@ -344,7 +345,7 @@ TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from
       term["contacts"]["friction"]["springs"] = Json::array();
     }
   }
-  write_file(folder / "first/final.json", forgetful.dump());
+  write_file(folder / "first/final.json", sealed(forgetful.dump()));
   Run third(scene_of(folder, pulled_block("", "", R"({ "end": 2e-3 })")),
             {.folder = folder / "third", .from = folder / "first"});
   third.run();
