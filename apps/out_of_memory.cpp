@@ -25,13 +25,14 @@ constexpr size_t kLack = size_t{1} << 26;  // bytes
   _exit(exit_code::system_failed);
 }
 
-bool has_memory() {
+[[maybe_unused]] bool has_memory() {
   void* const some = mmap(nullptr, kLack, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (some == MAP_FAILED) return false;
   munmap(some, kLack);
   return true;
 }
 
+#ifndef __SANITIZE_ADDRESS__  // which reports crashes itself
 // Libraries of others use memory that they have not got, and the stack may find none to grow. Where
 // there is enough, the program has a mistake that is to be seen: the signal comes again.
 void on_crash(int signal) {
@@ -39,6 +40,21 @@ void on_crash(int signal) {
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
+
+void heed_crashes() {
+  static std::array<char, 1 << 16> stack;  // a stack that cannot grow has no room for a handler
+  stack_t own{};
+  own.ss_sp = stack.data();
+  own.ss_size = stack.size();
+  sigaltstack(&own, nullptr);
+  struct sigaction action = {};
+  action.sa_handler = on_crash;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT}) sigaction(signal, &action, nullptr);
+}
+#else
+void heed_crashes() {}
+#endif
 
 void on_terminate() {
   try {
@@ -55,17 +71,7 @@ void on_terminate() {
 
 void heed_lack_of_memory() {
   std::set_terminate(on_terminate);
-#ifndef __SANITIZE_ADDRESS__  // which reports crashes itself
-  static std::array<char, 1 << 16> stack;  // a stack that cannot grow has no room for a handler
-  stack_t own{};
-  own.ss_sp = stack.data();
-  own.ss_size = stack.size();
-  sigaltstack(&own, nullptr);
-  struct sigaction action = {};
-  action.sa_handler = on_crash;
-  action.sa_flags = SA_ONSTACK;
-  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT}) sigaction(signal, &action, nullptr);
-#endif
+  heed_crashes();
 }
 
 }  // namespace apothem

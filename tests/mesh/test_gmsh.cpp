@@ -222,7 +222,7 @@ TEST_CASE("bad gmsh files are refused with line and tag", "[mesh]") {
       {"2.2 0 8", "2.2 1 8", "is binary; save it as text", 2},
       {"2.2 0 8", "4.0 0 8", "has version 4.0, which is not read", 2},
       {"$MeshFormat", "MeshFormat", "no gmsh file", 1},
-      {"$MeshFormat", "$Nodes", "$MeshFormat must come before $Nodes", 1},
+      {"$MeshFormat", "$Nodes", "$MeshFormat must come before all other sections", 1},
       {"12 2 0 0", "12 2 zero 0", "\"zero\" is not a coordinate in m", 17},
       {"12 2 0 0", "12 2 0", "the line ends before a coordinate", 17},
       {"12 2 0 0", "12 2 0 0 0", "\"0\" is left over", 17},

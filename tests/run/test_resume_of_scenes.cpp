@@ -52,6 +52,7 @@ std::map<std::string, std::string> files_of(const std::string& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string file = entry.path().string();
+    if (file.ends_with("/checkpoint.previous.json")) continue;  // of runs that were stopped alone
     if (entry.is_regular_file()) files[file.substr(folder.size())] = text_of(file);
   }
   return files;
