@@ -80,19 +80,19 @@ TEST_CASE("a servo wall meets bodies that no force moves", "[servo]") {
   const std::string far = R"(, { "name": "far", "material": "m",
       "mesh": { "rectangle": { "size": [0.2, 0.1], "cells": [4, 2], "origin": [-50, 0] } },
       "supports": [{ "where": { "group": "bottom" }, "fix": ["x", "y"] }] })";
-  const Scene scene = read_scene(
-      folder.write("scene.json",
-                   R"({ "materials": { "m": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+  const Scene scene = read_scene(folder.write(
+      "scene.json",
+      R"({ "materials": { "m": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
     "contact": { "normal_stiffness": 1e7, "penetration_warning": 10, "damping": { "model": "viscous", "ratio": 0.5 } },
     "bodies": [
       { "name": "floor", "material": "m", "polygon": [[-1, -0.5], [1, -0.5], [1, 0], [-1, 0]], )" +
-                       other + R"( },
+          other + R"( },
       { "name": "wall", "material": "m", "polygon": [[-0.2, 0.001], [0.2, 0.001], [0.2, 0.3], [-0.2, 0.3]],
         "motion": { "servo": { "direction": [)" +
-                       std::to_string(slope) + R"(, -1], "force": 2000, "speed": 0.5 } } })" +
-                       (mesh ? far : "") + R"( ],
+          std::to_string(slope) + R"(, -1], "force": 2000, "speed": 0.5 } } })" +
+          (mesh ? far : "") + R"( ],
     "time": { "end": )" +
-                       (mesh || kSanitized ? "0.15" : "0.6") + R"( }, "output": { "frames": 1 } })"));
+          (mesh || kSanitized ? "0.15" : "0.6") + R"( }, "output": { "frames": 1 } })"));
   Run run(scene, {.folder = ""});
   double most = 0;
   while (run.state().time < scene.time.end - 1e-9) {
