@@ -53,7 +53,7 @@ inline void set_up(const Limits& limits, const std::string& out, const std::stri
   if (limits.closed_screens) ::close(1), ::close(2);
   limit(RLIMIT_FSIZE, limits.file_size);
   limit(RLIMIT_NOFILE, limits.descriptors);
-  limit(RLIMIT_AS, limits.memory);
+  if (!kSanitized) limit(RLIMIT_AS, limits.memory);  // a sanitizer maps terabytes
 }
 
 /// The status of a child process, which is killed after so many seconds of real time.

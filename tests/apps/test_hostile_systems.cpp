@@ -35,7 +35,7 @@ const std::string kCross = "POLYGON ((1 0, 2 0, 2 1, 3 1, 3 2, 2 2, 2 3, 1 3, 1 
 }  // namespace
 
 TEST_CASE("memory that ends anywhere is one sentence and exit code 4", "[hostile]") {
-  if (kSanitized) return;  // a sanitizer maps terabytes
+  if (kSanitized) return;  // it cannot be bounded there
   const Folder folder;
   const std::string scene = pile(folder);
   REQUIRE(run({"run", scene, "-o", folder / "done", "--quiet"}, folder).code == 0);
