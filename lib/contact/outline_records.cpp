@@ -29,7 +29,8 @@ struct PatchSum {
 // that it has. Where forces nearly cancel there is no line of action, and the mean stays.
 Vec2 loading_point(const PatchSum& patch) {
   if (!(patch.weight > 0)) return patch.record.point;
-  const Vec2 mean = patch.record.point / patch.weight, force = patch.record.normal;
+  const Vec2 force = patch.record.normal;
+  Vec2 mean = patch.record.point / patch.weight;
   const double squared = force.squaredNorm();
   if (!(squared > 1e-6 * patch.weight * patch.weight)) return mean;
   return mean + (patch.moment - cross(mean, force)) / squared * Vec2(force.y(), -force.x());
@@ -208,8 +209,7 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   const size_t first = records.size();
   for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
   SurfaceRecord* const record = records.data() + first;
-  for (size_t i = 0; i < state.contacts.size(); ++i) {
-    const auto& [edge, face, slope, piece, along, push] = state.contacts[i];
+  for (const auto& [edge, face, slope, piece, along, push] : state.contacts) {
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
     for (const int k : {edge, face}) {  // the faces look the other way

@@ -35,6 +35,10 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, error));
 }
 
+std::string in(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
 Names names_of(const FolderPlan& plan) {
   Names names(kResults.begin(), kResults.end());
   names.insert(names.end(), plan.others.begin(), plan.others.end());
@@ -45,13 +49,13 @@ Names names_of(const FolderPlan& plan) {
 // are there, and what its series list.
 std::set<std::string> unlisted_results(const std::string& folder) {
   std::set<std::string> names;
-  if (!is_there(folder + "/frames.pvd") || !is_there(folder + "/names.csv")) return names;
+  if (!is_there(in(folder, "frames.pvd")) || !is_there(folder + "/names.csv")) return names;
   names.insert(kResults.begin(), kResults.end());
   names.insert("picture.png");
   for (const char* result : kResults) {
-    if (!std::string_view(result).ends_with(".pvd") || !is_there(folder + "/" + result)) continue;
+    if (!std::string_view(result).ends_with(".pvd") || !is_there(in(folder, result))) continue;
     try {
-      for (const auto& [time, file] : read_pvd(folder + "/" + result)) names.insert(file);
+      for (const auto& [time, file] : read_pvd(in(folder, result))) names.insert(file);
     } catch (const ResultsError&) {
       // Files that no list names stay.
     }
@@ -87,12 +91,12 @@ void refuse_link(const std::string& folder) {
 void refuse_others(const std::string& folder, const Names& results,
                    const std::set<std::string>& own) {
   const auto refuse = [&](const std::string& name) {
-    throw SceneError(folder + "/" + name, 0, "",
+    throw SceneError(in(folder, name), 0, "",
                      "is in the way: the run would write a file of this name, and this one is not "
                      "of an earlier run; move it, or choose another folder");
   };
   for (const std::string& name : results) {
-    if (own.count(name) == 0 && is_there(folder + "/" + name)) refuse(name);
+    if (own.count(name) == 0 && is_there(in(folder, name))) refuse(name);
   }
   std::error_code error;
   Names frames;
@@ -105,7 +109,7 @@ void refuse_others(const std::string& folder, const Names& results,
 
 void refuse_inputs(const std::string& folder, const Names& files, const Names& inputs) {
   for (const std::string& name : files) {
-    const std::string file = folder + "/" + name;
+    const std::string file = in(folder, name);
     for (const std::string& input : inputs) {
       std::error_code error;
       if (!is_there(file) || !fs::equivalent(file, input, error) || error) continue;
@@ -121,7 +125,7 @@ Names with_halves(const std::string& folder, const std::set<std::string>& own) {
   Names files;
   for (const std::string& name : own) {
     for (const std::string& file : {name, name + ".partial"}) {
-      if (is_there(folder + "/" + file)) files.push_back(file);
+      if (is_there(in(folder, file))) files.push_back(file);
     }
   }
   return files;
@@ -131,7 +135,7 @@ void take_away(const std::string& folder, const Names& files) {
   for (const std::string& name : files) {
     std::error_code error;
     fs::remove(fs::path(folder) / name, error);
-    if (error) throw SystemFailure(folder + "/" + name, error.value());
+    if (error) throw SystemFailure(in(folder, name), error.value());
   }
 }
 
@@ -223,7 +227,7 @@ Found look_into(const std::string& folder, const std::string& hash) {
     return origin_of(final).scene_hash == hash ? Found::ended : Found::other;
   }
   const bool results = std::any_of(kResults.begin(), kResults.end(),
-                                   [&](const char* name) { return is_there(folder + "/" + name); });
+                                   [&](const char* name) { return is_there(in(folder, name)); });
   if (!results) return Found::nothing;
   if (!is_there(folder + "/" + FileList::kName)) return Found::other;
   const FileList list(folder);

@@ -47,6 +47,7 @@ std::vector<Vec2> shrunk(const std::vector<Vec2>& ring, double share) {
   Vec2 middle = Vec2::Zero();
   for (const Vec2& v : ring) middle += v / static_cast<double>(ring.size());
   std::vector<Vec2> smaller;
+  smaller.reserve(ring.size());
   for (const Vec2& v : ring) smaller.push_back(v + share * (middle - v));
   return smaller;
 }
@@ -138,6 +139,7 @@ class Fill {
     mesh_size_ = in_.positive(object.required("size", "of the elements, in m"), "m");
     if (const JsonValue* v = object.optional("element")) {
       std::vector<std::string> names;
+      names.reserve(std::size(kElements));
       for (const ElementName& e : kElements) names.emplace_back(e.name);
       element_ = &kElements[static_cast<size_t>(in_.choice(*v, names))];
     } else {

@@ -39,7 +39,7 @@ class SceneReader {
     ContactReader contact(in_, model_, features_);
     if (const JsonValue* v = top.optional("contact")) {
       contact.read(*v);
-    } else if (fills || list->items().size() > 1) {
+    } else if (fills || (list && list->items().size() > 1)) {
       top.required("contact", "{\"normal_stiffness\": ...} for scenes of more than one body");
     }
     BodyReader bodies(in_, materials, model_, features_);
