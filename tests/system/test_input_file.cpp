@@ -11,6 +11,22 @@
 using namespace apothem;
 using namespace apothem::test;
 
+namespace {
+
+// The commands that read a file which a user names.
+std::vector<std::vector<std::string>> readers_of(const std::string& file, const Folder& folder) {
+  return {{"check", file},
+          {"polygon", file},
+          {"polygon", "--batch", file},
+          {"contact", file, file},
+          {"contact", "--batch", file},
+          {"mesh", file},
+          {"mesh", file, "--voronoi", "4"},
+          {"accuracy", "--cases", file, "-o", folder / "accuracy"}};
+}
+
+}  // namespace
+
 TEST_CASE("named pipes, devices, folders and large files are refused unopened", "[input]") {
   const Folder folder;
   const std::string pipe = folder / "pipe", zeros = folder / "zeros.msh", large = folder / "large";
@@ -52,22 +68,16 @@ TEST_CASE("every kind of input without end is refused at once", "[input][program
     const std::string mesh =
         scene("mesh.json", R"("bodies": [ { "name": "a", "material": "rock", "mesh": { "file": ")" +
                                file + R"(" } } ])");
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"run", file},
-          {"check", file},
-          {"check", drawing},
-          {"check", mesh},
-          {"polygon", file},
-          {"polygon", "--batch", file},
-          {"contact", file, file},
-          {"contact", "--batch", file},
-          {"mesh", file},
-          {"mesh", file, "--voronoi", "4"},
-          {"accuracy", "--cases", file, "-o", folder / "accuracy"},
-          {"sweep", good, "--table", file, "--dry-run", "-o", folder / "sweep"},
-          {"run", good, "-o", folder / "run", "--resume"},
-          {"picture", folder / "run", "--plot", "energy"},
-          {"view", folder / "run"}}) {
+    std::vector<std::vector<std::string>> commands = readers_of(file, folder);
+    commands.insert(commands.end(),
+                    {{"run", file},
+                     {"check", drawing},
+                     {"check", mesh},
+                     {"sweep", good, "--table", file, "--dry-run", "-o", folder / "sweep"},
+                     {"run", good, "-o", folder / "run", "--resume"},
+                     {"picture", folder / "run", "--plot", "energy"},
+                     {"view", folder / "run"}});
+    for (const std::vector<std::string>& words : commands) {
       const Result r = run(words, folder, {.memory = 2UL << 30, .most_seconds = 5});
       INFO(words[0] << ' ' << words[1] << ": " << r.err);
       CHECK(r.code == 2);
@@ -81,15 +91,7 @@ TEST_CASE("no message quotes a file that is another one than it should be", "[in
   const std::string text = "secret:$6$longsecret:19000:0:99999:7:::\nother:secret:1:2\n";
   for (const char* name : {"f", "f.json", "f.msh", "f.dxf", "f.wkt", "f.csv", "f.geojson"}) {
     const std::string file = folder.write(name, text);
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"check", file},
-          {"polygon", file},
-          {"polygon", "--batch", file},
-          {"contact", file, file},
-          {"contact", "--batch", file},
-          {"mesh", file},
-          {"mesh", file, "--voronoi", "4"},
-          {"accuracy", "--cases", file, "-o", folder / "accuracy"}}) {
+    for (const std::vector<std::string>& words : readers_of(file, folder)) {
       const Result r = run(words, folder);
       INFO(words[0] << ' ' << words[1] << ": " << r.err << r.out);
       CHECK(r.code == 2);
