@@ -297,11 +297,11 @@ void Contacts::forget_search() {
 
 void Contacts::refresh(const Kinematics& now) {
   Kinematics kinematics = now;
-  kinematics.restored = loaded_.has_value();
-  if (loaded_) {
-    search_.search_at(*loaded_, surfaces_, threads_);
+  kinematics.restored = kept_search_.has_value();
+  if (kept_search_) {
+    search_.search_at(*kept_search_, surfaces_, threads_);
     hand_out_pairs();
-    loaded_.reset();
+    kept_search_.reset();
     place_all(now);
   } else {
     place_all(now);
@@ -348,7 +348,7 @@ void Contacts::fields(Archive& archive) {
   each([&](Kernel& kernel) { kernel.fields(archive); });
   SearchPlaces places = search_.places(surfaces_);
   archive("search", places);
-  if (archive.loads()) loaded_ = std::move(places);
+  if (archive.loads()) kept_search_ = std::move(places);
 }
 
 }  // namespace apothem

@@ -59,6 +59,8 @@ class Contacts {
   void try_slide(const Kinematics& now, double dt);
   /// Contacts remember what they did before the last slide that was tried.
   void drop_trial();
+  /// Has the next refresh() keep the candidates.
+  void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);
 
   /// Ascending within a kernel, until they are listed again. Not for every step.
@@ -122,8 +124,8 @@ class Contacts {
 
   /// Has the next step search anew.
   void forget_search();
-  /// Finds candidates, contacts and forces again. After `fields` has been loaded the candidates are
-  /// those that its simulation had.
+  /// Finds candidates, contacts and forces again. After keep_search() the candidates are those of
+  /// that moment, and after `fields` has been loaded those that its simulation had.
   void refresh(const Kinematics& now);
   void fields(Archive& archive);
 
@@ -155,7 +157,7 @@ class Contacts {
   PairTable table_;
   FrictionLaw friction_law_;
   Search search_;
-  std::optional<SearchPlaces> loaded_;  // and not used yet
+  std::optional<SearchPlaces> kept_search_;  // and not used yet
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   bool tangential_;                      // there is friction or damping
   std::vector<Contact> contacts_;        // without those that kernels add when they are asked for

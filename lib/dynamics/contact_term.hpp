@@ -59,6 +59,7 @@ class ContactTerm final : public Term {
   }
   void drop_trial(const State& state) override {
     contacts_.drop_trial();
+    contacts_.keep_search();
     refresh(state);
   }
   void add_force_sizes(std::span<double> of_bodies) const override {

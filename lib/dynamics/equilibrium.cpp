@@ -385,10 +385,18 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
                             const std::function<bool()>& stop) {
   const double steps = ramp(state.time, time);
   LoadStep result{time};
+  std::int64_t step = 0;
   ++state.step;
-  // The scaled masses depend on what is near: the same bits from a checkpoint.
-  for (const auto& term : terms_) term->start_load_step();
-  for (std::int64_t step = 0;; ++step) {
+  if (pause_ && pause_->until == time) {
+    state.time = pause_->time, state.x = pause_->x, state.v = pause_->v;
+    step = pause_->steps;
+    revision_ = revision();
+  } else {
+    // The scaled masses depend on what is near: the same bits from a checkpoint.
+    for (const auto& term : terms_) term->start_load_step();
+  }
+  pause_.reset();
+  for (;; ++step) {
     const double share = std::min(1., static_cast<double>(step + 1) / steps);
     if (state.time != time) {
       state.time = share < 1 ? before.time + share * (time - before.time) : time;
@@ -413,6 +421,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
     move(state, step == 0);
     if (stop && stop()) {
       result.complete = false;
+      pause_ = {state.time, time, step + 1, state.x, state.v};
       return result;
     }
   }
@@ -440,6 +449,25 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   ledger.add_work(work);
   outside_ = now;
   return result;
+}
+
+void Equilibrium::fields(Archive& archive) {
+  archive.sized("outside", outside_);
+  archive("loads", loads_);
+  archive.sized("body_loads", body_loads_);
+  bool paused = pause_.has_value();
+  archive("paused", paused);
+  if (!paused) {
+    pause_.reset();
+    return;
+  }
+  if (!pause_) pause_ = {0, 0, 0, mass_, mass_};
+  archive("time", pause_->time)("until", pause_->until)("steps", pause_->steps);
+  archive.sized("x", pause_->x).sized("v", pause_->v);
+  archive("kinetic", kinetic_);
+  archive.sized("mass", mass_).sized("inverse", inverse_).sized("velocity", velocity_);
+  archive.sized("last", last_).sized("elastic", stiffness_.elastic);
+  archive.sized("contact", stiffness_.contact).sized("rigid", stiffness_.rigid);
 }
 
 void Equilibrium::settle(State& state, const std::function<bool()>& stop) {

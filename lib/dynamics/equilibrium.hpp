@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apothem/dynamics/results.hpp"
@@ -24,7 +25,8 @@ class Equilibrium {
   /// Moves loads, supports and prescribed bodies to where they are at `time` and finds the
   /// equilibrium there; books the work of loads and supports (trapezoid rule over the load step).
   /// Not complete, with the state as it was, if `stop`, asked after each step of relaxation, says
-  /// so. Throws Unstable if there is no equilibrium in reach; the state is then not to be trusted.
+  /// so: the next call with the same time goes on where it has stopped, bit for bit. Throws
+  /// Unstable if there is no equilibrium in reach; the state is then not to be trusted.
   LoadStep find(State& state, Ledger& ledger, double time, const std::function<bool()>& stop);
   /// The equilibrium at the time of `state`, whose velocities tell friction what slides: there it
   /// is at its limit. Throws as above.
@@ -32,13 +34,15 @@ class Equilibrium {
   /// The loads of the last evaluation have been there before the first load step.
   void begin_loaded() { outside_ = loads(); }
 
-  void fields(Archive& archive) {
-    archive.sized("outside", outside_);
-    archive("loads", loads_);
-    archive.sized("body_loads", body_loads_);
-  }
+  void fields(Archive& archive);
 
  private:
+  // Where a relaxation was stopped.
+  struct Pause {
+    double time = 0, until = 0;  // that it had come to, and was on the way to, s
+    std::int64_t steps = 0;      // taken so far
+    std::vector<double> x, v;    // of the state that was tried
+  };
   LoadStep relax(State& state, const State& before, double time, const std::function<bool()>& stop);
   [[nodiscard]] double ramp(double from, double until) const;
   void find_forces(State& state, const State& before);
@@ -82,8 +86,9 @@ class Equilibrium {
   std::vector<double> rest_, last_;       // forces out of balance, and a step before, N
   std::vector<double> drive_, velocity_;  // what accelerates, N; velocity
   std::vector<double> displacement_;      // since the start of the load step
-  std::vector<double> slip_;            // what counts as displacement in contacts besides; or none
-  std::vector<double> outside_;         // loads on nodes at the last equilibrium, N
+  std::vector<double> slip_;     // what counts as displacement in contacts besides; or none
+  std::vector<double> outside_;  // loads on nodes at the last equilibrium, N
+  std::optional<Pause> pause_;
   std::vector<double> lambda_;          // of rigid bodies: stiffness / inertia, 1/s^2
   std::vector<double> radius_;          // of rigid bodies, m
   std::vector<double> least_;           // scaled mass of rigid bodies

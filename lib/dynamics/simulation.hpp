@@ -64,8 +64,8 @@ class Simulation {
 
   /// Static scenes: the next load step, which brings loads, supports and prescribed bodies to where
   /// they are at `time`. Not complete if `stop`, asked after each step of relaxation, says so:
-  /// nothing has changed then. Throws Unstable if it finds no equilibrium; the state is then not to
-  /// be trusted.
+  /// the state has not changed then, and the next call goes on with the relaxation. Throws Unstable
+  /// if it finds no equilibrium; the state is then not to be trusted.
   LoadStep balance(double time, const std::function<bool()>& stop = {});
 
   /// Takes over what contacts of another simulation remember, by the numbers of this one's

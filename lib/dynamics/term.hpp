@@ -91,6 +91,7 @@ class Term {
   // For static runs:
   virtual void start_load_step() {}
   /// What it remembers is again what it was before the states that were tried; `state` as well.
+  /// What was near something in the last of them is still a candidate for contact.
   virtual void drop_trial(const State& state) { refresh(state); }
   /// Changes when the stiffness may have changed at once.
   [[nodiscard]] virtual std::int64_t revision() const { return 0; }

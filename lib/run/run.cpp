@@ -243,7 +243,12 @@ bool Run::load_step() {
   const double time = next < count
                           ? scene_.time.end * static_cast<double>(next) / static_cast<double>(count)
                           : scene_.time.end;
-  const LoadStep found = simulation_->balance(time, [&] { return asked_to_stop(); });
+  const auto pause = [&] { return asked_to_stop() || checkpoint_due(); };
+  LoadStep found = simulation_->balance(time, pause);
+  while (!found.complete && !asked_to_stop()) {
+    write_checkpoint();
+    found = simulation_->balance(time, pause);
+  }
   if (!found.complete) return false;
   progress_.load_steps.push_back(found);
   record(true, true);
@@ -263,15 +268,21 @@ void Run::loop(double until) {
   while (!asked_to_stop() && stopped_by_.empty() && more() && step()) {
     if (!scene_.time.statics && state().step % kLookEvery != 0) continue;
     if (on_progress_) on_progress_(*this);
-    const std::optional<double>& interval = scene_.output.checkpoint_interval;
     // Not of a run that has just been stopped: a rule is looked at after a step, and a run that
     // goes on from here would take one more before it knows.
-    if (interval && stopped_by_.empty() && seconds_since(last_checkpoint_) > *interval) {
-      write(StateFile::checkpoint);
-      last_checkpoint_ = Clock::now();
-    }
+    if (stopped_by_.empty() && checkpoint_due()) write_checkpoint();
   }
   status_ = more() && !ended() ? Status::interrupted : Status::done;
+}
+
+bool Run::checkpoint_due() const {
+  const std::optional<double>& interval = scene_.output.checkpoint_interval;
+  return interval && history_ && seconds_since(last_checkpoint_) > *interval;
+}
+
+void Run::write_checkpoint() {
+  write(StateFile::checkpoint);
+  last_checkpoint_ = Clock::now();
 }
 
 bool Run::ended() const {

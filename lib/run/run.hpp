@@ -77,7 +77,7 @@ class Run {
 
   /// One step, or load step, with the records that are due after it. False, without a step, if the
   /// run is at its end, has been stopped by a rule of the scene, or was asked to stop during a load
-  /// step. Throws Unstable and SystemFailure.
+  /// step, which the next call goes on with. Throws Unstable and SystemFailure.
   bool step();
   /// Steps until a time in s, by default the end of the scene, until it is asked to stop, or until
   /// a rule of the scene stops the run. Files stay open. Throws Unstable and SystemFailure.
@@ -151,6 +151,8 @@ class Run {
   void judge();
   void look_for_stop();
   [[nodiscard]] bool asked_to_stop() const { return settings_.stop_if && settings_.stop_if(); }
+  [[nodiscard]] bool checkpoint_due() const;
+  void write_checkpoint();
   template <class Work>
   void note_failures(const Work& work);
   void update_progress();

@@ -2,6 +2,7 @@
 // with a force of the user's own. A checkpoint that does not fit is refused.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "apothem/output/files.hpp"
 #include "apothem/run/hash.hpp"
@@ -38,6 +39,33 @@ std::vector<NamedScene> stopped_scenes() {
   std::vector<NamedScene> scenes = rubbing_scenes();
   scenes.push_back(turning_slope());
   return scenes;
+}
+
+// Meshes on each other and on a rigid floor, with friction, and a rigid block between two meshes.
+std::vector<NamedScene> static_scenes() {
+  const std::string between = R"({ "gravity": [0, -10],
+    "materials": { "rock": { "density": 2000, "young": 2e8, "poisson": 0.2 } },
+    "contact": { "normal_stiffness": 1e9,
+                 "friction": { "coefficient": 0.4, "tangential_stiffness": 5e8 } },
+    "bodies": [
+      { "name": "lower", "material": "rock",
+        "mesh": { "rectangle": { "size": [1, 0.5], "cells": [6, 3] } },
+        "supports": [ { "where": { "y": 0 }, "fix": ["x", "y"] } ] },
+      { "name": "stone", "material": "rock", "polygon": [[0.2, 0.5], [0.8, 0.5], [0.8, 0.7], [0.2, 0.7]] },
+      { "name": "upper", "material": "rock",
+        "mesh": { "rectangle": { "size": [0.5, 0.2], "cells": [5, 2], "origin": [0.25, 0.7] } },
+        "loads": [ { "where": { "group": "top" }, "force": [3e3, -1e5], "history": [[0, 0], [1, 1]] } ] } ],
+    "time": { "end": 1, "mode": "static", "load_steps": 3 },
+    "output": { "history": { "track": [ { "body": "stone" } ] } } })";
+  return {{"two meshes", pressed_blocks(3), 0, false, {}},
+          {"a mesh pulled over a floor",
+           pulled_block(R"(, "velocity": [[0, 0, 0], [1, 0, 0], [1.000001, 2e-3, 0]])",
+                        R"(, "history": [[0, 0], [1, 1]])",
+                        R"({ "end": 1.5, "mode": "static", "load_steps": 3 })"),
+           0,
+           false,
+           {}},
+          {"a rigid block between meshes", between, 0, false, {}}};
 }
 
 std::string checkpoint_of(const Folder& folder) { return folder / "parts/checkpoint.json"; }
@@ -274,20 +302,83 @@ TEST_CASE("a static run continues between its load steps, bit for bit", "[resume
                             "frames/surfaces_000005.vtu"});
 }
 
+TEST_CASE("a static run that is stopped within its load steps goes on there, bit for bit",
+          "[resume]") {
+  std::mt19937 random(41);
+  for (const NamedScene& named : static_scenes()) {
+    INFO(named.name);
+    const Folder folder;
+    const Scene scene = scene_of(folder, named.text);
+    Run whole(scene, {.folder = folder / "whole"});
+    REQUIRE(whole.run() == Run::Status::done);
+    std::int64_t longest = 0;
+    for (const LoadStep& s : whole.load_steps()) longest = std::max(longest, s.iterations);
+    REQUIRE(longest > 50);
+    int stops = 0;
+    Run::Status status = Run::Status::interrupted;
+    for (; status == Run::Status::interrupted && stops < 100; ++stops) {
+      std::int64_t left =
+          1 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(longest));
+      Run part(scene, {.folder = folder / "parts",
+                       .threads = 1 + stops % 2,
+                       .resume = stops > 0,
+                       .stop_if = [&] { return --left < 0; }});
+      status = part.run();
+      if (status != Run::Status::done) continue;
+      check_same(part, whole);
+      REQUIRE(part.load_steps().size() == whole.load_steps().size());
+      for (size_t i = 0; i < part.load_steps().size(); ++i) {
+        CHECK(part.load_steps()[i].iterations == whole.load_steps()[i].iterations);
+        CHECK(part.load_steps()[i].off == whole.load_steps()[i].off);
+      }
+    }
+    REQUIRE(status == Run::Status::done);
+    CHECK(stops > 2);
+    check_same_files(folder, {"history.csv", "energy.csv", "momentum.csv", "frames.pvd"});
+  }
+}
+
+TEST_CASE("checkpoints within a load step change nothing, and a run goes on from them",
+          "[resume]") {
+  const Folder folder;
+  Scene scene = scene_of(folder, pressed_blocks(2));
+  Run plain(scene, {.folder = folder / "plain"});
+  REQUIRE(plain.run() == Run::Status::done);
+  scene.output.checkpoint_interval = 1e-9;
+  int looks = 0;
+  bool copied = false;
+  Run whole(scene, {.folder = folder / "whole", .stop_if = [&] {
+                      if (++looks % 500 == 0 && !copied) {
+                        std::filesystem::copy(folder / "whole", folder / "killed",
+                                              std::filesystem::copy_options::recursive);
+                        copied = true;
+                      }
+                      return false;
+                    }});
+  REQUIRE(whole.run() == Run::Status::done);
+  check_same(whole, plain);
+  REQUIRE(copied);
+  scene.output.checkpoint_interval.reset();
+  Run second(scene, {.folder = folder / "killed", .resume = true});
+  REQUIRE(second.run() == Run::Status::done);
+  check_same(second, plain);
+  CHECK(content(folder / "plain/history.csv") == content(folder / "killed/history.csv"));
+}
+
 TEST_CASE("a static run that is killed goes on from the checkpoint behind a load step",
           "[resume]") {
   const Folder folder;
-  Scene scene = scene_of(folder, pressed_blocks(5));
+  Scene scene = scene_of(folder, pressed_blocks(3));
   scene.output.checkpoint_interval = 1e-9;
   Run whole(scene, {.folder = folder / "whole"});
   whole.on_progress([&](const Run& now) {
-    if (now.state().step != 3) return;
+    if (now.state().step != 2) return;
     std::filesystem::copy(folder / "whole", folder / "killed",
                           std::filesystem::copy_options::recursive);
   });
   REQUIRE(whole.run() == Run::Status::done);
   Run second(scene, {.folder = folder / "killed", .resume = true});
-  CHECK(second.state().step == 2);
+  CHECK(second.state().step == 1);
   REQUIRE(second.run() == Run::Status::done);
   check_same(second, whole);
   CHECK(content(folder / "whole/history.csv") == content(folder / "killed/history.csv"));
