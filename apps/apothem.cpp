@@ -13,18 +13,18 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "apothem/scene/error.hpp"
-#include "apothem/system/standard_files.hpp"
-#include "completion.hpp"
-#include "manual.hpp"
-#include "options.hpp"
-#include "out_of_memory.hpp"
-#include "signals.hpp"
-#include "usage.hpp"
-#include "work_line.hpp"
+#include "apps/command_line/completion.hpp"
+#include "apps/command_line/manual.hpp"
+#include "apps/command_line/options.hpp"
+#include "apps/command_line/usage.hpp"
+#include "apps/process/out_of_memory.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/process/work_line.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/scene/error.hpp"
+#include "lib/system/standard_files.hpp"
 
 namespace {
 

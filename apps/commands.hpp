@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/scene/setting.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/scene/setting.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "data_folder.hpp"
+#include "apps/data_folder.hpp"
 
 #include <filesystem>
 

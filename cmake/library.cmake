@@ -1,12 +1,5 @@
-# Headers are included as "apothem/ROOM/NAME.hpp", here and where the package is installed.
-set(APOTHEM_HEADERS ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${APOTHEM_HEADERS}/apothem)
-file(GLOB rooms LIST_DIRECTORIES true RELATIVE ${PROJECT_SOURCE_DIR}/lib ${PROJECT_SOURCE_DIR}/lib/*)
-list(FILTER rooms EXCLUDE REGEX "\\.")
-foreach(room ${rooms})
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/lib/${room} ${APOTHEM_HEADERS}/apothem/${room} SYMBOLIC)
-endforeach()
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/geometry ${APOTHEM_HEADERS}/apothem/geometry SYMBOLIC)
+# Headers are included by their paths from the root of the source tree; installed ones as "apothem/ROOM/NAME.hpp"
+# (install_headers.cmake).
 
 # A library of the package: apothem::NAME, with what every one of them needs.
 function(apothem_library name)
@@ -15,7 +8,7 @@ function(apothem_library name)
   set_target_properties(apothem_${name} PROPERTIES
     EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(apothem_${name} PUBLIC
-    $<BUILD_INTERFACE:${APOTHEM_HEADERS}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(apothem_${name} PUBLIC cxx_std_20)
   target_compile_definitions(apothem_${name} PUBLIC ${APOTHEM_EIGEN})
   target_link_libraries(apothem_${name} PRIVATE $<BUILD_INTERFACE:apothem_options>)

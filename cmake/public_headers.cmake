@@ -2,9 +2,9 @@
 # A test fails if one of them includes a header that is not here.
 set(APOTHEM_PUBLIC_HEADERS
   archive/archive.hpp
-  contact/contact.hpp
-  contact/kinematics.hpp
-  contact/law.hpp
+  contact/law/contact.hpp
+  contact/law/kinematics.hpp
+  contact/law/law.hpp
   dynamics/body_start.hpp
   dynamics/degrees_of_freedom.hpp
   dynamics/energy_guard.hpp

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/canvas.hpp"
+#include "lib/output/canvas.hpp"
 
 namespace apothem::test {
 

@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "folder.hpp"
-#include "support.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

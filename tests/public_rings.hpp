@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/ring_line.hpp"
+#include "lib/scene/ring_line.hpp"
 
 namespace apothem::test {
 

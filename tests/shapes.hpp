@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
 
 namespace apothem::test {
 

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "apothem/geometry/integrals/edge_integral.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
 
 namespace apothem::test {
 

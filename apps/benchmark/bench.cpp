@@ -1,4 +1,4 @@
-#include "benchmark/bench.hpp"
+#include "apps/benchmark/bench.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/geometry/skeleton/singular_area.hpp"
-#include "benchmark/bench.hpp"
-#include "cases/samples.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem {
 namespace {

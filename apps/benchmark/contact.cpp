@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "apothem/contact/contacts.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "benchmark/bench.hpp"
-#include "benchmark/counted.hpp"
-#include "cases/samples.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/benchmark/counted.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/contact/contacts.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
 
 namespace apothem {
 namespace {

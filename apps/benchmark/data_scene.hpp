@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apothem/scene/scene.hpp"
-#include "data_folder.hpp"
+#include "apps/data_folder.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

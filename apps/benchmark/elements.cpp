@@ -9,12 +9,12 @@
 #include <Eigen/LU>
 #include <memory>
 
-#include "apothem/dynamics/elements.hpp"
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "benchmark/bench.hpp"
-#include "benchmark/counted.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/benchmark/counted.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/dynamics/elements.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
 
 namespace apothem {
 namespace {

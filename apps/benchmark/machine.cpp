@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "apothem/execution/pack.hpp"
-#include "benchmark/bench.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem {
 namespace {

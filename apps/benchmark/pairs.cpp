@@ -6,12 +6,12 @@
 #include <memory>
 #include <stdexcept>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/contact_patches.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "benchmark/bench.hpp"
-#include "cases/samples.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
 
 namespace apothem {
 namespace {

@@ -1,15 +1,15 @@
-#include "benchmark/piles.hpp"
+#include "apps/benchmark/piles.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/geometry/packing/arrange.hpp"
-#include "apothem/geometry/packing/block_shapes.hpp"
-#include "apothem/geometry/spatial/hilbert.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/packing/arrange.hpp"
+#include "geometry/packing/block_shapes.hpp"
+#include "geometry/spatial/hilbert.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
 
 namespace apothem {
 namespace {

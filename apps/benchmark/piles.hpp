@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
 
 namespace apothem {
 

@@ -11,11 +11,11 @@
 #include <numeric>
 #include <optional>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "benchmark/bench.hpp"
-#include "benchmark/data_scene.hpp"
-#include "benchmark/piles.hpp"
-#include "cases/samples.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/benchmark/data_scene.hpp"
+#include "apps/benchmark/piles.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 namespace apothem {
 namespace {

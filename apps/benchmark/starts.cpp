@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/scene/scene.hpp"
-#include "benchmark/bench.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/output/files.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 namespace {

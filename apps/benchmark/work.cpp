@@ -8,11 +8,11 @@
 #include <cmath>
 #include <memory>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "benchmark/bench.hpp"
-#include "benchmark/data_scene.hpp"
-#include "cases/impacts.hpp"
-#include "cases/samples.hpp"
+#include "apps/benchmark/bench.hpp"
+#include "apps/benchmark/data_scene.hpp"
+#include "apps/cases/impacts.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 namespace apothem {
 namespace {

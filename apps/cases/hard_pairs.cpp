@@ -1,10 +1,10 @@
-#include "cases/hard_pairs.hpp"
+#include "apps/cases/hard_pairs.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
 
 namespace apothem {
 namespace {

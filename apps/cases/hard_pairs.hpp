@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

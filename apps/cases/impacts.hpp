@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/simulation.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 namespace apothem::samples {
 

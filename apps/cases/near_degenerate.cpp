@@ -1,4 +1,4 @@
-#include "cases/near_degenerate.hpp"
+#include "apps/cases/near_degenerate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
 
 namespace apothem::samples {
 

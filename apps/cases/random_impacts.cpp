@@ -1,12 +1,12 @@
-#include "cases/random_impacts.hpp"
+#include "apps/cases/random_impacts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 namespace apothem::samples {
 namespace {

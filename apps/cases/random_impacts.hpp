@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
 
 namespace apothem::samples {
 

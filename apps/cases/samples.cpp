@@ -1,4 +1,4 @@
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem::samples {
 

@@ -1,4 +1,4 @@
-#include "peers/peers.hpp"
+#include "apps/peers/peers.hpp"
 
 #include <algorithm>
 #include <boost/geometry.hpp>

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

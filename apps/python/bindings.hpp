@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/run/run.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
+#include "lib/run/run.hpp"
 
 namespace apothem::python {
 

@@ -1,11 +1,11 @@
-#include "driver.hpp"
+#include "apps/python/driver.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <utility>
 
-#include "apothem/dynamics/unstable.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 namespace apothem::python {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <thread>
 
-#include "bindings.hpp"
+#include "apps/python/bindings.hpp"
 
 namespace apothem::python {
 

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/exact/pair_methods.hpp"
-#include "apothem/geometry/integrals/penetration.hpp"
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/geometry/skeleton/singular_area.hpp"
-#include "bindings.hpp"
+#include "apps/python/bindings.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/exact/pair_methods.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem::python {
 namespace {

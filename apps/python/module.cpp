@@ -1,10 +1,10 @@
 // The Python module: its parts, and what becomes of the library's exceptions.
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/scene/error.hpp"
-#include "driver.hpp"
-#include "scene_text.hpp"
+#include "apps/python/driver.hpp"
+#include "apps/python/scene_text.hpp"
+#include "geometry/skeleton/skeleton.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/output/files.hpp"
+#include "lib/scene/error.hpp"
 #include "version.hpp"
 
 namespace apothem::python {

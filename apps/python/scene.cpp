@@ -1,13 +1,13 @@
 // apothem.Scene: a scene file, or a dict with the same keys.
-#include "apothem/scene/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bindings.hpp"
-#include "scene_text.hpp"
+#include "apps/python/bindings.hpp"
+#include "apps/python/scene_text.hpp"
 
 namespace apothem::python {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "bindings.hpp"
+#include "apps/python/bindings.hpp"
 
 namespace apothem::python {
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apothem/model/columns.hpp"
-#include "apothem/run/hash.hpp"
-#include "views.hpp"
+#include "apps/python/views.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/run/hash.hpp"
 
 namespace apothem::python {
 namespace {

@@ -1,5 +1,5 @@
 // Arrays over the state: views of its memory, which keep the simulation alive, and copies.
-#include "views.hpp"
+#include "apps/python/views.hpp"
 
 #include <algorithm>
 #include <cmath>

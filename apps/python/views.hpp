@@ -1,7 +1,7 @@
 // What a simulation shows of its bodies, nodes and elements.
 #pragma once
 
-#include "driver.hpp"
+#include "apps/python/driver.hpp"
 
 namespace apothem::python {
 

@@ -1,9 +1,9 @@
-#include "apothem/geometry/exact/exact_integral.hpp"
+#include "geometry/exact/exact_integral.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "apothem/geometry/exact/exact_overlap.hpp"
+#include "geometry/exact/exact_overlap.hpp"
 
 namespace apothem {
 namespace {

@@ -4,8 +4,8 @@
 // exact`.
 #pragma once
 
-#include "apothem/geometry/integrals/edge_integral.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

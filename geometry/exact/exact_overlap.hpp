@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/distance_volume.hpp"
-#include "apothem/geometry/potential/lower_envelope.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/distance_volume.hpp"
+#include "geometry/potential/lower_envelope.hpp"
 
 namespace apothem::overlap_detail {
 

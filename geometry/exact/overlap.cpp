@@ -1,4 +1,4 @@
-#include "apothem/geometry/exact/overlap.hpp"
+#include "geometry/exact/overlap.hpp"
 
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <limits>
 
-#include "apothem/geometry/exact/exact_overlap.hpp"
+#include "geometry/exact/exact_overlap.hpp"
 
 namespace apothem {
 namespace {

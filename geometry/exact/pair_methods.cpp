@@ -1,7 +1,7 @@
-#include "apothem/geometry/exact/pair_methods.hpp"
+#include "geometry/exact/pair_methods.hpp"
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
 
 namespace apothem {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <string_view>
 
-#include "apothem/geometry/integrals/edge_integral.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
 
 namespace apothem {
 

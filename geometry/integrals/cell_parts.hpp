@@ -2,7 +2,7 @@
 // pairs of an edge and a cell at a time. This header is private to the integrals.
 #pragma once
 
-#include "apothem/execution/pack.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem::edge_detail {
 

@@ -20,7 +20,7 @@
 #include <complex>
 #include <limits>
 
-#include "apothem/execution/pack.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem {
 

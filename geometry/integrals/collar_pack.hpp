@@ -3,7 +3,7 @@
 // part are left to collar_piece.
 #pragma once
 
-#include "apothem/geometry/integrals/collar.hpp"
+#include "geometry/integrals/collar.hpp"
 
 namespace apothem {
 

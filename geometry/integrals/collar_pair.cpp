@@ -1,11 +1,11 @@
-#include "apothem/geometry/integrals/collar_pair.hpp"
+#include "geometry/integrals/collar_pair.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/geometry/integrals/listed_lanes.hpp"
+#include "geometry/integrals/listed_lanes.hpp"
+#include "lib/execution/dispatch.hpp"
 
 namespace apothem {
 

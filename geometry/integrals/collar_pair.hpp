@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <span>
 
-#include "apothem/geometry/integrals/cell_parts.hpp"
-#include "apothem/geometry/integrals/edge_sums.hpp"
-#include "apothem/geometry/integrals/near_edges.hpp"
-#include "apothem/geometry/integrals/placed_potential.hpp"
+#include "geometry/integrals/cell_parts.hpp"
+#include "geometry/integrals/edge_sums.hpp"
+#include "geometry/integrals/near_edges.hpp"
+#include "geometry/integrals/placed_potential.hpp"
 
 namespace apothem {
 

@@ -1,12 +1,12 @@
-#include "apothem/geometry/integrals/collar_trace.hpp"
+#include "geometry/integrals/collar_trace.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/geometry/integrals/edge_trace.hpp"
-#include "apothem/geometry/integrals/listed_lanes.hpp"
+#include "geometry/integrals/edge_trace.hpp"
+#include "geometry/integrals/listed_lanes.hpp"
+#include "lib/execution/dispatch.hpp"
 
 namespace apothem {
 

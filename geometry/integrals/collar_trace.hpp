@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "apothem/geometry/integrals/cell_parts.hpp"
-#include "apothem/geometry/integrals/placed_edge.hpp"
-#include "apothem/geometry/polygon/segment_moments.hpp"
+#include "geometry/integrals/cell_parts.hpp"
+#include "geometry/integrals/placed_edge.hpp"
+#include "geometry/polygon/segment_moments.hpp"
 
 namespace apothem {
 

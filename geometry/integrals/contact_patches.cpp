@@ -1,11 +1,11 @@
-#include "apothem/geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/contact_patches.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "apothem/geometry/integrals/placement.hpp"
+#include "geometry/integrals/placement.hpp"
 
 namespace apothem {
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/integrals/edge_trace.hpp"
+#include "geometry/integrals/edge_trace.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/integrals/convex_pairs.hpp"
+#include "geometry/integrals/convex_pairs.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/geometry/integrals/edge_trace.hpp"
+#include "geometry/integrals/edge_trace.hpp"
+#include "lib/execution/dispatch.hpp"
 
 namespace apothem {
 

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/integrals/near_edges.hpp"
-#include "apothem/geometry/integrals/pair_integral.hpp"
-#include "apothem/geometry/integrals/placed_potential.hpp"
+#include "geometry/integrals/near_edges.hpp"
+#include "geometry/integrals/pair_integral.hpp"
+#include "geometry/integrals/placed_potential.hpp"
 
 namespace apothem {
 

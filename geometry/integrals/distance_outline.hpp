@@ -17,8 +17,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/potential/distance_field.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/potential/distance_field.hpp"
 
 namespace apothem {
 

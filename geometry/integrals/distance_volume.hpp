@@ -19,10 +19,10 @@
 #include <limits>
 #include <vector>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/distance_outline.hpp"
-#include "apothem/geometry/potential/piecewise_minimum.hpp"
-#include "apothem/geometry/potential/quadratic.hpp"
+#include "geometry/integrals/distance_outline.hpp"
+#include "geometry/potential/piecewise_minimum.hpp"
+#include "geometry/potential/quadratic.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

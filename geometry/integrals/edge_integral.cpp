@@ -1,12 +1,12 @@
-#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/edge_integral.hpp"
 
 #include <cmath>
 
-#include "apothem/geometry/integrals/distance_volume.hpp"
-#include "apothem/geometry/integrals/edge_trace.hpp"
-#include "apothem/geometry/integrals/placement.hpp"
-#include "apothem/geometry/polygon/boundary_inside.hpp"
-#include "apothem/geometry/potential/lower_envelope.hpp"
+#include "geometry/integrals/distance_volume.hpp"
+#include "geometry/integrals/edge_trace.hpp"
+#include "geometry/integrals/placement.hpp"
+#include "geometry/polygon/boundary_inside.hpp"
+#include "geometry/potential/lower_envelope.hpp"
 
 namespace apothem {
 

@@ -17,15 +17,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "apothem/geometry/integrals/collar_pair.hpp"
-#include "apothem/geometry/integrals/collar_trace.hpp"
-#include "apothem/geometry/integrals/convex_pairs.hpp"
-#include "apothem/geometry/integrals/near_edges.hpp"
-#include "apothem/geometry/integrals/pair_integral.hpp"
-#include "apothem/geometry/integrals/placed_potential.hpp"
-#include "apothem/geometry/potential/distance_field.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/geometry/skeleton/roof.hpp"
+#include "geometry/integrals/collar_pair.hpp"
+#include "geometry/integrals/collar_trace.hpp"
+#include "geometry/integrals/convex_pairs.hpp"
+#include "geometry/integrals/near_edges.hpp"
+#include "geometry/integrals/pair_integral.hpp"
+#include "geometry/integrals/placed_potential.hpp"
+#include "geometry/potential/distance_field.hpp"
+#include "geometry/potential/potential.hpp"
+#include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "apothem/geometry/polygon/segment_moments.hpp"
+#include "geometry/polygon/segment_moments.hpp"
 
 namespace apothem::edge_detail {
 

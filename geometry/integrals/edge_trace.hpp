@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <utility>
 
-#include "apothem/execution/pack.hpp"
-#include "apothem/geometry/integrals/edge_integral.hpp"
-#include "apothem/geometry/integrals/edge_sums.hpp"
-#include "apothem/geometry/integrals/placed_edge.hpp"
-#include "apothem/geometry/polygon/segment_moments.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/edge_sums.hpp"
+#include "geometry/integrals/placed_edge.hpp"
+#include "geometry/polygon/segment_moments.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem::edge_detail {
 

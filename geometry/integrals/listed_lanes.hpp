@@ -1,7 +1,7 @@
 // Masks from bits. This header is private to the integrals.
 #pragma once
 
-#include "apothem/geometry/integrals/cell_parts.hpp"
+#include "geometry/integrals/cell_parts.hpp"
 
 namespace apothem::edge_detail {
 

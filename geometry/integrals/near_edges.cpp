@@ -1,10 +1,10 @@
-#include "apothem/geometry/integrals/near_edges.hpp"
+#include "geometry/integrals/near_edges.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/edge_integral.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/geometry/integrals/penetration.hpp"
+#include "geometry/integrals/penetration.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/placement.hpp"
+#include "geometry/integrals/placement.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

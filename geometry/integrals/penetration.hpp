@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/integrals/contact_patches.hpp"
-#include "apothem/geometry/potential/potential.hpp"
+#include "geometry/integrals/contact_patches.hpp"
+#include "geometry/potential/potential.hpp"
 
 namespace apothem {
 

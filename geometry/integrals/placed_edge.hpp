@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/integrals/placed_potential.hpp"
+#include "geometry/integrals/placed_potential.hpp"
 
 namespace apothem::edge_detail {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "apothem/geometry/potential/collar_cells.hpp"
-#include "apothem/geometry/potential/distance_field.hpp"
-#include "apothem/geometry/skeleton/roof.hpp"
+#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/distance_field.hpp"
+#include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/geometry/integrals/placed_shapes.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
 
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/penetration.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

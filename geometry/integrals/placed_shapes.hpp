@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

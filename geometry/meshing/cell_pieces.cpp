@@ -1,4 +1,4 @@
-#include "apothem/geometry/meshing/cell_pieces.hpp"
+#include "geometry/meshing/cell_pieces.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,7 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "apothem/geometry/polygon/predicates.hpp"
+#include "geometry/polygon/predicates.hpp"
 
 namespace apothem {
 namespace {

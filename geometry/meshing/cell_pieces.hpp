@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/meshing/delaunay_mesh.hpp"
+#include "geometry/meshing/delaunay_mesh.hpp"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
@@ -9,9 +9,9 @@
 
 #include <list>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "apothem/geometry/spatial/hilbert.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "geometry/spatial/hilbert.hpp"
 
 namespace apothem {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "apothem/geometry/polygon/triangulation.hpp"
+#include "geometry/polygon/triangulation.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,15 +1,15 @@
-#include "apothem/geometry/meshing/voronoi.hpp"
+#include "geometry/meshing/voronoi.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
 
-#include "apothem/geometry/meshing/cell_pieces.hpp"
-#include "apothem/geometry/meshing/voronoi_cells.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/polygon/triangulation.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/meshing/cell_pieces.hpp"
+#include "geometry/meshing/voronoi_cells.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/triangulation.hpp"
+#include "geometry/spatial/boxes.hpp"
 
 namespace apothem {
 namespace {

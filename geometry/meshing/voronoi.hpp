@@ -21,7 +21,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/meshing/voronoi_cells.hpp"
+#include "geometry/meshing/voronoi_cells.hpp"
 
 #include <CGAL/Arr_consolidated_curve_data_traits_2.h>
 #include <CGAL/Arr_extended_dcel.h>
@@ -15,7 +15,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
 
 namespace apothem {
 namespace {

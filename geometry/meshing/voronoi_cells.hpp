@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "apothem/geometry/meshing/cell_pieces.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/meshing/cell_pieces.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

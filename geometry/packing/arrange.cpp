@@ -1,11 +1,11 @@
-#include "apothem/geometry/packing/arrange.hpp"
+#include "geometry/packing/arrange.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
-#include "apothem/geometry/packing/block_shapes.hpp"
+#include "geometry/packing/block_shapes.hpp"
 
 namespace apothem {
 namespace {

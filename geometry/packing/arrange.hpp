@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "apothem/geometry/packing/packing_space.hpp"
-#include "apothem/geometry/packing/random.hpp"
+#include "geometry/packing/packing_space.hpp"
+#include "geometry/packing/random.hpp"
 
 namespace apothem {
 

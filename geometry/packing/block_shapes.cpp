@@ -1,11 +1,11 @@
-#include "apothem/geometry/packing/block_shapes.hpp"
+#include "geometry/packing/block_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "apothem/geometry/packing/random.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/packing/random.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

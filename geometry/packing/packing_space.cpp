@@ -1,11 +1,11 @@
-#include "apothem/geometry/packing/packing_space.hpp"
+#include "geometry/packing/packing_space.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/spatial/boxes.hpp"
 
 namespace apothem {
 namespace {

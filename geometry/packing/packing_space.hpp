@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-#include "apothem/execution/elementary.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

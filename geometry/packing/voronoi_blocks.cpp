@@ -1,8 +1,8 @@
-#include "apothem/geometry/packing/voronoi_blocks.hpp"
+#include "geometry/packing/voronoi_blocks.hpp"
 
 #include <stdexcept>
 
-#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apothem/geometry/meshing/voronoi.hpp"
+#include "geometry/meshing/voronoi.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/polygon/boundary_inside.hpp"
+#include "geometry/polygon/boundary_inside.hpp"
 
 #include <CGAL/Exact_rational.h>
 

@@ -1,7 +1,7 @@
 // The length of one polygon's boundary inside another polygon, with exact decisions.
 #pragma once
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

@@ -1,12 +1,12 @@
-#include "apothem/geometry/polygon/convex_parts.hpp"
+#include "geometry/polygon/convex_parts.hpp"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <utility>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/polygon/triangulation.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/triangulation.hpp"
 
 namespace apothem {
 namespace {

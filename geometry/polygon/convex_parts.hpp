@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 #include <cmath>
 #include <numeric>
 
-#include "apothem/geometry/polygon/predicates.hpp"
+#include "geometry/polygon/predicates.hpp"
 
 namespace apothem {
 namespace {

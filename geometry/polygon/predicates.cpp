@@ -1,4 +1,4 @@
-#include "apothem/geometry/polygon/predicates.hpp"
+#include "geometry/polygon/predicates.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2_algorithms.h>

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

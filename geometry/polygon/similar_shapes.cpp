@@ -1,9 +1,9 @@
-#include "apothem/geometry/polygon/similar_shapes.hpp"
+#include "geometry/polygon/similar_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

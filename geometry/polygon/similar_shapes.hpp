@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

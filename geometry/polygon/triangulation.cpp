@@ -1,4 +1,4 @@
-#include "apothem/geometry/polygon/triangulation.hpp"
+#include "geometry/polygon/triangulation.hpp"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

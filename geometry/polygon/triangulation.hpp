@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/geometry/potential/collar_cells.hpp"
+#include "geometry/potential/collar_cells.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/spatial/boxes.hpp"
 
 namespace apothem {
 namespace {

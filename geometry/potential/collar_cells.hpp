@@ -12,8 +12,8 @@
 
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/skeleton/roof.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/potential/distance_field.hpp"
+#include "geometry/potential/distance_field.hpp"
 
 namespace apothem {
 

@@ -15,11 +15,11 @@
 #include <limits>
 #include <vector>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/line_crossings.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/polygon/segment_moments.hpp"
-#include "apothem/geometry/potential/piecewise_minimum.hpp"
+#include "geometry/polygon/line_crossings.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/segment_moments.hpp"
+#include "geometry/potential/piecewise_minimum.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

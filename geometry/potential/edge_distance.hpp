@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/potential/highest_point.hpp"
+#include "geometry/potential/highest_point.hpp"
 
 #include <algorithm>
 #include <array>

@@ -21,7 +21,7 @@
 // out to lie outside are dropped, and a point counts only if it is inside. Triangles with long
 // lists of edges are halved without a linear programme. If that takes too many triangles, as it
 // does in a needle, the search starts anew with the triangulation.
-#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
 
 #include <array>
 #include <cmath>
@@ -29,10 +29,10 @@
 #include <numeric>
 #include <random>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/polygon/triangulation.hpp"
-#include "apothem/geometry/potential/edge_distance.hpp"
-#include "apothem/geometry/potential/highest_point.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/triangulation.hpp"
+#include "geometry/potential/edge_distance.hpp"
+#include "geometry/potential/highest_point.hpp"
 
 namespace apothem {
 namespace {

@@ -1,8 +1,8 @@
 // The largest inscribed circle of any simple polygon.
 #pragma once
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
 
 namespace apothem {
 

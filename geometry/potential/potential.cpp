@@ -1,10 +1,10 @@
-#include "apothem/geometry/potential/potential.hpp"
+#include "geometry/potential/potential.hpp"
 
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/geometry/potential/lower_envelope.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/potential/lower_envelope.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

@@ -15,11 +15,11 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/collar_cells.hpp"
-#include "apothem/geometry/potential/distance_field.hpp"
-#include "apothem/geometry/potential/rare.hpp"
-#include "apothem/geometry/skeleton/roof.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/distance_field.hpp"
+#include "geometry/potential/rare.hpp"
+#include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
 

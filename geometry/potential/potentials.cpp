@@ -1,4 +1,4 @@
-#include "apothem/geometry/potential/potentials.hpp"
+#include "geometry/potential/potentials.hpp"
 
 namespace apothem {
 

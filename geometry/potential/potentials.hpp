@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/geometry/polygon/similar_shapes.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/geometry/skeleton/skeletons.hpp"
+#include "geometry/polygon/similar_shapes.hpp"
+#include "geometry/potential/potential.hpp"
+#include "geometry/skeleton/skeletons.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/cgal_construction.hpp"
+#include "geometry/skeleton/cgal_construction.hpp"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

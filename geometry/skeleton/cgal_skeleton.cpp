@@ -1,9 +1,9 @@
-#include "apothem/geometry/skeleton/cgal_skeleton.hpp"
+#include "geometry/skeleton/cgal_skeleton.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/skeleton/helper_process.hpp"
-#include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "geometry/skeleton/helper_process.hpp"
+#include "geometry/skeleton/skeleton_program.hpp"
 
 namespace apothem {
 namespace {

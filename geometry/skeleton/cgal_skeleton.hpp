@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/polygon/point.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
 
 namespace apothem {
 

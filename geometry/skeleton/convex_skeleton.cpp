@@ -1,13 +1,13 @@
-#include "apothem/geometry/skeleton/convex_skeleton.hpp"
+#include "geometry/skeleton/convex_skeleton.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/cyclic.hpp"
-#include "apothem/geometry/skeleton/edge_lines.hpp"
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/skeleton/edge_lines.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

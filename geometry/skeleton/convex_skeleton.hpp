@@ -2,8 +2,8 @@
 // straight skeleton.
 #pragma once
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
 
 namespace apothem {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

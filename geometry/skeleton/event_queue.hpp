@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/geometry/skeleton/double_double.hpp"
+#include "geometry/skeleton/double_double.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/helper_process.hpp"
+#include "geometry/skeleton/helper_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -18,7 +18,7 @@
 #include <memory>
 #include <system_error>
 
-#include "apothem/geometry/skeleton/helper_side.hpp"
+#include "geometry/skeleton/helper_side.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/helper_side.hpp"
+#include "geometry/skeleton/helper_side.hpp"
 
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "apothem/system/standard_files.hpp"
+#include "lib/system/standard_files.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/moving_front.hpp"
+#include "geometry/skeleton/moving_front.hpp"
 
 #include <cmath>
 #include <random>

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/geometry/polygon/triangulation.hpp"
-#include "apothem/geometry/skeleton/double_double.hpp"
+#include "geometry/polygon/triangulation.hpp"
+#include "geometry/skeleton/double_double.hpp"
 
 namespace apothem {
 

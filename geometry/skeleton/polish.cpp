@@ -1,10 +1,10 @@
-#include "apothem/geometry/skeleton/polish.hpp"
+#include "geometry/skeleton/polish.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "apothem/geometry/polygon/cyclic.hpp"
-#include "apothem/geometry/skeleton/edge_lines.hpp"
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/skeleton/edge_lines.hpp"
 
 namespace apothem {
 namespace {

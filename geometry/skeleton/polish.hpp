@@ -2,8 +2,8 @@
 // skeleton.
 #pragma once
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

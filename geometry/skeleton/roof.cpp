@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/roof.hpp"
+#include "geometry/skeleton/roof.hpp"
 
 namespace apothem {
 

@@ -8,9 +8,9 @@
 #include <array>
 #include <vector>
 
-#include "apothem/geometry/polygon/line_crossings.hpp"
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/polygon/line_crossings.hpp"
+#include "geometry/polygon/point.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 #include <cassert>
 #include <cmath>

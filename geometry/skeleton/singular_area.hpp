@@ -19,7 +19,7 @@
 #include <array>
 #include <vector>
 
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

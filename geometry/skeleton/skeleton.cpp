@@ -1,14 +1,14 @@
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
 
-#include "apothem/geometry/skeleton/convex_skeleton.hpp"
-#include "apothem/geometry/skeleton/polish.hpp"
-#include "apothem/geometry/skeleton/skeleton_search.hpp"
-#include "apothem/geometry/skeleton/wavefront.hpp"
+#include "geometry/skeleton/convex_skeleton.hpp"
+#include "geometry/skeleton/polish.hpp"
+#include "geometry/skeleton/skeleton_search.hpp"
+#include "geometry/skeleton/wavefront.hpp"
 
 namespace apothem {
 namespace {

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/polygon/progress.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/progress.hpp"
 
 namespace apothem {
 

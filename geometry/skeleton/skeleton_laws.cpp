@@ -6,9 +6,9 @@
 #include <map>
 #include <numeric>
 
-#include "apothem/geometry/polygon/cyclic.hpp"
-#include "apothem/geometry/skeleton/edge_lines.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/skeleton/edge_lines.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "apothem/geometry/skeleton/helper_side.hpp"
-#include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "geometry/skeleton/helper_side.hpp"
+#include "geometry/skeleton/skeleton_program.hpp"
 
 namespace {
 

@@ -1,9 +1,9 @@
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
 
 #include <algorithm>
 #include <map>
 
-#include "apothem/geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {

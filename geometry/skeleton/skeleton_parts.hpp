@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

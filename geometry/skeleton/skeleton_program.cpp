@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/skeleton_program.hpp"
+#include "geometry/skeleton/skeleton_program.hpp"
 
 #include <dlfcn.h>
 

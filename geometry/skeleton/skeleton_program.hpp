@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "apothem/geometry/skeleton/cgal_construction.hpp"
+#include "geometry/skeleton/cgal_construction.hpp"
 
 namespace apothem {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/geometry/skeleton/cgal_skeleton.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/cgal_skeleton.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/geometry/skeleton/skeletons.hpp"
+#include "geometry/skeleton/skeletons.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/skeleton/polish.hpp"
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
-#include "apothem/geometry/skeleton/skeleton_search.hpp"
+#include "geometry/skeleton/polish.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/skeleton/skeleton_search.hpp"
 
 namespace apothem {
 namespace {

@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-#include "apothem/geometry/polygon/similar_shapes.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/polygon/similar_shapes.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 namespace apothem {
 

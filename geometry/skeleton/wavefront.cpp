@@ -1,11 +1,11 @@
-#include "apothem/geometry/skeleton/wavefront.hpp"
+#include "geometry/skeleton/wavefront.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "apothem/geometry/polygon/cyclic.hpp"
-#include "apothem/geometry/skeleton/event_queue.hpp"
-#include "apothem/geometry/skeleton/moving_front.hpp"
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/skeleton/event_queue.hpp"
+#include "geometry/skeleton/moving_front.hpp"
 
 namespace apothem {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <optional>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
 
 namespace apothem {
 

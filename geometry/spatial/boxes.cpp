@@ -1,4 +1,4 @@
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/spatial/boxes.hpp"
 
 #include <algorithm>
 #include <bit>

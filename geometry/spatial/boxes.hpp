@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "apothem/execution/worker_lists.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/execution/worker_lists.hpp"
 
 namespace apothem {
 

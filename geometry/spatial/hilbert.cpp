@@ -1,4 +1,4 @@
-#include "apothem/geometry/spatial/hilbert.hpp"
+#include "geometry/spatial/hilbert.hpp"
 
 #include <cstdint>
 

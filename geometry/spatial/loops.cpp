@@ -1,11 +1,11 @@
-#include "apothem/geometry/spatial/loops.hpp"
+#include "geometry/spatial/loops.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

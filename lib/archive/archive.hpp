@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,5 +1,5 @@
-#include "apothem/contact/contacts.hpp"
-#include "apothem/geometry/spatial/loops.hpp"
+#include "geometry/spatial/loops.hpp"
+#include "lib/contact/contacts.hpp"
 
 namespace apothem {
 

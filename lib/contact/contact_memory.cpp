@@ -1,11 +1,11 @@
-#include "apothem/contact/contact_memory.hpp"
+#include "lib/contact/contact_memory.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <tuple>
 #include <utility>
 
-#include "apothem/contact/kernel.hpp"
+#include "lib/contact/kernel.hpp"
 
 namespace apothem {
 namespace {

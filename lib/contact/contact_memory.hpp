@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/contact/friction_memory.hpp"
-#include "apothem/contact/law.hpp"
-#include "apothem/contact/patch_tangential.hpp"
-#include "apothem/contact/surfaces.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/contact/law/friction_memory.hpp"
+#include "lib/contact/law/law.hpp"
+#include "lib/contact/rigid/patch_tangential.hpp"
+#include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/contact/contacts.hpp"
+#include "lib/contact/contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/contact/element_kernel.hpp"
-#include "apothem/contact/outline_kernel.hpp"
-#include "apothem/contact/polygon_kernel.hpp"
+#include "lib/contact/element/element_kernel.hpp"
+#include "lib/contact/mesh/outline_kernel.hpp"
+#include "lib/contact/rigid/polygon_kernel.hpp"
 
 namespace apothem {
 namespace {

@@ -14,13 +14,13 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/contact/contact_memory.hpp"
-#include "apothem/contact/friction_memory.hpp"
-#include "apothem/contact/kernel.hpp"
-#include "apothem/contact/law.hpp"
-#include "apothem/contact/pair_table.hpp"
-#include "apothem/contact/search.hpp"
-#include "apothem/contact/surfaces.hpp"
+#include "lib/contact/contact_memory.hpp"
+#include "lib/contact/kernel.hpp"
+#include "lib/contact/law/friction_memory.hpp"
+#include "lib/contact/law/law.hpp"
+#include "lib/contact/law/pair_table.hpp"
+#include "lib/contact/surface/search.hpp"
+#include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
 

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "apothem/contact/contact.hpp"
-#include "apothem/contact/friction_memory.hpp"
-#include "apothem/contact/kinematics.hpp"
-#include "apothem/contact/onset_rule.hpp"
-#include "apothem/contact/surfaces.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/contact/law/contact.hpp"
+#include "lib/contact/law/friction_memory.hpp"
+#include "lib/contact/law/kinematics.hpp"
+#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/dynamics/contact_term.hpp"
+#include "lib/dynamics/contact_term.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/elementary.hpp"
-#include "apothem/model/inradius.hpp"
-#include "apothem/model/pairs.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/model/inradius.hpp"
+#include "lib/model/pairs.hpp"
 
 namespace apothem {
 namespace {

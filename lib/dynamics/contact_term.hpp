@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "apothem/contact/contacts.hpp"
-#include "apothem/dynamics/results.hpp"
-#include "apothem/dynamics/stride_watch.hpp"
-#include "apothem/dynamics/term.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/contact/contacts.hpp"
+#include "lib/dynamics/results.hpp"
+#include "lib/dynamics/stride_watch.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

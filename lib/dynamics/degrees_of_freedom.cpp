@@ -1,11 +1,11 @@
-#include "apothem/dynamics/degrees_of_freedom.hpp"
+#include "lib/dynamics/degrees_of_freedom.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/model/rotation.hpp"
+#include "lib/execution/dispatch.hpp"
+#include "lib/model/rotation.hpp"
 
 namespace apothem {
 namespace {

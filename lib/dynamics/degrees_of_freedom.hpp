@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "apothem/execution/parallel.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

@@ -1,13 +1,13 @@
-#include "apothem/dynamics/elements.hpp"
+#include "lib/dynamics/elements.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/fem/spectrum.hpp"
-#include "apothem/model/inradius.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/fem/spectrum.hpp"
+#include "lib/model/inradius.hpp"
 
 namespace apothem {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "apothem/dynamics/term.hpp"
-#include "apothem/fem/finite_elements.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

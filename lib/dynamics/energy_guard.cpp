@@ -1,9 +1,9 @@
-#include "apothem/dynamics/energy_guard.hpp"
+#include "lib/dynamics/energy_guard.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 namespace {

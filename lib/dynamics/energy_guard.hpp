@@ -9,9 +9,9 @@
 
 #include <cstdint>
 
-#include "apothem/dynamics/results.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/dynamics/results.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

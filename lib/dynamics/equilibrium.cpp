@@ -8,16 +8,16 @@
 // bodies are held by their contacts only, whose stiffness changes: their scaled masses follow it at
 // once where it grows.
 
-#include "apothem/dynamics/equilibrium.hpp"
+#include "lib/dynamics/equilibrium.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/elementary.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

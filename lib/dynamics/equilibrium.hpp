@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/dynamics/results.hpp"
-#include "apothem/dynamics/term.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/results.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

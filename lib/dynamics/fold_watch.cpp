@@ -1,12 +1,12 @@
-#include "apothem/dynamics/fold_watch.hpp"
+#include "lib/dynamics/fold_watch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/contact_term.hpp"
-#include "apothem/dynamics/unstable.hpp"
+#include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,9 @@
 // Notices a body with a mesh whose boundary crosses itself, where contact does not look for that.
 #pragma once
 
-#include "apothem/contact/outlines.hpp"
-#include "apothem/dynamics/term.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/contact/surface/outlines.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

@@ -1,13 +1,13 @@
-#include "apothem/dynamics/forecast.hpp"
+#include "lib/dynamics/forecast.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/mesh/measure.hpp"
-#include "apothem/model/inradius.hpp"
-#include "apothem/model/pairs.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/model/inradius.hpp"
+#include "lib/model/pairs.hpp"
 
 namespace apothem {
 namespace {

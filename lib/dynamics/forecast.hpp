@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "apothem/model/model.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/dynamics/gravity_history.hpp"
+#include "lib/dynamics/gravity_history.hpp"
 
 #include <fmt/format.h>
 

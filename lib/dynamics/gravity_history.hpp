@@ -5,8 +5,8 @@
 // strength changes, this energy changes at the same places: that is work from outside.
 #pragma once
 
-#include "apothem/dynamics/degrees_of_freedom.hpp"
-#include "apothem/dynamics/term.hpp"
+#include "lib/dynamics/degrees_of_freedom.hpp"
+#include "lib/dynamics/term.hpp"
 
 namespace apothem {
 

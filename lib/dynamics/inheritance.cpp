@@ -1,11 +1,11 @@
-#include "apothem/dynamics/inheritance.hpp"
+#include "lib/dynamics/inheritance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
 
-#include "apothem/dynamics/population.hpp"
+#include "lib/dynamics/population.hpp"
 
 namespace apothem {
 namespace {

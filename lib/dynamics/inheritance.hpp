@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/contact/contact_memory.hpp"
-#include "apothem/dynamics/body_start.hpp"
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/contact/contact_memory.hpp"
+#include "lib/dynamics/body_start.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

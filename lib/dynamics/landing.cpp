@@ -1,9 +1,9 @@
-#include "apothem/dynamics/landing.hpp"
+#include "lib/dynamics/landing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/contact/stiffness.hpp"
+#include "lib/contact/law/stiffness.hpp"
 
 namespace apothem {
 namespace {

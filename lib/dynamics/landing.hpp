@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apothem/model/model.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

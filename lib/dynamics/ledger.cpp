@@ -1,4 +1,4 @@
-#include "apothem/dynamics/ledger.hpp"
+#include "lib/dynamics/ledger.hpp"
 
 namespace apothem {
 namespace {

@@ -1,8 +1,8 @@
 // Energy and momentum ledgers: what the integrator cannot account for is an error, and is reported.
 #pragma once
 
-#include "apothem/dynamics/degrees_of_freedom.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/dynamics/degrees_of_freedom.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

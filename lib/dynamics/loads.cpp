@@ -1,4 +1,4 @@
-#include "apothem/dynamics/loads.hpp"
+#include "lib/dynamics/loads.hpp"
 
 #include <fmt/format.h>
 

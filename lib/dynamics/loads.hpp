@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "apothem/dynamics/term.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

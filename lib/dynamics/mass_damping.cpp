@@ -1,12 +1,12 @@
-#include "apothem/dynamics/mass_damping.hpp"
+#include "lib/dynamics/mass_damping.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/fem/mass.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/fem/mass.hpp"
 
 namespace apothem {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "apothem/dynamics/term.hpp"
-#include "apothem/execution/parallel.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

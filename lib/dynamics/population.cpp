@@ -1,10 +1,10 @@
-#include "apothem/dynamics/population.hpp"
+#include "lib/dynamics/population.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "apothem/model/rotation.hpp"
-#include "apothem/model/statistics.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

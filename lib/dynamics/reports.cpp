@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/contact_term.hpp"
-#include "apothem/dynamics/elements.hpp"
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/model/inradius.hpp"
+#include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/elements.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/model/inradius.hpp"
 
 namespace apothem {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/mesh/indices.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/mesh/indices.hpp"
 
 namespace apothem {
 

@@ -1,15 +1,16 @@
 // Dynamic relaxation with kinetic damping: explicit steps, and all bodies stop whenever the kinetic
 // energy has passed a maximum (Cundall 1982; Barnes 1988). A little drag ends the cycles in which a
-// stiff mode can escape this. A body that nothing touches has no such modes, and falls without drag.
-#include "apothem/dynamics/settle.hpp"
+// stiff mode can escape this. A body that nothing touches has no such modes, and falls without
+// drag.
+#include "lib/dynamics/settle.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/elementary.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 namespace {

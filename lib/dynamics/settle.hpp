@@ -7,8 +7,8 @@
 #include <functional>
 #include <span>
 
-#include "apothem/dynamics/degrees_of_freedom.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/degrees_of_freedom.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

@@ -1,20 +1,20 @@
-#include "apothem/dynamics/simulation.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/contact_term.hpp"
-#include "apothem/dynamics/elements.hpp"
-#include "apothem/dynamics/equilibrium.hpp"
-#include "apothem/dynamics/fold_watch.hpp"
-#include "apothem/dynamics/gravity_history.hpp"
-#include "apothem/dynamics/loads.hpp"
-#include "apothem/dynamics/mass_damping.hpp"
-#include "apothem/dynamics/settle.hpp"
-#include "apothem/model/columns.hpp"
-#include "apothem/model/pairs.hpp"
+#include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/elements.hpp"
+#include "lib/dynamics/equilibrium.hpp"
+#include "lib/dynamics/fold_watch.hpp"
+#include "lib/dynamics/gravity_history.hpp"
+#include "lib/dynamics/loads.hpp"
+#include "lib/dynamics/mass_damping.hpp"
+#include "lib/dynamics/settle.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/model/pairs.hpp"
 
 namespace apothem {
 namespace {

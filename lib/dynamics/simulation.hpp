@@ -14,17 +14,17 @@
 #include <span>
 #include <vector>
 
-#include "apothem/dynamics/energy_guard.hpp"
-#include "apothem/dynamics/forecast.hpp"
-#include "apothem/dynamics/population.hpp"
-#include "apothem/dynamics/results.hpp"
-#include "apothem/dynamics/step_control.hpp"
-#include "apothem/dynamics/term.hpp"
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/stopwatch.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/dynamics/energy_guard.hpp"
+#include "lib/dynamics/forecast.hpp"
+#include "lib/dynamics/population.hpp"
+#include "lib/dynamics/results.hpp"
+#include "lib/dynamics/step_control.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/execution/stopwatch.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/dynamics/step_control.hpp"
+#include "lib/dynamics/step_control.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {

@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/dynamics/time_step.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/dynamics/time_step.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

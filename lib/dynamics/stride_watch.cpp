@@ -1,14 +1,14 @@
-#include "apothem/dynamics/stride_watch.hpp"
+#include "lib/dynamics/stride_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/dynamics/time_step.hpp"
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/integrals/penetration.hpp"
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/mesh/boundary.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "lib/dynamics/time_step.hpp"
+#include "lib/execution/dispatch.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/mesh/boundary.hpp"
 
 namespace apothem {
 namespace {

@@ -11,11 +11,11 @@
 #include <span>
 #include <vector>
 
-#include "apothem/contact/surfaces.hpp"
-#include "apothem/execution/parallel.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/contact/surface/surfaces.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

@@ -8,10 +8,10 @@
 #include <span>
 #include <string>
 
-#include "apothem/dynamics/ledger.hpp"
-#include "apothem/dynamics/time_step.hpp"
-#include "apothem/execution/stopwatch.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/dynamics/ledger.hpp"
+#include "lib/dynamics/time_step.hpp"
+#include "lib/execution/stopwatch.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

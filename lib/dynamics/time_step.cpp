@@ -1,4 +1,4 @@
-#include "apothem/dynamics/time_step.hpp"
+#include "lib/dynamics/time_step.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <numeric>
 #include <utility>
 
-#include "apothem/contact/stiffness.hpp"
-#include "apothem/dynamics/landing.hpp"
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/execution/elementary.hpp"
-#include "apothem/model/pairs.hpp"
+#include "lib/contact/law/stiffness.hpp"
+#include "lib/dynamics/landing.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/model/pairs.hpp"
 
 namespace apothem {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
 
 namespace apothem {
 

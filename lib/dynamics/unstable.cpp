@@ -1,4 +1,4 @@
-#include "apothem/dynamics/unstable.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "apothem/model/state.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

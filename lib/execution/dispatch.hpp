@@ -8,7 +8,7 @@
 
 #include <type_traits>
 
-#include "apothem/execution/pack.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/execution/elementary.hpp"
+#include "lib/execution/elementary.hpp"
 
 #include <sleef.h>
 

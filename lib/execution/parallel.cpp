@@ -1,4 +1,4 @@
-#include "apothem/execution/parallel.hpp"
+#include "lib/execution/parallel.hpp"
 
 #include <atomic>
 #include <condition_variable>

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "apothem/execution/parallel.hpp"
+#include "lib/execution/parallel.hpp"
 
 namespace apothem {
 

@@ -5,10 +5,10 @@
 
 #include <utility>
 
-#include "apothem/fem/kinds.hpp"
-#include "apothem/fem/polygon_element.hpp"
-#include "apothem/fem/quad4.hpp"
-#include "apothem/fem/tri3.hpp"
+#include "lib/fem/kinds.hpp"
+#include "lib/fem/polygon_element.hpp"
+#include "lib/fem/quad4.hpp"
+#include "lib/fem/tri3.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/fem/finite_elements.hpp"
+#include "lib/fem/finite_elements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <map>
 #include <tuple>
 
-#include "apothem/execution/dispatch.hpp"
-#include "apothem/fem/mass.hpp"
+#include "lib/execution/dispatch.hpp"
+#include "lib/fem/mass.hpp"
 
 namespace apothem {
 namespace {

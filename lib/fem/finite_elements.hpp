@@ -20,10 +20,10 @@
 #include <span>
 #include <vector>
 
-#include "apothem/execution/parallel.hpp"
-#include "apothem/fem/element.hpp"
-#include "apothem/fem/stress.hpp"
-#include "apothem/mesh/mesh.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/fem/element.hpp"
+#include "lib/fem/stress.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/fem/mass.hpp"
+#include "lib/fem/mass.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/fem/quad4.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/fem/quad4.hpp"
 
 namespace apothem {
 namespace {

@@ -10,9 +10,9 @@
 #include <array>
 #include <utility>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/fem/kinds.hpp"
-#include "apothem/fem/tensor.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/fem/kinds.hpp"
+#include "lib/fem/tensor.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/fem/polygon_element.hpp"
+#include "lib/fem/polygon_element.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
-#include "apothem/fem/quad4.hpp"
+#include "lib/fem/quad4.hpp"
 
 namespace apothem {
 namespace {

@@ -17,8 +17,8 @@
 
 #include <span>
 
-#include "apothem/fem/response.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/fem/response.hpp"
 
 namespace apothem {
 

@@ -4,7 +4,7 @@
 // however far it has turned within a step.
 #pragma once
 
-#include "apothem/fem/material.hpp"
+#include "lib/fem/material.hpp"
 
 namespace apothem {
 

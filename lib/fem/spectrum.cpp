@@ -1,4 +1,4 @@
-#include "apothem/fem/spectrum.hpp"
+#include "lib/fem/spectrum.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "apothem/fem/finite_elements.hpp"
+#include "lib/fem/finite_elements.hpp"
 
 namespace apothem {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

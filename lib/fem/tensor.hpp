@@ -1,7 +1,7 @@
 // Vectors and 2 x 2 tensors over any number type (double, SIMD pack, complex), for the elements.
 #pragma once
 
-#include "apothem/execution/pack.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem {
 

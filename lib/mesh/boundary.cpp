@@ -1,13 +1,13 @@
-#include "apothem/mesh/boundary.hpp"
+#include "lib/mesh/boundary.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
-#include "apothem/geometry/integrals/penetration.hpp"
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/mesh/invalid_mesh.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "lib/mesh/invalid_mesh.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apothem/mesh/edges.hpp"
+#include "lib/mesh/edges.hpp"
 
 namespace apothem {
 

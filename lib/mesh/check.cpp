@@ -1,15 +1,15 @@
-#include "apothem/mesh/check.hpp"
+#include "lib/mesh/check.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/invalid_mesh.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/invalid_mesh.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

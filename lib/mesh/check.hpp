@@ -1,7 +1,7 @@
 // Checks whether a mesh is fit for computation.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

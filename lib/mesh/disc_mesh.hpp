@@ -1,7 +1,7 @@
 // Generates a structured mesh of a disc.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,8 +1,8 @@
-#include "apothem/mesh/edges.hpp"
+#include "lib/mesh/edges.hpp"
 
 #include <algorithm>
 
-#include "apothem/mesh/invalid_mesh.hpp"
+#include "lib/mesh/invalid_mesh.hpp"
 
 namespace apothem {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/mesh/fill_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
 
-#include "apothem/geometry/meshing/delaunay_mesh.hpp"
-#include "apothem/mesh/check.hpp"
-#include "apothem/mesh/groups.hpp"
-#include "apothem/mesh/smooth.hpp"
-#include "apothem/mesh/split.hpp"
+#include "geometry/meshing/delaunay_mesh.hpp"
+#include "lib/mesh/check.hpp"
+#include "lib/mesh/groups.hpp"
+#include "lib/mesh/smooth.hpp"
+#include "lib/mesh/split.hpp"
 
 namespace apothem {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/mesh/mesh.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,14 +1,14 @@
-#include "apothem/mesh/gmsh.hpp"
+#include "lib/mesh/gmsh.hpp"
 
 #include <algorithm>
 #include <array>
 #include <set>
 
-#include "apothem/mesh/edges.hpp"
-#include "apothem/mesh/gmsh_file.hpp"
-#include "apothem/mesh/groups.hpp"
-#include "apothem/mesh/invalid_mesh.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/edges.hpp"
+#include "lib/mesh/gmsh_file.hpp"
+#include "lib/mesh/groups.hpp"
+#include "lib/mesh/invalid_mesh.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/mesh/check.hpp"
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/check.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

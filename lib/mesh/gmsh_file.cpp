@@ -1,10 +1,10 @@
-#include "apothem/mesh/gmsh_file.hpp"
+#include "lib/mesh/gmsh_file.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <unordered_map>
 
-#include "apothem/mesh/gmsh.hpp"
+#include "lib/mesh/gmsh.hpp"
 
 namespace apothem {
 namespace {

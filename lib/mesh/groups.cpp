@@ -1,4 +1,4 @@
-#include "apothem/mesh/groups.hpp"
+#include "lib/mesh/groups.hpp"
 
 #include <algorithm>
 

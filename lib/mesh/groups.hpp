@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/mesh/boundary.hpp"
+#include "lib/mesh/boundary.hpp"
 
 namespace apothem {
 

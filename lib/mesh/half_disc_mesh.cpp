@@ -1,12 +1,12 @@
-#include "apothem/mesh/half_disc_mesh.hpp"
+#include "lib/mesh/half_disc_mesh.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/mesh/groups.hpp"
-#include "apothem/mesh/split.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/mesh/groups.hpp"
+#include "lib/mesh/split.hpp"
 
 namespace apothem {
 namespace {

@@ -1,7 +1,7 @@
 // Generates a structured mesh of half a disc, refined at the point of contact.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

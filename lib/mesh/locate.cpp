@@ -1,12 +1,12 @@
-#include "apothem/mesh/locate.hpp"
+#include "lib/mesh/locate.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/mesh/edges.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "lib/mesh/edges.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

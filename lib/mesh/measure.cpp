@@ -1,9 +1,9 @@
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/measure.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "apothem/mesh/edges.hpp"
+#include "lib/mesh/edges.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/mesh/mirror.hpp"
+#include "lib/mesh/mirror.hpp"
 
 #include <algorithm>
 

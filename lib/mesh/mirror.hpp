@@ -1,7 +1,7 @@
 // Mirrors a mesh.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

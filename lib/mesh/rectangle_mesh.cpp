@@ -1,9 +1,9 @@
-#include "apothem/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
 
 #include <stdexcept>
 
-#include "apothem/mesh/groups.hpp"
-#include "apothem/mesh/split.hpp"
+#include "lib/mesh/groups.hpp"
+#include "lib/mesh/split.hpp"
 
 namespace apothem {
 namespace {

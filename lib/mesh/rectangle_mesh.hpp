@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,8 +1,8 @@
-#include "apothem/mesh/reorder.hpp"
+#include "lib/mesh/reorder.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/spatial/hilbert.hpp"
+#include "geometry/spatial/hilbert.hpp"
 
 namespace apothem {
 

@@ -1,7 +1,7 @@
 // Renumbers a mesh so that neighbours are close in memory.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/mesh/select.hpp"
+#include "lib/mesh/select.hpp"
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

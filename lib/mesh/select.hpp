@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/mesh/edges.hpp"
+#include "lib/mesh/edges.hpp"
 
 namespace apothem {
 

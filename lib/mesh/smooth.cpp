@@ -1,9 +1,9 @@
-#include "apothem/mesh/smooth.hpp"
+#include "lib/mesh/smooth.hpp"
 
 #include <algorithm>
 
-#include "apothem/mesh/edges.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/edges.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

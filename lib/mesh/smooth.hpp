@@ -1,7 +1,7 @@
 // Improves the shape of elements by moving inner nodes.
 #pragma once
 
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

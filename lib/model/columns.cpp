@@ -1,10 +1,10 @@
-#include "apothem/model/columns.hpp"
+#include "lib/model/columns.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "apothem/mesh/measure.hpp"
-#include "apothem/model/statistics.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apothem/fem/kinds.hpp"
-#include "apothem/mesh/indices.hpp"
-#include "apothem/mesh/mesh.hpp"
-#include "apothem/model/history.hpp"
+#include "lib/fem/kinds.hpp"
+#include "lib/mesh/indices.hpp"
+#include "lib/mesh/mesh.hpp"
+#include "lib/model/history.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/model/history.hpp"
+#include "lib/model/history.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/model/rotation.hpp"
+#include "lib/model/rotation.hpp"
 
 namespace apothem {
 namespace {

@@ -1,6 +1,6 @@
-#include "apothem/model/inradius.hpp"
+#include "lib/model/inradius.hpp"
 
-#include "apothem/mesh/boundary.hpp"
+#include "lib/mesh/boundary.hpp"
 
 namespace apothem {
 

@@ -1,7 +1,7 @@
 // The size of a body that depths of contact are compared with.
 #pragma once
 
-#include "apothem/model/model.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

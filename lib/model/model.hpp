@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "apothem/contact/law.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/model/deformable.hpp"
-#include "apothem/model/population.hpp"
+#include "geometry/potential/potential.hpp"
+#include "lib/contact/law/law.hpp"
+#include "lib/model/deformable.hpp"
+#include "lib/model/population.hpp"
 
 namespace apothem {
 

@@ -1,8 +1,8 @@
 // The contact law between any two bodies of a model.
 #pragma once
 
-#include "apothem/contact/pair_table.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/contact/law/pair_table.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

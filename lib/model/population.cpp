@@ -1,9 +1,9 @@
-#include "apothem/model/population.hpp"
+#include "lib/model/population.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/polygon/ring_area.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_area.hpp"
 
 namespace apothem {
 namespace {

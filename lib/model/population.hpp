@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/mesh/indices.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/mesh/indices.hpp"
 
 namespace apothem {
 

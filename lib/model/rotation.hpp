@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/execution/elementary.hpp"
 
 namespace apothem {
 

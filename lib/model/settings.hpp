@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/model/deformable.hpp"
+#include "lib/model/deformable.hpp"
 
 namespace apothem {
 

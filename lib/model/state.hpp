@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/contact/contact.hpp"
-#include "apothem/contact/kinematics.hpp"
-#include "apothem/fem/stress.hpp"
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/mesh/indices.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/contact/law/contact.hpp"
+#include "lib/contact/law/kinematics.hpp"
+#include "lib/fem/stress.hpp"
+#include "lib/mesh/indices.hpp"
 
 namespace apothem {
 

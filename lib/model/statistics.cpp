@@ -1,12 +1,12 @@
-#include "apothem/model/statistics.hpp"
+#include "lib/model/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/polygon/ring_area.hpp"
-#include "apothem/mesh/measure.hpp"
-#include "apothem/model/columns.hpp"
-#include "apothem/model/rotation.hpp"
+#include "geometry/polygon/ring_area.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/model/rotation.hpp"
 
 namespace apothem {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "apothem/contact/contact.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/contact/law/contact.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 

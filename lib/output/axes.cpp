@@ -1,4 +1,4 @@
-#include "apothem/output/axes.hpp"
+#include "lib/output/axes.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/output/canvas.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/output/canvas.hpp"
 
 namespace apothem {
 

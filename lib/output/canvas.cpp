@@ -1,4 +1,4 @@
-#include "apothem/output/canvas.hpp"
+#include "lib/output/canvas.hpp"
 
 #include <cairo-svg.h>
 #include <cairo.h>

@@ -1,4 +1,4 @@
-#include "apothem/output/checksum.hpp"
+#include "lib/output/checksum.hpp"
 
 #include <fmt/format.h>
 

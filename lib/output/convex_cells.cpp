@@ -1,11 +1,11 @@
-#include "apothem/output/convex_cells.hpp"
+#include "lib/output/convex_cells.hpp"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
 
-#include "apothem/geometry/polygon/convex_parts.hpp"
+#include "geometry/polygon/convex_parts.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "apothem/output/curves.hpp"
+#include "lib/output/curves.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "apothem/output/files.hpp"
+#include "lib/output/files.hpp"
 
 namespace apothem {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/output/gnuplot.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/output/gnuplot.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/field.hpp"
+#include "lib/output/field.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem {
 namespace {

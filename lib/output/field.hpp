@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/history.hpp"
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/history.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/field_layout.hpp"
+#include "lib/output/field_layout.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "apothem/output/axes.hpp"
+#include "lib/output/axes.hpp"
 
 namespace apothem {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/field_picture.hpp"
+#include "lib/output/field_picture.hpp"
 
 namespace apothem {
 

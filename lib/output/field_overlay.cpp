@@ -1,9 +1,9 @@
-#include "apothem/output/field_overlay.hpp"
+#include "lib/output/field_overlay.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/mesh/edges.hpp"
+#include "lib/mesh/edges.hpp"
 
 namespace apothem {
 namespace {

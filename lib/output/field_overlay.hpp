@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "apothem/output/axes.hpp"
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 

@@ -1,15 +1,15 @@
-#include "apothem/output/field_picture.hpp"
+#include "lib/output/field_picture.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "apothem/output/axes.hpp"
-#include "apothem/output/field_layout.hpp"
-#include "apothem/output/field_overlay.hpp"
-#include "apothem/output/field_raster.hpp"
-#include "apothem/output/files.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/output/field_layout.hpp"
+#include "lib/output/field_overlay.hpp"
+#include "lib/output/field_raster.hpp"
+#include "lib/output/files.hpp"
 
 namespace apothem {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/field.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/field.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/output/field_raster.hpp"
+#include "lib/output/field_raster.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/mesh/edges.hpp"
-#include "apothem/mesh/locate.hpp"
+#include "lib/mesh/edges.hpp"
+#include "lib/mesh/locate.hpp"
 
 namespace apothem {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/field.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/field.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/file_list.hpp"
+#include "lib/output/file_list.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/files.hpp"
+#include "lib/output/files.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/files.hpp"
+#include "lib/output/files.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "apothem/output/checksum.hpp"
+#include "lib/output/checksum.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/force_lines.hpp"
+#include "lib/output/force_lines.hpp"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "apothem/model/columns.hpp"
+#include "lib/model/columns.hpp"
 
 namespace apothem {
 namespace {

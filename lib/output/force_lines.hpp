@@ -1,8 +1,8 @@
 // Private header: what carries force between bodies, as lines for VTK.
 #pragma once
 
-#include "apothem/output/frames.hpp"
-#include "apothem/output/vtk_grid.hpp"
+#include "lib/output/frames.hpp"
+#include "lib/output/vtk_grid.hpp"
 
 namespace apothem {
 

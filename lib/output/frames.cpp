@@ -1,4 +1,4 @@
-#include "apothem/output/frames.hpp"
+#include "lib/output/frames.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
@@ -19,14 +19,14 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/measure.hpp"
-#include "apothem/model/columns.hpp"
-#include "apothem/model/rotation.hpp"
-#include "apothem/output/convex_cells.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/output/force_lines.hpp"
-#include "apothem/output/vtk_grid.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/output/convex_cells.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/force_lines.hpp"
+#include "lib/output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {

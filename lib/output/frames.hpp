@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "apothem/execution/parallel.hpp"
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
-#include "apothem/mesh/mesh.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
-#include "apothem/model/statistics.hpp"
-#include "apothem/output/file_list.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/mesh/mesh.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
+#include "lib/model/statistics.hpp"
+#include "lib/output/file_list.hpp"
 
 namespace apothem {
 

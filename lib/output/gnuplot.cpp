@@ -1,4 +1,4 @@
-#include "apothem/output/gnuplot.hpp"
+#include "lib/output/gnuplot.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include "apothem/output/history.hpp"
+#include "lib/output/history.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "apothem/model/columns.hpp"
-#include "apothem/system/input_file.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/system/input_file.hpp"
 
 namespace apothem {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/model/state.hpp"
-#include "apothem/model/statistics.hpp"
-#include "apothem/output/files.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/model/state.hpp"
+#include "lib/model/statistics.hpp"
+#include "lib/output/files.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/html.hpp"
+#include "lib/output/html.hpp"
 
 namespace apothem {
 

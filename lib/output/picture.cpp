@@ -1,10 +1,10 @@
-#include "apothem/output/picture.hpp"
+#include "lib/output/picture.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "apothem/output/axes.hpp"
+#include "lib/output/axes.hpp"
 
 namespace apothem {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <string>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/geometry/skeleton/singular_area.hpp"
-#include "apothem/output/canvas.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
+#include "geometry/skeleton/singular_area.hpp"
+#include "lib/output/canvas.hpp"
 
 namespace apothem {
 

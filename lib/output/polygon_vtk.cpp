@@ -1,4 +1,4 @@
-#include "apothem/output/polygon_vtk.hpp"
+#include "lib/output/polygon_vtk.hpp"
 
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
-#include "apothem/output/convex_cells.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/output/vtk_grid.hpp"
+#include "lib/output/convex_cells.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/vtk_grid.hpp"
 
 namespace apothem {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/output/potential_figure.hpp"
+#include "lib/output/potential_figure.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/output/axes.hpp"
-#include "apothem/output/files.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/output/files.hpp"
 
 namespace apothem {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/potential_map.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/potential_map.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/output/potential_map.hpp"
+#include "lib/output/potential_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
 
 namespace apothem {
 namespace {

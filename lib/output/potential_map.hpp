@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/potential/potential.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem {
 

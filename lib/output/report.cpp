@@ -1,4 +1,4 @@
-#include "apothem/output/report.hpp"
+#include "lib/output/report.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "apothem/output/files.hpp"
-#include "apothem/output/html.hpp"
-#include "apothem/output/report_numbers.hpp"
-#include "apothem/output/report_style.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/html.hpp"
+#include "lib/output/report_numbers.hpp"
+#include "lib/output/report_style.hpp"
 
 namespace apothem {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/model/settings.hpp"
+#include "lib/model/settings.hpp"
 
 namespace apothem {
 

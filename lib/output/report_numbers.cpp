@@ -1,4 +1,4 @@
-#include "apothem/output/report_numbers.hpp"
+#include "lib/output/report_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apothem/output/html.hpp"
+#include "lib/output/html.hpp"
 
 namespace apothem {
 namespace {

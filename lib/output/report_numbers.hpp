@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/report.hpp"
+#include "lib/output/report.hpp"
 
 namespace apothem {
 

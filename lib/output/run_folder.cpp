@@ -1,4 +1,4 @@
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/run_folder.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "apothem/output/convex_cells.hpp"
-#include "apothem/output/vtu_file.hpp"
-#include "apothem/system/input_file.hpp"
+#include "lib/output/convex_cells.hpp"
+#include "lib/output/vtu_file.hpp"
+#include "lib/system/input_file.hpp"
 
 namespace apothem {
 namespace {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/mesh/mesh.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/state.hpp"
-#include "apothem/model/statistics.hpp"
-#include "apothem/output/history.hpp"
+#include "lib/mesh/mesh.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/state.hpp"
+#include "lib/model/statistics.hpp"
+#include "lib/output/history.hpp"
 
 namespace apothem {
 

@@ -1,12 +1,12 @@
-#include "apothem/output/run_picture.hpp"
+#include "lib/output/run_picture.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/model/rotation.hpp"
-#include "apothem/output/axes.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/output/axes.hpp"
 
 namespace apothem {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/field_picture.hpp"
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/field_picture.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/run_plot.hpp"
+#include "lib/output/run_plot.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "apothem/output/files.hpp"
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/curves.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/curves.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/output/vtu_file.hpp"
+#include "lib/output/vtu_file.hpp"
 
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
@@ -25,9 +25,9 @@
 #include <set>
 #include <string_view>
 
-#include "apothem/output/run_folder.hpp"
-#include "apothem/output/vtk_grid.hpp"
-#include "apothem/system/input_file.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/output/vtk_grid.hpp"
+#include "lib/system/input_file.hpp"
 
 namespace apothem {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

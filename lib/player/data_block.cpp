@@ -1,4 +1,4 @@
-#include "apothem/player/data_block.hpp"
+#include "lib/player/data_block.hpp"
 
 #include <zlib.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <new>
 
-#include "apothem/output/html.hpp"
+#include "lib/output/html.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/player/page_data.hpp"
+#include "lib/player/page_data.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apothem/model/rotation.hpp"
-#include "apothem/output/axes.hpp"
-#include "apothem/output/canvas.hpp"
-#include "apothem/player/data_block.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/player/data_block.hpp"
 
 namespace apothem {
 namespace {

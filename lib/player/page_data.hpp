@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apothem/player/plots.hpp"
-#include "apothem/player/recording.hpp"
+#include "lib/player/plots.hpp"
+#include "lib/player/recording.hpp"
 
 namespace apothem {
 

@@ -1,9 +1,9 @@
-#include "apothem/player/player.hpp"
+#include "lib/player/player.hpp"
 
 #include <string_view>
 
-#include "apothem/output/html.hpp"
-#include "apothem/player/page_data.hpp"
+#include "lib/output/html.hpp"
+#include "lib/player/page_data.hpp"
 #include "player_page.hpp"
 
 namespace apothem {

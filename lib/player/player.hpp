@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 

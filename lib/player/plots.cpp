@@ -1,4 +1,4 @@
-#include "apothem/player/plots.hpp"
+#include "lib/player/plots.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/run_folder.hpp"
 
 namespace apothem {
 

@@ -1,12 +1,12 @@
-#include "apothem/player/recording.hpp"
+#include "lib/player/recording.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <tuple>
 
-#include "apothem/output/axes.hpp"
-#include "apothem/player/data_block.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/player/data_block.hpp"
 
 namespace apothem {
 namespace {

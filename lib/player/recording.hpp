@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/field.hpp"
-#include "apothem/player/shapes.hpp"
+#include "lib/output/field.hpp"
+#include "lib/player/shapes.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/player/shapes.hpp"
+#include "lib/player/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/mesh/edges.hpp"
-#include "apothem/model/rotation.hpp"
-#include "apothem/output/convex_cells.hpp"
+#include "lib/mesh/edges.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/output/convex_cells.hpp"
 
 namespace apothem {
 namespace {

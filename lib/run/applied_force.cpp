@@ -1,4 +1,4 @@
-#include "apothem/run/applied_force.hpp"
+#include "lib/run/applied_force.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "apothem/dynamics/term.hpp"
+#include "lib/dynamics/term.hpp"
 
 namespace apothem {
 

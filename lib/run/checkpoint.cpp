@@ -1,4 +1,4 @@
-#include "apothem/run/checkpoint.hpp"
+#include "lib/run/checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apothem/dynamics/inheritance.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/json_archive.hpp"
-#include "apothem/run/sealed_file.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/dynamics/inheritance.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/json_archive.hpp"
+#include "lib/run/sealed_file.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/body_start.hpp"
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/output/history.hpp"
-#include "apothem/run/stop_watch.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/dynamics/body_start.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/output/history.hpp"
+#include "lib/run/stop_watch.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

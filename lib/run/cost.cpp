@@ -1,11 +1,11 @@
-#include "apothem/run/cost.hpp"
+#include "lib/run/cost.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/system/memory.hpp"
+#include "lib/system/memory.hpp"
 
 namespace apothem {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/run/folder.hpp"
+#include "lib/run/folder.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apothem/output/frames.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "apothem/output/vtu_file.hpp"
-#include "apothem/run/checkpoint.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/output/frames.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/output/vtu_file.hpp"
+#include "lib/run/checkpoint.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

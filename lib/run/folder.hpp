@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/file_list.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/output/file_list.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

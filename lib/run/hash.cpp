@@ -1,8 +1,8 @@
-#include "apothem/run/hash.hpp"
+#include "lib/run/hash.hpp"
 
 #include <type_traits>
 
-#include "apothem/output/checksum.hpp"
+#include "lib/output/checksum.hpp"
 
 namespace apothem {
 namespace {

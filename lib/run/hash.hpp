@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "apothem/model/state.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/model/state.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/archive/archive.hpp"
+#include "lib/archive/archive.hpp"
 
 namespace apothem {
 

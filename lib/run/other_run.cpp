@@ -1,4 +1,4 @@
-#include "apothem/run/other_run.hpp"
+#include "lib/run/other_run.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apothem/run/checkpoint.hpp"
-#include "apothem/run/json_archive.hpp"
-#include "apothem/run/sealed_file.hpp"
+#include "lib/run/checkpoint.hpp"
+#include "lib/run/json_archive.hpp"
+#include "lib/run/sealed_file.hpp"
 
 namespace apothem {
 namespace {

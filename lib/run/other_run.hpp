@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/inheritance.hpp"
-#include "apothem/run/checkpoint.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/dynamics/inheritance.hpp"
+#include "lib/run/checkpoint.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/run/run.hpp"
+#include "lib/run/run.hpp"
 
 #include <fmt/format.h>
 
@@ -7,14 +7,14 @@
 #include <ctime>
 #include <filesystem>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/run/folder.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/other_run.hpp"
-#include "apothem/run/summary.hpp"
-#include "apothem/run/warnings.hpp"
-#include "apothem/scene/plausibility.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/folder.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/other_run.hpp"
+#include "lib/run/summary.hpp"
+#include "lib/run/warnings.hpp"
+#include "lib/scene/plausibility.hpp"
 
 namespace apothem {
 namespace {

@@ -13,15 +13,15 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/output/file_list.hpp"
-#include "apothem/output/frames.hpp"
-#include "apothem/output/history.hpp"
-#include "apothem/run/applied_force.hpp"
-#include "apothem/run/checkpoint.hpp"
-#include "apothem/run/start.hpp"
-#include "apothem/run/stop_watch.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/output/file_list.hpp"
+#include "lib/output/frames.hpp"
+#include "lib/output/history.hpp"
+#include "lib/run/applied_force.hpp"
+#include "lib/run/checkpoint.hpp"
+#include "lib/run/start.hpp"
+#include "lib/run/stop_watch.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

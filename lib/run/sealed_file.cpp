@@ -1,9 +1,9 @@
-#include "apothem/run/sealed_file.hpp"
+#include "lib/run/sealed_file.hpp"
 
-#include "apothem/output/checksum.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/run/json_archive.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/output/checksum.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/json_archive.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

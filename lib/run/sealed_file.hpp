@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "apothem/archive/archive.hpp"
-#include "apothem/scene/error.hpp"
+#include "lib/archive/archive.hpp"
+#include "lib/scene/error.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/run/start.hpp"
+#include "lib/run/start.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 namespace apothem {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/scene/scene.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

@@ -1,8 +1,8 @@
-#include "apothem/run/stop_watch.hpp"
+#include "lib/run/stop_watch.hpp"
 
 #include <algorithm>
 
-#include "apothem/model/statistics.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/run/summary.hpp"
+#include "lib/run/summary.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "apothem/output/files.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/other_run.hpp"
-#include "apothem/run/run.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/other_run.hpp"
+#include "lib/run/run.hpp"
 #include "version.hpp"
 
 namespace apothem {

@@ -1,8 +1,8 @@
-#include "apothem/run/warnings.hpp"
+#include "lib/run/warnings.hpp"
 
 #include <fmt/format.h>
 
-#include "apothem/model/inradius.hpp"
+#include "lib/model/inradius.hpp"
 
 namespace apothem {
 namespace {

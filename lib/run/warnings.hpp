@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/results.hpp"
-#include "apothem/model/model.hpp"
+#include "lib/dynamics/results.hpp"
+#include "lib/model/model.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/body_reader.hpp"
+#include "lib/scene/body_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <thread>
 
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/measure.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "apothem/model/rotation.hpp"
-#include "apothem/scene/deformable_reader.hpp"
-#include "apothem/scene/output_reader.hpp"
-#include "apothem/scene/polygon_value.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/scene/deformable_reader.hpp"
+#include "lib/scene/output_reader.hpp"
+#include "lib/scene/polygon_value.hpp"
 
 namespace apothem {
 

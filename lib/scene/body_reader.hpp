@@ -9,11 +9,11 @@
 #include <variant>
 #include <vector>
 
-#include "apothem/geometry/potential/potentials.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/mesh_reader.hpp"
+#include "geometry/potential/potentials.hpp"
+#include "lib/model/model.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/mesh_reader.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/compatibility.hpp"
+#include "lib/scene/compatibility.hpp"
 
 #include <fmt/format.h>
 

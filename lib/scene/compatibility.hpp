@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "apothem/scene/json.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/contact_reader.hpp"
+#include "lib/scene/contact_reader.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Reads the contact law of a scene.
 #pragma once
 
-#include "apothem/model/model.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/model/model.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/decimal.hpp"
+#include "lib/scene/decimal.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "apothem/scene/deformable_reader.hpp"
+#include "lib/scene/deformable_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "apothem/fem/mass.hpp"
-#include "apothem/mesh/locate.hpp"
+#include "lib/fem/mass.hpp"
+#include "lib/mesh/locate.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,9 @@
 // Reads the supports and loads of a body with a mesh, and the histories of motions and loads.
 #pragma once
 
-#include "apothem/mesh/select.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/mesh/select.hpp"
+#include "lib/model/model.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/drawing.hpp"
+#include "lib/scene/drawing.hpp"
 
 #include <fmt/format.h>
 
@@ -13,10 +13,10 @@
 #include <optional>
 #include <string_view>
 
-#include "apothem/scene/decimal.hpp"
-#include "apothem/scene/dxf_text.hpp"
-#include "apothem/scene/gdal.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/scene/dxf_text.hpp"
+#include "lib/scene/gdal.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

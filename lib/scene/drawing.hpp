@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/scene/drawing_unit.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/scene/drawing_unit.hpp"
 
 namespace apothem {
 

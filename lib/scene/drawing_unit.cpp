@@ -1,4 +1,4 @@
-#include "apothem/scene/drawing_unit.hpp"
+#include "lib/scene/drawing_unit.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apothem/scene/gdal.hpp"
+#include "lib/scene/gdal.hpp"
 
 namespace apothem {
 namespace {

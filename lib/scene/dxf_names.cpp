@@ -1,4 +1,4 @@
-#include "apothem/scene/dxf_names.hpp"
+#include "lib/scene/dxf_names.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cctype>
 #include <optional>
 
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/text_encoding.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/text_encoding.hpp"
 
 namespace apothem {
 namespace {

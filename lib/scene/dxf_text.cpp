@@ -1,4 +1,4 @@
-#include "apothem/scene/dxf_text.hpp"
+#include "lib/scene/dxf_text.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <set>
 #include <string_view>
 
-#include "apothem/scene/decimal.hpp"
-#include "apothem/scene/dxf_names.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/scene/dxf_names.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

@@ -1,11 +1,11 @@
-#include "apothem/scene/faces.hpp"
+#include "lib/scene/faces.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "apothem/scene/gdal.hpp"
+#include "lib/scene/gdal.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "apothem/scene/fill_reader.hpp"
+#include "lib/scene/fill_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -8,16 +8,16 @@
 #include <numeric>
 #include <optional>
 
-#include "apothem/execution/elementary.hpp"
-#include "apothem/fem/kinds.hpp"
-#include "apothem/geometry/packing/block_shapes.hpp"
-#include "apothem/geometry/packing/voronoi_blocks.hpp"
-#include "apothem/geometry/polygon/ring_area.hpp"
-#include "apothem/geometry/spatial/hilbert.hpp"
-#include "apothem/scene/body_reader.hpp"
-#include "apothem/scene/polygon_value.hpp"
-#include "apothem/scene/value_maker.hpp"
-#include "apothem/system/memory.hpp"
+#include "geometry/packing/block_shapes.hpp"
+#include "geometry/packing/voronoi_blocks.hpp"
+#include "geometry/polygon/ring_area.hpp"
+#include "geometry/spatial/hilbert.hpp"
+#include "lib/execution/elementary.hpp"
+#include "lib/fem/kinds.hpp"
+#include "lib/scene/body_reader.hpp"
+#include "lib/scene/polygon_value.hpp"
+#include "lib/scene/value_maker.hpp"
+#include "lib/system/memory.hpp"
 
 namespace apothem {
 namespace {

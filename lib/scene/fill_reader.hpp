@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "apothem/geometry/packing/arrange.hpp"
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/scene/json.hpp"
+#include "geometry/packing/arrange.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

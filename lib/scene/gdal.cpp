@@ -1,4 +1,4 @@
-#include "apothem/scene/gdal.hpp"
+#include "lib/scene/gdal.hpp"
 
 #include <dlfcn.h>
 

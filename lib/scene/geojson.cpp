@@ -1,4 +1,4 @@
-#include "apothem/scene/geojson.hpp"
+#include "lib/scene/geojson.hpp"
 
 #include <fmt/format.h>
 

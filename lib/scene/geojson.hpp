@@ -1,8 +1,8 @@
 // Polygons in GeoJSON (RFC 7946), as geographical programs write it.
 #pragma once
 
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/ring_text.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/ring_text.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/import_reader.hpp"
+#include "lib/scene/import_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
-#include "apothem/scene/outlines.hpp"
-#include "apothem/scene/polygon_value.hpp"
-#include "apothem/scene/value_maker.hpp"
+#include "lib/scene/outlines.hpp"
+#include "lib/scene/polygon_value.hpp"
+#include "lib/scene/value_maker.hpp"
 
 namespace apothem {
 namespace {

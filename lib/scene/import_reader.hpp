@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "apothem/scene/import_report.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/scene/import_report.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

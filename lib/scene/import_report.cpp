@@ -1,4 +1,4 @@
-#include "apothem/scene/import_report.hpp"
+#include "lib/scene/import_report.hpp"
 
 #include <fmt/format.h>
 

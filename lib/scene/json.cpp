@@ -1,4 +1,4 @@
-#include "apothem/scene/json.hpp"
+#include "lib/scene/json.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,8 +11,8 @@
 #include <numeric>
 #include <system_error>
 
-#include "apothem/scene/ring_text.hpp"
-#include "apothem/system/input_file.hpp"
+#include "lib/scene/ring_text.hpp"
+#include "lib/system/input_file.hpp"
 
 namespace apothem {
 namespace {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/scene/error.hpp"
-#include "apothem/scene/json_value.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/scene/error.hpp"
+#include "lib/scene/json_value.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/json_value.hpp"
+#include "lib/scene/json_value.hpp"
 
 #include <algorithm>
 #include <utility>

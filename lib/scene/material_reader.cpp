@@ -1,4 +1,4 @@
-#include "apothem/scene/material_reader.hpp"
+#include "lib/scene/material_reader.hpp"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/model/model.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,7 +1,7 @@
-#include "apothem/scene/mesh_file.hpp"
+#include "lib/scene/mesh_file.hpp"
 
-#include "apothem/mesh/gmsh.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/mesh/gmsh.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apothem/mesh/check.hpp"
-#include "apothem/mesh/mesh.hpp"
+#include "lib/mesh/check.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem {
 

@@ -1,18 +1,18 @@
-#include "apothem/scene/mesh_reader.hpp"
+#include "lib/scene/mesh_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/mesh/check.hpp"
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/half_disc_mesh.hpp"
-#include "apothem/mesh/mirror.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/scene/mesh_file.hpp"
-#include "apothem/scene/polygon_value.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/mesh/check.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/half_disc_mesh.hpp"
+#include "lib/mesh/mirror.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/scene/mesh_file.hpp"
+#include "lib/scene/polygon_value.hpp"
 
 namespace apothem {
 namespace {

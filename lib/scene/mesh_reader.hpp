@@ -1,9 +1,9 @@
 // Reads the mesh of a body.
 #pragma once
 
-#include "apothem/fem/kinds.hpp"
-#include "apothem/mesh/mesh.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/fem/kinds.hpp"
+#include "lib/mesh/mesh.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

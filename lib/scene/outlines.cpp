@@ -1,14 +1,14 @@
-#include "apothem/scene/outlines.hpp"
+#include "lib/scene/outlines.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "apothem/scene/faces.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "lib/scene/faces.hpp"
 
 namespace apothem {
 namespace {

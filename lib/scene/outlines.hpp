@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/drawing.hpp"
-#include "apothem/scene/import_report.hpp"
+#include "lib/scene/drawing.hpp"
+#include "lib/scene/import_report.hpp"
 
 namespace apothem {
 

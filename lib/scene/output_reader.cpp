@@ -1,12 +1,12 @@
-#include "apothem/scene/output_reader.hpp"
+#include "lib/scene/output_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apothem/mesh/locate.hpp"
-#include "apothem/model/state.hpp"
+#include "lib/mesh/locate.hpp"
+#include "lib/model/state.hpp"
 
 namespace apothem {
 namespace {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "apothem/model/columns.hpp"
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

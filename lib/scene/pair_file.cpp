@@ -1,12 +1,12 @@
-#include "apothem/scene/pair_file.hpp"
+#include "lib/scene/pair_file.hpp"
 
 #include <fmt/format.h>
 
 #include <sstream>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/ring_line.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/ring_line.hpp"
 
 namespace apothem {
 namespace {

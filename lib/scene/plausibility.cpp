@@ -1,4 +1,4 @@
-#include "apothem/scene/plausibility.hpp"
+#include "lib/scene/plausibility.hpp"
 
 #include <fmt/format.h>
 

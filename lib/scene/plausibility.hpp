@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/scene/polygon_file.hpp"
+#include "lib/scene/polygon_file.hpp"
 
 #include <utility>
 
-#include "apothem/scene/geojson.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/wkt.hpp"
+#include "lib/scene/geojson.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/wkt.hpp"
 
 namespace apothem {
 namespace {

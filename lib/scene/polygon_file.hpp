@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/scene/ring_text.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/scene/ring_text.hpp"
 
 namespace apothem {
 

@@ -1,11 +1,11 @@
-#include "apothem/scene/polygon_value.hpp"
+#include "lib/scene/polygon_value.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "apothem/scene/drawing_unit.hpp"
-#include "apothem/scene/polygon_file.hpp"
+#include "lib/scene/drawing_unit.hpp"
+#include "lib/scene/polygon_file.hpp"
 
 namespace apothem {
 namespace {

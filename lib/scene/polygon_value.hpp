@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/scene/json.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

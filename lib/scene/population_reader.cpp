@@ -1,10 +1,10 @@
-#include "apothem/scene/population_reader.hpp"
+#include "lib/scene/population_reader.hpp"
 
 #include <algorithm>
 
-#include "apothem/geometry/polygon/convex_parts.hpp"
-#include "apothem/scene/output_reader.hpp"
-#include "apothem/scene/polygon_value.hpp"
+#include "geometry/polygon/convex_parts.hpp"
+#include "lib/scene/output_reader.hpp"
+#include "lib/scene/polygon_value.hpp"
 
 namespace apothem {
 

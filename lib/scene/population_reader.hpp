@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

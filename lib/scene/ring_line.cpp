@@ -1,14 +1,14 @@
-#include "apothem/scene/ring_line.hpp"
+#include "lib/scene/ring_line.hpp"
 
 #include <fmt/format.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "apothem/geometry/polygon/polygon.hpp"
-#include "apothem/scene/decimal.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/ring_text.hpp"
+#include "geometry/polygon/polygon.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/ring_text.hpp"
 
 namespace apothem {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,19 +1,19 @@
-#include "apothem/scene/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "apothem/scene/body_reader.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/contact_reader.hpp"
-#include "apothem/scene/deformable_reader.hpp"
-#include "apothem/scene/fill_reader.hpp"
-#include "apothem/scene/import_reader.hpp"
-#include "apothem/scene/material_reader.hpp"
-#include "apothem/scene/output_reader.hpp"
-#include "apothem/scene/population_reader.hpp"
-#include "apothem/scene/time_reader.hpp"
-#include "apothem/scene/value_maker.hpp"
+#include "lib/scene/body_reader.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/contact_reader.hpp"
+#include "lib/scene/deformable_reader.hpp"
+#include "lib/scene/fill_reader.hpp"
+#include "lib/scene/import_reader.hpp"
+#include "lib/scene/material_reader.hpp"
+#include "lib/scene/output_reader.hpp"
+#include "lib/scene/population_reader.hpp"
+#include "lib/scene/time_reader.hpp"
+#include "lib/scene/value_maker.hpp"
 
 namespace apothem {
 namespace {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "apothem/model/model.hpp"
-#include "apothem/model/settings.hpp"
-#include "apothem/scene/import_report.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/setting.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/scene/import_report.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/setting.hpp"
 
 namespace apothem {
 

@@ -1,10 +1,10 @@
-#include "apothem/scene/setting.hpp"
+#include "lib/scene/setting.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "apothem/scene/decimal.hpp"
+#include "lib/scene/decimal.hpp"
 
 namespace apothem {
 namespace {

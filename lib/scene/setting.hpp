@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/json.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/text_encoding.hpp"
+#include "lib/scene/text_encoding.hpp"
 
 #include <iconv.h>
 

@@ -1,4 +1,4 @@
-#include "apothem/scene/time_reader.hpp"
+#include "lib/scene/time_reader.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Reads the part of a scene that says how time runs: dynamic or static, end, step and start.
 #pragma once
 
-#include "apothem/model/settings.hpp"
-#include "apothem/scene/compatibility.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/model/settings.hpp"
+#include "lib/scene/compatibility.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

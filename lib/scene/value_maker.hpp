@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/geometry/polygon/point.hpp"
-#include "apothem/scene/json.hpp"
+#include "geometry/polygon/point.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 

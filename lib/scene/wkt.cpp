@@ -1,4 +1,4 @@
-#include "apothem/scene/wkt.hpp"
+#include "lib/scene/wkt.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cctype>
 #include <vector>
 
-#include "apothem/scene/decimal.hpp"
-#include "apothem/scene/json.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

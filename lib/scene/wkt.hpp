@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "apothem/scene/ring_text.hpp"
+#include "lib/scene/ring_text.hpp"
 
 namespace apothem {
 

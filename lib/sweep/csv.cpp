@@ -1,6 +1,6 @@
-#include "apothem/sweep/csv.hpp"
+#include "lib/sweep/csv.hpp"
 
-#include "apothem/scene/json.hpp"
+#include "lib/scene/json.hpp"
 
 namespace apothem {
 namespace {

@@ -1,4 +1,4 @@
-#include "apothem/sweep/decimal_range.hpp"
+#include "lib/sweep/decimal_range.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "apothem/scene/decimal.hpp"
+#include "lib/scene/decimal.hpp"
 
 namespace apothem {
 namespace {

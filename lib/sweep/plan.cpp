@@ -1,4 +1,4 @@
-#include "apothem/sweep/plan.hpp"
+#include "lib/sweep/plan.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <optional>
 #include <set>
 
-#include "apothem/run/hash.hpp"
-#include "apothem/scene/decimal.hpp"
-#include "apothem/sweep/csv.hpp"
-#include "apothem/sweep/decimal_range.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/sweep/csv.hpp"
+#include "lib/sweep/decimal_range.hpp"
 
 namespace apothem {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/scene/setting.hpp"
+#include "lib/scene/setting.hpp"
 
 namespace apothem {
 

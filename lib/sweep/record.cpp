@@ -1,4 +1,4 @@
-#include "apothem/sweep/record.hpp"
+#include "lib/sweep/record.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "apothem/sweep/study.hpp"
+#include "lib/sweep/study.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/sweep/snakefile.hpp"
+#include "lib/sweep/snakefile.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "apothem/sweep/statistics.hpp"
+#include "lib/sweep/statistics.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>

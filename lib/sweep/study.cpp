@@ -1,4 +1,4 @@
-#include "apothem/sweep/study.hpp"
+#include "lib/sweep/study.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apothem/output/files.hpp"
-#include "apothem/run/checkpoint.hpp"
-#include "apothem/run/hash.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/checkpoint.hpp"
+#include "lib/run/hash.hpp"
 
 namespace apothem {
 namespace {

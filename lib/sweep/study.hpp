@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apothem/sweep/plan.hpp"
+#include "lib/sweep/plan.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/sweep/summary_picture.hpp"
+#include "lib/sweep/summary_picture.hpp"
 
 #include <fmt/format.h>
 

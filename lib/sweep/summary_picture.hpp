@@ -1,8 +1,8 @@
 // The picture of a study: estimates with their intervals.
 #pragma once
 
-#include "apothem/output/curves.hpp"
-#include "apothem/sweep/summary_table.hpp"
+#include "lib/output/curves.hpp"
+#include "lib/sweep/summary_table.hpp"
 
 namespace apothem {
 

@@ -1,4 +1,4 @@
-#include "apothem/sweep/summary_table.hpp"
+#include "lib/sweep/summary_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

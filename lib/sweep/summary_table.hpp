@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/sweep/record.hpp"
-#include "apothem/sweep/statistics.hpp"
+#include "lib/sweep/record.hpp"
+#include "lib/sweep/statistics.hpp"
 
 namespace apothem {
 

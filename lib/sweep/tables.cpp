@@ -1,4 +1,4 @@
-#include "apothem/sweep/tables.hpp"
+#include "lib/sweep/tables.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apothem/output/files.hpp"
-#include "apothem/sweep/csv.hpp"
-#include "apothem/sweep/summary_picture.hpp"
+#include "lib/output/files.hpp"
+#include "lib/sweep/csv.hpp"
+#include "lib/sweep/summary_picture.hpp"
 
 namespace apothem {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/gnuplot.hpp"
-#include "apothem/sweep/summary_table.hpp"
+#include "lib/output/gnuplot.hpp"
+#include "lib/sweep/summary_table.hpp"
 
 namespace apothem {
 

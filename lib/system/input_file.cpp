@@ -1,4 +1,4 @@
-#include "apothem/system/input_file.hpp"
+#include "lib/system/input_file.hpp"
 
 #include <sys/stat.h>
 

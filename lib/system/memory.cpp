@@ -1,4 +1,4 @@
-#include "apothem/system/memory.hpp"
+#include "lib/system/memory.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "apothem/system/standard_files.hpp"
+#include "lib/system/standard_files.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "support.hpp"
+#include "tests/support.hpp"
 
 namespace fs = std::filesystem;
 
@@ -66,6 +66,15 @@ const std::map<std::string, std::set<std::string>> kGeometryMayInclude{
     {"packing", {"polygon", "spatial", "skeleton", "meshing"}},
 };
 
+// Rooms within lib/contact. Kernels see of what is above them only what a kernel is.
+const std::map<std::string, std::set<std::string>> kContactMayInclude{
+    {"law", {}},
+    {"surface", {"law"}},
+    {"rigid", {"law", "surface", "kernel.hpp"}},
+    {"mesh", {"law", "surface", "kernel.hpp"}},
+    {"element", {"law", "surface", "rigid", "kernel.hpp"}},
+};
+
 std::string folder_of(const std::string& room) { return room == "geometry" ? room : "lib/" + room; }
 
 // The parts of a path between slashes.
@@ -76,16 +85,19 @@ std::vector<std::string> parts(const std::string& path) {
   return result;
 }
 
+// The room of a header of this project; empty if it is another one's.
+std::string room_of(const std::string& include) {
+  const std::vector<std::string> path = parts(include);
+  if (path.size() > 2 && path[0] == "lib") return path[1];
+  return path.size() > 1 && path[0] == "geometry" ? "geometry" : "";
+}
+
 TEST_CASE("each room includes only what it may", "[architecture]") {
   for (const auto& [room, allowed] : kMayInclude) {
     for (const Include& include : includes(folder_of(room))) {
       INFO(include.file << " includes " << include.what);
-      const std::vector<std::string> path = parts(include.what);
-      if (path[0] != "apothem") {
-        CHECK(!kMayInclude.count(path[0]));
-        continue;
-      }
-      CHECK((path[1] == room || allowed.count(path[1])));
+      const std::string other = room_of(include.what);
+      CHECK((other.empty() || other == room || allowed.count(other)));
     }
   }
   for (const auto& entry : fs::directory_iterator(fs::path(apothem::test::kSource) / "lib")) {
@@ -97,15 +109,36 @@ TEST_CASE("each room includes only what it may", "[architecture]") {
 TEST_CASE("each room within geometry includes only what it may", "[architecture]") {
   for (const auto& [room, allowed] : kGeometryMayInclude) {
     for (const Include& include : includes("geometry/" + room)) {
-      const std::vector<std::string> path = parts(include.what);
-      if (path.size() < 3 || path[1] != "geometry") continue;
+      if (room_of(include.what) != "geometry") continue;
+      const std::string other = parts(include.what)[1];
       INFO(include.file << " includes " << include.what);
-      CHECK((path[2] == room || allowed.count(path[2])));
+      CHECK((other == room || allowed.count(other)));
     }
   }
   for (const auto& entry : fs::directory_iterator(fs::path(apothem::test::kSource) / "geometry")) {
     INFO(entry.path());
     if (entry.is_directory()) CHECK(kGeometryMayInclude.count(entry.path().filename().string()));
+  }
+}
+
+TEST_CASE("each room within contact includes only what it may", "[architecture]") {
+  const auto check = [](const std::string& room, const std::set<std::string>& allowed,
+                        const Include& include) {
+    if (room_of(include.what) != "contact") return;
+    INFO(include.file << " includes " << include.what);
+    const std::string other = parts(include.what)[2];
+    CHECK((other == room || allowed.count(other)));
+  };
+  for (const auto& [room, allowed] : kContactMayInclude) {
+    for (const Include& include : includes("lib/contact/" + room)) check(room, allowed, include);
+  }
+  for (const Include& include : includes("lib/contact")) {
+    if (include.file.ends_with("lib/contact/kernel.hpp")) check("", {"law", "surface"}, include);
+  }
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(apothem::test::kSource) / "lib/contact")) {
+    INFO(entry.path());
+    if (entry.is_directory()) CHECK(kContactMayInclude.count(entry.path().filename().string()));
   }
 }
 
@@ -129,8 +162,8 @@ TEST_CASE("public headers include only public headers", "[architecture]") {
     REQUIRE(fs::exists(file));
     for (const std::string& what : by_file[file.string()]) {
       INFO("includes " << what);
-      if (what.starts_with("apothem/")) {
-        CHECK(headers.count(what.substr(std::string("apothem/").size())));
+      if (!room_of(what).empty()) {
+        CHECK(headers.count(what.starts_with("lib/") ? what.substr(4) : what));
       } else if (what.find('/') != std::string::npos) {
         CHECK(what == "Eigen/Core");  // what the package config finds for every component
       }

@@ -1,8 +1,8 @@
 // What a simulation remembers, as JSON and as text.
 #pragma once
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/run/json_archive.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/run/json_archive.hpp"
 
 namespace apothem::test {
 

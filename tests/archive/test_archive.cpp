@@ -1,12 +1,12 @@
 // Archives: what a struct says about its members once is written and read back, bit for bit.
-#include "apothem/archive/archive.hpp"
+#include "lib/archive/archive.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "apothem/run/json_archive.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/run/json_archive.hpp"
 
 using namespace apothem;
 

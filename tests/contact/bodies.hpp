@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "apothem/contact/contacts.hpp"
-#include "apothem/mesh/mesh.hpp"
-#include "support.hpp"
+#include "lib/contact/contacts.hpp"
+#include "lib/mesh/mesh.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

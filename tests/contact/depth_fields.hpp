@@ -6,8 +6,8 @@
 #include <complex>
 #include <vector>
 
-#include "apothem/geometry/integrals/collar.hpp"
-#include "apothem/geometry/polygon/point.hpp"
+#include "geometry/integrals/collar.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem::test {
 

@@ -1,8 +1,8 @@
 // Outlines for the tests of deformable contact: a body of one polygonal element per outline.
 #pragma once
 
-#include "apothem/geometry/skeleton/skeleton.hpp"
-#include "contact/bodies.hpp"
+#include "geometry/skeleton/skeleton.hpp"
+#include "tests/contact/bodies.hpp"
 
 namespace apothem::test {
 

@@ -1,9 +1,9 @@
 // The penetration that contacts report: the same for every kernel.
 #include <catch2/catch.hpp>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "contact/bodies.hpp"
-#include "contact/outline_pairs.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/contact/bodies.hpp"
+#include "tests/contact/outline_pairs.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

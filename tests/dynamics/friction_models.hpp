@@ -1,8 +1,8 @@
 // Blocks on slopes and the like, for the tests of friction.
 #pragma once
 
-#include "apothem/dynamics/simulation.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

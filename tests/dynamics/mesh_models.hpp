@@ -1,10 +1,10 @@
 // Single bodies of finite elements, for the tests of what acts on their nodes.
 #pragma once
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/select.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/select.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

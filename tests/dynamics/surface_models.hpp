@@ -1,12 +1,12 @@
 // Deformable bodies on their way into contact.
 #pragma once
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "support.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "apothem/dynamics/contact_term.hpp"
-#include "apothem/dynamics/simulation.hpp"
+#include "lib/dynamics/contact_term.hpp"
+#include "lib/dynamics/simulation.hpp"
 
 namespace apothem::test {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "cases/random_impacts.hpp"
-#include "cases/samples.hpp"
-#include "support.hpp"
+#include "apps/cases/random_impacts.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using samples::ImpactKind;

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using samples::Random;

@@ -4,13 +4,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/mesh/locate.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "apothem/mesh/select.hpp"
-#include "apothem/output/history.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/locate.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "lib/mesh/select.hpp"
+#include "lib/output/history.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

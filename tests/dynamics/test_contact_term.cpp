@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "apothem/contact/outlines.hpp"
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/select.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/contact/surface/outlines.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/select.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -5,10 +5,10 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "apothem/contact/outlines.hpp"
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/contact/surface/outlines.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

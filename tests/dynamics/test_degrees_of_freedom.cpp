@@ -1,12 +1,12 @@
 // The coordinates of rigid bodies and nodes: which of them forces can move, how they move in a
 // step, and their masses, momenta and energies against sums by hand.
-#include "apothem/dynamics/degrees_of_freedom.hpp"
+#include "lib/dynamics/degrees_of_freedom.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "mesh_models.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/fem/spectrum.hpp"
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "mesh_models.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/fem/spectrum.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

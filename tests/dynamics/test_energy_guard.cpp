@@ -1,10 +1,10 @@
 // The energy guard: quiet while energy arrives, and not deceived by it.
-#include "apothem/dynamics/energy_guard.hpp"
+#include "lib/dynamics/energy_guard.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "mesh_models.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

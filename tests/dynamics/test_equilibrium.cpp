@@ -6,14 +6,14 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/mesh/half_disc_mesh.hpp"
-#include "apothem/mesh/mirror.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "apothem/mesh/select.hpp"
-#include "fem/static_solution.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/mesh/half_disc_mesh.hpp"
+#include "lib/mesh/mirror.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "lib/mesh/select.hpp"
+#include "tests/fem/static_solution.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

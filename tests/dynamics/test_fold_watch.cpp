@@ -1,9 +1,9 @@
 // Bodies that fold onto themselves are noticed where that contact is not asked for.
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

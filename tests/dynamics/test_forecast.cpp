@@ -1,10 +1,10 @@
 // The depths that a scene will reach, against its run.
-#include "apothem/dynamics/forecast.hpp"
+#include "lib/dynamics/forecast.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "mesh_models.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

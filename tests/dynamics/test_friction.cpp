@@ -1,10 +1,10 @@
 // Friction and damping in the step loop: theory of sliding, ledgers, patches.
 #include <catch2/catch.hpp>
 
-#include "apothem/contact/pair_table.hpp"
-#include "archive/saved.hpp"
-#include "friction_models.hpp"
-#include "term_of.hpp"
+#include "lib/contact/law/pair_table.hpp"
+#include "tests/archive/saved.hpp"
+#include "tests/dynamics/friction_models.hpp"
+#include "tests/dynamics/term_of.hpp"
 
 using namespace apothem;
 using test::add;

@@ -1,8 +1,8 @@
 // Gravity whose strength follows a history: motion, ledgers, static runs.
 #include <catch2/catch.hpp>
 
-#include "friction_models.hpp"
-#include "mesh_models.hpp"
+#include "tests/dynamics/friction_models.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

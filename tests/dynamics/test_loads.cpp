@@ -1,7 +1,7 @@
 // Loads, supports and gravity on bodies of finite elements.
 #include <catch2/catch.hpp>
 
-#include "mesh_models.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,7 +1,7 @@
 // Damping in proportion to the mass.
 #include <catch2/catch.hpp>
 
-#include "mesh_models.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "cases/impacts.hpp"
-#include "shapes.hpp"
-#include "surface_models.hpp"
+#include "apps/cases/impacts.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/dynamics/surface_models.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 using test::Ring;

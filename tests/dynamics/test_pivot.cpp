@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "mesh_models.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "shapes.hpp"
-#include "support.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

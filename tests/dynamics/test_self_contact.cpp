@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/simulation.hpp"
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "support.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "lib/dynamics/simulation.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

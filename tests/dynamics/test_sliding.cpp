@@ -1,7 +1,7 @@
 // Friction on really tilted slopes, with other shapes, angles and coefficients.
 #include <catch2/catch.hpp>
 
-#include "friction_models.hpp"
+#include "tests/dynamics/friction_models.hpp"
 
 using namespace apothem;
 using test::add;

@@ -6,16 +6,16 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/half_disc_mesh.hpp"
-#include "apothem/mesh/mirror.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "apothem/mesh/select.hpp"
-#include "fem/static_solution.hpp"
-#include "friction_models.hpp"
-#include "support.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/half_disc_mesh.hpp"
+#include "lib/mesh/mirror.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "lib/mesh/select.hpp"
+#include "tests/dynamics/friction_models.hpp"
+#include "tests/fem/static_solution.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,10 +1,10 @@
-#include "apothem/dynamics/step_control.hpp"
+#include "lib/dynamics/step_control.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/dynamics/unstable.hpp"
 
 using namespace apothem;
 

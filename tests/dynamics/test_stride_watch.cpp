@@ -1,12 +1,12 @@
 // Bodies that move far in a step: free where nothing is near, an error where contacts would be
 // missed, and never through each other in silence.
-#include "apothem/dynamics/stride_watch.hpp"
+#include "lib/dynamics/stride_watch.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,13 +1,13 @@
 // The terms of a step: a scene has those that it needs, and a term of one's own is one of them.
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/elements.hpp"
-#include "apothem/dynamics/fold_watch.hpp"
-#include "apothem/dynamics/loads.hpp"
-#include "apothem/dynamics/mass_damping.hpp"
-#include "archive/saved.hpp"
-#include "mesh_models.hpp"
-#include "term_of.hpp"
+#include "lib/dynamics/elements.hpp"
+#include "lib/dynamics/fold_watch.hpp"
+#include "lib/dynamics/loads.hpp"
+#include "lib/dynamics/mass_damping.hpp"
+#include "tests/archive/saved.hpp"
+#include "tests/dynamics/mesh_models.hpp"
+#include "tests/dynamics/term_of.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

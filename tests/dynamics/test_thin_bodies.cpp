@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "apothem/contact/outlines.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "contact/outline_pairs.hpp"
-#include "dynamics/surface_models.hpp"
+#include "lib/contact/surface/outlines.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/contact/outline_pairs.hpp"
+#include "tests/dynamics/surface_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "archive/saved.hpp"
-#include "dynamics/surface_models.hpp"
-#include "shapes.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/archive/saved.hpp"
+#include "tests/dynamics/surface_models.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

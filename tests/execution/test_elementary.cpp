@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "apothem/execution/elementary.hpp"
+#include "lib/execution/elementary.hpp"
 
 using namespace apothem;
 

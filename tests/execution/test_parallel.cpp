@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "apothem/execution/parallel.hpp"
-#include "apothem/execution/worker_lists.hpp"
+#include "lib/execution/parallel.hpp"
+#include "lib/execution/worker_lists.hpp"
 
 using namespace apothem;
 

@@ -1,7 +1,7 @@
 // The slender beam of the tests of elements: [0, L] x [-h/2, h/2], unit load down at its tip.
 #pragma once
 
-#include "fem/static_solution.hpp"
+#include "tests/fem/static_solution.hpp"
 
 namespace apothem::test {
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <vector>
 
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/split.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/split.hpp"
 
 namespace apothem::test {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "apothem/fem/polygon_element.hpp"
-#include "apothem/geometry/polygon/triangulation.hpp"
+#include "geometry/polygon/triangulation.hpp"
+#include "lib/fem/polygon_element.hpp"
 
 namespace apothem::test {
 

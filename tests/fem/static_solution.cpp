@@ -1,11 +1,11 @@
-#include "fem/static_solution.hpp"
+#include "tests/fem/static_solution.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <stdexcept>
 
-#include "apothem/fem/mass.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/fem/mass.hpp"
 
 namespace apothem::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "apothem/fem/element.hpp"
-#include "apothem/mesh/mesh.hpp"
+#include "lib/fem/element.hpp"
+#include "lib/mesh/mesh.hpp"
 
 namespace apothem::test {
 

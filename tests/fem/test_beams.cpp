@@ -5,10 +5,10 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "fem/cantilever.hpp"
-#include "fem/meshes.hpp"
-#include "fem/other_polygons.hpp"
-#include "support.hpp"
+#include "tests/fem/cantilever.hpp"
+#include "tests/fem/meshes.hpp"
+#include "tests/fem/other_polygons.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -2,9 +2,9 @@
 // side and sheared on its right one: bending, shear and distorted elements at once.
 #include <catch2/catch.hpp>
 
-#include "fem/meshes.hpp"
-#include "fem/static_solution.hpp"
-#include "support.hpp"
+#include "tests/fem/meshes.hpp"
+#include "tests/fem/static_solution.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -4,9 +4,9 @@
 #include <complex>
 #include <numbers>
 
-#include "apothem/fem/element.hpp"
-#include "apothem/fem/mass.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/fem/element.hpp"
+#include "lib/fem/mass.hpp"
 
 using namespace apothem;
 using Complex = std::complex<double>;

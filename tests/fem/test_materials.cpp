@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "apothem/fem/spectrum.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "meshes.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "lib/fem/spectrum.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "tests/fem/meshes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

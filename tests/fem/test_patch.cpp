@@ -4,9 +4,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "fem/meshes.hpp"
-#include "fem/static_solution.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "tests/fem/meshes.hpp"
+#include "tests/fem/static_solution.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,10 +1,10 @@
-#include "fuzz_target.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 #include <cstring>
 #include <stdexcept>
 
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "pair_check.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "tests/fuzz/pair_check.hpp"
 
 namespace apothem::test {
 namespace {

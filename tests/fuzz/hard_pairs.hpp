@@ -2,8 +2,8 @@
 // numbers go.
 #pragma once
 
-#include "shapes.hpp"
-#include "support.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

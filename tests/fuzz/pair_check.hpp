@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
 
 namespace apothem::test {
 

@@ -2,9 +2,9 @@
 // million; each pair depends on its number alone, so a failing one can be repeated by itself.
 #include <catch2/catch.hpp>
 
-#include "fuzz/hard_pairs.hpp"
-#include "pair_check.hpp"
-#include "support.hpp"
+#include "tests/fuzz/hard_pairs.hpp"
+#include "tests/fuzz/pair_check.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "fuzz_target.hpp"
-#include "support.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "support.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

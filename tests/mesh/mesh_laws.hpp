@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/check.hpp"
-#include "apothem/mesh/measure.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/check.hpp"
+#include "lib/mesh/measure.hpp"
 
 namespace apothem::test {
 

@@ -1,7 +1,7 @@
 // What is refused as a mesh, and with which element or node.
-#include "apothem/mesh/invalid_mesh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "mesh_laws.hpp"
+#include "lib/mesh/invalid_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/mesh/mesh_laws.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,14 +1,14 @@
 // Meshes that fill any polygon: triangles, quadrilaterals and Voronoi cells.
 #include <numbers>
 
-#include "apothem/geometry/meshing/delaunay_mesh.hpp"
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/select.hpp"
-#include "apothem/mesh/smooth.hpp"
-#include "mesh_laws.hpp"
-#include "shapes.hpp"
+#include "geometry/meshing/delaunay_mesh.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/select.hpp"
+#include "lib/mesh/smooth.hpp"
+#include "tests/mesh/mesh_laws.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,11 +1,11 @@
 // Structured meshes: rectangle, disc, half a disc; mirror images.
 #include <numbers>
 
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/half_disc_mesh.hpp"
-#include "apothem/mesh/mirror.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "mesh_laws.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/half_disc_mesh.hpp"
+#include "lib/mesh/mirror.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/mesh/mesh_laws.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,14 +1,14 @@
 // The reader of gmsh's text format.
 #include <fmt/format.h>
 
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/gmsh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/scene/mesh_file.hpp"
-#include "cases/samples.hpp"
-#include "folder.hpp"
-#include "mesh_laws.hpp"
-#include "support.hpp"
+#include "apps/cases/samples.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/gmsh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/scene/mesh_file.hpp"
+#include "tests/folder.hpp"
+#include "tests/mesh/mesh_laws.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

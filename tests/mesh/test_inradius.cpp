@@ -1,11 +1,11 @@
 // The inradius of a whole body, from its mesh.
 #include <catch2/catch.hpp>
 
-#include "apothem/mesh/boundary.hpp"
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "shapes.hpp"
+#include "lib/mesh/boundary.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 

@@ -1,13 +1,13 @@
 // Points in a mesh, and nodes and edges by place.
-#include "apothem/geometry/meshing/voronoi.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/fill_mesh.hpp"
-#include "apothem/mesh/locate.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/select.hpp"
-#include "mesh_laws.hpp"
-#include "shapes.hpp"
+#include "geometry/meshing/voronoi.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/fill_mesh.hpp"
+#include "lib/mesh/locate.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/select.hpp"
+#include "tests/mesh/mesh_laws.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

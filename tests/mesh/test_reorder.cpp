@@ -2,12 +2,12 @@
 #include <chrono>
 #include <numeric>
 
-#include "apothem/geometry/spatial/hilbert.hpp"
-#include "apothem/mesh/disc_mesh.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/mesh/reorder.hpp"
-#include "mesh_laws.hpp"
-#include "support.hpp"
+#include "geometry/spatial/hilbert.hpp"
+#include "lib/mesh/disc_mesh.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/mesh/reorder.hpp"
+#include "tests/mesh/mesh_laws.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,11 +1,11 @@
 // The quantities of bodies, and the columns of histories.
-#include "apothem/model/columns.hpp"
+#include "lib/model/columns.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "support.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

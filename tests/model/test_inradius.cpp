@@ -1,9 +1,9 @@
 // The inradius of bodies of both kinds.
-#include "apothem/model/inradius.hpp"
+#include "lib/model/inradius.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "dynamics/mesh_models.hpp"
+#include "tests/dynamics/mesh_models.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,9 +1,9 @@
 // The state: one vector each of places, velocities and forces, for rigid bodies and nodes.
-#include "apothem/model/state.hpp"
+#include "lib/model/state.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/run/json_archive.hpp"
+#include "lib/run/json_archive.hpp"
 
 using namespace apothem;
 

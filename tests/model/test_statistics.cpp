@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/model/statistics.hpp"
-#include "shapes.hpp"
-#include "support.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/model/statistics.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

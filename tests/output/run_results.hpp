@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/output/frames.hpp"
-#include "shapes.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/output/frames.hpp"
+#include "tests/shapes.hpp"
 
 namespace apothem::test {
 

@@ -1,6 +1,6 @@
 // Bodies that are not convex in the files for ParaView: filled as a viewer fills cells, and
 // compared pixel by pixel with the exact shapes.
-#include "apothem/output/convex_cells.hpp"
+#include "lib/output/convex_cells.hpp"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -12,14 +12,14 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "apothem/geometry/polygon/convex_parts.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/output/frames.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "contact/bodies.hpp"
-#include "folder.hpp"
-#include "shapes.hpp"
-#include "vtk_reader.hpp"
+#include "geometry/polygon/convex_parts.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "lib/output/frames.hpp"
+#include "lib/output/run_folder.hpp"
+#include "tests/contact/bodies.hpp"
+#include "tests/folder.hpp"
+#include "tests/shapes.hpp"
+#include "tests/vtk_reader.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

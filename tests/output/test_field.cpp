@@ -1,5 +1,5 @@
 // Fields: read back from frames, compared with tables, drawn.
-#include "apothem/output/field.hpp"
+#include "lib/output/field.hpp"
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -7,13 +7,13 @@
 #include <chrono>
 #include <sstream>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "apothem/mesh/measure.hpp"
-#include "apothem/output/field_picture.hpp"
-#include "apothem/output/frames.hpp"
-#include "fem/meshes.hpp"
-#include "folder.hpp"
-#include "pixels.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "lib/mesh/measure.hpp"
+#include "lib/output/field_picture.hpp"
+#include "lib/output/frames.hpp"
+#include "tests/fem/meshes.hpp"
+#include "tests/folder.hpp"
+#include "tests/pixels.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -20,15 +20,15 @@
 #include <fstream>
 #include <map>
 
-#include "apothem/fem/finite_elements.hpp"
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/model/columns.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/output/frames.hpp"
-#include "apothem/output/history.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/fem/finite_elements.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/model/columns.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/frames.hpp"
+#include "lib/output/history.hpp"
+#include "lib/output/run_folder.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using test::content;

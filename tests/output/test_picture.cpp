@@ -1,5 +1,5 @@
 // Pictures and VTK files of a polygon's potential.
-#include "apothem/output/picture.hpp"
+#include "lib/output/picture.hpp"
 
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -14,15 +14,15 @@
 #include <numeric>
 #include <sstream>
 
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/output/axes.hpp"
-#include "apothem/output/files.hpp"
-#include "apothem/output/polygon_vtk.hpp"
-#include "folder.hpp"
-#include "pixels.hpp"
-#include "shapes.hpp"
-#include "support.hpp"
-#include "vtk_reader.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "lib/output/axes.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/polygon_vtk.hpp"
+#include "tests/folder.hpp"
+#include "tests/pixels.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
+#include "tests/vtk_reader.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,8 +1,8 @@
-#include "apothem/output/potential_map.hpp"
+#include "lib/output/potential_map.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/output/potential_figure.hpp"
+#include "lib/output/potential_figure.hpp"
 
 using namespace apothem;
 

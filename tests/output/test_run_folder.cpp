@@ -1,5 +1,5 @@
 // The folder of a run, read back.
-#include "apothem/output/run_folder.hpp"
+#include "lib/output/run_folder.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apothem/mesh/measure.hpp"
-#include "folder.hpp"
-#include "output/run_results.hpp"
-#include "support.hpp"
+#include "lib/mesh/measure.hpp"
+#include "tests/folder.hpp"
+#include "tests/output/run_results.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

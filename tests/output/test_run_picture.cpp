@@ -1,5 +1,5 @@
 // Pictures and plots of the results of a run.
-#include "apothem/output/run_picture.hpp"
+#include "lib/output/run_picture.hpp"
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <sstream>
 
-#include "apothem/output/canvas.hpp"
-#include "apothem/output/field_layout.hpp"
-#include "apothem/output/run_plot.hpp"
-#include "folder.hpp"
-#include "output/run_results.hpp"
-#include "pixels.hpp"
-#include "support.hpp"
+#include "lib/output/canvas.hpp"
+#include "lib/output/field_layout.hpp"
+#include "lib/output/run_plot.hpp"
+#include "tests/folder.hpp"
+#include "tests/output/run_results.hpp"
+#include "tests/pixels.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

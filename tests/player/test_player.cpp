@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apothem/model/rotation.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "apothem/player/data_block.hpp"
-#include "folder.hpp"
-#include "program.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/player/data_block.hpp"
+#include "tests/folder.hpp"
+#include "tests/program.hpp"
 
 using namespace apothem;
 using Json = nlohmann::json;

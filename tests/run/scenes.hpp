@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 namespace apothem::test {
 

@@ -1,13 +1,13 @@
 // What results take, and what is said of numbers that are absurd.
-#include "apothem/run/cost.hpp"
+#include "lib/run/cost.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "run/hopper.hpp"
-#include "run/scenes.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/run/hopper.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

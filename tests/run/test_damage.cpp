@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "apothem/output/files.hpp"
-#include "apothem/run/hash.hpp"
-#include "scenes.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/hash.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -6,11 +6,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "apothem/mesh/rectangle_mesh.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/scene/error.hpp"
-#include "scenes.hpp"
-#include "vtk_reader.hpp"
+#include "lib/mesh/rectangle_mesh.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/scene/error.hpp"
+#include "tests/run/scenes.hpp"
+#include "tests/vtk_reader.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

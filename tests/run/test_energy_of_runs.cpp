@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apothem/dynamics/term.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "folder.hpp"
-#include "run/random_scenes.hpp"
-#include "run/scenes.hpp"
+#include "lib/dynamics/term.hpp"
+#include "lib/output/run_folder.hpp"
+#include "tests/folder.hpp"
+#include "tests/run/random_scenes.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -6,9 +6,9 @@
 #include <csignal>
 #include <map>
 
-#include "apothem/run/folder.hpp"
-#include "apothem/run/hash.hpp"
-#include "scenes.hpp"
+#include "lib/run/folder.hpp"
+#include "lib/run/hash.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apothem/output/files.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/sealed_file.hpp"
-#include "dynamics/term_of.hpp"
-#include "scenes.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/sealed_file.hpp"
+#include "tests/dynamics/term_of.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/output/history.hpp"
-#include "apothem/output/run_folder.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "run/hopper.hpp"
-#include "support.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "lib/output/history.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/run/hopper.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "apothem/output/files.hpp"
-#include "apothem/run/hash.hpp"
-#include "apothem/run/sealed_file.hpp"
-#include "archive/saved.hpp"
-#include "dynamics/term_of.hpp"
-#include "scenes.hpp"
+#include "lib/output/files.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/sealed_file.hpp"
+#include "tests/archive/saved.hpp"
+#include "tests/dynamics/term_of.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,12 +1,12 @@
 // A run: a scene that is stepped, recorded, stopped and asked about, with files and without.
-#include "apothem/run/run.hpp"
+#include "lib/run/run.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "apothem/output/history.hpp"
-#include "scenes.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "lib/output/history.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

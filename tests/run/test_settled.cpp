@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/dynamics/unstable.hpp"
-#include "scenes.hpp"
+#include "lib/dynamics/unstable.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,10 +1,10 @@
 // The start of a run: overlaps, and what can be said before.
-#include "apothem/run/start.hpp"
+#include "lib/run/start.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
-#include "scenes.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

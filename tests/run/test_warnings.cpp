@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apothem/run/warnings.hpp"
-#include "folder.hpp"
-#include "run/scenes.hpp"
+#include "lib/run/warnings.hpp"
+#include "tests/folder.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

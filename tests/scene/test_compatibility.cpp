@@ -1,15 +1,15 @@
 // Which features of a scene go together: every row of the table is tried, and the documentation
 // shows the same table.
-#include "apothem/scene/compatibility.hpp"
+#include "lib/scene/compatibility.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using test::Folder;

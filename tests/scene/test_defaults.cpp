@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using test::Folder;

@@ -1,11 +1,11 @@
 // Fills of scenes: bodies from shapes, sizes, and arrangements.
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/model/rotation.hpp"
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "lib/model/rotation.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 
-#include "apothem/run/hash.hpp"
-#include "apothem/run/start.hpp"
-#include "apothem/scene/scene.hpp"
-#include "program.hpp"
+#include "lib/run/hash.hpp"
+#include "lib/run/start.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/program.hpp"
 
 using namespace apothem;
 using test::Folder;

@@ -1,8 +1,8 @@
 // JSON values: where they stand, and what objects share.
 #include <catch2/catch.hpp>
 
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/value_maker.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/value_maker.hpp"
 
 using namespace apothem;
 

@@ -1,9 +1,9 @@
 // The mesh of a body as a scene gives it, and what is refused there.
-#include "apothem/scene/mesh_reader.hpp"
+#include "lib/scene/mesh_reader.hpp"
 
-#include "folder.hpp"
-#include "mesh/mesh_laws.hpp"
-#include "support.hpp"
+#include "tests/folder.hpp"
+#include "tests/mesh/mesh_laws.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

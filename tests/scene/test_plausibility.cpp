@@ -1,11 +1,11 @@
 // Values that are legal but hardly meant.
-#include "apothem/scene/plausibility.hpp"
+#include "lib/scene/plausibility.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "folder.hpp"
-#include "support.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -5,12 +5,12 @@
 #include <limits>
 #include <sstream>
 
-#include "apothem/scene/decimal.hpp"
-#include "apothem/scene/json.hpp"
-#include "apothem/scene/pair_file.hpp"
-#include "apothem/scene/polygon_file.hpp"
-#include "apothem/scene/ring_line.hpp"
-#include "folder.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/pair_file.hpp"
+#include "lib/scene/polygon_file.hpp"
+#include "lib/scene/ring_line.hpp"
+#include "tests/folder.hpp"
 
 using namespace apothem;
 using test::Folder;

@@ -7,10 +7,10 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "apothem/mesh/locate.hpp"
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
-#include "support.hpp"
+#include "lib/mesh/locate.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using test::Folder;

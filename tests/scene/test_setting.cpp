@@ -1,8 +1,8 @@
 // Settings: values that replace those of a scene, by a path of dots.
 #include <catch2/catch.hpp>
 
-#include "apothem/scene/scene.hpp"
-#include "folder.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/folder.hpp"
 
 using namespace apothem;
 using test::Folder;

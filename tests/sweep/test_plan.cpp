@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/scene/decimal.hpp"
-#include "apothem/sweep/decimal_range.hpp"
-#include "apothem/sweep/plan.hpp"
-#include "folder.hpp"
+#include "lib/scene/decimal.hpp"
+#include "lib/sweep/decimal_range.hpp"
+#include "lib/sweep/plan.hpp"
+#include "tests/folder.hpp"
 
 using namespace apothem;
 using test::Folder;

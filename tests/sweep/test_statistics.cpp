@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "apothem/sweep/statistics.hpp"
+#include "lib/sweep/statistics.hpp"
 
 using namespace apothem;
 

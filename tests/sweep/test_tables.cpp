@@ -3,10 +3,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apothem/sweep/csv.hpp"
-#include "apothem/sweep/summary_picture.hpp"
-#include "apothem/sweep/tables.hpp"
-#include "folder.hpp"
+#include "lib/sweep/csv.hpp"
+#include "lib/sweep/summary_picture.hpp"
+#include "lib/sweep/tables.hpp"
+#include "tests/folder.hpp"
 
 using namespace apothem;
 using test::Folder;

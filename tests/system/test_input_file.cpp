@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "apothem/system/input_file.hpp"
-#include "folder.hpp"
-#include "program.hpp"
+#include "lib/system/input_file.hpp"
+#include "tests/folder.hpp"
+#include "tests/program.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

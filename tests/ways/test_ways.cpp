@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "apothem/output/run_folder.hpp"
-#include "apothem/run/run.hpp"
-#include "folder.hpp"
-#include "run/scenes.hpp"
+#include "lib/output/run_folder.hpp"
+#include "lib/run/run.hpp"
+#include "tests/folder.hpp"
+#include "tests/run/scenes.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

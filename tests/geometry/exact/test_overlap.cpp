@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "support.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <complex>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/collar_pack.hpp"
-#include "contact/outline_pairs.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/collar_pack.hpp"
+#include "tests/contact/outline_pairs.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/geometry/integrals/contact_patches.hpp"
-#include "cases/samples.hpp"
-#include "geometry/nonconvex_pairs.hpp"
-#include "support.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/integrals/contact_patches.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
+#include "tests/support.hpp"
 
 namespace apothem {
 namespace {

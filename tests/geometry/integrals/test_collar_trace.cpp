@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
-#include "apothem/geometry/integrals/contact_patches.hpp"
-#include "cases/samples.hpp"
-#include "geometry/nonconvex_pairs.hpp"
-#include "support.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/integrals/contact_patches.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
+#include "tests/support.hpp"
 
 namespace apothem {
 namespace {

@@ -1,15 +1,15 @@
-#include "apothem/geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/contact_patches.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <set>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "fuzz/hard_pairs.hpp"
-#include "fuzz/pair_check.hpp"
-#include "shapes.hpp"
-#include "support.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "tests/fuzz/hard_pairs.hpp"
+#include "tests/fuzz/pair_check.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

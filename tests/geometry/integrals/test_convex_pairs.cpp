@@ -1,14 +1,14 @@
 // Pairs of convex polygons, many at a time.
-#include "apothem/geometry/integrals/convex_pairs.hpp"
+#include "geometry/integrals/convex_pairs.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 
-#include "apothem/geometry/integrals/edge_integral.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "apothem/geometry/potential/potential.hpp"
-#include "cases/samples.hpp"
+#include "apps/cases/samples.hpp"
+#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "geometry/potential/potential.hpp"
 
 using namespace apothem;
 

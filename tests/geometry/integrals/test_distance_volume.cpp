@@ -1,13 +1,13 @@
 // The distance fields of both polygons of a pair, each integrated over the other polygon, where
 // vertices and edges of one polygon lie on the borders between the cells of the other one.
-#include "apothem/geometry/integrals/distance_volume.hpp"
+#include "geometry/integrals/distance_volume.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "support.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "support.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

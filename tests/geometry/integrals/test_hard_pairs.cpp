@@ -1,5 +1,5 @@
 // The list of hard pairs in data/polygons: what is in it, and both methods on all of it.
-#include "cases/hard_pairs.hpp"
+#include "apps/cases/hard_pairs.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -7,10 +7,10 @@
 #include <map>
 #include <random>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/scene/pair_file.hpp"
-#include "support.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "lib/scene/pair_file.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

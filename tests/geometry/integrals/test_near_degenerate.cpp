@@ -1,18 +1,18 @@
 // Pairs with almost straight and almost coincident vertices and with repeated structure, next to
 // reflex vertices: all methods against each other, and against the same pairs without them.
 // APOTHEM_LONG=1 in the environment runs ten times as many.
-#include "cases/near_degenerate.hpp"
+#include "apps/cases/near_degenerate.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "apothem/geometry/potential/inscribed_circle.hpp"
-#include "apothem/scene/pair_file.hpp"
-#include "support.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "lib/scene/pair_file.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -1,12 +1,12 @@
 // The penetration of two polygons: how deep the boundary of one lies in the other.
-#include "apothem/geometry/integrals/penetration.hpp"
+#include "geometry/integrals/penetration.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/exact/overlap.hpp"
-#include "geometry/nonconvex_pairs.hpp"
-#include "shapes.hpp"
-#include "support.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

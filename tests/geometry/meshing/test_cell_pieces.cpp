@@ -1,5 +1,5 @@
 // Pieces that join their neighbours, on a grid of unit squares.
-#include "apothem/geometry/meshing/cell_pieces.hpp"
+#include "geometry/meshing/cell_pieces.hpp"
 
 #include <catch2/catch.hpp>
 

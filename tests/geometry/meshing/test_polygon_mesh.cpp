@@ -1,9 +1,9 @@
 // Meshes of polygonal cells: what is refused as a tiling, and what collapsing an edge does.
-#include "apothem/geometry/meshing/polygon_mesh.hpp"
+#include "geometry/meshing/polygon_mesh.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "support.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

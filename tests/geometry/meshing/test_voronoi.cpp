@@ -1,5 +1,5 @@
 // Voronoi meshes against the definition of a Voronoi cell and of a tiling, by brute force.
-#include "apothem/geometry/meshing/voronoi.hpp"
+#include "geometry/meshing/voronoi.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "public_rings.hpp"
-#include "support.hpp"
+#include "tests/public_rings.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using Ring = std::vector<Vec2>;

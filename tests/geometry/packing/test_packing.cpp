@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "apothem/geometry/packing/arrange.hpp"
-#include "apothem/geometry/packing/block_shapes.hpp"
-#include "apothem/geometry/packing/voronoi_blocks.hpp"
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/polygon/ring_area.hpp"
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "support.hpp"
+#include "geometry/packing/arrange.hpp"
+#include "geometry/packing/block_shapes.hpp"
+#include "geometry/packing/voronoi_blocks.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_area.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

@@ -1,13 +1,13 @@
 // The own lengths of a pair: which part of each boundary counts where edges lie on each other. All
 // methods have to agree about it.
-#include "apothem/geometry/polygon/boundary_inside.hpp"
+#include "geometry/polygon/boundary_inside.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/exact/overlap.hpp"
-#include "fuzz/pair_check.hpp"
-#include "support.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/exact/overlap.hpp"
+#include "tests/fuzz/pair_check.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

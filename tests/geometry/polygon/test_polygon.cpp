@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "support.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using Ring = std::vector<Vec2>;

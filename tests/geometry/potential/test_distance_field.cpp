@@ -2,10 +2,10 @@
 // the overlap polygon, the oracle and the energy.
 #include <functional>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "apothem/geometry/integrals/placed_shapes.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
-#include "geometry/nonconvex_pairs.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "geometry/integrals/placed_shapes.hpp"
+#include "geometry/skeleton/skeleton.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
 

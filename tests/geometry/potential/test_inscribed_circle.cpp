@@ -1,4 +1,4 @@
-#include "apothem/geometry/potential/inscribed_circle.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -6,8 +6,8 @@
 #include <functional>
 #include <sstream>
 
-#include "public_rings.hpp"
-#include "support.hpp"
+#include "tests/public_rings.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "support.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

@@ -1,8 +1,8 @@
-#include "apothem/geometry/potential/potentials.hpp"
+#include "geometry/potential/potentials.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "geometry/nonconvex_pairs.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
 using samples::Random;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "apothem/geometry/skeleton/helper_side.hpp"
-#include "geometry/skeleton/faults.hpp"
+#include "geometry/skeleton/helper_side.hpp"
+#include "tests/geometry/skeleton/faults.hpp"
 
 namespace {
 

@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "apothem/geometry/skeleton/double_double.hpp"
-#include "apothem/geometry/skeleton/skeleton.hpp"
-#include "apothem/geometry/skeleton/skeleton_parts.hpp"
-#include "apothem/geometry/skeleton/wavefront.hpp"
-#include "support.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/skeleton/double_double.hpp"
+#include "geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
+#include "geometry/skeleton/wavefront.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;

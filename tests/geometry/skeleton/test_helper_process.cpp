@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/helper_process.hpp"
+#include "geometry/skeleton/helper_process.hpp"
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -11,12 +11,12 @@
 #include <filesystem>
 #include <system_error>
 
-#include "apothem/geometry/skeleton/skeleton.hpp"
-#include "apothem/geometry/skeleton/skeleton_program.hpp"
-#include "folder.hpp"
-#include "geometry/nonconvex_pairs.hpp"
-#include "geometry/skeleton/faults.hpp"
-#include "shapes.hpp"
+#include "geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton_program.hpp"
+#include "tests/folder.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
+#include "tests/geometry/skeleton/faults.hpp"
+#include "tests/shapes.hpp"
 
 using namespace apothem;
 using test::Fault;

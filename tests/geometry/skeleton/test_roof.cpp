@@ -2,8 +2,8 @@
 // oracle.
 #include <catch2/catch.hpp>
 
-#include "apothem/geometry/exact/exact_integral.hpp"
-#include "geometry/nonconvex_pairs.hpp"
+#include "geometry/exact/exact_integral.hpp"
+#include "tests/geometry/nonconvex_pairs.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;

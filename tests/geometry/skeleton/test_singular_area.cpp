@@ -1,10 +1,10 @@
-#include "apothem/geometry/skeleton/singular_area.hpp"
+#include "geometry/skeleton/singular_area.hpp"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "shapes.hpp"
-#include "support.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

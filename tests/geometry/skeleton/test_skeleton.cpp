@@ -1,4 +1,4 @@
-#include "apothem/geometry/skeleton/skeleton.hpp"
+#include "geometry/skeleton/skeleton.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -6,9 +6,9 @@
 #include <numeric>
 #include <sstream>
 
-#include "apothem/geometry/polygon/predicates.hpp"
-#include "public_rings.hpp"
-#include "support.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "tests/public_rings.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 using namespace apothem::samples;

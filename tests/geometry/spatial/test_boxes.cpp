@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "apothem/geometry/spatial/boxes.hpp"
-#include "support.hpp"
+#include "geometry/spatial/boxes.hpp"
+#include "tests/support.hpp"
 
 using namespace apothem;
 

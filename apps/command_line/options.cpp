@@ -1,0 +1,414 @@
+#include "apps/command_line/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "lib/output/field.hpp"
+#include "lib/output/run_plot.hpp"
+#include "lib/scene/decimal.hpp"
+#include "version.hpp"
+
+namespace apothem {
+namespace {
+
+// CLI11's own PositiveNumber accepts nan, inf and hexadecimal numbers.
+const CLI::Validator kPositive(
+    [](std::string& text) {
+      double x = 0;
+      try {
+        x = parse_decimal(text);
+      } catch (const BadNumber&) {
+        x = 0;
+      }
+      return x > 0 ? std::string() : "must be a positive number, not " + text;
+    },
+    "POSITIVE");
+
+// CLI11 itself reads 010 as eight, and hexadecimal numbers.
+const CLI::Validator kWhole(
+    [](std::string& text) {
+      if (text.empty() || text.find_first_not_of("0123456789") != std::string::npos) {
+        return "must be a whole number, not " + text;
+      }
+      text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
+      return std::string();
+    },
+    "");
+
+const CLI::Validator kDecimal(
+    [](std::string& text) {
+      try {
+        parse_decimal(text);
+      } catch (const BadNumber& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    },
+    "");
+
+void add_threads(CLI::App* sub, int& threads) {
+  sub->add_option("--threads", threads, "Threads of the run")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+void add_settings(CLI::App* sub, std::vector<std::string>& settings) {
+  sub->add_option("--set", settings,
+                  "PATH=VALUE in place of a value of the scene, again and again; like "
+                  "contact.friction.coefficient=0.3 or bodies.block.velocity=[0,-1]")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& app, RunOptions& o) {
+  CLI::App* sub = app.add_subcommand("run", "Run a scene");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME)")->type_name("DIR");
+  add_threads(sub, o.threads);
+  sub->add_option("--until", o.until, "Stop at this time in s instead of the scene's end")
+      ->check(kPositive);
+  CLI::Option* resume =
+      sub->add_flag("--resume", o.resume,
+                    "Continue from the checkpoint in the output folder, or begin if there is "
+                    "nothing yet");
+  sub->add_option(
+         "--from", o.from,
+         "Begin with the last state of the run in this folder, at this time in s if given: "
+         "of bodies of the same name and shape")
+      ->type_name("DIR[@TIME]");
+  add_settings(sub, o.set);
+  sub->add_flag("--overwrite", o.overwrite, "Replace the results in the output folder")
+      ->excludes(resume);
+  sub->add_flag("--picture", o.picture,
+                "Draw the end of the run: picture.png in the output folder");
+  sub->add_flag("--quiet", o.quiet, "No progress and no summary");
+  sub->add_flag("--json", o.json,
+                "Print what run.json holds, and the folder, instead of a summary");
+  sub->add_flag("--verify", o.verify, "Exit with 1 if an expectation of the scene is not met");
+}
+
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names;
+  names.reserve(std::size(kFieldQuantities));
+  for (const FieldQuantity& quantity : kFieldQuantities) names.emplace_back(quantity.name);
+  return names;
+}
+
+CLI::Option* add_window(CLI::App* sub, std::vector<double>& window) {
+  return sub
+      ->add_option("--window", window, "Corners of the visible region, m (default: all bodies)")
+      ->type_name("X0,Y0,X1,Y1")
+      ->delimiter(',')
+      ->check(kDecimal)
+      ->expected(4);
+}
+
+CLI::Option* add_range(CLI::App* sub, std::vector<double>& range) {
+  return sub
+      ->add_option("--range", range, "Ends of the colour scale, SI units (default: all values)")
+      ->type_name("LOW,HIGH")
+      ->delimiter(',')
+      ->check(kDecimal)
+      ->expected(2);
+}
+
+void add_picture(CLI::App& app, PictureOptions& o) {
+  CLI::App* sub = app.add_subcommand("picture", "Draw the results of a run");
+  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
+  sub->add_option("-o,--output", o.output,
+                  "Picture, .png or .svg (default: picture.png, or PLOT.png, in DIR)")
+      ->type_name("FILE");
+  CLI::Option* time =
+      sub->add_option("--time", o.time, "Frame nearest to this time in s (default: the last one)")
+          ->check(kDecimal);
+  CLI::Option* frames =
+      sub->add_option("--strip", o.strip, "So many frames, from the first to the last one")
+          ->type_name("N")
+          ->transform(kWhole)
+          ->check(CLI::Range(1, 100))
+          ->excludes(time);
+  CLI::Option* colour =
+      sub->add_option("--colour", o.colour,
+                      "Quantity that colours the bodies (default: von_mises if there are bodies of "
+                      "finite elements, otherwise speed, or material with --chains)")
+          ->check(CLI::IsMember(quantity_names()));
+  CLI::Option* chains =
+      sub->add_flag("--chains", o.chains, "Contact forces as lines, as wide as the force");
+  CLI::Option* roses =
+      sub->add_flag("--roses", o.roses, "Directions of contacts in each region of the scene");
+  CLI::Option* deformation =
+      sub->add_option("--deformation", o.deformation,
+                      "Factor of all displacements and rotations since the start")
+          ->type_name("FACTOR")
+          ->check(kDecimal)
+          ->excludes(chains)
+          ->excludes(roses);
+  CLI::Option* window = add_window(sub, o.window);
+  CLI::Option* range = add_range(sub, o.range);
+  CLI::Option* plot =
+      sub->add_option("--plot", o.plot,
+                      "A plot over time instead: energy or momentum, history of bodies and points, "
+                      "or regions")
+          ->check(CLI::IsMember(std::vector<std::string>(kRunPlots.begin(), kRunPlots.end())));
+  for (CLI::Option* of_frames : {time, frames, colour, chains, roses, deformation, window, range}) {
+    plot->excludes(of_frames);
+  }
+  sub->add_option("--columns", o.columns,
+                  "Columns to plot: NAME.quantity, or quantity for all names (default: all that "
+                  "change)")
+      ->type_name("A,B,C")
+      ->delimiter(',')
+      ->needs(plot);
+}
+
+void add_sweep(CLI::App& app, SweepOptions& o) {
+  CLI::App* sub = app.add_subcommand("sweep", "Run a scene many times with varied values");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  sub->add_option("--vary", o.vary,
+                  "Values of a path of the scene, again and again: PATH=A,B,C or "
+                  "PATH=FROM..TO[:STEP], like contact.friction.coefficient=0.1..0.5:0.1. All "
+                  "combinations are run; a path that ends in seed repeats them")
+      ->type_name("PATH=VALUES")
+      ->allow_extra_args(false);
+  sub->add_option("--table", o.table, "Values that go together: CSV, the first line names paths")
+      ->type_name("FILE");
+  add_settings(sub, o.set);
+  sub->add_option("--from", o.from,
+                  "Begin all runs with the state of the run in this folder, "
+                  "or each with the fitting run of the study in it")
+      ->type_name("DIR[@TIME]");
+  sub->add_option("-o,--output", o.folder, "Output folder (default: out/NAME-sweep)")
+      ->type_name("DIR");
+  sub->add_option("--jobs", o.jobs, "Runs at a time (default: one for each core)")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 4096));
+  CLI::Option* shard = sub->add_option("--shard", o.shard, "Part I of N of the runs only, I from 1")
+                           ->type_name("I/N");
+  sub->add_flag("--retry-failed", o.retry_failed, "Repeat the runs that have failed");
+  sub->add_option("--survival", o.survival,
+                  "Exponential fit of a number measure, the exposure until an event; EVENT is the "
+                  "yes/no measure that says whether it has happened (default: always)")
+      ->type_name("MEASURE[:EVENT]");
+  CLI::Option* collect =
+      sub->add_flag("--collect", o.collect, "Make the tables of what there is; run nothing")
+          ->excludes(shard);
+  CLI::Option* workflow =
+      sub->add_option("--workflow", o.workflow, "Write a workflow for this tool; run nothing")
+          ->check(CLI::IsMember({"snakemake"}))
+          ->excludes(shard)
+          ->excludes(collect);
+  sub->add_option("--shards", o.shards, "Parts of the workflow (default: by the number of runs)")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 100000))
+      ->needs(workflow);
+  sub->add_flag("--dry-run", o.dry_run, "List the runs and what there is of them; run nothing")
+      ->excludes(collect)
+      ->excludes(workflow);
+  sub->add_flag("--quiet", o.quiet, "No progress and no summary");
+}
+
+void add_check(CLI::App& app, CheckOptions& o) {
+  CLI::App* sub = app.add_subcommand("check", "Validate a scene and print what a run would do");
+  sub->add_option("SCENE", o.scene, "Scene file (JSON)")->required()->type_name("FILE");
+  add_settings(sub, o.set);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+void add_contact(CLI::App& app, ContactOptions& o) {
+  CLI::App* sub = app.add_subcommand("contact", "Contact force of two polygons");
+  CLI::Option* a =
+      sub->add_option("A", o.a, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
+          ->type_name("FILE");
+  CLI::Option* b = sub->add_option("B", o.b, "The other polygon")->type_name("FILE");
+  a->needs(b);
+  sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
+      ->type_name("FILE")
+      ->excludes(a)
+      ->excludes(b);
+  sub->add_option("--potential", o.potential, "Contact potential")
+      ->check(CLI::IsMember({"distance", "area"}))
+      ->capture_default_str();
+  sub->add_option("--field", o.field, "Depth in polygons that are not convex (default: roof)")
+      ->check(CLI::IsMember({"roof", "distance"}));
+  sub->add_option("--reference", o.reference, "roof (default), inscribed_circle or a length in m")
+      ->type_name("REFERENCE");
+  sub->add_option("--method", o.method, "Way to the numbers")
+      ->check(CLI::IsMember({"edge", "overlap", "exact", "all"}))
+      ->capture_default_str();
+  sub->add_option("--normal-stiffness,--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
+      ->check(kPositive)
+      ->capture_default_str();
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+void add_mesh(CLI::App& app, MeshOptions& o) {
+  CLI::App* sub = app.add_subcommand(
+      "mesh", "Mesh a region with polygonal cells, or describe a mesh of gmsh's");
+  sub->add_option("FILE", o.file,
+                  "Region: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}; or a mesh: NAME.msh")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* cells =
+      sub->add_option("--voronoi", o.voronoi.cells, "Number of Voronoi cells")->transform(kWhole);
+  sub->add_option("--seed", o.voronoi.seed, "Of the random sites")
+      ->transform(kWhole)
+      ->needs(cells)
+      ->capture_default_str();
+  sub->add_option("--lloyd", o.voronoi.lloyd, "Steps of Lloyd's iteration, at most")
+      ->transform(kWhole)
+      ->needs(cells)
+      ->capture_default_str();
+  sub->add_option("--shortest-edge", o.voronoi.shortest_edge,
+                  "Collapse shorter edges; 0 to 0.5, of the mean cell size sqrt(area / cells)")
+      ->check(kDecimal)
+      ->needs(cells)
+      ->capture_default_str();
+  sub->add_flag("--json", o.json, "Print the description of a mesh as JSON")->excludes(cells);
+  sub->add_option("-o,--output", o.output,
+                  "JSON file (default: standard output for Voronoi cells, none for a mesh)")
+      ->type_name("FILE");
+  sub->add_option("--vtk", o.vtk, "VTK file (.vtu) to look at")->type_name("FILE");
+  sub->final_callback([&o, cells] { o.make = cells->count() > 0; });
+}
+
+void add_polygon(CLI::App& app, PolygonOptions& o) {
+  CLI::App* sub = app.add_subcommand("polygon", "A polygon's roof, singular area and circles");
+  CLI::Option* file =
+      sub->add_option("FILE", o.file, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
+          ->type_name("FILE");
+  CLI::Option* batch =
+      sub->add_option("--batch", o.batch, "File with one ring per line: name n x y ...")
+          ->type_name("FILE")
+          ->excludes(file);
+  sub->add_option("--reference", o.reference, "roof, inscribed_circle or a length in m")
+      ->type_name("REFERENCE")
+      ->capture_default_str();
+  sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")
+      ->type_name("DIR")
+      ->excludes(batch);
+  sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+      ->type_name("FILE")
+      ->excludes(batch);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+void add_accuracy(CLI::App& app, AccuracyOptions& o) {
+  CLI::App* sub = app.add_subcommand("accuracy", "Speed against error of the contact methods");
+  CLI::Option* cases =
+      sub->add_option("--cases", o.cases,
+                      "Files of pairs (JSON, or lines as of contact --batch) instead of ours")
+          ->type_name("FILE");
+  sub->add_option("-o,--output", o.folder, "Output folder")
+      ->type_name("DIR")
+      ->capture_default_str();
+  sub->add_option("--repeat", o.repetitions, "Measure times so often, and print their range")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--write-cases", o.write_cases,
+                  "Write our hard pairs with expected values to this file, and end")
+      ->type_name("FILE")
+      ->excludes(cases);
+}
+
+void add_benchmark(CLI::App& app, BenchmarkOptions& o) {
+  CLI::App* sub = app.add_subcommand("benchmark", "Times of kernels and scenes on this machine");
+  CLI::Option* list = sub->add_flag("--list", o.list, "List the cases and time none");
+  sub->add_option("--filter", o.filter,
+                  "Only cases whose names this regular expression finds, long ones too")
+      ->type_name("REGEX");
+  sub->add_option("--repeat", o.repetitions, "Time each case so often; the median counts")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--threads", o.threads, "Threads of scenes and elements")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  sub->add_flag("--quick", o.quick, "Take a tenth of the time for each repetition");
+  sub->add_option("--compare", o.compare,
+                  "Run this build of the program alternately, and print ratios of times")
+      ->type_name("FILE")
+      ->excludes(list);
+  sub->add_option("-o,--output", o.folder, "Folder for CSV and picture (default: none)")
+      ->type_name("DIR")
+      ->excludes(list);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+void add_reproduce(CLI::App& app, ReproduceOptions& o) {
+  CLI::App* sub = app.add_subcommand("reproduce", "The paper's figures: runs, curves and a report");
+  sub->add_option("LIST", o.figures, "Names of figures, or all; nothing lists them")
+      ->delimiter(',');
+  sub->add_option("-o,--output", o.folder, "Output folder")
+      ->type_name("DIR")
+      ->capture_default_str();
+  sub->add_option("--data", o.data, "Folder with figures, scenes and reference (default: ours)")
+      ->type_name("DIR");
+  add_threads(sub, o.threads);
+  sub->add_flag("--quick", o.quick, "Make studies with a few runs, in minutes");
+  sub->add_flag("--verify", o.verify, "Exit with 1 if a number misses its tolerance");
+}
+
+void add_view(CLI::App& app, ViewOptions& o) {
+  CLI::App* sub =
+      app.add_subcommand("view", "Play a run in a browser, from one HTML file; or as a movie");
+  sub->add_option("DIR", o.folder, "Folder of the results")->required()->type_name("DIR");
+  CLI::Option* page =
+      sub->add_option("-o,--output", o.output, "HTML file (default: view.html in DIR)")
+          ->type_name("FILE");
+  CLI::Option* movie =
+      sub->add_option("--movie", o.movie, "Write a movie instead, .mp4 or .gif; needs ffmpeg")
+          ->type_name("FILE")
+          ->excludes(page);
+  sub->add_option("--colour", o.colour, "Quantity that colours the movie, as in picture")
+      ->check(CLI::IsMember(quantity_names()))
+      ->needs(movie);
+  sub->add_flag("--chains", o.chains, "Contact forces as lines in the movie")->needs(movie);
+  add_window(sub, o.window)->needs(movie);
+  add_range(sub, o.range)->needs(movie);
+  sub->add_option("--rate", o.rate, "Frames of the run per second of the movie")
+      ->type_name("N")
+      ->transform(kWhole)
+      ->check(CLI::Range(1, 60))
+      ->capture_default_str()
+      ->needs(movie);
+}
+
+void add_completion(CLI::App& app, CompletionOptions& o) {
+  app.add_subcommand("completion", "Print a script that completes the command line in a shell")
+      ->add_option("SHELL", o.shell, "The shell")
+      ->check(CLI::IsMember({"bash", "zsh"}))
+      ->required();
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, Options& options) {
+  app.footer(
+      "Exit codes: 0 done; 1 an expectation or a tolerance was missed, or runs of a sweep failed; "
+      "2 bad input or usage; 3 "
+      "the simulation became unstable or left the range of the method; 4 the system failed; 130 "
+      "interrupted.");
+  app.set_version_flag("--version", std::string("apothem ") + kVersion);
+  app.require_subcommand(1);
+  add_run(app, options.run);
+  add_sweep(app, options.sweep);
+  add_picture(app, options.picture);
+  add_check(app, options.check);
+  add_contact(app, options.contact);
+  add_polygon(app, options.polygon);
+  add_mesh(app, options.mesh);
+  add_accuracy(app, options.accuracy);
+  add_benchmark(app, options.benchmark);
+  add_reproduce(app, options.reproduce);
+  add_view(app, options.view);
+  add_completion(app, options.completion);
+  app.add_subcommand("manual", "Print the manual page, for man -l -");
+}
+
+}  // namespace apothem

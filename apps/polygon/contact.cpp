@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.hpp"
+#include "apps/polygon/input.hpp"
+#include "geometry/exact/pair_methods.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "lib/contact/law/law.hpp"
+#include "lib/scene/json.hpp"
+#include "lib/scene/pair_file.hpp"
+#include "lib/scene/polygon_file.hpp"
+#include "lib/scene/ring_line.hpp"
+
+namespace apothem {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+PotentialChoice potential_choice(const ContactOptions& options) {
+  PotentialChoice choice;
+  for (const NamedPotential& p : kPotentials) {
+    if (options.potential == p.name) choice.kind = p.kind;
+  }
+  if (options.reference && choice.kind == PotentialChoice::Kind::area) {
+    throw UsageError("--reference", "the area potential has no reference length; leave it out");
+  }
+  if (options.field && choice.kind == PotentialChoice::Kind::area) {
+    throw UsageError("--field", "the area potential has one field only; leave it out");
+  }
+  for (const NamedField& f : kFields) {
+    if (options.field == f.name) choice.field = f.field;
+  }
+  if (options.reference) set_reference(choice, *options.reference);
+  return choice;
+}
+
+Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) {
+  const PotentialChoice choice = potential_choice(options);
+  const double k = options.stiffness;
+  const std::vector<std::string> methods =
+      options.method == "all" ? std::vector<std::string>(kPairMethods.begin(), kPairMethods.end())
+                              : std::vector{options.method};
+  const double deepest = penetration(a, b);
+  Json list = Json::array();
+  for (const std::string& method : methods) {
+    const auto start = std::chrono::steady_clock::now();
+    const PairResult result = evaluate_pair(method, a, b, choice);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const PairIntegral& pair = result.integral;
+    const Vec2 point = world_loading_point(pair, a);
+    list.push_back({{"method", method},
+                    {"force", {k * pair.force.x(), k * pair.force.y()}},
+                    {"moment_a", k * pair.moment_a},
+                    {"moment_b", k * pair.moment_b},
+                    {"loading_point", {point.x(), point.y()}},
+                    {"energy", k * result.volume.energy},
+                    {"overlap_area", result.volume.overlap_area},
+                    {"own_length_a", pair.own_length_a},
+                    {"own_length_b", pair.own_length_b},
+                    {"weight", k * pair.weight},
+                    {"penetration", deepest},
+                    {"largest_phi", pair.largest_phi},
+                    {"seconds", seconds.count()}});
+  }
+  return list;
+}
+
+void print_table(const Json& list) {
+  for (const Json& r : list) {
+    fmt::print("{}\n", r["method"].get<std::string>());
+    for (const auto& [key, value] : r.items()) {
+      if (key != "method") fmt::print("  {:<15} {}\n", key, value.dump());
+    }
+  }
+}
+
+int batch(const ContactOptions& options) {
+  potential_choice(options);  // a wrong option is reported once, not for each line
+  int code = exit_code::done;
+  for_each_line(options.batch, kPairForm, [&](const BatchLine& line) {
+    const Json name = line.has_count ? Json(line.name) : Json();
+    Json object{{"name", name}};
+    const auto refuse = [&](const char* reason, const std::string& which, int vertex) {
+      object = {{"name", name},
+                {"error", reason},
+                {"polygon", which},
+                {"vertex", vertex},
+                {"line", line.number}};
+      code = exit_code::bad_input;
+    };
+    const char* which = "a";
+    try {
+      const PolygonPair pair = parse_pair(line.text);
+      const Polygon a(pair.a);
+      which = "b";
+      const Polygon b(pair.b);
+      which = "";
+      object["normal_stiffness"] = options.stiffness;
+      object["results"] = results(a, b, options);
+    } catch (const BadPairLine& error) {
+      refuse(error.what(), error.polygon(), error.vertex());
+    } catch (const InvalidPolygon& error) {
+      refuse(error.what(), which, error.vertex());
+    }
+    fmt::print("{}\n", object.dump(-1, ' ', false, Json::error_handler_t::replace));
+  });
+  return code;
+}
+
+}  // namespace
+
+int contact_command(const ContactOptions& options) {
+  if (!options.batch.empty()) return batch(options);
+  if (options.b.empty()) throw UsageError("contact", "give two polygon files, or --batch FILE");
+  const Polygon a = polygon_of_file(options.a);
+  const Polygon b = polygon_of_file(options.b);
+  Json list;
+  try {
+    list = results(a, b, options);
+  } catch (const InvalidPolygon& error) {
+    throw SceneError(options.a + ", " + options.b, 0, "", error.what());
+  }
+  if (options.json) {
+    fmt::print("{}\n", Json{{"normal_stiffness", options.stiffness}, {"results", list}}.dump(2));
+  } else {
+    print_table(list);
+  }
+  return exit_code::done;
+}
+
+}  // namespace apothem

@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "apps/commands.hpp"
+#include "apps/polygon/input.hpp"
+#include "apps/process/work_line.hpp"
+#include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/skeleton/singular_area.hpp"
+#include "lib/output/files.hpp"
+#include "lib/output/picture.hpp"
+#include "lib/output/polygon_vtk.hpp"
+#include "lib/scene/error.hpp"
+#include "lib/scene/polygon_file.hpp"
+#include "lib/scene/ring_line.hpp"
+
+namespace apothem {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Analysis {
+  Polygon polygon;
+  AreaMoments moments;
+  InscribedCircle circle;
+  Skeleton skeleton;
+  double reference;
+  SingularArea singular;
+};
+
+// All properties of a polygon. Throws InvalidPolygon, and Interrupted after a signal.
+Analysis analyse(Polygon polygon, const PotentialChoice& choice) {
+  require_few_vertices(polygon.vertices().size());
+  WorkLine line(fmt::format("{} vertices", polygon.size()));
+  const Progress progress = [&](const Stage& stage) { line.report(stage); };
+  InscribedCircle circle = largest_inscribed_circle(polygon, progress);
+  Skeleton skeleton = [&] {
+    try {
+      return straight_skeleton(polygon, progress);
+    } catch (const SkeletonFailure& failure) {
+      throw InvalidPolygon(failure.what(), 0);
+    }
+  }();
+  using Reference = PotentialChoice::Reference;
+  const double reference = choice.reference == Reference::length             ? choice.length
+                           : choice.reference == Reference::inscribed_circle ? circle.radius
+                                                                             : skeleton.roof_height;
+  SingularArea singular = singular_area(skeleton, reference);
+  line.check();
+  const AreaMoments moments = area_moments(polygon);
+  return {std::move(polygon),  moments,   std::move(circle),
+          std::move(skeleton), reference, std::move(singular)};
+}
+
+const char* reference_name(const PotentialChoice& choice) {
+  using Reference = PotentialChoice::Reference;
+  return choice.reference == Reference::roof               ? "roof height"
+         : choice.reference == Reference::inscribed_circle ? "inscribed circle"
+                                                           : "given";
+}
+
+const char* arithmetic(const Skeleton& skeleton) { return skeleton.exact ? "exact" : "inexact"; }
+
+// The coordinates of the input from those relative to the polygon's origin.
+Json world(const Polygon& polygon, const Vec2& local) {
+  return {polygon.origin().x() + local.x(), polygon.origin().y() + local.y()};
+}
+template <class Points>
+Json world_list(const Polygon& polygon, const Points& points) {
+  Json list = Json::array();
+  for (const Vec2& p : points) list.push_back(world(polygon, p));
+  return list;
+}
+
+Json singular_json(const Polygon& polygon, const SingularArea& singular) {
+  Json points = world_list(polygon, singular.points);
+  Json segments = Json::array();
+  for (const std::array<Vec2, 2>& ends : singular.segments) {
+    segments.push_back(world_list(polygon, ends));
+    points.insert(points.end(), segments.back().begin(), segments.back().end());
+  }
+  Json polygons = Json::array();
+  for (const std::vector<Vec2>& ring : singular.polygons) {
+    polygons.push_back(world_list(polygon, ring));
+  }
+  return {{"kind", kind_name(singular.kind())},
+          {"area", singular.area()},
+          {"points", points},
+          {"segments", segments},
+          {"polygons", polygons}};
+}
+
+Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
+  std::vector<Json> faces(polygon.size());  // in the order of the edges in the input
+  for (int e = 0; e < polygon.size(); ++e) {
+    Json ring = Json::array();
+    for (const int i : skeleton.faces[e]) {
+      const Vec2 p = world_point(polygon, skeleton.nodes, i);
+      ring.push_back({p.x(), p.y(), skeleton.nodes[i].height});
+    }
+    const int edge = polygon.input_edge(e);
+    faces[edge] = {{"edge", edge}, {"polygon", std::move(ring)}};
+  }
+  return faces;
+}
+
+Json to_json(const Analysis& a) {
+  return {{"area", a.moments.area},
+          {"centroid", world(a.polygon, a.moments.centroid)},
+          {"polar_moment", a.moments.polar},
+          {"inradius", a.circle.radius},
+          {"incircle_centres", world_list(a.polygon, a.circle.centres)},
+          {"roof_height", a.skeleton.roof_height},
+          {"reference_length", a.reference},
+          {"singular_area", singular_json(a.polygon, a.singular)},
+          {"faces", faces_json(a.polygon, a.skeleton)},
+          {"arithmetic", arithmetic(a.skeleton)},
+          {"attempts", a.skeleton.attempts}};
+}
+
+std::string text(const Json& object, int indent) {
+  return object.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string place(const Polygon& polygon, const Vec2& local) {
+  const Vec2 p = polygon.origin() + local;
+  return fmt::format("({}, {})", p.x(), p.y());
+}
+
+// The table lists at most this many positions; --json lists all of them.
+constexpr size_t kListed = 8;
+
+std::string places(const Polygon& polygon, const std::vector<Vec2>& points) {
+  std::string list;
+  for (size_t i = 0; i < std::min(points.size(), kListed); ++i) {
+    list += (i == 0 ? "" : ", ") + place(polygon, points[i]);
+  }
+  return points.size() > kListed ? fmt::format("{}, ... ({} in all)", list, points.size()) : list;
+}
+
+void print_table(const Analysis& a, const std::string& reference_name) {
+  const auto row = [](const char* name, const std::string& value) {
+    fmt::print("{:<17} {}\n", name, value);
+  };
+  const bool convex = a.polygon.is_convex();
+  row("vertices", fmt::format("{}, {}", a.polygon.size(), convex ? "convex" : "not convex"));
+  row("area", fmt::format("{} m^2", a.moments.area));
+  row("centroid", place(a.polygon, a.moments.centroid) + " m");
+  row("polar moment", fmt::format("{} m^4, about the centroid", a.moments.polar));
+  row("inradius", fmt::format("{} m", a.circle.radius));
+  row("incircle centres", places(a.polygon, a.circle.centres) + " m");
+  row("roof height", fmt::format("{} m", a.skeleton.roof_height));
+  row("reference length", fmt::format("{} m ({})", a.reference, reference_name));
+  row("singular area", kind_name(a.singular.kind()));
+  if (!a.singular.polygons.empty()) {
+    row("  polygons",
+        fmt::format("{}, area {} m^2", a.singular.polygons.size(), a.singular.area()));
+  }
+  for (size_t i = 0; i < std::min(a.singular.segments.size(), kListed); ++i) {
+    const auto& [start, end] = a.singular.segments[i];
+    row("  segment", place(a.polygon, start) + " to " + place(a.polygon, end) + " m");
+  }
+  if (a.singular.segments.size() > kListed) {
+    row("  segments", fmt::format("{} in all", a.singular.segments.size()));
+  }
+  if (!a.singular.points.empty()) row("  points", places(a.polygon, a.singular.points) + " m");
+  row("faces", fmt::format("{}", a.polygon.size()));
+  row("arithmetic", fmt::format("{}, {} attempt{}", arithmetic(a.skeleton), a.skeleton.attempts,
+                                a.skeleton.attempts == 1 ? "" : "s"));
+}
+
+constexpr const char* kRingForm = "name n x y ...";
+
+int batch(const PolygonOptions& options, const PotentialChoice& choice) {
+  int code = exit_code::done;
+  for_each_line(options.batch, kRingForm, [&](const BatchLine& line) {
+    const Json name = line.has_count ? Json(line.name) : Json();
+    Json object{{"name", name}};
+    try {
+      std::istringstream words(line.text.substr(line.text.find(line.name) + line.name.size()));
+      std::vector<Vec2> ring = read_ring(words);
+      require_end(words);
+      object.update(to_json(analyse(Polygon(std::move(ring)), choice)));
+    } catch (const InvalidPolygon& error) {
+      object.update({{"error", error.what()}, {"vertex", error.vertex()}, {"line", line.number}});
+      code = exit_code::bad_input;
+    }
+    fmt::print("{}\n", text(object, -1));
+  });
+  return code;
+}
+
+// The properties of the polygon of a file. Throws PolygonError, so that each refusal has its place.
+Analysis analyse_file(const std::string& file, const PotentialChoice& choice) {
+  const Polygon polygon = polygon_of_file(file);
+  try {
+    return analyse(polygon, choice);
+  } catch (const InvalidPolygon& error) {
+    throw PolygonError(file, 0, std::string("the polygon is not usable: ") + error.what(),
+                       error.vertex());
+  }
+}
+
+}  // namespace
+
+int polygon_command(const PolygonOptions& options) {
+  PotentialChoice choice;
+  set_reference(choice, options.reference);
+  if (!options.batch.empty()) return batch(options, choice);
+  if (options.file.empty()) {
+    throw UsageError("polygon", "give a polygon file, or --batch FILE");
+  }
+  const std::optional<PictureFormat> format = picture_format(options.picture);
+  if (!options.picture.empty() && !format) {
+    throw UsageError("--picture",
+                     fmt::format("must end in .png or .svg, not \"{}\"", options.picture));
+  }
+  const Analysis a = analyse_file(options.file, choice);
+  const std::string name = reference_name(choice);
+  if (!options.picture.empty()) {
+    write_file(
+        options.picture,
+        draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, name}, *format));
+  }
+  if (!options.vtk.empty()) {
+    write_polygon_vtk(options.vtk, a.polygon, a.skeleton, a.singular, a.reference);
+  }
+  if (options.json) {
+    fmt::print("{}\n", text(to_json(a), 2));
+  } else {
+    print_table(a, name);
+  }
+  return exit_code::done;
+}
+
+}  // namespace apothem

@@ -1,0 +1,445 @@
+#include "lib/contact/element/element_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/spatial/groups.hpp"
+#include "lib/contact/law/pair_vector.hpp"
+#include "lib/contact/law/stiffness.hpp"
+#include "lib/mesh/locate.hpp"
+
+namespace apothem {
+
+ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
+                             const PairTable& table, double thickness, int threads)
+    : surfaces_(surfaces),
+      table_(table),
+      thickness_(thickness),
+      distribution_(law.distribution),
+      pairs_(surfaces, threads),
+      times_(table, surfaces.inverse_mass()) {
+  for (Forces* forces : {&tangential_, &damping_}) {
+    forces->clear(static_cast<size_t>(surfaces.body_count()));
+  }
+}
+
+void ElementKernel::take(std::span<const BoxPair> pairs) {
+  pairs_.take(pairs);
+  if (!table_.damped()) return;
+  std::vector<std::pair<BodyIndex, BodyIndex>> bodies;
+  for (const auto& [a, b] : pairs) bodies.emplace_back(surfaces_.body(a), surfaces_.body(b));
+  times_.take(bodies);
+}
+
+std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
+  if (surfaces_.is_rigid(i)) return {};
+  return surfaces_.elements().nodes(i - surfaces_.rigid_count());
+}
+
+bool ElementKernel::convex(SurfaceIndex i) const {
+  return surfaces_.is_rigid(i) || surfaces_.elements().convex(i - surfaces_.rigid_count());
+}
+
+void ElementKernel::evaluate(std::vector<Contact>& contacts) {
+  pairs_.evaluate([](const PairInTouch&, const PairIntegral&, int) {});
+  pairs_.forget_ended();
+  normal_.clear(static_cast<size_t>(surfaces_.body_count()));
+  touches_.clear();
+  largest_force_ = {};
+  for (const PairInTouch& pair : pairs_.touching()) {
+    const SurfaceIndex a = pair.a, b = pair.b;
+    contacts.push_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
+    // The potential measures the depth below borders that are not part of the body's boundary.
+    contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
+    if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
+      contacts.back().share = 1;  // nothing beyond is to be trusted
+      return;
+    }
+    const double contact_stiffness = contacts.back().stiffness;
+    add_touch(pair);
+    touches_.back().stiffness = contact_stiffness;
+  }
+  find_largest_force();
+}
+
+void ElementKernel::find_largest_force() {
+  body_touches_.clear();
+  for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
+    body_touches_.push_back({surfaces_.body(touches_[i].a), surfaces_.body(touches_[i].b), i});
+  }
+  std::ranges::sort(body_touches_);
+  Vec2 force = Vec2::Zero();
+  for (size_t i = 0; i < body_touches_.size(); ++i) {
+    const auto& [a, b, touch] = body_touches_[i];
+    force += touches_[touch].force;
+    if (i + 1 < body_touches_.size() && body_touches_[i + 1].a == a && body_touches_[i + 1].b == b)
+      continue;
+    const double size = hypotenuse(force.x(), force.y());
+    if (size > largest_force_.value) largest_force_ = {size, a, b};
+    force = Vec2::Zero();
+  }
+}
+
+double ElementKernel::penetration(const Contact& c, double floor) {
+  return convex(c.a) && convex(c.b) ? find_penetration(c.a, c.b, floor, depths_) : floor;
+}
+
+// True if an edge of a polygon is on the boundary of the body.
+bool ElementKernel::outer(SurfaceIndex i, int edge) const {
+  return surfaces_.is_rigid(i) || surfaces_.elements().outer(i - surfaces_.rigid_count(), edge);
+}
+
+void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const {
+  const PlacedPotential view = surfaces_.shapes().view(i);
+  const Vec2 place = surfaces_.reference(i);
+  for (int k = 0; k < view.size; ++k) {
+    if (!outer(i, k)) continue;
+    boundary.add(place + Vec2(view.x[k], view.y[k]), place + Vec2(view.x[k + 1], view.y[k + 1]));
+  }
+}
+
+// Edges of the two bodies' boundaries in the other polygon, and their distance from the whole
+// boundary of the other body. The polygon's own edges in that boundary mostly say enough.
+double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double floor,
+                                       Depths& work) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  contact_patches(shapes.view(a), shapes.view(b), surfaces_.between(a, b), work.workspace,
+                  work.runs, work.patches);
+  const Vec2 place = surfaces_.reference(a);
+  const auto deepest = [&](bool of_a) {
+    double most = floor;
+    for (const BoundaryRun& run : work.runs) {
+      if (run.of_a != of_a || !outer(of_a ? a : b, run.edge)) continue;
+      most = work.boundary.largest(place + run.start, place + run.end, most);
+    }
+    return most;
+  };
+  double most = floor;
+  for (const bool of_a : {true, false}) {
+    const SurfaceIndex other = of_a ? b : a;
+    work.boundary.clear();
+    add_boundary(other, work.boundary);
+    if (surfaces_.is_rigid(other)) {
+      most = std::max(most, deepest(of_a));
+      continue;
+    }
+    if (!work.boundary.empty() && !(deepest(of_a) > floor)) continue;
+    work.boundary.clear();
+    for (SurfaceIndex i = surfaces_.rigid_count(); i < surfaces_.size(); ++i) {
+      if (surfaces_.body(i) == surfaces_.body(other)) add_boundary(i, work.boundary);
+    }
+    most = std::max(most, deepest(of_a));
+  }
+  return most;
+}
+
+ContactFault ElementKernel::fault(const Contact& c) const {
+  const bool bent = !convex(c.a) || !convex(c.b);
+  const SurfaceIndex at = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
+  return {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element, surfaces_.body(c.a),
+          surfaces_.body(c.b), surfaces_.reference(at)};
+}
+
+void ElementKernel::add_touch(const PairInTouch& result) {
+  const PairIntegral& pair = pairs_.integral(result);
+  const SurfaceIndex a = result.a, b = result.b;
+  const double k = stiffness(a, b);
+  const Vec2 force = k * pair.force;
+  Resultant& on_a = normal_.sums[surfaces_.body(a)];
+  Resultant& on_b = normal_.sums[surfaces_.body(b)];
+  on_a.force += force;
+  on_b.force -= force;
+  if (surfaces_.is_rigid(a)) on_a.moment += k * pair.moment_a;
+  if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
+  const Vec2 offset = surfaces_.between(a, b);
+  const Vec2 point = loading_point(pair);
+  touches_.push_back({a, b, force, point, offset, k * pair.weight, 0});
+  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
+    find_corners(i, at, of_a_);
+    distribute(of_a_, f, normal_);
+  };
+  if (distribution_ == ForceDistribution::resultant) {
+    add(a, force, point);
+    add(b, -force, point + offset);
+    return;
+  }
+  const PlacedShapes& shapes = surfaces_.shapes();
+  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
+  for (const BoundaryRun& run : runs_) {
+    add(a, k * run.force, run.centre);
+    add(b, -k * run.force, run.centre + offset);
+  }
+}
+
+// `point`: relative to the reference point. Rigid bodies have no nodes.
+void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const {
+  corners.nodes = nodes(i);
+  const size_t count = corners.nodes.size();
+  if (count == 0) return;
+  const PlacedPotential view = surfaces_.shapes().view(i);
+  corners.ring.resize(count), corners.weights.resize(count);
+  for (size_t k = 0; k < count; ++k) corners.ring[k] = Vec2(view.x[k], view.y[k]) - point;
+  interpolation_weights(corners.ring, corners.weights);
+}
+
+void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& to) {
+  for (size_t k = 0; k < corners.nodes.size(); ++k) {
+    to.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
+  }
+}
+
+// Of the material at a point.
+Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
+                                const Kinematics& now) const {
+  if (surfaces_.is_rigid(i)) {
+    const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
+    return Vec2(v[0], v[1]) + cross(v[2], point);
+  }
+  Vec2 sum = Vec2::Zero();
+  for (size_t k = 0; k < corners.nodes.size(); ++k) {
+    const double* v = &now.node_velocity[2 * static_cast<size_t>(corners.nodes[k])];
+    sum += corners.weights[k] * Vec2(v[0], v[1]);
+  }
+  return sum;
+}
+
+void ElementKernel::find_times(double dt) {
+  times_.begin_step();
+  for (const Touch& t : touches_) {
+    DampingTimes::Pair& pair = times_.of(surfaces_.body(t.a), surfaces_.body(t.b));
+    pair.normal += t.stiffness;
+    pair.tangential += table_.between(pair.a, pair.b).friction.tangential_stiffness * thickness_;
+  }
+  times_.end_step(dt);
+}
+
+double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+  if (!table_.rough() && !table_.damped()) return 0;
+  const double power_before = power(tangential_, now), damping_before = power(damping_, now);
+  tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
+  // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
+  const bool dashpots = table_.damped() && dt > 0 && !now.still;
+  if (dashpots) {
+    damping_.clear(static_cast<size_t>(surfaces_.body_count()));
+    find_times(dt);
+  }
+  for (Touch& t : touches_) {
+    const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
+    const Friction& friction = table_.between(body_a, body_b).friction;
+    const bool rough = friction.coefficient > 0;
+    const double size = t.force.norm();
+    if ((!rough && !dashpots) || !(size > kNoResultant * t.pressure)) continue;
+    const Vec2 tangent = tangent_of(t.force), normal = t.force / size;
+    const Vec2 point_b = t.point + t.offset;
+    find_corners(t.a, t.point, of_a_);
+    find_corners(t.b, point_b, of_b_);
+    const Vec2 rate = velocity_at(t.a, t.point, of_a_, now) - velocity_at(t.b, point_b, of_b_, now);
+    const auto apply = [&](const Vec2& force, Forces& to) {
+      const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+        Resultant& sum = to.sums[surfaces_.body(i)];
+        sum.force += f;
+        if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
+        distribute(at, f, to);
+      };
+      on(t.a, force, t.point, of_a_);
+      on(t.b, -force, point_b, of_b_);
+    };
+    double push = 0;
+    if (dashpots) {
+      const DampingTimes::Pair& pair = times_.of(body_a, body_b);
+      push = std::max(-pair.normal_time * t.stiffness * rate.dot(normal), -size);
+      t.damping = push * normal;
+    }
+    if (rough) {
+      const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
+      const double stiffness = friction.tangential_stiffness * thickness_;
+      const double slip = rate.dot(tangent),
+                   limit = now.restored ? HUGE_VAL : friction.coefficient * (size + push);
+      const double force =
+          apothem::slide(before.empty() ? 0 : before[0].force, slip * dt, stiffness, limit);
+      memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});
+      t.friction = force * tangent;
+      apply(t.friction, tangential_);
+      if (dashpots) {
+        const double time = times_.of(body_a, body_b).tangential_time;
+        const double dashpot = std::clamp(force - time * stiffness * slip, -limit, limit) - force;
+        t.damping += dashpot * tangent;
+      }
+    }
+    if (dashpots) apply(t.damping, damping_);
+  }
+  if (table_.damped()) memory.damp(-dt / 2 * (damping_before + power(damping_, now)));
+  return dt / 2 * (power_before + power(tangential_, now));
+}
+
+// Of forces on the bodies, W.
+double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
+  double sum = 0;
+  for (const auto& [node, force] : forces.nodes) {
+    const double* v = &now.node_velocity[2 * static_cast<size_t>(node)];
+    sum += force.x() * v[0] + force.y() * v[1];
+  }
+  for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
+    const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
+    const Resultant& on = forces.sums[i];
+    sum += on.force.x() * v[0] + on.force.y() * v[1] + on.moment * v[2];
+  }
+  return sum;
+}
+
+void ElementKernel::fields(Archive& archive) {
+  if (table_.damped()) archive("damping_nodes", damping_.nodes)("damping_sums", damping_.sums);
+}
+
+void ElementKernel::add_forces(const ForceViews& forces) {
+  for (const Forces* part : {&normal_, &tangential_, &damping_}) {
+    for (const auto& [node, force] : part->nodes) {
+      forces.nodes[2 * static_cast<size_t>(node)] += force.x();
+      forces.nodes[2 * static_cast<size_t>(node) + 1] += force.y();
+    }
+  }
+  for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
+    double* f = &forces.rigid[3 * static_cast<size_t>(i)];
+    for (const Forces* part : {&normal_, &tangential_, &damping_}) {
+      f[0] += part->sums[i].force.x();
+      f[1] += part->sums[i].force.y();
+      f[2] += part->sums[i].moment;
+    }
+  }
+}
+
+// Of each body the steepest, 1/m.
+std::vector<double> ElementKernel::slopes() const {
+  std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
+  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
+    double& own = slope[surfaces_.body(i)];
+    own = std::max(own, surfaces_.shapes().slope(i));
+  }
+  return slope;
+}
+
+void ElementKernel::limit_damping(std::span<const double> node_mass) {
+  std::vector<DampingTimes::Nodes> nodes;
+  for (const double slope : slopes()) nodes.push_back({slope, 0});
+  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+    if (node_mass[node] > 0) {
+      nodes[body].share = std::max(nodes[body].share, length / node_mass[node]);
+    }
+  }
+  times_.limit(std::move(nodes), thickness_);
+}
+
+double ElementKernel::rate(std::span<const double> node_mass) const {
+  const auto bodies = static_cast<size_t>(surfaces_.body_count());
+  const std::vector<double> slope = slopes();
+  std::vector<double> other(bodies);  // the steepest among the others
+  for (size_t a = 0; a < bodies; ++a) {
+    for (size_t b = 0; b < bodies; ++b) {
+      if (a != b) other[a] = std::max(other[a], slope[b]);
+    }
+  }
+  double worst = 0;
+  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+    const double mass = node_mass[node];
+    if (!(mass > 0) || other[body] == 0) continue;
+    worst = std::max(
+        worst, node_rate(table_.stiffest() * thickness_, slope[body] + other[body], length, mass));
+  }
+  return worst;
+}
+
+// What acts on polygons goes to the nearest edge of their boundary.
+void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
+  const size_t begin = records.size();
+  std::vector<size_t> first;  // record of each surface
+  for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
+    first.push_back(records.size());
+    const PlacedPotential view = surfaces_.shapes().view(i);
+    const Vec2 place = surfaces_.reference(i);
+    for (int k = 0; k < view.size; ++k) {
+      if (!surfaces_.is_rigid(i) && !surfaces_.elements().outer(i - surfaces_.rigid_count(), k)) {
+        continue;
+      }
+      records.push_back({surfaces_.body(i), place + Vec2(view.x[k], view.y[k]),
+                         place + Vec2(view.x[k + 1], view.y[k + 1])});
+    }
+  }
+  first.push_back(records.size());
+  if (records.size() == begin) return;
+  const auto distance = [](const SurfaceRecord& e, const Vec2& p) {
+    const Vec2 edge = e.to - e.from;
+    const double along = std::clamp((p - e.from).dot(edge) / edge.squaredNorm(), 0., 1.);
+    return (e.from + along * edge - p).norm();
+  };
+  const auto add = [&](SurfaceIndex i, const Vec2& point, const Vec2& force, const Vec2& friction) {
+    const Vec2 place = surfaces_.reference(i) + point;
+    SurfaceRecord* nearest = &records[first[i]];
+    for (size_t r = first[i]; r < first[i + 1]; ++r) {
+      if (distance(records[r], place) < distance(*nearest, place)) nearest = &records[r];
+    }
+    const Vec2 edge = nearest->to - nearest->from;
+    const double area = edge.norm() * thickness_;
+    nearest->pressure += cross(Vec2(edge / edge.norm()), force) / area;
+    nearest->traction += friction.dot(edge) / edge.norm() / area;
+  };
+  for (const Touch& t : touches_) {
+    add(t.a, t.point, t.force, t.friction);
+    add(t.b, t.point + t.offset, -t.force, -t.friction);
+  }
+}
+
+// Pairs of polygons belong together if on both sides the polygons are the same or share a node.
+std::vector<int> ElementKernel::patches() const {
+  const auto adjacent = [&](SurfaceIndex p, SurfaceIndex q) {
+    if (p == q) return true;
+    const std::span<const NodeIndex> of_p = nodes(p), of_q = nodes(q);
+    return std::find_first_of(of_p.begin(), of_p.end(), of_q.begin(), of_q.end()) != of_p.end();
+  };
+  Groups groups(touches_.size());
+  std::vector<std::pair<int, int>> keys;
+  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements there
+  for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
+    const Touch& t = touches_[i];
+    keys.emplace_back(surfaces_.body(t.a), surfaces_.body(t.b));
+    for (const NodeIndex node : nodes(surfaces_.is_rigid(t.a) ? t.b : t.a)) {
+      for (const int j : at_node[node]) {
+        const Touch& u = touches_[j];
+        if (keys[j] == keys[i] && adjacent(t.a, u.a) && adjacent(t.b, u.b)) groups.join(i, j);
+      }
+      at_node[node].push_back(i);
+    }
+  }
+  return groups.numbers(keys);
+}
+
+void ElementKernel::add_records(std::vector<ContactRecord>& records) const {
+  const std::vector<int> patch = patches();
+  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
+  std::vector<ContactRecord> found(static_cast<size_t>(count));
+  std::vector<double> weights(found.size());
+  Depths depths;
+  for (size_t i = 0; i < touches_.size(); ++i) {
+    const Touch& t = touches_[i];
+    const PairIntegral& pair = pairs_.integral(pairs_.touching()[i]);
+    ContactRecord& sum = found[static_cast<size_t>(patch[i])];
+    sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
+    sum.normal += t.force;
+    // A contact without a resultant has no direction, and no damping.
+    const double size = t.force.norm();
+    const Vec2 normal = size > 0 ? Vec2(t.force / size) : Vec2(0, 0);
+    const Vec2 damping = t.damping.dot(normal) * normal;
+    sum.damping += damping;
+    sum.tangential += t.friction + (t.damping - damping);
+    sum.point += pair.weight * (surfaces_.reference(t.a) + t.point);
+    sum.penetration = find_penetration(t.a, t.b, sum.penetration, depths);
+    sum.phi = std::max(sum.phi, pair.largest_phi);
+    weights[static_cast<size_t>(patch[i])] += pair.weight;
+  }
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (weights[i] > 0) found[i].point /= weights[i];
+  }
+  records.insert(records.end(), found.begin(), found.end());
+}
+
+}  // namespace apothem

@@ -1,0 +1,134 @@
+// Contact of deformable bodies by the potentials of their outermost elements (the paper, Sec. 3;
+// docs/theory.md, Contact), for comparison with OutlineKernel.
+//
+// The pair kernel gives force and loading point of each pair of polygons, shape functions turn them
+// into nodal forces. Those are not the gradient of an energy, and the potentials vanish on borders
+// between elements that are not part of any surface.
+//
+// Friction has one spring for each pair of polygons (Eqs. 10-14): along the tangent of the normal
+// force, it follows the relative velocity of the two materials at the action point, SUM N_i v_i,
+// and goes back to the corners by the same N_i. It keeps linear and angular momentum, and is lost
+// with its pair: every border between elements that slides over another one takes the friction of
+// its neighbours away.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/penetration.hpp"
+#include "lib/contact/kernel.hpp"
+#include "lib/contact/law/damping_times.hpp"
+#include "lib/contact/rigid/pair_integrals.hpp"
+
+namespace apothem {
+
+class ElementKernel final : public Kernel {
+ public:
+  /// `distribution` of the law: resultant or integrated; `thickness` in m. All must outlive this
+  /// object.
+  ElementKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
+                double thickness, int threads);
+
+  void take(std::span<const BoxPair> pairs) override;
+  void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] double penetration(const Contact& contact, double floor) override;
+  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
+  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void add_forces(const ForceViews& forces) override;
+  void limit_damping(std::span<const double> node_mass) override;
+  void fields(Archive& archive) override;
+
+  [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
+  [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
+  /// The bound of OutlineKernel::rate, with the edges as they are in the mesh as given.
+  [[nodiscard]] double rate(std::span<const double> node_mass) const override;
+  [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
+  [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
+    return normal_.sums[body].force + tangential_.sums[body].force + damping_.sums[body].force;
+  }
+  void add_records(std::vector<ContactRecord>& records) const override;
+  void add_surfaces(std::vector<SurfaceRecord>& records) const override;
+
+ private:
+  [[nodiscard]] std::vector<double> slopes() const;
+  /// Two polygons that touch.
+  struct Touch {
+    SurfaceIndex a, b;
+    Vec2 force;                    ///< on a, N
+    Vec2 point;                    ///< where it acts, relative to a's reference point, m
+    Vec2 offset;                   ///< a's reference point minus b's, m
+    double pressure;               ///< the sum of the sizes of what the force is the sum of, N
+    double stiffness;              ///< N/m
+    Vec2 friction = Vec2::Zero();  ///< on a, N
+    Vec2 damping = Vec2::Zero();   ///< on a, N
+  };
+  struct NodeForce {
+    NodeIndex node = 0;
+    Vec2 force = Vec2::Zero();
+    void fields(Archive& archive) { archive("node", node)("force", force); }
+  };
+  struct Forces {
+    std::vector<NodeForce> nodes;
+    std::vector<Resultant> sums;  ///< of each body
+    void clear(size_t bodies) {
+      nodes.clear();
+      sums.assign(bodies, {});
+    }
+  };
+  /// A point of an element as the weighted mean of its corners.
+  struct Corners {
+    std::span<const NodeIndex> nodes;
+    std::vector<double> weights;
+    std::vector<Vec2> ring;
+  };
+  [[nodiscard]] std::span<const NodeIndex> nodes(SurfaceIndex i) const;
+  [[nodiscard]] bool convex(SurfaceIndex i) const;
+  void find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const;
+  [[nodiscard]] Vec2 velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
+                                 const Kinematics& now) const;
+  static void distribute(const Corners& corners, const Vec2& force, Forces& to);
+  /// k_n times the thickness, N/m.
+  [[nodiscard]] double stiffness(SurfaceIndex a, SurfaceIndex b) const {
+    return table_.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness * thickness_;
+  }
+  void add_touch(const PairInTouch& result);
+  void find_largest_force();
+  /// What looking for a penetration works in.
+  struct Depths {
+    PatchWorkspace workspace;
+    std::vector<BoundaryRun> runs;
+    std::vector<PairIntegral> patches;
+    BoundaryDistance boundary;
+  };
+  [[nodiscard]] bool outer(SurfaceIndex i, int edge) const;
+  void add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const;
+  double find_penetration(SurfaceIndex a, SurfaceIndex b, double floor, Depths& work) const;
+  [[nodiscard]] double power(const Forces& forces, const Kinematics& now) const;
+  void find_times(double dt);
+  [[nodiscard]] std::vector<int> patches() const;
+
+  const Surfaces& surfaces_;
+  const PairTable& table_;
+  double thickness_;  // m
+  ForceDistribution distribution_;
+  PairIntegrals pairs_;
+  std::vector<Touch> touches_;  // ascending
+  /// Of two bodies, with the number of the touch.
+  struct BodyTouch {
+    BodyIndex a, b;
+    int touch;
+    auto operator<=>(const BodyTouch&) const = default;
+  };
+  std::vector<BodyTouch> body_touches_;  // of all touches, ascending
+  PairPeak largest_force_;
+  Forces normal_, tangential_, damping_;
+  DampingTimes times_;
+  PatchWorkspace workspace_;
+  std::vector<BoundaryRun> runs_;
+  std::vector<PairIntegral> patches_;
+  Depths depths_;
+  Corners of_a_, of_b_;
+};
+
+}  // namespace apothem

@@ -1,0 +1,54 @@
+#include "lib/contact/law/friction_memory.hpp"
+
+#include <tuple>
+#include <utility>
+
+namespace apothem {
+
+void FrictionMemory::begin_step() {
+  std::swap(now_, before_);
+  now_.clear();
+  next_ = 0;
+  balanced_before_ = balanced_;
+  sums_before_ = {energy_, balanced_, loss_, damping_loss_};
+  energy_ = balanced_ = 0;
+}
+
+void FrictionMemory::undo_step() {
+  std::swap(now_, before_);
+  energy_ = sums_before_.energy;
+  balanced_ = sums_before_.balanced;
+  loss_ = sums_before_.loss;
+  damping_loss_ = sums_before_.damping_loss;
+}
+
+std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
+  const std::tuple pair(law, a, b);
+  const auto pair_of = [](const Spring& s) { return std::tuple(s.key.law, s.key.a, s.key.b); };
+  while (next_ < before_.size() && pair_of(before_[next_]) < pair) ++next_;
+  const size_t first = next_;
+  while (next_ < before_.size() && pair_of(before_[next_]) == pair) ++next_;
+  return std::span(before_).subspan(first, next_ - first);
+}
+
+std::span<const Spring> FrictionMemory::before(int law) {
+  const auto behind = [&](int last) {
+    return std::ranges::partition_point(before_,
+                                        [&](const Spring& s) { return s.key.law <= last; });
+  };
+  const auto first = static_cast<size_t>(behind(law - 1) - before_.begin());
+  const auto end = static_cast<size_t>(behind(law) - before_.begin());
+  next_ = end;
+  return std::span(before_).subspan(first, end - first);
+}
+
+void FrictionMemory::inherit(std::vector<Spring> springs) {
+  now_ = std::move(springs);
+  balanced_ = 0;
+  for (const Spring& spring : now_) balanced_ += spring.energy();
+  energy_ = balanced_;
+}
+
+void FrictionMemory::end_step(double work) { loss_ -= work + (balanced_ - balanced_before_); }
+
+}  // namespace apothem

@@ -1,0 +1,44 @@
+// The contact law between any two bodies of a scene.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "lib/contact/law/law.hpp"
+#include "lib/mesh/indices.hpp"
+
+namespace apothem {
+
+class PairTable {
+ public:
+  /// `material` of each body, `materials` how many there are. Bodies of one material share a row,
+  /// unless a rule names them.
+  PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& material, int materials);
+
+  [[nodiscard]] const PairLaw& between(BodyIndex a, BodyIndex b) const {
+    return table_[static_cast<size_t>(kind_[a]) * kinds_ + kind_[b]];
+  }
+  /// True if bodies with a mesh touch themselves as well.
+  [[nodiscard]] bool self() const { return self_; }
+  /// True if there is friction between any two bodies.
+  [[nodiscard]] bool rough() const { return rough_; }
+  /// True if there is viscous damping between any two bodies.
+  [[nodiscard]] bool damped() const { return damped_; }
+  /// The largest ratio of normal damping between any two bodies.
+  [[nodiscard]] double largest_damping() const { return largest_damping_; }
+  /// The largest and the smallest normal stiffness between any two bodies, Pa.
+  [[nodiscard]] double stiffest() const { return stiffest_; }
+  [[nodiscard]] double softest() const { return softest_; }
+  /// The largest tangential stiffness between any two rough bodies, Pa; 0 if there is no friction.
+  [[nodiscard]] double stiffest_friction() const { return stiffest_friction_; }
+
+ private:
+  std::vector<int> kind_;  // of each body
+  size_t kinds_ = 0;
+  std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
+  bool self_, rough_ = false, damped_ = false;
+  double largest_damping_ = 0;
+  double stiffest_ = 0, softest_ = HUGE_VAL, stiffest_friction_ = 0;
+};
+
+}  // namespace apothem

@@ -1,0 +1,67 @@
+// Bounds of the stiffness of contacts, for the stable time step.
+//
+// Velocity Verlet is stable below 2/sqrt(lambda). A contact of two bodies has the stiffness
+// K <= k_n (l_a/r_b + l_b/r_a), l the own boundary inside the other body (docs/theory.md, Normal
+// contact), spread over a strip across the line of action. On a body with inverse masses 1/m, 1/I
+// the strip of breadth w at the lever arm e has
+//   lambda/K = largest eigenvalue of [1/m, e/sqrt(m I); ., (e^2 + w^2/12)/I].
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lib/execution/pack.hpp"
+
+namespace apothem {
+
+/// lambda/K of one body, 1/kg: see above. `inverse_mass`: 1/m, 1/m, 1/I; arm and breadth in m.
+inline double strip_mobility(const std::array<double, 3>& inverse_mass, double arm,
+                             double breadth) {
+  const double translation = std::max(inverse_mass[0], inverse_mass[1]);
+  const double spread = breadth * breadth / 12 * inverse_mass[2];
+  const double mean = (translation + arm * arm * inverse_mass[2] + spread) / 2;
+  return mean + std::sqrt(std::max(mean * mean - translation * spread, 0.0));
+}
+
+/// How the contacts of a rigid body resist its displacement (x, y) and rotation, N/m, N and N m.
+template <class Real>
+struct BodyStiffnessOf {
+  Real xx = Real(0.), xy = Real(0.), yy = Real(0.), xt = Real(0.), yt = Real(0.), tt = Real(0.);
+
+  /// A spring of the stiffness `k` (N/m) along the unit vector (nx, ny) that has the lever `arm`
+  /// (m).
+  APOTHEM_INLINE void add(const Real& k, const Real& nx, const Real& ny, const Real& arm) {
+    const Real x = k * nx, y = k * ny;
+    xx = xx + x * nx;
+    xy = xy + x * ny;
+    yy = yy + y * ny;
+    xt = xt + x * arm;
+    yt = yt + y * arm;
+    tt = tt + k * arm * arm;
+  }
+  APOTHEM_INLINE void add(const BodyStiffnessOf& other, const Real& times) {
+    xx = xx + times * other.xx;
+    xy = xy + times * other.xy;
+    yy = yy + times * other.yy;
+    xt = xt + times * other.xt;
+    yt = yt + times * other.yt;
+    tt = tt + times * other.tt;
+  }
+};
+
+using BodyStiffness = BodyStiffnessOf<double>;
+
+/// The largest eigenvalue of stiffness by inertia, 1/s^2, with the inverse masses 1/m, 1/m, 1/I.
+double rate_of(const BodyStiffness& stiffness, const std::array<double, 3>& inverse_mass);
+/// Not less than `rate_of`, and faster.
+double rate_bound_of(const BodyStiffness& stiffness, const std::array<double, 3>& inverse_mass);
+
+/// Bound of w^2, 1/s^2, for a boundary node of the mass `mass` (kg) with half of the edges at it as
+/// `share` (m) that touches potentials of the slopes 1/r_c and 1/r_t, 1/m (docs/theory.md, Step).
+/// `stiffness`: k_n times the thickness, N/m. With a mass of 1 it is a stiffness in N/m.
+inline double node_rate(double stiffness, double slopes, double share, double mass = 1) {
+  return 2 * stiffness * slopes * share / mass;
+}
+
+}  // namespace apothem

@@ -1,0 +1,426 @@
+#include "lib/contact/mesh/outline_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/contact/law/stiffness.hpp"
+#include "lib/execution/dispatch.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kMeetTime = 80, kForceTime = 4;  // ns
+constexpr double kInsideTop = 2;                  // share of a contact that is not with a face
+constexpr double kAbove = 1 + 1e-9;               // of bounds
+
+}  // namespace
+
+OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const PairTable& table,
+                             const std::vector<double>& inverse_mass, int threads)
+    : outlines_(outlines),
+      thickness_(thickness),
+      table_(table),
+      slopes_{outlines, table, thickness},
+      threads_(threads),
+      blocks_(outlines),
+      workers_(static_cast<size_t>(threads_.count())),
+      plateaus_(outlines),
+      depths_(outlines),
+      onset_(outlines, slopes_, threads) {
+  ends_.resize(static_cast<size_t>(outlines.size()));
+  if (table.rough() || table.damped()) {
+    friction_.emplace(outlines, table, inverse_mass, threads);
+  }
+}
+
+void OutlineKernel::take(std::span<const BoxPair> pairs) {
+  if (friction_) friction_->take(pairs);
+  candidates_.clear();
+  laws_.clear();
+  pair_forces_.clear();
+  for (const BoxPair& pair : pairs) pair_forces_.push_back({pair, Vec2::Zero()});
+  std::ranges::sort(pair_forces_, {}, &PairForce::bodies);
+  std::fill(ends_.begin(), ends_.end(), EndForces{0, 0});
+  for (const auto& [a, b] : pairs) {
+    find_candidates(a, b);
+    if (a != b) find_candidates(b, a);
+  }
+  std::sort(candidates_.begin(), candidates_.end());
+  blocks_.take(candidates_, laws_);
+  blocks_.divide(threads_);
+  plateaus_.take(pairs);
+}
+
+EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
+  const Friction& friction = table_.between(edges, faces).friction;
+  const double spring =
+      friction.tangential_stiffness * thickness_ / outlines_.bodies[faces].reference;
+  return {slopes_(faces, edges), spring,
+          friction.coefficient,  friction_ ? friction_->bodies(edges, faces) : 0,
+          edges == faces,        pair_number(edges, faces)};
+}
+
+std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
+  const auto [low, high] = std::minmax(a, b);
+  const auto at =
+      std::ranges::lower_bound(pair_forces_, BoxPair{low, high}, {}, &PairForce::bodies);
+  return static_cast<std::int32_t>(at - pair_forces_.begin());
+}
+
+// By what edges and faces of the body with the lower number feel. That of a body with itself is
+// none.
+void OutlineKernel::find_largest_force() {
+  const Outlines& o = outlines_;
+  for (PairForce& pair : pair_forces_) pair.force = Vec2::Zero();
+  const std::span<const EdgeFaceLaw> laws = blocks_.laws();
+  for (size_t i = 0; i < laws.size(); ++i) {
+    pair_forces_[static_cast<size_t>(laws[i].pair)].force += blocks_.forces()[i];
+  }
+  const auto add = [&](int line, BodyIndex other, double force) {
+    if (o.body[line] > other) return;
+    pair_forces_[static_cast<size_t>(pair_number(o.body[line], other))].force +=
+        force * Vec2(-o.ty[line], o.tx[line]);
+  };
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    add(on.edge, on.in,
+        slopes_(on.in, o.body[on.edge]) * o.bodies[on.in].depth * on.sum * o.length[on.edge]);
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    add(on.face, on.in, slopes_(o.body[on.face], on.in) * on.moment.area);
+  }
+  largest_force_ = {};
+  for (const auto& [bodies, force] : pair_forces_) {
+    if (bodies.first == bodies.second) continue;
+    const double size = hypotenuse(force.x(), force.y());
+    if (size > largest_force_.value) largest_force_ = {size, bodies.first, bodies.second};
+  }
+}
+
+// An edge of a body lies on its own face, without a depth, and in those of the edges next to it
+// only where these have shrunk to nothing.
+bool OutlineKernel::are_neighbours(int edge, int face) const {
+  const Outlines& o = outlines_;
+  if (edge == face) return true;
+  if (o.next[edge] != face && o.previous[edge] != face) return false;
+  const Vec2 top = o.top(o.next[face]) - o.top(face);
+  return o.tx[face] * top.x() + o.ty[face] * top.y() > 2 * o.growth();
+}
+
+// Edges of a, faces of b: sweep along the longer side of the common region.
+void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
+  const Outlines& o = outlines_;
+  near_edges_.clear(), near_faces_.clear();
+  Box common;
+  for (int i = o.bodies[a].first; i < o.bodies[a].end; ++i) {
+    const Box& box = o.edge_boxes[i];
+    if (apart(box, o.body_boxes[b])) continue;
+    near_edges_.push_back(i);
+    common.include(box.x0, box.y0);
+    common.include(box.x1, box.y1);
+  }
+  for (int i = o.bodies[b].first; i < o.bodies[b].end; ++i) {
+    if (!apart(o.face_boxes[i], o.body_boxes[a])) near_faces_.push_back(i);
+  }
+  if (near_edges_.empty() || near_faces_.empty()) return;
+  const auto pair = static_cast<std::int32_t>(laws_.size());
+  laws_.push_back(law_of(a, b));
+  const bool across = common.x1 - common.x0 >= common.y1 - common.y0;
+  const auto low = [&](const Box& box) { return across ? box.x0 : box.y0; };
+  const auto high = [&](const Box& box) { return across ? box.x1 : box.y1; };
+  std::sort(near_faces_.begin(), near_faces_.end(), [&](int i, int j) {
+    return std::pair(low(o.face_boxes[i]), i) < std::pair(low(o.face_boxes[j]), j);
+  });
+  double widest = 0;
+  for (const int i : near_faces_) {
+    widest = std::max(widest, high(o.face_boxes[i]) - low(o.face_boxes[i]));
+  }
+  for (const int e : near_edges_) {
+    const Box& box = o.edge_boxes[e];
+    auto it = std::lower_bound(near_faces_.begin(), near_faces_.end(), low(box) - widest,
+                               [&](int i, double x) { return low(o.face_boxes[i]) < x; });
+    for (; it != near_faces_.end() && low(o.face_boxes[*it]) <= high(box); ++it) {
+      if (apart(box, o.face_boxes[*it])) continue;
+      if (a == b && are_neighbours(e, *it)) continue;
+      candidates_.push_back({e, *it, pair});
+    }
+  }
+}
+
+void OutlineKernel::evaluate(std::vector<Contact>& /*contacts*/) {
+  const Outlines& o = outlines_;
+  listed_ = false;
+  depths_.forget();
+  o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
+  plateaus_.begin();
+  for (Worker& worker : workers_) worker.crossings.clear(), worker.late.clear();
+  const std::span<EdgeFaceUnit> units = blocks_.units();
+  const auto count = static_cast<int>(units.size());
+  const double of_unit =
+      kMeetTime * static_cast<double>(blocks_.blocks().size()) / std::max(count, 1);
+  const bool divided = threads_.worth(count, of_unit);
+  threads_.chunks(count, of_unit, [&](int first, int end, int number) {
+    Worker& worker = workers_[static_cast<size_t>(number)];
+    const auto push = [&](std::int32_t i, const EdgeFacePushes& pushes) APOTHEM_LAMBDA {
+      const EdgeFaceBlock& block = blocks_.blocks()[i];
+      const auto add_at_once = [&](std::int32_t edge, const EndForces& force)
+                                   APOTHEM_LAMBDA { add(force, ends_[edge]); };
+      if (!divided || !blocks_.has_shared(i)) {
+        each_push(block, pushes, add_at_once);
+        return;
+      }
+      each_push(block, pushes, [&](std::int32_t edge, const EndForces& force) APOTHEM_LAMBDA {
+        if (blocks_.is_shared(edge)) {
+          worker.late.emplace_back(edge, force);
+        } else {
+          add_at_once(edge, force);
+        }
+      });
+    };
+    with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+      for (int u = first; u < end; ++u) {
+        find_meetings(o, blocks_, units[static_cast<size_t>(u)], worker.crossings, push);
+      }
+      return 0.;
+    });
+  });
+  // In the order of the units, as if one thread had worked on them.
+  for (const Worker& worker : workers_) {
+    for (const auto& [edge, force] : worker.late) add(force, ends_[edge]);
+    for (const auto& [pair, top] : worker.crossings) plateaus_.add(pair, top);
+  }
+  add_plateaus();
+  find_largest_force();
+}
+
+// An edge inside the top of a body is a contact with that body.
+void OutlineKernel::add_plateaus() {
+  const Outlines& o = outlines_;
+  plateaus_.evaluate();
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    const Outlines::Body& in = o.bodies[on.in];
+    const BodyIndex own = o.body[on.edge];
+    const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
+    ends_[on.edge][0] += force * (on.sum - on.first);
+    ends_[on.edge][1] += force * on.first;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    const double slope = slopes_(o.body[on.face], on.in);
+    const double end = slope * on.moment.along / o.length[on.face];
+    ends_[on.face][0] += slope * on.moment.area - end;
+    ends_[on.face][1] += end;
+  }
+}
+
+// Outlines have no contacts out of range.
+ContactSummary OutlineKernel::summary() const {
+  size_t count = plateaus_.edges().size() + plateaus_.faces().size();
+  double square = 0;
+  for (const EdgeFaceUnit& unit : blocks_.units()) {
+    count += static_cast<size_t>(unit.touching);
+    square = std::max(square, unit.deepest);
+  }
+  const double deepest = plateaus_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
+  return {.count = static_cast<int>(count), .deepest = deepest};
+}
+
+// A plateau has the first face, or the first edge, of its body for its partner.
+void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) const {
+  const Outlines& o = outlines_;
+  blocks_.each_contact([&](size_t i, size_t lane) {
+    const EdgeFaceBlock& block = blocks_.blocks()[i];
+    const EdgeFaceTouch& touch = blocks_.touches()[i];
+    const std::int32_t edge = block.p[lane], a = block.a[lane];
+    const CollarFace<double> face = o.face(a);
+    const double deepest = touch.deepest[lane], share = deepest / face.depth;
+    const double surely = deepest <= sure_depth(face.plain, face.depth) ? deepest : 0;
+    // The distance from the boundary over the height in a face is more than 1 where the face
+    // reaches beyond the end of its edge, at a reflex vertex.
+    const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
+    const bool known = o.body[edge] == o.body[a] && surely > 0;
+    const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
+    if (at_most <= least) return;
+    visit({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
+           block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
+  });
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    visit({outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
+  }
+  if (least >= 0) return;  // the others have no depth
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    visit({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
+  }
+}
+
+// What an evaluation does not keep of the contacts is found again.
+const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
+  if (listed_) return edge_faces_;
+  const Outlines& o = outlines_;
+  edge_faces_.clear();
+  blocks_.each_contact([&](size_t i, size_t lane) {
+    const EdgeFaceBlock& block = blocks_.blocks()[i];
+    const std::int32_t p = block.p[lane], q = block.q[lane], a = block.a[lane];
+    CollarPiece<double> piece;
+    CollarCrossings<double> top;
+    collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
+    EdgeFaceContact& contact =
+        edge_faces_.emplace_back(EdgeFaceContact{p, a, block.slope[lane], piece});
+    if (!friction_ || i >= friction_->drags().size()) return;
+    contact.along = friction_->drags()[i].along[lane];
+    contact.push = friction_->drags()[i].push[lane];
+  });
+  listed_ = true;
+  return edge_faces_;
+}
+
+double OutlineKernel::penetration(const Contact& c, double floor) {
+  const Outlines& o = outlines_;
+  if (c.share > 1) return depths_.of_edge(c.a, o.body[c.b], floor);
+  const int q = o.next[c.a];
+  CollarPiece<double> piece;
+  CollarCrossings<double> top;
+  collar_piece(o.face(c.b), o.x[c.a], o.y[c.a], o.x[q], o.y[q], piece, top);
+  return depths_.of_piece(c.a, c.b, piece, floor);
+}
+
+double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+  listed_ = false;
+  return friction_ ? friction_->slide(blocks_, now, dt, memory) : 0;
+}
+
+Vec2 OutlineKernel::normal_force(int i) const {
+  const Outlines& o = outlines_;
+  const int p = o.previous[i];
+  const double own = ends_[i][0], before = ends_[p][1];
+  return {-before * o.ty[p] - own * o.ty[i], before * o.tx[p] + own * o.tx[i]};
+}
+
+Vec2 OutlineKernel::force(int vertex) const {
+  const Vec2 normal = normal_force(vertex);
+  return friction_ ? Vec2(normal + friction_->force(vertex)) : normal;
+}
+
+void OutlineKernel::add_forces(const ForceViews& forces) {
+  const Outlines& o = outlines_;
+  const std::span<const BodyIndex> active = o.active();
+  const int bodies = static_cast<int>(active.size());
+  threads_.chunks(bodies, kForceTime * o.size() / std::max(bodies, 1),
+                  [&](int first, int end, int) {
+                    for (int k = first; k < end; ++k) {
+                      const Outlines::Body& body = o.bodies[active[k]];
+                      if (body.is_rigid()) {
+                        const Resultant on = resultant(active[k]);
+                        double* const f = &forces.rigid[3 * static_cast<size_t>(body.rigid)];
+                        f[0] += on.force.x();
+                        f[1] += on.force.y();
+                        f[2] += on.moment;
+                        continue;
+                      }
+                      for (int i = body.first; i < body.end; ++i) {
+                        const Vec2 on = force(i);
+                        double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
+                        f[0] += on.x();
+                        f[1] += on.y();
+                      }
+                    }
+                  });
+}
+
+Resultant OutlineKernel::resultant(BodyIndex b) const {
+  const Outlines& o = outlines_;
+  const Outlines::Body& body = o.bodies[b];
+  Resultant on;
+  for (int i = body.first; i < body.end; ++i) {
+    const Vec2 f = force(i);
+    on.force += f;
+    on.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
+  }
+  return on;
+}
+
+void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
+  for (const EdgeFaceContact& c : edge_faces()) {
+    const double size = c.slope * c.piece.sum * outlines_.length[c.edge];
+    of_bodies[outlines_.body[c.edge]] += size;
+    of_bodies[outlines_.body[c.face]] += size;
+  }
+}
+
+double OutlineKernel::energy() const {
+  double sum = 0;
+  for (const EdgeFaceContact& c : edge_faces()) sum += c.slope * c.piece.height;
+  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+    sum += slopes_(on.in, outlines_.body[on.edge]) * outlines_.bodies[on.in].depth * on.swept;
+  }
+  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+    sum += slopes_(outlines_.body[on.face], on.in) *
+           (on.moment.height + outlines_.depth[on.face] * on.swept);
+  }
+  return sum;
+}
+
+double OutlineKernel::rate(std::span<const double> node_mass) const {
+  const Outlines& o = outlines_;
+  // The steepest potential among the others: of the first and second of all.
+  double first = 0, second = 0;
+  BodyIndex steepest = -1;
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(o.bodies.size()); ++b) {
+    const double slope = o.bodies[b].slope();
+    if (slope > first) {
+      second = first, first = slope, steepest = b;
+    } else {
+      second = std::max(second, slope);
+    }
+  }
+  const double stiffness = table_.stiffest() * thickness_;
+  double worst = 0;
+  for (int i = 0; i < o.size(); ++i) {
+    const double mass = o.node[i] < 0 ? 0 : node_mass[o.node[i]];
+    const BodyIndex b = o.body[i];
+    const double other = b == steepest && !table_.self() ? second : first;
+    if (!(mass > 0) || other == 0) continue;
+    worst = std::max(worst, node_rate(stiffness, o.bodies[b].slope() + other, o.share(i), mass));
+  }
+  return worst;
+}
+
+void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
+  const Outlines& o = outlines_;
+  std::vector<double> slope(o.size(), 0);       // of each vertex: 1/r_c + 1/r_t
+  std::vector<double> normal(o.size(), 0);      // largest k_n thickness, N/m
+  std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m
+  std::vector<std::pair<BodyIndex, int>> met;   // rigid bodies and vertices of meshes near them
+  for (const EdgeFace& c : candidates_) {
+    const BodyIndex own = o.body[c.edge], other = o.body[c.face];
+    const double both = o.bodies[own].slope() + o.bodies[other].slope();
+    const PairLaw& law = table_.between(own, other);
+    const Friction& f = law.friction;
+    const double spring = f.coefficient > 0 ? f.tangential_stiffness * thickness_ : 0;
+    for (const int i : {c.edge, o.next[c.edge], c.face, o.next[c.face]}) {
+      slope[i] = std::max(slope[i], both);
+      normal[i] = std::max(normal[i], law.normal_stiffness * thickness_);
+      tangential[i] = std::max(tangential[i], spring);
+      const BodyIndex partner = o.body[i] == own ? other : own;
+      if (o.bodies[partner].is_rigid() && o.node[i] >= 0) met.emplace_back(partner, i);
+    }
+  }
+  // Springs pull along the contact, potentials push across it.
+  const auto of_vertex = [&](int i) {
+    return node_rate(normal[i] + tangential[i], slope[i], o.share(i));
+  };
+  for (int i = 0; i < o.size(); ++i) {
+    if (o.node[i] >= 0) nodes[o.node[i]] += of_vertex(i);
+  }
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  for (const auto& [b, i] : met) {
+    // Displacement and rotation add: k (x + r theta)^2 <= 2 k (x^2 + r^2 theta^2).
+    const double stiffness = 2 * of_vertex(i);
+    const double x = o.x[i] - o.bodies[b].cx, y = o.y[i] - o.bodies[b].cy;
+    double* const of_body = &rigid[3 * static_cast<size_t>(o.bodies[b].rigid)];
+    of_body[0] += stiffness;
+    of_body[1] += stiffness;
+    of_body[2] += stiffness * (x * x + y * y);
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,111 @@
+#include "lib/contact/mesh/outline_onset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace apothem {
+namespace {
+
+constexpr double kSuddenLength = .1;  // change of the boundary inside, of the smaller r
+constexpr double kRoundOff = 1e-9;
+constexpr double kPathTime = 5000;  // of a pair, ns
+constexpr double kUnitTime = 1000;  // ns
+
+// Sums of these tell sets of vertices apart.
+std::uint64_t scrambled(int vertex) {
+  std::uint64_t z = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 31)) * 0xbf58476d1ce4e5b9ULL;
+  return z ^ (z >> 29);
+}
+
+// Makes one entry of those of the same pair that follow each other.
+void join_neighbours(std::vector<TouchingPair>& list) {
+  size_t last = 0;
+  for (size_t i = 1; i < list.size(); ++i) {
+    if (list[i].same_pair(list[last])) {
+      list[last].inside_a += list[i].inside_a;
+      list[last].length += list[i].length;
+      list[last].deep = list[last].deep || list[i].deep;
+    } else {
+      list[++last] = list[i];
+    }
+  }
+  list.resize(std::min(list.size(), last + 1));
+}
+
+}  // namespace
+
+// One entry for each run of contacts of a pair within a unit, then one for each pair. Units do not
+// depend on the number of threads, nor do sums over the contacts of one.
+void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus,
+                                 bool at_first) {
+  const Outlines& o = outlines_;
+  const auto add_unit = [&](const EdgeFaceUnit& unit, std::vector<TouchingPair>& runs) {
+    const size_t before = runs.size();
+    blocks.each_contact(unit, [&](size_t i, size_t lane) {
+      const EdgeFaceTouch& touch = blocks.touches()[i];
+      const int edge = blocks.blocks()[i].p[lane], face = blocks.blocks()[i].a[lane];
+      if (at_first && touch.deepest[lane] < kRoundOff * o.length[edge]) return;
+      const auto [a, b] = std::minmax({o.body[edge], o.body[face]});
+      const TouchingPair pair{a, b, 0, 0, 0, 0, 0};
+      if (runs.size() == before || !runs.back().same_pair(pair)) runs.push_back(pair);
+      if (touch.from[lane] == 0) runs.back().inside_a += scrambled(edge);
+      runs.back().length += (touch.to[lane] - touch.from[lane]) * o.length[edge];
+    });
+  };
+  runs_.begin(threads_);
+  const std::span<const EdgeFaceUnit> units = blocks.units();
+  threads_.chunks(static_cast<int>(units.size()), kUnitTime, [&](int first, int end, int worker) {
+    for (int u = first; u < end; ++u) add_unit(units[static_cast<size_t>(u)], runs_.of(worker));
+  });
+  std::vector<TouchingPair>& list = watch_.begin_step();
+  runs_.join(list);
+  join_neighbours(list);
+  const auto add_deep = [&](int own, BodyIndex in) {
+    const auto [a, b] = std::minmax(o.body[own], in);
+    const TouchingPair pair{a, b, 0, 0, 0, 0, 0, true};
+    if (list.empty() || !list.back().same_pair(pair) || !list.back().deep) list.push_back(pair);
+  };
+  for (const OutlinePlateaus::Edge& on : plateaus.edges()) add_deep(on.edge, on.in);
+  for (const OutlinePlateaus::Face& on : plateaus.faces()) add_deep(on.face, on.in);
+  std::ranges::sort(list, std::less<>());
+  join_neighbours(list);
+}
+
+bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
+                        const OutlinePlateaus& plateaus, const Kinematics& now,
+                        const Dynamics& dynamics, double dt) {
+  find_touching(blocks, plateaus, !(dt > 0));
+  changed_.clear();
+  for (Worker& worker : workers_) worker.on_nodes.clear(), worker.on_rigid.clear();
+  if (!(dt > 0)) return false;
+  const std::vector<Outlines::Body>& bodies = outlines_.bodies;
+  watch_.compare(
+      [&](BodyIndex a, BodyIndex b) {
+        return kSuddenLength * std::min(bodies[a].reference, bodies[b].reference);
+      },
+      [&](const PairChange& change) {
+        changed_.push_back({change.a, change.b, change.panels});
+      });
+  threads_.chunks(static_cast<int>(changed_.size()), kPathTime,
+                  [&](int first, int end, int number) {
+                    Worker& worker = workers_[static_cast<size_t>(number)];
+                    for (int i = first; i < end; ++i) {
+                      const auto& [a, b, panels] = changed_[static_cast<size_t>(i)];
+                      worker.path.find(a, b, panels, candidates, {now, dynamics, dt},
+                                       worker.on_nodes, worker.on_rigid);
+                    }
+                  });
+  return std::ranges::any_of(workers_, [](const Worker& w) { return !w.on_nodes.empty(); });
+}
+
+void OutlineOnset::add(double scale, const ForceViews& forces) const {
+  // In the order of the pairs, as if one thread had worked on them.
+  for (const Worker& worker : workers_) {
+    for (const auto& [i, mean] : worker.on_nodes) forces.nodes[i] += scale * mean;
+    for (const auto& [i, mean] : worker.on_rigid) forces.rigid[i] += scale * mean;
+  }
+}
+
+}  // namespace apothem

@@ -1,0 +1,63 @@
+// Contacts of deformable bodies that begin or end within a step: see onset_rule.hpp. The force of a
+// pair of bodies is that on the vertices of both outlines, all at the same samples.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lib/archive/archive.hpp"
+#include "lib/contact/law/kinematics.hpp"
+#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/onset_watch.hpp"
+#include "lib/contact/mesh/edge_face_blocks.hpp"
+#include "lib/contact/mesh/outline_path.hpp"
+#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/outline_slopes.hpp"
+#include "lib/contact/surface/outlines.hpp"
+#include "lib/execution/worker_lists.hpp"
+
+namespace apothem {
+
+class OutlineOnset {
+ public:
+  /// Both must outlive this object.
+  OutlineOnset(const Outlines& outlines, const OutlineSlopes& slopes, int threads)
+      : outlines_(outlines),
+        threads_(threads),
+        workers_(static_cast<size_t>(threads_.count()), {{outlines, slopes}, {}, {}}) {}
+
+  /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
+  /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
+  /// much more or less boundary is inside. `blocks` hold the contacts of now, `candidates` ascend.
+  /// True if there is a J. With dt = 0, at the start, there is none, and what touches then is new
+  /// in the first step. Pairs with `plateaus` are left as they are.
+  bool find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
+            const OutlinePlateaus& plateaus, const Kinematics& now, const Dynamics& dynamics,
+            double dt);
+  /// Adds J / dt of the last `find`, times `scale`.
+  void add(double scale, const ForceViews& forces) const;
+
+  void fields(Archive& archive) { watch_.fields(archive); }
+
+ private:
+  struct Changed {
+    BodyIndex a, b;
+    int panels;
+  };
+  /// What a thread needs, and what it has found.
+  struct Worker {
+    OutlinePath path;
+    std::vector<OutlinePath::Impulse> on_nodes, on_rigid;
+  };
+
+  void find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus, bool at_first);
+
+  const Outlines& outlines_;
+  Threads threads_;
+  OnsetWatch watch_;
+  WorkerLists<TouchingPair> runs_;
+  std::vector<Changed> changed_;
+  std::vector<Worker> workers_;
+};
+
+}  // namespace apothem

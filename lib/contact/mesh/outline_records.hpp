@@ -1,0 +1,27 @@
+// What outlines report of their contact: the patches, and the pressure on every edge.
+#pragma once
+
+#include <vector>
+
+#include "lib/contact/law/contact.hpp"
+#include "lib/contact/mesh/edge_face.hpp"
+#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/outline_slopes.hpp"
+
+namespace apothem {
+
+/// Contact of outlines where they are now.
+struct OutlineState {
+  const OutlineSlopes& slopes;
+  const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
+  const OutlinePlateaus& plateaus;
+  [[nodiscard]] const Outlines& outlines() const { return slopes.outlines; }
+};
+
+/// Adds a record for every patch, by ascending pairs of bodies.
+void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& records);
+
+/// Adds a record for every edge of the outlines.
+void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& records);
+
+}  // namespace apothem

@@ -1,0 +1,77 @@
+// What all touching pairs do to each rigid body, summed in the order of the pairs.
+//
+// A thread adds what its pairs do to a body at once, unless the body may also touch in an earlier
+// pair, which another thread works on. Such loads wait until all threads are done. So every sum is
+// taken in the order of the pairs and has the same bits for any number of threads.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "geometry/spatial/boxes.hpp"
+#include "lib/contact/law/kinematics.hpp"
+#include "lib/contact/rigid/pair_integrals.hpp"
+#include "lib/contact/rigid/pair_load.hpp"
+#include "lib/contact/surface/surfaces.hpp"
+#include "lib/execution/parallel.hpp"
+
+namespace apothem {
+
+class BodyLoads {
+ public:
+  BodyLoads(const Surfaces& surfaces, int threads);
+
+  /// The pairs that may touch, ascending.
+  void take(std::span<const BoxPair> pairs);
+  /// Begins a step of one thread, whose first pair has `first` as its first body; -1 if no other
+  /// thread has earlier pairs.
+  void begin(int worker, RigidIndex first) { parts_[static_cast<size_t>(worker)].begin(first); }
+  void add(int worker, RigidIndex body, const BodyLoad& load) {
+    Part& part = parts_[static_cast<size_t>(worker)];
+    if (part.first >= 0 && first_partner_[static_cast<size_t>(body)] <= part.first) {
+      part.late.push_back({load, body});
+    } else {
+      sums_[static_cast<size_t>(body)].add(load);
+    }
+  }
+  /// After all threads are done.
+  void end();
+  /// Adds the sums to the forces and their bounds, and forgets them.
+  void add_to(const ForceViews& forces, std::span<const PairInTouch> touching);
+
+ private:
+  struct LateLoad {
+    BodyLoad load;
+    RigidIndex body;
+  };
+  // Of one thread.
+  struct Part {
+    RigidIndex first = -1;
+    std::vector<LateLoad> late;
+    void begin(RigidIndex body) {
+      first = body;
+      late.clear();
+    }
+  };
+
+  // Of a body: w^2 of what its own contacts hold, and the largest one of its partners, 1/s^2.
+  struct Rate {
+    double own = 0, partner = 0;
+    bool exact = false;  // own is not a bound
+  };
+  [[nodiscard]] const std::array<double, 3>& inverse_mass(size_t body) const {
+    return surfaces_.rigid(static_cast<RigidIndex>(body)).inverse_mass;
+  }
+  void find_rates(double limit, std::span<const PairInTouch> touching);
+
+  const Surfaces& surfaces_;
+  Threads threads_;
+  std::vector<BodyLoad> sums_;             // of each rigid body
+  std::vector<RigidIndex> first_partner_;  // of each: itself or the least one that it may touch
+  std::vector<Part> parts_;
+  std::vector<Rate> rates_;      // of each rigid body
+  std::vector<double> fastest_;  // of these, by each thread
+};
+
+}  // namespace apothem

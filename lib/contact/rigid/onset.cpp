@@ -1,0 +1,371 @@
+#include "lib/contact/rigid/onset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lib/execution/elementary.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kSudden = .03;      // change of the boundary inside, of an inradius
+constexpr double kAtFirst = 1e-9;    // a potential that is round-off where a run starts
+constexpr double kPairTime = 2000;   // ns
+constexpr int kMostLooks = 1 << 14;  // for crossings of vertices and edges
+constexpr size_t kMostEvents = 8;
+constexpr double kAtOnce = 1e-3;  // of the step
+constexpr int kMostPanels = 8;    // of a step with kinks
+
+// Calls f(coordinate, number in a load, sign) for the coordinates of both bodies of a pair.
+template <class F>
+void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
+  const size_t of_a = 3 * static_cast<size_t>(a), of_b = 3 * static_cast<size_t>(b);
+  f(of_a, 0, 1.), f(of_a + 1, 1, 1.), f(of_a + 2, 2, 1.);
+  f(of_b, 0, -1.), f(of_b + 1, 1, -1.), f(of_b + 2, 3, 1.);
+}
+
+}  // namespace
+
+struct Onset::Path {
+  RigidIndex a, b;
+  std::array<double, 3> rate_a, rate_b;  // of the pose, in a whole step
+  double angle_a, angle_b;               // at its end
+  Vec2 between;                          // at its end
+
+  [[nodiscard]] double turn_a(double theta) const { return angle_a - (1 - theta) * rate_a[2]; }
+  [[nodiscard]] double turn_b(double theta) const { return angle_b - (1 - theta) * rate_b[2]; }
+  [[nodiscard]] Vec2 offset(double theta) const {
+    return {between.x() - (1 - theta) * (rate_a[0] - rate_b[0]),
+            between.y() - (1 - theta) * (rate_a[1] - rate_b[1])};
+  }
+};
+
+bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
+                 const Kinematics& now, const Dynamics& dynamics, double dt) {
+  std::vector<TouchingPair>& now_touching = watch_.begin_step();
+  std::swap(beside_, beside_before_);
+  beside_.clear();
+  for (const PairInTouch& result : pairs.touching()) {
+    const PairIntegral& pair = pairs.integral(result);
+    if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
+    const double k = table_.between(result.a, result.b).normal_stiffness * thickness_;
+    const double arm = surfaces_.inradius(result.a);
+    now_touching.push_back({result.a, result.b, pair.inside_a, pair.inside_b,
+                            pair.own_length_a + pair.own_length_b, k * pair.force.norm(),
+                            k * pair.moment_a / arm});
+    if (tangential) note_beside(*tangential, result, pair, now_touching.back());
+  }
+  changed_.clear(), impulses_.clear();
+  if (!(dt > 0)) return false;
+  watch_.compare(
+      [&](RigidIndex a, RigidIndex b) {
+        return kSudden * std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+      },
+      [&](const PairChange& change) { changed_.push_back(change); });
+  impulses_.resize(changed_.size());
+  threads_.chunks(
+      static_cast<int>(changed_.size()), kPairTime, [&](int first, int end, int worker) {
+        for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+          impulses_[i] =
+              find_pair(changed_[i], now, dynamics, dt, workers_[static_cast<size_t>(worker)]);
+        }
+      });
+  book_losses(now, dynamics, dt);
+  return !impulses_.empty();
+}
+
+// Where damping takes the whole force, or does so no more, the force of the pair has a kink as
+// well.
+void Onset::note_beside(const PatchTangential& tangential, const PairInTouch& pair,
+                        const PairIntegral& integral, TouchingPair& touching) {
+  constexpr double kWhole = 1e-9;  // of the force
+  constexpr std::uint64_t kFree = 0x9e3779b97f4a7c15ULL;
+  beside_.push_back(tangential.beside(pair));
+  if (!beside_.back().alone) return;
+  const PairForce& damping = beside_.back().damping;
+  const double k = table_.between(pair.a, pair.b).normal_stiffness * thickness_;
+  const double size = k * integral.force.norm();
+  const double pull = -k * integral.force.dot(Vec2(damping.x, damping.y));
+  if (!(pull > 0 && pull >= (1 - kWhole) * size * size)) return;
+  beside_.back().free = true;
+  touching.inside_a += kFree;
+}
+
+// Not where the pair has several patches, each of which has friction and damping by itself.
+bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) const {
+  const PairLaw& law = table_.between(pair.a, pair.b);
+  if (!(law.damping.normal > 0 || law.friction.coefficient > 0)) return false;
+  first = last = {.alone = true};
+  if (pair.before >= 0) first = beside_before_[static_cast<size_t>(pair.before)];
+  if (pair.now >= 0) last = beside_[static_cast<size_t>(pair.now)];
+  return first.alone && last.alone;
+}
+
+// The work of friction and damping in the impulses, with the velocities when half of what these
+// parts change is done, after all other parts.
+void Onset::book_losses(const Kinematics& now, const Dynamics& dynamics, double dt) {
+  losses_ = {};
+  if (std::ranges::none_of(impulses_, &Impulse::beside)) return;
+  all_.resize(now.pose_rate.size());
+  parts_.resize(now.pose_rate.size());
+  for (const Impulse& i : impulses_) {
+    each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
+      all_[c] += sign * i.mean[k];
+      parts_[c] += sign * (i.damping[k] + i.friction[k]);
+    });
+  }
+  for (const Impulse& i : impulses_) {
+    if (!i.beside) continue;
+    double of_damping = 0, of_friction = 0;
+    each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
+      const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
+      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // for dt / 2
+      const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
+      of_damping += sign * i.damping[k] * speed;
+      of_friction += sign * i.friction[k] * speed;
+    });
+    losses_.damping_loss += i.damping_loss - dt * of_damping;
+    losses_.loss -= dt * of_friction;
+  }
+  for (const Impulse& i : impulses_) {
+    each_coordinate(i.a, i.b, [&](size_t c, size_t, double) { all_[c] = parts_[c] = 0; });
+  }
+}
+
+// What friction and the dashpot beside it lack. Where they slide, they go with the normal force. A
+// spring that sticks follows the slip, which goes with the elastic part of that; its dashpot acts
+// for as long as the bodies touch.
+void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside& last,
+                          const PathDamping& damping, const Worker& worker, size_t inside,
+                          Load& friction, Load& drag) {
+  constexpr double kSticks = 1 - 1e-9;  // part of Coulomb's limit
+  constexpr double kVanishes = 1e-3;    // of the mean force
+  const auto elastic = [&](size_t i) {
+    const Load& load = worker.loads[i];
+    return PairForce{load[0], load[1], load[2], load[3]};
+  };
+  const std::array ends{elastic(0).plane().size(), elastic(inside - 1).plane().size()};
+  const std::array net{(elastic(0) + first.damping).plane().size(),
+                       (elastic(inside - 1) + last.damping).plane().size()};
+  double mean = 0, touching = 0;
+  for (size_t i = 0; i < inside; ++i) {
+    const double size = elastic(i).plane().size();
+    mean += worker.samples[i].mean * size;
+    touching += size > 0 ? worker.samples[i].mean : 0;
+  }
+  const double net_mean = law.damping.normal > 0 ? damping.net_mean : mean;
+  const double elastic_lacks = mean - (ends[0] + ends[1]) / 2;
+  const double net_lacks = net_mean - (net[0] + net[1]) / 2;
+  // A force that is about to vanish says nothing of the rest of the step.
+  const double least = kVanishes * (mean + net_mean);
+  const auto pushes = [&](size_t end) { return ends[end] > least && net[end] > least; };
+  const double known = (pushes(0) ? 1 : 0) + (pushes(1) ? 1 : 0);
+  const double drag_lacks = touching - known / 2;
+  for (const size_t end : {0, 1}) {
+    if (!pushes(end)) continue;
+    const Beside& at = end == 0 ? first : last;
+    const double limit = law.friction.coefficient * net[end];
+    const bool slides = (at.friction + at.drag).plane().size() >= kSticks * limit;
+    const double of_net = net_lacks / net[end] / known;
+    const double of_spring = slides ? of_net : elastic_lacks / ends[end] / known;
+    const double of_dashpot = slides ? of_net : drag_lacks / known;
+    const auto add = [](double share, const PairForce& force, Load& to) {
+      to[0] += share * force.x, to[1] += share * force.y;
+      to[2] += share * force.a, to[3] += share * force.b;
+    };
+    add(of_spring, at.friction, friction);
+    add(of_dashpot, at.drag, drag);
+  }
+}
+
+// The loads at all samples, those of convex polygons together.
+void Onset::find_loads(const Path& path, bool damped, Worker& worker) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
+  worker.loads.clear(), worker.damped.clear();
+  const auto add = [&](const PairIntegral& pair) {
+    if (damped) {
+      const double theta = worker.samples[worker.loads.size()].theta;
+      worker.damped.push_back({pair, path.offset(theta)});
+    }
+    worker.loads.push_back(
+        {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b});
+  };
+  ConvexPairs& together = worker.edges.convex;
+  const auto evaluate = [&] {
+    for (const PairIntegral& pair : together.evaluate()) add(pair);
+  };
+  for (const OnsetSample& sample : worker.samples) {
+    const auto at = static_cast<size_t>(together.count());
+    const auto [turn_a, turn_b] =
+        sine_cosine({path.turn_a(sample.theta), path.turn_b(sample.theta)});
+    const PlacedPotential a = shapes.turn(path.a, turn_a, worker.turned[2 * at]);
+    const PlacedPotential b = shapes.turn(path.b, turn_b, worker.turned[2 * at + 1]);
+    const Vec2 offset = path.offset(sample.theta);
+    if (!ConvexPairs::serves(a) || !ConvexPairs::serves(b)) {
+      add(pair_integral(a, b, offset, worker.edges));
+      continue;
+    }
+    worker.near[at] = {};
+    together.add(a, b, offset, worker.near[at]);
+    if (together.full()) evaluate();
+  }
+  evaluate();
+}
+
+// Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
+// for the rotation of a step. False if there are many, or many to look for: each is then a small
+// part of the force, and samples at equal distances do as well.
+bool Onset::find_events(const Path& path, Worker& worker) const {
+  worker.events.clear();
+  const PlacedShapes& shapes = surfaces_.shapes();
+  if (shapes.view(path.a).size * shapes.view(path.b).size > kMostLooks) return false;
+  const auto [turn_a, turn_b] = sine_cosine({path.turn_a(0), path.turn_b(0)});
+  const PlacedPotential a0 = shapes.turn(path.a, turn_a, worker.start_a);
+  const PlacedPotential b0 = shapes.turn(path.b, turn_b, worker.start_b);
+  const PlacedPotential a1 = shapes.view(path.a);
+  const PlacedPotential b1 = shapes.view(path.b);
+  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.events);
+  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
+  std::ranges::sort(worker.events);
+  if (worker.events.size() <= kMostEvents) return true;
+  // Where many vertices cross at once, as the teeth of a comb that lands, they are one event.
+  const auto same = [](double a, double b) { return b - a < kAtOnce; };
+  worker.events.erase(std::unique(worker.events.begin(), worker.events.end(), same),
+                      worker.events.end());
+  if (worker.events.size() <= kMostEvents) return true;
+  worker.events.clear();
+  return false;
+}
+
+// Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
+void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+                           const PlacedPotential& y0, const PlacedPotential& y1,
+                           const Vec2& offset0, const Vec2& offset1, std::vector<double>& events) {
+  constexpr double kRound = 1e-9;
+  Box all;
+  for (int j = 0; j < y1.size; ++j) {
+    all.include(y0.x[j], y0.y[j]);
+    all.include(y1.x[j], y1.y[j]);
+  }
+  for (int i = 0; i < x1.size; ++i) {
+    const Vec2 p0(x0.x[i] + offset0.x(), x0.y[i] + offset0.y());
+    const Vec2 p1(x1.x[i] + offset1.x(), x1.y[i] + offset1.y());
+    Box path;
+    path.include(p0.x(), p0.y());
+    path.include(p1.x(), p1.y());
+    if (apart(path, all)) continue;
+    for (int j = 0; j < y1.size; ++j) {
+      const double h0 = y0.gx[j] * (p0.x() - y0.x[j]) + y0.gy[j] * (p0.y() - y0.y[j]);
+      const double h1 = y1.gx[j] * (p1.x() - y1.x[j]) + y1.gy[j] * (p1.y() - y1.y[j]);
+      const double theta = crossing(h0, h1);
+      if (theta < 0) continue;
+      const auto at = [&](const double* q0, const double* q1, int k) {
+        return q0[k] + theta * (q1[k] - q0[k]);
+      };
+      const Vec2 p = p0 + theta * (p1 - p0);
+      const Vec2 from(at(y0.x, y1.x, j), at(y0.y, y1.y, j));
+      const Vec2 edge = Vec2(at(y0.x, y1.x, j + 1), at(y0.y, y1.y, j + 1)) - from;
+      const double along = edge.dot(p - from) / edge.squaredNorm();
+      if (along > -kRound && along < 1 + kRound) events.push_back(theta);
+    }
+  }
+}
+
+Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
+                                const Dynamics& dynamics, double dt, Worker& worker) const {
+  const RigidIndex a = pair.a, b = pair.b;
+  const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
+  const auto step = [&](RigidIndex i) {
+    return std::array{dt * rate(i)[0], dt * rate(i)[1], dt * rate(i)[2]};
+  };
+  const Path path{
+      a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
+  const bool few = find_events(path, worker);
+  const int most = kMostPanels / (static_cast<int>(worker.events.size()) + 1);
+  const int panels = std::clamp(few ? pair.panels : kFewPanels, 1, std::max(most, 1));
+  const auto inside =
+      static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
+  const PairLaw& law = table_.between(a, b);
+  Beside first, last;
+  const bool beside = find_beside(pair, first, last);
+  const bool damped = beside && law.damping.normal > 0;
+  find_loads(path, damped, worker);
+  std::array<OnsetForces, 4> forces;
+  for (size_t i = 0; i < worker.samples.size(); ++i) {
+    const Load& load = worker.loads[i];
+    for (size_t k = 0; k < 4; ++k) {
+      forces[k].add(worker.samples[i], load[k]);
+      if (i == 0) forces[k].first = load[k];
+      if (i + 1 == inside) forces[k].last = load[k];
+    }
+  }
+  Load damping{}, friction{};
+  PathDamping along{};
+  if (damped) {
+    along = damping_along(
+        {law.normal_stiffness * thickness_, law.damping.normal, surfaces_.shapes().slope(a),
+         surfaces_.shapes().slope(b), surfaces_.rigid(a).inverse_mass,
+         surfaces_.rigid(b).inverse_mass, dt, pair_rate(now, a, b)},
+        std::span(worker.samples).first(inside), std::span(worker.damped).first(inside));
+    const PairForce lacks = along.mean - .5 * (first.damping + last.damping);
+    damping = {lacks.x, lacks.y, lacks.a, lacks.b};
+    for (OnsetForces& f : forces) {
+      if (first.free) f.start_slope = 0;
+      if (last.free) f.end_slope = 0;
+    }
+  }
+  if (beside && law.friction.coefficient > 0) {
+    Load drag{};
+    find_friction(law, first, last, along, worker, inside, friction, drag);
+    for (size_t k = 0; k < 4; ++k) damping[k] += drag[k];
+  }
+  Load missing;
+  for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
+  const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
+    OnsetRest rest(dt);
+    for (const size_t axis : {0, 1, 2}) {
+      const size_t k = axis < 2 ? axis : moment;
+      const size_t c = 3 * static_cast<size_t>(body) + axis;
+      OnsetForces f = forces[k];
+      const double own = axis < 2 ? sign : 1;
+      for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
+      rest.add(f, {own * missing[k], own * (friction[k] + damping[k])}, dynamics.others(c, f),
+               dynamics.inverse_mass[c], now.pose_rate[c]);
+    }
+    return rest;
+  };
+  OnsetRest rest = rest_of(a, 2, 1);
+  rest.add(rest_of(b, 3, -1));
+  if (!damped) {
+    const double share = rest.share();
+    for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
+  }
+  for (size_t k = 0; k < 4; ++k) missing[k] += damping[k] + friction[k];
+  // Moments of forces at earlier positions do not balance at the end of the step. What is left over
+  // goes half and half to both bodies, so that the angular momentum is kept.
+  const auto balance = [&](Load& part) {
+    const double couple = cross(path.between, Vec2(part[0], part[1])) + (part[2] + part[3]);
+    part[2] -= couple / 2;
+    part[3] -= couple / 2;
+  };
+  balance(missing), balance(damping), balance(friction);
+  // A dashpot begins with a jump of the force. What is left over is its work along the bent path.
+  return {a, b, missing, beside, friction, damping, damped ? -rest.energy() : 0};
+}
+
+void Onset::add(double scale, std::span<double> forces) const {
+  for (const Impulse& i : impulses_) {
+    double* fa = &forces[3 * static_cast<size_t>(i.a)];
+    double* fb = &forces[3 * static_cast<size_t>(i.b)];
+    fa[0] += scale * i.mean[0];
+    fa[1] += scale * i.mean[1];
+    fa[2] += scale * i.mean[2];
+    fb[0] -= scale * i.mean[0];
+    fb[1] -= scale * i.mean[1];
+    fb[2] += scale * i.mean[3];
+  }
+}
+
+}  // namespace apothem

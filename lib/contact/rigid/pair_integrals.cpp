@@ -1,0 +1,324 @@
+#include "lib/contact/rigid/pair_integrals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace apothem {
+namespace {
+
+constexpr double kMoved = .99;  // of the margin, beyond which near edges are found again
+// The margin is larger where bodies move faster, so that near edges are found again after some tens
+// of evaluations, and smaller in packs at rest, where few edges are near. These powers of two times
+// the smaller inradius:
+constexpr int kSmallestMargin = -10;
+constexpr int kLargestMargin = -3;
+constexpr int kSoon = 32;
+constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
+constexpr int kLate = 256;
+constexpr size_t kManyFresh = 1024;
+constexpr size_t kFewFresh = 8;  // pairs are few if they are less than one in so many
+
+// For one more. Large scenes need the memory.
+template <class T>
+void make_room(std::vector<T>& list) {
+  if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
+}
+
+}  // namespace
+
+// Pairs that were there before keep what is known of their edges, and their slots. The lists of
+// before are not kept: searches are rare, and large scenes need the memory.
+SlotOrder& PairIntegrals::take(std::span<const BoxPair> pairs) {
+  const std::vector<BoxPair> pairs_before = std::move(pairs_);
+  const std::vector<Near> near_before = std::move(near_);
+  const std::vector<int> slots_before = std::move(slots_);
+  pairs_.assign(pairs.begin(), pairs.end());
+  near_.assign(pairs_.size(), {});
+  slots_.assign(pairs_.size(), -1);
+  order_.begin(integrals_.size());
+  size_t old = 0;
+  const auto pass = [&] {  // a pair that is not in reach any more
+    if (slots_before[old] >= 0) end_now(pairs_before[old], slots_before[old]);
+    ++old;
+  };
+  for (size_t p = 0; p < pairs_.size(); ++p) {
+    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) pass();
+    if (old == pairs_before.size()) break;
+    if (pairs_before[old] != pairs_[p]) continue;
+    near_[p] = near_before[old];
+    if (slots_before[old] >= 0) slots_[p] = order_.add(slots_before[old]);
+    ++old;
+  }
+  while (old < pairs_before.size()) pass();
+  for (PairInTouch& pair : ended_) pair.slot = order_.add(pair.slot);
+  order_.end();
+  order_.apply(integrals_);
+  free_.clear();
+  touching_.clear();
+  return order_;
+}
+
+void PairIntegrals::begin() {
+  touching_.clear();
+  for (Worker& worker : workers_) {
+    worker.results.clear();
+    worker.fresh.clear();
+    worker.ended.clear();
+    worker.parts.clear();
+    worker.runs.clear();
+    worker.whole_runs.clear();
+    worker.patches.clear();
+  }
+}
+
+// Finds the near edges anew if the bodies have moved against each other by more than the margin.
+void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace& workspace) {
+  const auto [a, b] = pairs_[p];
+  const PlacedShapes& shapes = surfaces_.shapes();
+  Near& near = near_[p];
+  const bool convex = shapes.convex(a) && shapes.convex(b);
+  if (convex && near.edges.margin == 0) return;  // pair_integral tells their distance
+  const double turn_a = surfaces_.pose(a)[2];
+  const double turn_b = surfaces_.pose(b)[2];
+  const Vec2 shift = between - near.between;
+  const double moved = std::abs(shift.x()) + std::abs(shift.y()) +
+                       std::abs(turn_a - near.angle_a) * shapes.radius(a) +
+                       std::abs(turn_b - near.angle_b) * shapes.radius(b);
+  const bool known = moved < kMoved * near.edges.margin;
+  const bool narrow = near.edges.none() || near.share <= kSmallestMargin;
+  near.age = static_cast<std::int16_t>(std::min(near.age + 1, kLate));
+  if (known && (narrow || near.age < kLate)) return;
+  if (known) {
+    near.share = static_cast<std::int16_t>(near.share - 2);
+  } else if (near.edges.margin > 0 && !near.edges.none() && near.age < kSoon) {
+    near.share = static_cast<std::int16_t>(std::min(near.share + 1, kLargestMargin));
+  }
+  near = {{}, turn_a, between, turn_b, near.share, 0};
+  if (convex || !surfaces_.is_rigid(a) || !surfaces_.is_rigid(b)) return;
+  const PlacedPotential view_a = shapes.view(a);
+  const PlacedPotential view_b = shapes.view(b);
+  const double margin =
+      std::ldexp(std::min(surfaces_.inradius(a), surfaces_.inradius(b)), near.share);
+  near.edges = near_edges(view_a, view_b, between, margin, workspace);
+}
+
+// Evaluates pairs from `first` on, as many as go together. Returns where the next ones begin.
+size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const std::vector<Box>& boxes = shapes.boxes();
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  size_t p = first;
+  for (; p < end && !worker.workspace.edge.convex.full(); ++p) {
+    if (p + kPairsAhead < end) {
+      surfaces_.fetch(pairs_[p + kPairsAhead].second);
+      __builtin_prefetch(&near_[p + kPairsAhead]);
+      shapes.fetch_coordinates(pairs_[p + kPairsAhead / 2].second);
+    }
+    const auto [a, b] = pairs_[p];
+    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) {
+      note_end(p, worker);
+      continue;
+    }
+    const Vec2 between = surfaces_.between(a, b);
+    find_near(p, between, worker.near_edges);
+    if (near_[p].edges.none()) {
+      note_end(p, worker);
+      continue;
+    }
+    const PlacedPotential view_a = shapes.view(a);
+    const PlacedPotential view_b = shapes.view(b);
+    if (split_ != Split::all && ConvexPairs::serves(view_a) && ConvexPairs::serves(view_b)) {
+      worker.convex_pairs[static_cast<size_t>(worker.workspace.edge.convex.count())] = p;
+      worker.workspace.edge.convex.add(view_a, view_b, between, near_[p].edges);
+    } else {
+      evaluate_convex(index);  // those before it
+      evaluate_alone(p, view_a, view_b, index);
+    }
+  }
+  evaluate_convex(index);
+  return p;
+}
+
+void PairIntegrals::evaluate_convex(int index) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  if (worker.workspace.edge.convex.count() == 0) return;
+  const size_t* pair = worker.convex_pairs.data();
+  for (const PairIntegral& integral : worker.workspace.edge.convex.evaluate()) {
+    const size_t p = *pair++;
+    if (integral.touching()) {
+      add(p, integral, index, -1);
+      continue;
+    }
+    note_end(p, worker);
+    if (near_[p].edges.margin > 0) {
+      note_margin(p, surfaces_.between(pairs_[p].first, pairs_[p].second));
+    }
+  }
+}
+
+// The pair is apart by its margin where its bodies are now.
+void PairIntegrals::note_margin(size_t p, const Vec2& between) {
+  near_[p].between = between;
+  near_[p].angle_a = surfaces_.pose(pairs_[p].first)[2];
+  near_[p].angle_b = surfaces_.pose(pairs_[p].second)[2];
+}
+
+void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int split) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  std::vector<PairInTouch>& results = results_of(index);
+  int slot = slots_[p];
+  if (slot >= 0) {
+    integrals_[static_cast<size_t>(slot)] = integral;
+  } else {
+    slot = ~static_cast<int>(worker.fresh.size());
+    worker.fresh.push_back({p, results.size(), integral});
+  }
+  make_room(results);
+  results.push_back({pairs_[p].first, pairs_[p].second, slot, split});
+}
+
+// Puts the lists of the workers together.
+void PairIntegrals::collect() {
+  parts_.clear();
+  for (Worker& worker : workers_) {
+    const size_t first = &worker == workers_.data() ? 0 : touching_.size();
+    const auto split = static_cast<int>(parts_.size());
+    for (PairInTouch pair : worker.results) {
+      if (pair.split >= 0) pair.split += split;
+      make_room(touching_);
+      touching_.push_back(pair);
+    }
+    parts_.insert(parts_.end(), worker.parts.begin(), worker.parts.end());
+    for (const size_t p : worker.ended) {
+      end_now(pairs_[p], slots_[p]);
+      slots_[p] = -1;
+    }
+    give_slots(worker, first);
+  }
+  // Those that have ended before the last search come in between.
+  std::ranges::sort(ended_, [](const PairInTouch& p, const PairInTouch& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  });
+}
+
+// To the pairs that are new, of a worker whose results begin there in the list of all.
+void PairIntegrals::give_slots(Worker& worker, size_t first) {
+  for (const Fresh& fresh : worker.fresh) {
+    int& slot = slots_[fresh.pair];
+    if (free_.empty()) {
+      slot = static_cast<int>(integrals_.size());
+      make_room(integrals_);
+      integrals_.push_back(fresh.integral);
+    } else {
+      slot = free_.back();
+      free_.pop_back();
+      integrals_[static_cast<size_t>(slot)] = fresh.integral;
+    }
+    touching_[first + fresh.result].slot = slot;
+  }
+  // At the start all pairs are new, and hardly any later: large scenes need the memory.
+  const size_t count = worker.fresh.size();
+  if (count > kManyFresh && kFewFresh * count > touching_.size()) {
+    std::vector<Fresh>().swap(worker.fresh);
+  }
+}
+
+void PairIntegrals::forget_ended() {
+  for (const PairInTouch& pair : ended_) free_.push_back(pair.slot);
+  ended_.clear();
+}
+
+void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
+                                   const PlacedPotential& view_b, int index) {
+  Worker& worker = workers_[static_cast<size_t>(index)];
+  const auto [a, b] = pairs_[p];
+  const Vec2 between = surfaces_.between(a, b);
+  NearEdges& near = near_[p].edges;
+  const bool split = split_ == Split::all ||
+                     (split_ == Split::not_convex && !(view_a.convex() && view_b.convex()));
+  const double margin = near.margin;
+  const PairIntegral integral =
+      split ? contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
+                              worker.pair_patches, near)
+            : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
+  if (near.margin > margin) note_margin(p, between);
+  if (!integral.touching()) {
+    note_end(p, worker);
+    return;
+  }
+  if (!split) {
+    add(p, integral, index, -1);
+    return;
+  }
+  Parts parts{static_cast<int>(worker.pair_patches.size()),
+              static_cast<int>(worker.pair_runs.size()), index, -1,
+              static_cast<int>(worker.runs.size())};
+  worker.runs.insert(worker.runs.end(), worker.pair_runs.begin(), worker.pair_runs.end());
+  if (split_ == Split::all) {
+    worker.whole_runs.insert(worker.whole_runs.end(), worker.pair_runs.begin(),
+                             worker.pair_runs.end());
+  }
+  if (parts.patches != 1) {  // the only one is the whole pair
+    parts.first_patch = static_cast<int>(worker.patches.size());
+    worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
+                          worker.pair_patches.end());
+  }
+  add(p, integral, index, static_cast<int>(worker.parts.size()));
+  worker.parts.push_back(parts);
+}
+
+double PairIntegrals::energy(const PairTable& table) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  energies_.resize(touching_.size());
+  threads_.chunks(static_cast<int>(touching_.size()), kPairTime, [&](int first, int end, int) {
+    for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
+      const SurfaceIndex a = touching_[i].a, b = touching_[i].b;
+      const double k = table.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness;
+      energies_[i] = k * pair_energy(shapes.view(a), shapes.view(b), surfaces_.between(a, b));
+    }
+  });
+  return std::accumulate(energies_.begin(), energies_.end(), 0.);
+}
+
+// phi may be limited to 1.
+double PairIntegrals::deepest(const PairInTouch& pair, const PairIntegral& integral) const {
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const double ratio = std::max(shapes.depth_ratio(pair.a), shapes.depth_ratio(pair.b));
+  return integral.largest_phi < 1 ? ratio * integral.depth : HUGE_VAL;
+}
+
+Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, double k) const {
+  const SurfaceIndex a = result.a, b = result.b;
+  const PairIntegral& pair = integral(result);
+  const PlacedShapes& shapes = surfaces_.shapes();
+  return {kernel,
+          a,
+          b,
+          pair.depth,
+          deepest(result, pair),
+          pair.largest_phi,
+          k * (pair.own_length_a * shapes.slope(b) + pair.own_length_b * shapes.slope(a))};
+}
+
+bool PairIntegrals::too_deep(const PairInTouch& result, const PairIntegral& pair) const {
+  const SurfaceIndex a = result.a, b = result.b;
+  if (!(pair.largest_phi <= kDeepestPhi)) return true;
+  // The boundary of an overlap around the top of a polygon lies outside a circle about it: the
+  // polygon's own boundary is as far away as the radius of its incircle, and the other one's is
+  // nearer by no more than the depth. The top of a shape that deforms is another point.
+  const double inradius = std::min(surfaces_.inradius(a), surfaces_.inradius(b));
+  const bool rigid = surfaces_.is_rigid(a) && surfaces_.is_rigid(b);
+  const double shortest = rigid ? 6 * (inradius - deepest(result, pair)) : inradius;
+  if (pair.own_length_a + pair.own_length_b < shortest) return false;
+  const PlacedShapes& shapes = surfaces_.shapes();
+  const Vec2 offset = surfaces_.between(a, b);
+  const double away2 = offset.squaredNorm();
+  const auto inside = [&](SurfaceIndex i, SurfaceIndex j, const Vec2& from) {
+    const double reach = shapes.top_reach(i, j);
+    return !(away2 > reach * reach) && shapes.top_inside(i, j, from);
+  };
+  return inside(a, b, offset) || inside(b, a, -offset);
+}
+
+}  // namespace apothem

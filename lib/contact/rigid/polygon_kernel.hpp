@@ -1,0 +1,106 @@
+// Contact of rigid bodies: the potentials of their whole polygons, by the pair kernel.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/integrals/penetration.hpp"
+#include "lib/contact/kernel.hpp"
+#include "lib/contact/rigid/body_loads.hpp"
+#include "lib/contact/rigid/onset.hpp"
+#include "lib/contact/rigid/pair_batch.hpp"
+#include "lib/contact/rigid/pair_integrals.hpp"
+#include "lib/contact/rigid/patch_tangential.hpp"
+#include "lib/execution/parallel.hpp"
+
+namespace apothem {
+
+class PolygonKernel final : public Kernel {
+ public:
+  /// `thickness` in m. All must outlive this object.
+  PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
+                double thickness, int threads);
+
+  void take(std::span<const BoxPair> pairs) override;
+  void evaluate(std::vector<Contact>& contacts) override;
+  [[nodiscard]] ContactSummary summary() const override { return summary_; }
+  void visit_contacts(double least, const ContactVisitor& visit) const override;
+  [[nodiscard]] double penetration(const Contact& contact, double floor) override;
+  [[nodiscard]] ContactFault fault(const Contact& contact) const override;
+  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  void remember() override {
+    if (tangential_) tangential_->remember();
+  }
+  void undo_slide() override {
+    if (tangential_) tangential_->undo_step();
+  }
+  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {
+    if (tangential_ && tangential_->adopt()) pairs_.forget_ended();
+  }
+  void add_forces(const ForceViews& forces) override;
+  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
+                   FrictionMemory& memory) override {
+    const bool found =
+        onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
+    if (found) memory.add(onset_.losses());
+    return found;
+  }
+  void add_onsets(double scale, const ForceViews& forces) const override {
+    onset_.add(scale, forces.rigid);
+  }
+  [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
+
+  [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
+  [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
+  void add_force_sizes(std::span<double> of_bodies) const override;
+  void add_records(std::vector<ContactRecord>& records) const override;
+  void add_springs(std::vector<Spring>& springs) const override {
+    if (tangential_) tangential_->add_springs(springs);
+  }
+  /// Takes over what the pairs of another simulation remember.
+  void inherit(const PatchTangential::History& pairs) {
+    if (tangential_) tangential_->inherit(pairs);
+  }
+  void fields(Archive& archive) override {
+    if (tangential_) archive("tangential", *tangential_);
+    archive("onset", onset_);
+  }
+
+ private:
+  /// k_n times the thickness, N/m.
+  [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
+    return table_.between(a, b).normal_stiffness * thickness_;
+  }
+  // What one thread has found.
+  struct Found {
+    ContactSummary summary;
+    PairPeak largest_force;
+    PairBatch batch;
+    std::vector<PairLoad> loads;
+  };
+  [[nodiscard]] Contact contact_of(const PairInTouch& pair) const;
+  template <class Part>
+  void sum_loads(const Part& part);
+  void find_normal_loads(int first, int end, int worker);
+  void add_block(std::span<const PairLoad> loads, int worker);
+
+  const Surfaces& surfaces_;
+  const PairTable& table_;
+  double thickness_;  // m
+  PairIntegrals pairs_;
+  Onset onset_;
+  std::optional<PatchTangential> tangential_;  // only where there is friction or damping
+  Threads threads_;
+  std::vector<Found> found_;  // by each thread
+  BodyLoads loads_;
+  ContactSummary summary_;
+  PairPeak largest_force_;
+  // Memory for penetrations.
+  PatchWorkspace patch_workspace_;
+  PenetrationWorkspace penetration_workspace_;
+  std::vector<BoundaryRun> runs_;
+  std::vector<PairIntegral> patches_;
+  std::vector<double> deepest_;  // of each patch, m
+};
+
+}  // namespace apothem

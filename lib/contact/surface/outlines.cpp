@@ -1,0 +1,385 @@
+#include "lib/contact/surface/outlines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "geometry/spatial/loops.hpp"
+#include "lib/execution/dispatch.hpp"
+
+namespace apothem {
+namespace {
+
+constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
+constexpr int kTogether = 16;    // bodies, so that what is known of them stays in the cache
+constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+
+void include(Box& box, const Box& other) {
+  box.include(other.x0, other.y0);
+  box.include(other.x1, other.y1);
+}
+
+template <class Number>
+APOTHEM_INLINE Number load(const double* from) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return *from;
+  } else {
+    return Number::load(from);
+  }
+}
+APOTHEM_INLINE void store(double value, double* to) { *to = value; }
+template <int lanes>
+APOTHEM_INLINE void store(const PackOf<lanes>& value, double* to) {
+  value.store(to);
+}
+template <class Number>
+APOTHEM_INLINE Number loaded(const std::vector<double>& from, int i) {
+  return load<Number>(from.data() + i);
+}
+template <class Number>
+APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
+  store(value, to.data() + i);
+}
+
+// Tangents, bisectors and plain depths of outlines. Each member does one edge or vertex, or a pack
+// of them that follow each other in all arrays.
+template <class Of = Outlines>
+struct EdgeGeometry {
+  Of& o;
+
+  template <class Number>
+  APOTHEM_INLINE void tangent(int i, int next) const {
+    const Number dx = loaded<Number>(o.x, next) - loaded<Number>(o.x, i);
+    const Number dy = loaded<Number>(o.y, next) - loaded<Number>(o.y, i);
+    const Number length = square_root(dx * dx + dy * dy);
+    const Number scale = Number(1.) / length;
+    store(length, o.length, i);
+    store(dx * scale, o.tx, i);
+    store(dy * scale, o.ty, i);
+  }
+  template <class Number>
+  APOTHEM_INLINE void bisector(int i, int previous) const {
+    const Mitre<Number> m(loaded<Number>(o.tx, previous), loaded<Number>(o.ty, previous),
+                          loaded<Number>(o.tx, i), loaded<Number>(o.ty, i));
+    store(m.x, o.mx, i);
+    store(m.y, o.my, i);
+  }
+  template <class Number>
+  APOTHEM_INLINE void plain(int i, int next) const {
+    const Number tx = loaded<Number>(o.tx, i), ty = loaded<Number>(o.ty, i);
+    const Number alpha = loaded<Number>(o.mx, i) * tx + loaded<Number>(o.my, i) * ty;
+    const Number beta = loaded<Number>(o.mx, next) * tx + loaded<Number>(o.my, next) * ty;
+    const Number event = collar_event(loaded<Number>(o.length, i), alpha, beta);
+    store(plain_depth(loaded<Number>(o.depth, i), event), o.plain, i);
+  }
+  /// Raises `farthest` to how far a vertex of the top is from a place.
+  template <class Number>
+  APOTHEM_INLINE void stray(int i, const std::vector<double>& top_x,
+                            const std::vector<double>& top_y, double* farthest) const {
+    const Number h = loaded<Number>(o.depth, i);
+    const Number x = loaded<Number>(o.x, i) + h * loaded<Number>(o.mx, i);
+    const Number y = loaded<Number>(o.y, i) + h * loaded<Number>(o.my, i);
+    const Number dx = magnitude(x - loaded<Number>(top_x, i));
+    const Number dy = magnitude(y - loaded<Number>(top_y, i));
+    Number most = load<Number>(farthest);
+    most = select(dx > most, dx, most);
+    most = select(dy > most, dy, most);
+    store(most, farthest);
+  }
+};
+
+// f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some may
+// be done twice.
+template <int lanes, class F>
+APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
+  if (end - first < lanes) {
+    for (int i = first; i < end; ++i) f(std::type_identity<double>(), i);
+    return;
+  }
+  for (int i = first; i < end - lanes; i += lanes) f(std::type_identity<PackOf<lanes>>(), i);
+  f(std::type_identity<PackOf<lanes>>(), end - lanes);
+}
+
+// The area over the length of the boundary, m: no more than the inradius of the body.
+double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
+  double area = 0, length = 0;
+  for (const std::vector<Vec2>& ring : rings) {
+    for (size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& next = ring[i + 1 == ring.size() ? 0 : i + 1];
+      area += cross(ring[i] - ring[0], next - ring[0]) / 2;
+      length += (next - ring[i]).norm();
+    }
+  }
+  return area / length;
+}
+
+// The smallest thickness of a body, m, or `most` if it is nowhere thinner.
+double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
+  std::vector<std::vector<Vec2>> rings;
+  for (const BoundaryLoop& loop : boundary.loops) {
+    std::vector<Vec2>& ring = rings.emplace_back();
+    for (const int n : loop.nodes) ring.push_back(mesh.nodes[n]);
+  }
+  if (least_inradius(rings) < most / 2) most = std::min(most, 2 * mesh_inradius(mesh, boundary));
+  return smallest_thickness(rings, most);
+}
+
+}  // namespace
+
+void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
+                        std::optional<double> reference) {
+  const int first = size();
+  std::vector<Vec2> places;
+  std::vector<NodeIndex> nodes;
+  for (const BoundaryLoop& loop : boundary.loops) {
+    places.clear(), nodes.clear();
+    for (const int n : loop.nodes) {
+      places.push_back(mesh.nodes[n]);
+      nodes.push_back(first_node + n);
+    }
+    add_loop(places, nodes);
+  }
+  if (reference) {
+    const double thickness = thickness_of(mesh, boundary, 2 * *reference);
+    close_body({first, size(), -1, *reference, thickness / 2});
+    return;
+  }
+  // The collars of opposite sides must not reach through a body that is squeezed to half. A row of
+  // squares is four times half its r thick: less is never needed.
+  const double r = boundary_inradius(mesh, boundary);
+  const double thickness = thickness_of(mesh, boundary, 4 * r);
+  close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
+}
+
+void Outlines::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
+  const int first = size();
+  add_loop(vertices, {});
+  close_body({first, size(), rigid, reference,
+              std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2)});
+}
+
+void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
+  const int first = size();
+  const int n = static_cast<int>(places.size());
+  for (int i = 0; i < n; ++i) {
+    x0_.push_back(places[i].x());
+    y0_.push_back(places[i].y());
+    node.push_back(nodes.empty() ? -1 : nodes[i]);
+    next.push_back(first + (i + 1 == n ? 0 : i + 1));
+    previous.push_back(first + (i == 0 ? n - 1 : i - 1));
+    body.push_back(static_cast<BodyIndex>(bodies.size()));
+  }
+  x.resize(x0_.size()), y.resize(x0_.size());
+  loops.push_back({first, size(), static_cast<BodyIndex>(bodies.size())});
+}
+
+void Outlines::close_body(const Body& added) {
+  const int first_loop = bodies.empty() ? 0 : bodies.back().end_loop;
+  bodies.push_back(added);
+  bodies.back().first_loop = first_loop;
+  bodies.back().end_loop = static_cast<int>(loops.size());
+  const size_t n = x.size();
+  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
+  depth.resize(n, added.depth);
+  active_.push_back(static_cast<BodyIndex>(bodies.size()) - 1);
+  is_active_.push_back(1);
+  forget();
+}
+
+void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+  std::atomic<bool> strayed = kept_.x.empty();
+  const int count = static_cast<int>(bodies.size());
+  const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
+  const auto place_some = [&](BodyIndex first, BodyIndex end) {
+    for (BodyIndex b = first; b < end; ++b) {
+      if (!move(bodies[b], now, polygons)) strayed = true;
+    }
+    const std::span<const BodyIndex> part = active(first, end);
+    find_edges(part);
+    if (!strayed && have_tops_strayed(part)) strayed = true;
+  };
+  threads.chunks(count, (kMoveTime + kEdgeTime) * vertices, [&](int first, int end, int) {
+    for (int b = first; b < end; b += kTogether) place_some(b, std::min(b + kTogether, end));
+  });
+  if (strayed) require_finite();
+  strayed_ = strayed;
+}
+
+// The active bodies from `first` to `end` - 1.
+std::span<const BodyIndex> Outlines::active(BodyIndex first, BodyIndex end) const {
+  const auto from = std::ranges::lower_bound(active_, first);
+  return {from, std::lower_bound(from, active_.end(), end)};
+}
+
+// False if a vertex is not near where it was at the last search, or not at a finite place.
+bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
+  const bool compare = !kept_.x.empty();
+  const double limit = growth();
+  bool near = true;
+  const auto put = [&](int i, double px, double py) {
+    x[i] = px, y[i] = py;
+    if (!compare) return;
+    const bool near_x = std::abs(px - kept_.x[i]) <= limit;
+    const bool near_y = std::abs(py - kept_.y[i]) <= limit;
+    near &= near_x & near_y;
+  };
+  if (b.is_rigid()) {
+    const double* q = now.pose.data() + 3 * static_cast<size_t>(b.rigid);
+    const PlacedPotential polygon = polygons.view(b.rigid);
+    b.cx = q[0], b.cy = q[1];
+    for (int i = b.first; i < b.end; ++i) {
+      put(i, q[0] + polygon.x[i - b.first], q[1] + polygon.y[i - b.first]);
+    }
+  } else {
+    for (int i = b.first; i < b.end; ++i) {
+      const double* u = now.displacement.data() + 2 * static_cast<size_t>(node[i]);
+      put(i, x0_[i] + u[0], y0_[i] + u[1]);
+    }
+  }
+  return near;
+}
+
+void Outlines::require_finite() const {
+  for (const Body& b : bodies) {
+    double all = 0;  // NaN if a place is not finite
+    for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
+    if (all != 0) throw NotFinite(body[b.first]);
+  }
+}
+
+// The edges of a body follow each other, but for those that close a line.
+void Outlines::find_edges(std::span<const BodyIndex> of) {
+  const EdgeGeometry<> g{*this};
+  with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
+    for (const BodyIndex b : of) {
+      const Body& at = bodies[static_cast<size_t>(b)];
+      const std::span<const Loop> lines = std::span(loops).subspan(
+          static_cast<size_t>(at.first_loop), static_cast<size_t>(at.end_loop - at.first_loop));
+      each_pack<lanes>(
+          at.first,
+          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.tangent<N>(i, i + 1);
+          });
+      for (const Loop& l : lines) g.tangent<double>(l.end - 1, l.first);
+      each_pack<lanes>(
+          at.first + 1,
+          at.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.bisector<N>(i, i - 1);
+          });
+      for (const Loop& l : lines) g.bisector<double>(l.first, l.end - 1);
+      each_pack<lanes>(
+          at.first,
+          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.plain<N>(i, i + 1);
+          });
+      for (const Loop& l : lines) g.plain<double>(l.end - 1, l.first);
+    }
+    return 0.;
+  });
+}
+
+void Outlines::find_boxes(double growth) {
+  const int n = size();
+  edge_boxes.resize(n), face_boxes.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const int j = next[i];
+    Box box;
+    box.include(x[i], y[i]);
+    box.include(x[j], y[j]);
+    edge_boxes[i] = box.grown(growth);
+    for (const Vec2& corner : {top(i), top(j)}) box.include(corner.x(), corner.y());
+    face_boxes[i] = box.grown(growth);
+  }
+}
+
+// Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
+// bodies that are not active without a look at their faces.
+bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
+  const EdgeGeometry<const Outlines> g{*this};
+  const double limit = growth();
+  const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
+    constexpr int lanes = kComparedLanes;
+    for (const BodyIndex b : among) {
+      const Body& of = bodies[static_cast<size_t>(b)];
+      std::array<double, lanes> farthest{};
+      each_pack<lanes>(
+          of.first,
+          of.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.template stray<N>(i, kept_.top_x, kept_.top_y, farthest.data());
+          });
+      if (!(*std::ranges::max_element(farthest) <= limit)) return 1.;
+    }
+    return 0.;
+  };
+  return with_widest(look) != 0;
+}
+
+void Outlines::activate(std::span<const BoxPair> pairs) {
+  is_active_.assign(bodies.size(), 0);
+  for (const auto& [a, b] : pairs) is_active_[a] = is_active_[b] = 1;
+  active_.clear();
+  for (BodyIndex b = 0; b < static_cast<BodyIndex>(bodies.size()); ++b) {
+    if (is_active_[b]) active_.push_back(b);
+  }
+}
+
+void Outlines::prepare_search() {
+  const int count = static_cast<int>(bodies.size());
+  std::vector<BodyIndex> others;
+  for (BodyIndex b = 0; b < count; ++b) {
+    if (!is_active_[b]) others.push_back(b);
+  }
+  find_edges(others);
+  find_boxes(growth());
+  strayed_ = false;
+  kept_.x = x, kept_.y = y;
+  kept_.top_x.resize(x.size()), kept_.top_y.resize(x.size());
+  body_boxes.assign(count, {});
+  for (int i = 0; i < size(); ++i) {
+    kept_.top_x[i] = top(i).x(), kept_.top_y[i] = top(i).y();
+    include(body_boxes[body[i]], edge_boxes[i]);
+    include(body_boxes[body[i]], face_boxes[i]);
+  }
+}
+
+void Outlines::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
+  x = px, y = py;
+  find_edges(active_);
+  prepare_search();
+}
+
+std::optional<Outlines::Notch> Outlines::closed_notch() const {
+  constexpr double kSharp = 3;  // length of the bisector, over the height: an angle of 39 degrees
+  std::optional<Notch> found;
+  double longest = kSharp * kSharp;
+  each_active_vertex([&](int i) {
+    const double square = mx[i] * mx[i] + my[i] * my[i];
+    if (node[i] < 0 || !(square > longest)) return;
+    const int before = previous[i];
+    const bool reflex = tx[before] * ty[i] - ty[before] * tx[i] < 0;
+    if (!reflex || winding(top(i), body[i]) > 0) return;
+    longest = square;
+    found = {i, 2 * std::asin(1 / std::sqrt(square))};
+  });
+  return found;
+}
+
+int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+  int sum = 0;
+  for (int i = bodies[b].first; i < bodies[b].end; ++i) {
+    const Vec2 from = (of_top ? top(i) : point(i)) - p;
+    const Vec2 to = (of_top ? top(next[i]) : point(next[i])) - p;
+    const bool up = to.y() > 0;
+    if ((from.y() > 0) == up) continue;
+    const double side = cross(from, to);
+    if (clear && std::abs(side) < kClear * depth[i] * (to - from).norm()) *clear = false;
+    if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
+  }
+  return sum;
+}
+
+}  // namespace apothem
