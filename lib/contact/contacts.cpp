@@ -69,38 +69,31 @@ void Contacts::hand_out_pairs() {
 }
 
 void Contacts::evaluate() {
-  contacts_.clear();
-  each([&](Kernel& kernel) { kernel.evaluate(contacts_); });
+  each([](Kernel& kernel) { kernel.evaluate(); });
 }
 
 // In the order of the kernels.
 void Contacts::visit(double least, const ContactVisitor& show) const {
-  auto next = contacts_.begin();
-  for (int k = 0; k < kernel_kinds; ++k) {
-    if (kernels_[k]) kernels_[k]->visit_contacts(least, show);
-    for (; next != contacts_.end() && next->kernel == k; ++next) show(*next);
-  }
+  each([&](const Kernel& kernel) { kernel.visit_contacts(least, show); });
 }
 
-const std::vector<Contact>& Contacts::list(double least) const {
-  listed_.clear();
-  visit(least, [&](const Contact& contact) { listed_.push_back(contact); });
-  return listed_;
+std::vector<Contact> Contacts::contacts() const {
+  std::vector<Contact> list;
+  visit(-HUGE_VAL, [&](const Contact& contact) { list.push_back(contact); });
+  return list;
 }
 
 int Contacts::count() const {
-  int late = 0;
-  each([&](const Kernel& kernel) { late += kernel.summary().count; });
-  return late + static_cast<int>(contacts_.size());
+  return sum<int>([](const Kernel& kernel) { return kernel.summary().count; });
 }
 
 std::optional<ContactFault> Contacts::fault() const {
   const auto is_out = [](const Contact& contact) {
     return !(contact.share < 1) && contact.kernel != outline_kernel;  // also if it is NaN
   };
-  bool late = false;
-  each([&](const Kernel& kernel) { late = late || kernel.summary().share >= 1; });
-  if (!late && std::ranges::none_of(contacts_, is_out)) return {};
+  bool out = false;
+  each([&](const Kernel& kernel) { out = out || kernel.summary().share >= 1; });
+  if (!out) return {};
   for (const Contact& contact : contacts()) {
     if (!is_out(contact)) continue;
     ContactFault fault = kernels_[contact.kernel]->fault(contact);
@@ -206,30 +199,29 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   });
-  // Those that may be deeper still are few: the others need not be listed.
-  for (const Contact& c : list(least_of(found, shortest))) {
-    if (c.at_most <= kKnown * c.depth) continue;
+  // Those that may be deeper still are few.
+  visit(least_of(found, shortest), [&](const Contact& c) {
+    if (c.at_most <= kKnown * c.depth) return;
     const double known = std::min(found.largest.value, found.relative.value * length(c));
-    if (!(c.at_most > known)) continue;
+    if (!(c.at_most > known)) return;
     const double depth = kernels_[c.kernel]->penetration(c, known);
-    if (!(depth > known)) continue;
+    if (!(depth > known)) return;
     raise(c, depth, found.largest);
     raise(c, depth / length(c), found.relative);
-  }
+  });
   return found;
 }
 
 bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const {
   const double least = least_of(floors, shortest);
-  const auto deeper = [&](const Contact& c) { return c.depth > least || c.at_most > least; };
-  bool late = false;
+  bool deeper = false;
   each([&](const Kernel& kernel) {
     const ContactSummary all = kernel.summary();
     if (!(all.deepest > least)) return;
-    late = late || all.deepest > floors.largest.value ||
-           all.relative > kRoundOff * floors.relative.value;
+    deeper = deeper || all.deepest > floors.largest.value ||
+             all.relative > kRoundOff * floors.relative.value;
   });
-  return late || std::ranges::any_of(contacts_, deeper);
+  return deeper;
 }
 
 PairPeak Contacts::largest_force() const {

@@ -63,8 +63,8 @@ class Contacts {
   void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);
 
-  /// Ascending within a kernel, until they are listed again. Not for every step.
-  [[nodiscard]] const std::vector<Contact>& contacts() const { return list(-HUGE_VAL); }
+  /// Ascending within a kernel, one kernel after the other. Not for every step.
+  [[nodiscard]] std::vector<Contact> contacts() const;
   /// How many there are.
   [[nodiscard]] int count() const;
   /// The bodies of a contact, and of a spring.
@@ -136,9 +136,8 @@ class Contacts {
 
  private:
   void hand_out_pairs();
-  // Those that may be deeper than `least`, m, and all that kernels have appended.
+  // Those that may be deeper than `least`, m.
   void visit(double least, const ContactVisitor& show) const;
-  [[nodiscard]] const std::vector<Contact>& list(double least) const;
   template <class F>
   void each(F&& f) const {
     for (const auto& kernel : kernels_) {
@@ -159,9 +158,7 @@ class Contacts {
   Search search_;
   std::optional<SearchPlaces> kept_search_;  // and not used yet
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
-  bool tangential_;                      // there is friction or damping
-  std::vector<Contact> contacts_;        // without those that kernels add when they are asked for
-  mutable std::vector<Contact> listed_;  // those that list() has found
+  bool tangential_;  // there is friction or damping
   FrictionMemory memory_;
   // What friction and damping do to rigid bodies, N and N m: now and in the step before.
   std::vector<double> beside_, beside_before_;

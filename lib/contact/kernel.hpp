@@ -66,14 +66,13 @@ class Kernel {
   /// After a search: the pairs that this kernel serves. A body that touches itself is a pair with
   /// itself.
   virtual void take(std::span<const BoxPair> pairs) = 0;
-  /// Finds the contacts of its pairs and the normal forces in them; appends the contacts in
-  /// ascending order, or leaves them to `visit_contacts`. The same bits for any number of threads.
-  /// No allocation unless there are more contacts than ever before.
-  virtual void evaluate(std::vector<Contact>& contacts) = 0;
-  /// What a step asks of contacts that `evaluate` has not appended.
-  [[nodiscard]] virtual ContactSummary summary() const { return {}; }
-  /// Shows those of them that may be deeper than `least`, m. Not for every step.
-  virtual void visit_contacts(double /*least*/, const ContactVisitor& /*visit*/) const {}
+  /// Finds the contacts of its pairs and the normal forces in them. The same bits for any number of
+  /// threads. No allocation unless there are more contacts than ever before.
+  virtual void evaluate() = 0;
+  /// What a step asks of them.
+  [[nodiscard]] virtual ContactSummary summary() const = 0;
+  /// Shows those that may be deeper than `least`, m, in ascending order. Not for every step.
+  virtual void visit_contacts(double least, const ContactVisitor& visit) const = 0;
   /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
   /// largest distance from the boundary of one body of a point on the boundary of the other one
   /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.

@@ -27,20 +27,26 @@ class ContactTerm final : public Term {
   [[nodiscard]] std::string describe() const override;
   /// Throws Unstable where bodies are out of the method's range.
   void add_forces(const Evaluation& evaluation) override;
-  [[nodiscard]] bool has_onsets() const override { return true; }
-  [[nodiscard]] bool needs_bend() const override { return contacts_.dissipates(); }
-  void book_bend(const State& state, std::span<const double> before, double dt) override {
+  /// True if there is friction or damping: what they take on a path that bends within a step has to
+  /// be booked.
+  [[nodiscard]] bool dissipates() const { return contacts_.dissipates(); }
+  /// After add_forces at the end of a drift of dt (s), with all forces at the start of the step as
+  /// `before`: books what the trapezoid rule leaves out of the work of friction and damping.
+  void book_bend(const State& state, std::span<const double> before, double dt) {
     contacts_.book_bend({dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
-  bool find_onsets(const State& state, std::span<const double> before, double dt) override {
+  /// Likewise: finds the impulses that the two ends of the step do not tell of, because a contact
+  /// has begun or ended in between. True if there is one.
+  bool find_onsets(const State& state, std::span<const double> before, double dt) {
     return contacts_.find_onsets(state.kinematics(state.v),
                                  {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
-  void add_onsets(State& state) const override {
+  /// Adds these impulses as a force over the second half of the step.
+  void add_onsets(State& state) const {
     contacts_.add_onsets(2, {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), {}});
   }
   /// Throws Unstable if bodies that meet have moved so far that contacts may have been missed.
-  void check_drift(const State& state, double dt) override;
+  void check_drift(const State& state, double dt);
   void watch(const State& state) override;
   void add_energies(const State& /*state*/, Energies& energies) override {
     energies.contact += contacts_.energy();
@@ -52,20 +58,21 @@ class ContactTerm final : public Term {
   void start_ledger() override;
   void bound_step(StepBounds& bounds) override;
 
-  void start_load_step() override { contacts_.forget_search(); }
-  [[nodiscard]] std::int64_t revision() const override { return contacts_.searches(); }
+  void forget_search() { contacts_.forget_search(); }
+  [[nodiscard]] std::int64_t searches() const { return contacts_.searches(); }
   void add_stiffness(const State& /*state*/, NodeStiffness& stiffness) override {
     contacts_.add_stiffness(stiffness.contact, stiffness.rigid);
   }
-  void drop_trial(const State& state) override {
+  /// Contacts remember what they did before the states that were tried. The next refresh() keeps
+  /// what was near something in the last of them as candidates.
+  void drop_trial() {
     contacts_.drop_trial();
     contacts_.keep_search();
-    refresh(state);
   }
-  void add_force_sizes(std::span<double> of_bodies) const override {
-    contacts_.add_force_sizes(of_bodies);
-  }
-  [[nodiscard]] Vec2 force_on(DeformableIndex body) const override {
+  /// Adds the sizes of the normal forces on each body, rigid ones first, N.
+  void add_force_sizes(std::span<double> of_bodies) const { contacts_.add_force_sizes(of_bodies); }
+  /// The resultant of what other bodies do to a deformable one, N.
+  [[nodiscard]] Vec2 force_on(DeformableIndex body) const {
     return contacts_.force_on(contacts_.surfaces().rigid_count() + body);
   }
   void fields(Archive& archive) override;

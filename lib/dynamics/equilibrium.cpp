@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/mesh/measure.hpp"
@@ -41,10 +42,11 @@ constexpr std::int64_t kMostSteps = 300'000;
 }  // namespace
 
 Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const Terms& terms,
-                         double tolerance)
+                         ContactTerm* contact, double tolerance)
     : model_(model),
       dofs_(dofs),
       terms_(terms),
+      contact_(contact),
       tolerance_(tolerance),
       first_(dofs.layout().node(0)),
       shortest_(HUGE_VAL),
@@ -149,7 +151,7 @@ void Equilibrium::find_masses(const State& state) {
     std::fill(v->begin(), v->end(), 0.);
   }
   for (const auto& term : terms_) term->add_stiffness(state, stiffness_);
-  revision_ = revision();
+  searches_ = searches();
   for (size_t c = 0; c < first_; ++c) mass_[c] = 0;
   raise_masses();
   for (size_t c = first_; c < mass_.size(); ++c) {
@@ -185,11 +187,7 @@ void Equilibrium::raise_masses() {
   }
 }
 
-std::int64_t Equilibrium::revision() const {
-  std::int64_t sum = 0;
-  for (const auto& term : terms_) sum += term->revision();
-  return sum;
-}
+std::int64_t Equilibrium::searches() const { return contact_ ? contact_->searches() : 0; }
 
 void Equilibrium::refuse_diverged(const State& state, const std::string& body) const {
   throw Unstable(
@@ -281,8 +279,8 @@ bool Equilibrium::body_balanced(const State& state, DeformableIndex b,
     }
   }
   result.load += sizes;
-  for (const auto& term : terms_) {
-    const Vec2 force = term->force_on(b);
+  if (contact_) {
+    const Vec2 force = contact_->force_on(b);
     sizes += hypotenuse(force.x(), force.y());
   }
   const BodyIndex number = static_cast<BodyIndex>(model_.bodies.size()) + b;
@@ -319,7 +317,7 @@ bool Equilibrium::reached(const State& state, LoadStep& result) {
     balanced = body_balanced(state, b, outside, result) && balanced;
   }
   std::vector<double> contact(body_loads_.size(), 0);
-  for (const auto& term : terms_) term->add_force_sizes(contact);
+  if (contact_) contact_->add_force_sizes(contact);
   for (RigidIndex b = 0; b < state.layout.rigid_bodies; ++b) {
     if (model_.bodies[b].motion != Motion::free && !model_.bodies[b].servo) continue;
     balanced = rigid_balanced(state, b, contact[b], result) && balanced;
@@ -371,7 +369,7 @@ void Equilibrium::move(State& state, bool first) {
     }
   }
   const double most = kStride * shortest_ / kStep;
-  if (revision_ > 0 && fastest > most) {
+  if (searches_ > 0 && fastest > most) {
     const double slower = most / fastest;
     for (double& v : velocity_) v *= slower;
     kinetic *= slower * slower;
@@ -390,10 +388,10 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
   if (pause_ && pause_->until == time) {
     state.time = pause_->time, state.x = pause_->x, state.v = pause_->v;
     step = pause_->steps;
-    revision_ = revision();
+    searches_ = searches();
   } else {
     // The scaled masses depend on what is near: the same bits from a checkpoint.
-    for (const auto& term : terms_) term->start_load_step();
+    if (contact_) contact_->forget_search();
   }
   pause_.reset();
   for (;; ++step) {
@@ -404,7 +402,7 @@ LoadStep Equilibrium::relax(State& state, const State& before, double time,
       dofs_.follow(state);
     }
     find_forces(state, before);
-    if (step % kRenewedEvery == 0 || revision() != revision_) {
+    if (step % kRenewedEvery == 0 || searches() != searches_) {
       find_masses(state);
     } else {
       raise_masses();
@@ -437,7 +435,8 @@ LoadStep Equilibrium::find(State& state, Ledger& ledger, double time,
   LoadStep result = relax(state, before, time, stop);
   if (!result.complete) {
     state = before;
-    for (const auto& term : terms_) term->drop_trial(state);
+    if (contact_) contact_->drop_trial();
+    for (const auto& term : terms_) term->refresh(state);
     return result;
   }
   // The ledger itself knows the work of prescribed motion, and terms know that of gravity.

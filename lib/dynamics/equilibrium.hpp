@@ -12,15 +12,17 @@
 
 namespace apothem {
 
+class ContactTerm;
+
 /// Dynamic relaxation. Friction is followed from load step to load step: within one, it is a
 /// function of the displacements since its start, so that the path of the relaxation leaves no
 /// trace.
 class Equilibrium {
  public:
   using Terms = std::vector<std::unique_ptr<Term>>;
-  /// All must outlive this object.
+  /// `contact`: that of the terms; may be null. All must outlive this object.
   Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const Terms& terms,
-              double tolerance);
+              ContactTerm* contact, double tolerance);
 
   /// Moves loads, supports and prescribed bodies to where they are at `time` and finds the
   /// equilibrium there; books the work of loads and supports (trapezoid rule over the load step).
@@ -50,7 +52,7 @@ class Equilibrium {
   void find_slip(const State& state);
   void find_masses(const State& state);
   void raise_masses();
-  [[nodiscard]] std::int64_t revision() const;
+  [[nodiscard]] std::int64_t searches() const;
   void check_shapes(const State& state) const;
   [[nodiscard]] std::vector<double> loads() const;
   [[nodiscard]] std::vector<double> given_forces(const State& state) const;
@@ -75,6 +77,7 @@ class Equilibrium {
   const Model& model_;
   const DegreesOfFreedom& dofs_;
   const Terms& terms_;
+  ContactTerm* contact_;
   double tolerance_;
   bool settling_ = false;
   size_t first_;                      // coordinate of the nodes
@@ -99,7 +102,7 @@ class Equilibrium {
   std::vector<double> body_loads_now_;  // likewise
   double sum_loads_ = 0, sum_residual_ = 0, sum_noise_ = 0, most_ = 0;  // in a look: see reached
   double kinetic_ = 0;                                                  // at the step before
-  std::int64_t revision_ = -1;
+  std::int64_t searches_ = -1;  // when masses were found last
 };
 
 }  // namespace apothem

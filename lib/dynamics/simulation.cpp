@@ -68,7 +68,7 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
   onsets_ = onsets_ && damps_gently(model, step_choice(), bounds);
   if (time.statics) {
-    equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, time.tolerance);
+    equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, contact_, time.tolerance);
   }
   try {
     find_forces(state_.v, 0);
@@ -151,13 +151,11 @@ void Simulation::take_step() {
   ledger_.book_before_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.drift(state_, dt);
-  for (const auto& term : terms_) term->check_drift(state_, dt);
+  if (contact_) contact_->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
   if (needs_forces_before()) forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
-  for (const auto& term : terms_) {
-    if (term->needs_bend()) term->book_bend(state_, forces_, dt);
-  }
+  if (contact_ && contact_->dissipates()) contact_->book_bend(state_, forces_, dt);
   const bool onsets = add_onsets(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
@@ -226,26 +224,17 @@ void Simulation::find_forces(std::span<const double> velocity, double dt, double
     term->add_forces({state_, velocity, dt, lambda_, clock_, lambda_limit, false, still});
 }
 
-bool Simulation::watches_onsets() const {
-  return onsets_ &&
-         std::ranges::any_of(terms_, [](const auto& term) { return term->has_onsets(); });
-}
-
 bool Simulation::needs_forces_before() const {
-  return watches_onsets() ||
-         std::ranges::any_of(terms_, [](const auto& term) { return term->needs_bend(); });
+  return contact_ && (onsets_ || contact_->dissipates());
 }
 
 // Contacts that begin or end within the step push in its second half as if they had pushed when
 // they did. True if there are any: state.f holds their forces as well, and forces_ the others
 // alone.
 bool Simulation::add_onsets(double dt) {
-  if (!watches_onsets()) return false;
-  bool found = false;
-  for (const auto& term : terms_) found = term->find_onsets(state_, forces_, dt) || found;
-  if (!found) return false;
+  if (!onsets_ || !contact_ || !contact_->find_onsets(state_, forces_, dt)) return false;
   forces_ = state_.f;
-  for (const auto& term : terms_) term->add_onsets(state_);
+  contact_->add_onsets(state_);
   return true;
 }
 
@@ -288,7 +277,7 @@ void Simulation::settle(const std::function<bool()>& stop) {
         stop);
   } else {
     try {
-      Equilibrium(model_, dofs_, terms_, kSettled).settle(state_, stop);
+      Equilibrium(model_, dofs_, terms_, contact_, kSettled).settle(state_, stop);
     } catch (const Unstable& error) {
       throw Unrunnable(error.what(), "time/start", -1);
     }

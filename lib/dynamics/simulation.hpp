@@ -131,7 +131,6 @@ class Simulation {
   void damp(double h);
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0,
                    bool still = false);
-  [[nodiscard]] bool watches_onsets() const;
   [[nodiscard]] bool needs_forces_before() const;
   bool add_onsets(double dt);
   void settle(const std::function<bool()>& stop);

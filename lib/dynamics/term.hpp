@@ -50,30 +50,11 @@ class Term {
   /// and those of the nodes with the elements' (Elements is the first term where there are nodes).
   /// Throws Unstable.
   virtual void add_forces(const Evaluation& /*evaluation*/) {}
-  /// True if its dissipative forces have to be booked along the path that bends within a step.
-  [[nodiscard]] virtual bool needs_bend() const { return false; }
-  /// After add_forces at the end of a drift of dt (s), with all forces at the start of the step as
-  /// `before`: books what the trapezoid rule leaves out of the work of its dissipative forces.
-  virtual void book_bend(const State& /*state*/, std::span<const double> /*before*/,
-                         double /*dt*/) {}
-  /// True if find_onsets may find something.
-  [[nodiscard]] virtual bool has_onsets() const { return false; }
-  /// After add_forces at the end of a drift of dt (s): finds the impulses that the two ends of the
-  /// step do not tell of, because a force has begun or ended in between. `before`: all forces at
-  /// the start of the step. True if there is one.
-  virtual bool find_onsets(const State& /*state*/, std::span<const double> /*before*/,
-                           double /*dt*/) {
-    return false;
-  }
-  /// Adds these impulses as a force over the second half of the step.
-  virtual void add_onsets(State& /*state*/) const {}
   /// Slows bodies down over h (s), exactly for any h.
   virtual void damp(State& /*state*/, double /*h*/, Ledger& /*ledger*/) {}
   /// Work and impulses from outside over h (s), with the forces of the last evaluation and the
   /// velocities of the half step.
   virtual void book(const State& /*state*/, double /*h*/, Ledger& /*ledger*/) {}
-  /// After a drift of dt (s). Throws Unstable if the step was too long for the velocities.
-  virtual void check_drift(const State& /*state*/, double /*dt*/) {}
   /// From time to time. Throws Unstable if a body is out of the range of the method.
   virtual void watch(const State& /*state*/) {}
 
@@ -89,19 +70,9 @@ class Term {
   virtual void bound_step(StepBounds& /*bounds*/) {}
 
   // For static runs:
-  virtual void start_load_step() {}
-  /// What it remembers is again what it was before the states that were tried; `state` as well.
-  /// What was near something in the last of them is still a candidate for contact.
-  virtual void drop_trial(const State& state) { refresh(state); }
-  /// Changes when the stiffness may have changed at once.
-  [[nodiscard]] virtual std::int64_t revision() const { return 0; }
   virtual void add_stiffness(const State& /*state*/, NodeStiffness& /*stiffness*/) {}
   /// Adds given forces on nodes, N.
   virtual void add_given_forces(std::span<double> /*of_nodes*/) const {}
-  /// Adds the sizes of the normal forces on each body, rigid ones first, N.
-  virtual void add_force_sizes(std::span<double> /*of_bodies*/) const {}
-  /// The resultant of what other bodies do to a deformable one, N.
-  [[nodiscard]] virtual Vec2 force_on(DeformableIndex /*body*/) const { return Vec2::Zero(); }
 
   /// What it remembers, for checkpoints.
   virtual void fields(Archive& /*archive*/) {}

@@ -41,26 +41,40 @@ bool ElementKernel::convex(SurfaceIndex i) const {
   return surfaces_.is_rigid(i) || surfaces_.elements().convex(i - surfaces_.rigid_count());
 }
 
-void ElementKernel::evaluate(std::vector<Contact>& contacts) {
+void ElementKernel::evaluate() {
   pairs_.evaluate([](const PairInTouch&, const PairIntegral&, int) {});
   pairs_.forget_ended();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
+  contacts_.clear();
   touches_.clear();
   largest_force_ = {};
   for (const PairInTouch& pair : pairs_.touching()) {
     const SurfaceIndex a = pair.a, b = pair.b;
-    contacts.push_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
+    Contact& contact =
+        contacts_.emplace_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
     // The potential measures the depth below borders that are not part of the body's boundary.
-    contacts.back().depth = 0, contacts.back().at_most = HUGE_VAL;
+    contact.depth = 0, contact.at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
-      contacts.back().share = 1;  // nothing beyond is to be trusted
+      contact.share = 1;  // nothing beyond is to be trusted
       return;
     }
-    const double contact_stiffness = contacts.back().stiffness;
     add_touch(pair);
-    touches_.back().stiffness = contact_stiffness;
+    touches_.back().stiffness = contact.stiffness;
   }
   find_largest_force();
+}
+
+ContactSummary ElementKernel::summary() const {
+  ContactSummary summary{.count = static_cast<int>(contacts_.size())};
+  for (const Contact& contact : contacts_) {
+    summary.deepest = HUGE_VAL;
+    if (!(contact.share < 1)) summary.share = 1;  // also if it is NaN
+  }
+  return summary;
+}
+
+void ElementKernel::visit_contacts(double /*least*/, const ContactVisitor& visit) const {
+  for (const Contact& contact : contacts_) visit(contact);
 }
 
 void ElementKernel::find_largest_force() {

@@ -31,7 +31,9 @@ class ElementKernel final : public Kernel {
                 double thickness, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
-  void evaluate(std::vector<Contact>& contacts) override;
+  void evaluate() override;
+  [[nodiscard]] ContactSummary summary() const override;
+  void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
@@ -113,7 +115,8 @@ class ElementKernel final : public Kernel {
   double thickness_;  // m
   ForceDistribution distribution_;
   PairIntegrals pairs_;
-  std::vector<Touch> touches_;  // ascending
+  std::vector<Contact> contacts_;  // ascending
+  std::vector<Touch> touches_;     // of these, unless one is out of range
   /// Of two bodies, with the number of the touch.
   struct BodyTouch {
     BodyIndex a, b;

@@ -146,7 +146,7 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
   }
 }
 
-void OutlineKernel::evaluate(std::vector<Contact>& /*contacts*/) {
+void OutlineKernel::evaluate() {
   const Outlines& o = outlines_;
   listed_ = false;
   depths_.forget();

@@ -33,7 +33,7 @@ class OutlineKernel final : public Kernel {
 
   void take(std::span<const BoxPair> pairs) override;
   /// The contacts are those of edges with faces, then of edges with tops and of tops with edges.
-  void evaluate(std::vector<Contact>& contacts) override;
+  void evaluate() override;
   [[nodiscard]] ContactSummary summary() const override;
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;

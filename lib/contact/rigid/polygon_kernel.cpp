@@ -34,7 +34,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
   }
 }
 
-void PolygonKernel::evaluate(std::vector<Contact>& /*contacts*/) {
+void PolygonKernel::evaluate() {
   for (Found& found : found_) found.summary = {.relative = 0};
   pairs_.evaluate([&](const PairInTouch& pair, const PairIntegral& integral, int worker) {
     found_[static_cast<size_t>(worker)].summary.include(

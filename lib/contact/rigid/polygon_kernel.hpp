@@ -22,7 +22,7 @@ class PolygonKernel final : public Kernel {
                 double thickness, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
-  void evaluate(std::vector<Contact>& contacts) override;
+  void evaluate() override;
   [[nodiscard]] ContactSummary summary() const override { return summary_; }
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;

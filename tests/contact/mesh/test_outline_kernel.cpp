@@ -206,7 +206,7 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   const double slope = .2, d = .001;  // apex on flat
   const double expected = 2 * .5 * d * d * slope * (1 / .125 + std::sin(std::atan(slope)) / .15);
   CHECK(on_tip.force.y() == Approx(expected).epsilon(1e-10));
-  const std::vector<Contact>& contacts = bodies.contacts->contacts();
+  const std::vector<Contact> contacts = bodies.contacts->contacts();
   const auto worst =
       std::max_element(contacts.begin(), contacts.end(),
                        [](const Contact& p, const Contact& q) { return p.share < q.share; });

@@ -77,7 +77,7 @@ TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
     bodies.evaluate();
     bodies.find_forces();
     const PairResult pair = edge(a, b);
-    const std::vector<Contact>& contacts = bodies.contacts->contacts();
+    const std::vector<Contact> contacts = bodies.contacts->contacts();
     REQUIRE(contacts.size() == (pair.integral.touching() ? 1 : 0));
     if (contacts.empty()) continue;
     ++touching;
