@@ -227,4 +227,44 @@ APOTHEM_INLINE void write_rows(const FourOf<PackOf<4>>& from, const Row& row) {
   for (int k = 0; k < 4; ++k) rows[static_cast<size_t>(k)].store(row(k));
 }
 
+/// Reads a struct that consists of numbers alone, for a struct of packs that of(k) of every lane k;
+/// for plain numbers of(0).
+template <template <class> class T, class F>
+APOTHEM_INLINE void gather(T<double>& to, const F& of) {
+  to = of(0);
+}
+template <template <class> class T, class F>
+APOTHEM_INLINE void gather(T<PackOf<4>>& to, const F& of) {
+  constexpr size_t n = sizeof(T<double>) / sizeof(double);
+  static_assert(sizeof(to) == n * sizeof(PackOf<4>));
+  const auto row = [&](int k) APOTHEM_LAMBDA { return reinterpret_cast<const double*>(&of(k)); };
+  std::array<PackOf<4>, n> numbers;
+  for (size_t i = 0; i + 4 <= n; i += 4) {
+    FourOf<PackOf<4>> four;
+    read_rows([&](int k) APOTHEM_LAMBDA { return row(k) + i; }, four);
+    for (size_t j = 0; j < 4; ++j) numbers[i + j] = four[j];
+  }
+  for (size_t i = n - n % 4; i < n; ++i) {
+    numbers[i] = pack_of<4>([&](int k) APOTHEM_LAMBDA { return row(k)[i]; });
+  }
+  std::memcpy(static_cast<void*>(&to), numbers.data(), sizeof to);
+}
+
+/// Writes a struct that consists of packs alone: that of lane k to to(k).
+template <template <class> class T, class F>
+APOTHEM_INLINE void scatter(const T<PackOf<4>>& from, const F& to) {
+  constexpr size_t n = sizeof(T<double>) / sizeof(double);
+  static_assert(sizeof(from) == n * sizeof(PackOf<4>));
+  const auto row = [&](int k) APOTHEM_LAMBDA { return reinterpret_cast<double*>(&to(k)); };
+  std::array<PackOf<4>, n> numbers;
+  std::memcpy(numbers.data(), static_cast<const void*>(&from), sizeof from);
+  for (size_t i = 0; i + 4 <= n; i += 4) {
+    write_rows({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]},
+               [&](int k) APOTHEM_LAMBDA { return row(k) + i; });
+  }
+  for (size_t i = n - n % 4; i < n; ++i) {
+    for (int k = 0; k < 4; ++k) row(k)[i] = numbers[i].v[k];
+  }
+}
+
 }  // namespace apothem

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "geometry/spatial/groups.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/contact/law/pair_vector.hpp"
 #include "lib/contact/law/stiffness.hpp"
 #include "lib/mesh/locate.hpp"
@@ -267,18 +268,17 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     }
     if (rough) {
       const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
-      const double stiffness = friction.tangential_stiffness * thickness_;
-      const double slip = rate.dot(tangent),
-                   limit = now.restored ? HUGE_VAL : friction.coefficient * (size + push);
-      const double force =
-          apothem::slide(before.empty() ? 0 : before[0].force, slip * dt, stiffness, limit);
-      memory.keep({{element_kernel, t.a, t.b, 0}, force, stiffness, tangent});
+      const CoulombSpring<double> spring{
+          friction.tangential_stiffness * thickness_,
+          now.restored ? HUGE_VAL : friction.coefficient * (size + push)};
+      const double slip = rate.dot(tangent);
+      const double force = spring.after(before.empty() ? 0 : before[0].force, slip * dt);
+      memory.keep({{element_kernel, t.a, t.b, 0}, force, spring.stiffness, tangent});
       t.friction = force * tangent;
       apply(t.friction, tangential_);
       if (dashpots) {
         const double time = times_.of(body_a, body_b).tangential_time;
-        const double dashpot = std::clamp(force - time * stiffness * slip, -limit, limit) - force;
-        t.damping += dashpot * tangent;
+        t.damping += spring.dashpot(force, time, slip) * tangent;
       }
     }
     if (dashpots) apply(t.damping, damping_);

@@ -46,11 +46,6 @@ struct Spring {
   }
 };
 
-/// Force of a spring after a slip in m: never beyond Coulomb's limit in N.
-inline double slide(double force, double slip, double stiffness, double limit) {
-  return std::clamp(force - stiffness * slip, -limit, limit);
-}
-
 /// What a pair, or a block of pairs, books in a step, J. Blocks have entries of their own, which
 /// are summed in their order, so that sums do not depend on who works on which pairs.
 struct PairBook {

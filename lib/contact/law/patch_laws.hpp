@@ -5,6 +5,7 @@
 #include <array>
 
 #include "geometry/integrals/edge_integral.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/contact/law/pair_vector.hpp"
 #include "lib/contact/law/stiffness.hpp"
 
@@ -159,7 +160,6 @@ struct PatchForces {
 template <class Real>
 APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const Real& share,
                         DamperOf<Real>& damper, PatchForces<Real>& forces) {
-  const Real& k = p.tangential_stiffness;
   const VectorOf<Real> tangent = p.normal.turned();
   const VectorOf<Real> velocity = p.slip(p.rate);
   const Real along = velocity.dot(tangent);
@@ -167,19 +167,18 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const 
   const Real seen = along * p.size;
   const Truth<Real> noise = seen * seen <= velocity.dot(velocity) * (p.force_error * p.force_error);
   const Real slip = select(noise, Real(0.), along);
-  const Real limit = p.coefficient * (p.normal_stiffness * p.force + damper.damping.plane()).size();
-  const auto within = [&](const Real& f) __attribute__((always_inline)) {
-    return select(f < -limit, -limit, select(f > limit, limit, f));
-  };
+  const CoulombSpring<Real> spring{
+      p.tangential_stiffness,
+      p.coefficient * (p.normal_stiffness * p.force + damper.damping.plane()).size()};
+  const Real& k = spring.stiffness;
   // The point at which it acts moves: in the first half of the step it is still where it was.
   const Real power_before = p.friction_before.power(p.rate);
   const Real slip_before = select(p.spring * p.spring > Real(0.), power_before / p.spring, slip);
-  const Real trial = p.spring - k * (Real(.5) * (slip + slip_before) * (share * Real(dt)));
-  forces.spring = select(p.has_direction, within(trial), Real(0.));
+  const Real next = spring.after(p.spring, Real(.5) * (slip + slip_before) * (share * Real(dt)));
+  forces.spring = select(p.has_direction, next, Real(0.));
   // What it loses is what it takes from the bodies and does not store.
   forces.lost = -Real(dt / 2) * (power_before + forces.spring * along) -
                 (forces.spring * forces.spring - p.spring * p.spring) / (Real(2.) * k);
-  const Real& next = forces.spring;
   forces.tangent = {select(p.has_direction, tangent.x, Real(0.)),
                     select(p.has_direction, tangent.y, Real(0.))};
   forces.all = forces.all + p.force_at_point(forces.spring * tangent).where(p.has_direction);
@@ -192,7 +191,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, bool damped, double dt, const 
   // A first look, perhaps with the memory of another run, keeps the force of the dashpot.
   if (dt > 0) {
     const Real time = p.damping_time(p.tangential_ratio, k, tangent);
-    damper.tangential = within(next - time * k * slip) - next;
+    damper.tangential = spring.dashpot(forces.spring, time, slip);
   }
   damper.tangential =
       select(p.has_direction & (p.tangential_ratio > Real(0.)), damper.tangential, Real(0.));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/execution/pack.hpp"
 
@@ -139,17 +140,14 @@ APOTHEM_INLINE void find_springs(const FourOf<PackOf<kBlock>>& sums, const SlipM
   const Pack mu = Pack::load(memory.coefficient.data()), time = Pack::load(memory.time.data());
   const auto exists = (mu > zero) & (normal > zero);
   const Pack above = normal + sums[SlipSums::push];
-  const Pack limit = mu * select(above < zero, zero, above) + Pack(beyond);
-  const auto clamped = [&](const Pack& force) APOTHEM_LAMBDA {
-    return select(force < -limit, -limit, select(limit < force, limit, force));
-  };
+  const CoulombSpring<Pack> spring{stiffness,
+                                   mu * select(above < zero, zero, above) + Pack(beyond)};
   // New contact joins without a slip of its own; contact that ends takes its share along.
   const Pack ratio = stiffness / Pack::load(memory.stiffness.data());
   const Pack before = Pack::load(memory.force.data()) * select(ratio < one, ratio, one);
   const Pack per_normal = one / normal, slip = sums[SlipSums::rate] * per_normal;  // m/s
-  const Pack force = clamped(before - stiffness * (slip * Pack(dt)));
-  const Pack resisting = clamped(force - time * stiffness * slip) - force;
-  const Pack dashpot = select(time > zero, resisting, zero);
+  const Pack force = spring.after(before, slip * Pack(dt));
+  const Pack dashpot = select(time > zero, spring.dashpot(force, time, slip), zero);
   const Pack energy = select(stiffness > zero, force * force / (Pack(2.) * stiffness), zero);
   const auto put = [&](OutlineSlip::Numbers& numbers, const Pack& number)
                        APOTHEM_LAMBDA { select(exists, number, zero).store(numbers.data()); };

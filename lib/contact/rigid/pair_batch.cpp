@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "lib/contact/rigid/pair_lanes.hpp"
 #include "lib/execution/dispatch.hpp"
 
 namespace apothem {
@@ -12,6 +11,39 @@ namespace {
 // Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
+
+// A number of each lane; a plain number is that of the first one.
+template <class F>
+APOTHEM_INLINE void read_lanes(double& number, const F& of) {
+  number = of(0);
+}
+template <int lanes, class F>
+APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
+  pack = pack_of<lanes>(of);
+}
+// A truth value of each lane, from 1 or 0.
+template <class F>
+APOTHEM_INLINE void read_lanes(bool& truth, const F& of) {
+  truth = of(0) > 0;
+}
+template <int lanes, class F>
+APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& of) {
+  PackOf<lanes> number;
+  read_lanes(number, of);
+  mask = number > PackOf<lanes>(0.);
+}
+
+// The mass centre of a minus that of b; `lanes` have these numbers.
+template <class Real, class Lane>
+APOTHEM_INLINE void read_between(const Surfaces& surfaces, const Lane* lanes,
+                                 VectorOf<Real>& between) {
+  read_lanes(between.x, [&](int k) APOTHEM_LAMBDA {
+    return surfaces.pose(lanes[k].a)[0] - surfaces.pose(lanes[k].b)[0];
+  });
+  read_lanes(between.y, [&](int k) APOTHEM_LAMBDA {
+    return surfaces.pose(lanes[k].a)[1] - surfaces.pose(lanes[k].b)[1];
+  });
+}
 
 template <class Real>
 APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<Real>& p) {
@@ -86,8 +118,8 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
   read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].memory->patches > 0 ? 0. : 1.; });
   read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].memory->spring; });
-  read_lanes(p.friction_before,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return work[k].memory->force; });
+  gather(p.friction_before,
+         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return work[k].memory->force; });
   if (!damped) {  // what only dampers need
     p.rate_before = {};
     p.touched = Real(0.) > Real(0.);
@@ -95,18 +127,12 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
     return;
   }
   const auto last = [&](int k) APOTHEM_LAMBDA -> const DampingMemory& { return *work[k].damping; };
-  read_lanes(p.rate_before,
-             [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).pair.rate; });
+  gather(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).pair.rate; });
   read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].memory->touched() ? 1. : 0.; });
-  read_lanes(damper.elastic,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.elastic; });
-  read_lanes(damper.damping,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).patch.damping; });
-  read_lanes(damper.tangential, [&](int k) APOTHEM_LAMBDA { return last(k).patch.tangential; });
-  read_lanes(damper.stiffness, [&](int k) APOTHEM_LAMBDA { return last(k).patch.stiffness; });
+  gather(damper, [&](int k) APOTHEM_LAMBDA -> const PatchDamper& { return last(k).patch; });
   PairVectorOf<Real> damping_before;
-  read_lanes(damping_before,
-             [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).pair.damping; });
+  gather(damping_before,
+         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).pair.damping; });
   p.friction_before = p.friction_before - damping_before;
 }
 
@@ -163,23 +189,8 @@ void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, T
     // What the spring of one patch of several did before is not known: it may have been elsewhere.
     p.friction_before = p.force_at_point(p.spring * p.normal.turned());
     step_patch(p, kind.rough, kind.damped, scene.dt, damper, found);
-    const auto of = [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; };
-    write_lanes(found.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).all; });
-    write_lanes(found.damping, [&](int k) APOTHEM_LAMBDA -> PairForce& { return of(k).damping; });
-    write_held(found.held_a, [&](int k) APOTHEM_LAMBDA -> BodyStiffness& { return of(k).held_a; });
-    write_held(found.held_b, [&](int k) APOTHEM_LAMBDA -> BodyStiffness& { return of(k).held_b; });
-    const auto damper_in = [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damper_of[k]; };
-    write_lanes(damper.elastic,
-                [&](int k) APOTHEM_LAMBDA -> PairForce& { return damper_in(k).elastic; });
-    write_lanes(damper.damping,
-                [&](int k) APOTHEM_LAMBDA -> PairForce& { return damper_in(k).damping; });
-    for (int k = 0; k < kComparedLanes; ++k) {
-      of(k).spring = found.spring.v[k];
-      of(k).lost = found.lost.v[k];
-      of(k).tangent = {found.tangent.x.v[k], found.tangent.y.v[k]};
-      damper_in(k).tangential = damper.tangential.v[k];
-      damper_in(k).stiffness = damper.stiffness.v[k];
-    }
+    scatter(found, [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; });
+    scatter(damper, [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damper_of[k]; });
     return 0.;
   });
   std::copy_n(damper_of.begin(), work.size(), dampers);
@@ -211,25 +222,17 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
     read_memory(scene, work, kind_.damped, p, damper);
     step_patch(p, kind_.rough, kind_.damped, scene.dt, damper, forces);
     const auto memory = [&](int k) APOTHEM_LAMBDA -> PairMemory& { return *work[k].memory; };
-    write_lanes(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
+    scatter(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
     if (kind_.damped) {
       const auto damping = [&](int k) APOTHEM_LAMBDA -> DampingMemory& { return *work[k].damping; };
       const auto pair = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return damping(k).pair; };
       PairVectorOf<Pack> before;
-      read_lanes(before, [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
+      gather(before, [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
       const Pack lost = Pack(-scene.dt / 2) * (forces.damping + before).power(p.rate);
-      write_lanes(forces.damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).damping; });
-      write_lanes(p.rate, [&](int k) APOTHEM_LAMBDA -> PairForce& { return pair(k).rate; });
-      write_lanes(damper.elastic,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.elastic; });
-      write_lanes(damper.damping,
-                  [&](int k) APOTHEM_LAMBDA -> PairForce& { return damping(k).patch.damping; });
-      for (int k = 0; k < kAtOnce; ++k) {
-        damping(k).patch.tangential = damper.tangential.v[k];
-        damping(k).patch.stiffness = damper.stiffness.v[k];
-        work[k].book->damping_loss = lost.v[k];
-      }
+      const PairDampingOf<Pack> now{forces.damping, p.rate};
+      scatter(now, [&](int k) APOTHEM_LAMBDA -> PairDamping& { return pair(k); });
+      scatter(damper, [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damping(k).patch; });
+      for (int k = 0; k < kAtOnce; ++k) work[k].book->damping_loss = lost.v[k];
     }
     if (kind_.rough) {
       const Pack energy = forces.spring * forces.spring / (Pack(2.) * p.tangential_stiffness);

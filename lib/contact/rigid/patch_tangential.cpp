@@ -8,12 +8,11 @@ namespace {
 
 constexpr size_t kPairsAheadOfStep = 8;  // that are fetched, for large scenes
 
-// The force of a spring after a slip in m: never beyond Coulomb's limit in N. What it loses is the
-// mean force times the slip that it does not follow.
-double follow(double force, double slip, double stiffness, double limit, PairBook& book) {
-  const double trial = force - stiffness * slip;
-  const double next = std::clamp(trial, -limit, limit);
-  book.loss += (force + next) * (trial - next) / (2 * stiffness);
+// The force of a spring after a slip in m. What it loses is the mean force times the slip that it
+// does not follow.
+double follow(const CoulombSpring<double>& spring, double force, double slip, PairBook& book) {
+  const double trial = spring.trial(force, slip), next = spring.within(trial);
+  book.loss += (force + next) * (trial - next) / (2 * spring.stiffness);
   return next;
 }
 
@@ -358,8 +357,8 @@ void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const Boun
     const Vec2 behind = run.centre + between;
     const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, run.centre) - cross(rate.b, behind);
     const double force =
-        follow(before, slip.dot(tangent) * all_.scene_.dt, stiffness,
-               pair.law->friction.coefficient * normal_stiffness * run.force.norm(), *pair.book);
+        follow({stiffness, pair.law->friction.coefficient * normal_stiffness * run.force.norm()},
+               before, slip.dot(tangent) * all_.scene_.dt, *pair.book);
     *next = {key, force, stiffness, tangent};
     pair.book->energy += (next++)->energy();
     const double arm_a = cross(run.centre, tangent), arm_b = cross(behind, tangent);

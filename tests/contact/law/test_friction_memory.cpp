@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "lib/contact/law/contact.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/run/json_archive.hpp"
 #include "tests/support.hpp"
@@ -39,10 +40,10 @@ bool same(std::span<const Spring> s, std::span<const Spring> t) {
 }  // namespace
 
 TEST_CASE("a spring follows the slip, and Coulomb's limit ends it", "[friction_memory][contact]") {
-  CHECK(slide(0, .1, 2, 10) == -.2);
-  CHECK(slide(.5, .1, 2, 10) == .3);
-  CHECK(slide(.5, 0, 2, 10) == .5);
-  CHECK(slide(0, 100, 2, 10) == -10);
+  CHECK(CoulombSpring<double>{2, 10}.after(0, .1) == -.2);
+  CHECK(CoulombSpring<double>{2, 10}.after(.5, .1) == .3);
+  CHECK(CoulombSpring<double>{2, 10}.after(.5, 0) == .5);
+  CHECK(CoulombSpring<double>{2, 10}.after(0, 100) == -10);
   CHECK(slide(0, -100, 2, 10) == 10);
   CHECK(slide(8, 0, 2, 3) == 3);  // less pressure, less friction
   CHECK(slide(-8, 0, 2, 3) == -3);
