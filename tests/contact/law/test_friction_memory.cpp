@@ -44,16 +44,16 @@ TEST_CASE("a spring follows the slip, and Coulomb's limit ends it", "[friction_m
   CHECK(CoulombSpring<double>{2, 10}.after(.5, .1) == .3);
   CHECK(CoulombSpring<double>{2, 10}.after(.5, 0) == .5);
   CHECK(CoulombSpring<double>{2, 10}.after(0, 100) == -10);
-  CHECK(slide(0, -100, 2, 10) == 10);
-  CHECK(slide(8, 0, 2, 3) == 3);  // less pressure, less friction
-  CHECK(slide(-8, 0, 2, 3) == -3);
-  CHECK(slide(8, 1, 2, 0) == 0);
+  CHECK(CoulombSpring<double>{2, 10}.after(0, -100) == 10);
+  CHECK(CoulombSpring<double>{2, 3}.after(8, 0) == 3);  // less pressure, less friction
+  CHECK(CoulombSpring<double>{2, 3}.after(-8, 0) == -3);
+  CHECK(CoulombSpring<double>{2, 0}.after(8, 1) == 0);
   // Sliding on and back again: the spring goes back by all of its reach.
   double force = 0;
-  for (int i = 0; i < 10; ++i) force = slide(force, 1, 2, 3);
+  for (int i = 0; i < 10; ++i) force = CoulombSpring<double>{2, 3}.after(force, 1);
   CHECK(force == -3);
-  CHECK(slide(force, -.5, 2, 3) == -2);
-  CHECK(slide(force, -3, 2, 3) == 3);
+  CHECK(CoulombSpring<double>{2, 3}.after(force, -.5) == -2);
+  CHECK(CoulombSpring<double>{2, 3}.after(force, -3) == 3);
 }
 
 TEST_CASE("springs are kept in the order of their keys", "[friction_memory][contact]") {

@@ -14,13 +14,13 @@ namespace {
 constexpr double kSkin = .02;  // m
 
 // Surfaces of bodies and their state, without any contact.
-struct Scene {
+struct Shapes {
   std::deque<Potential> potentials;
   Surfaces surfaces;
   std::vector<double> pose, displacement;
   std::vector<BodyIndex> body_of_node;
 
-  explicit Scene(bool outlines = false) : surfaces(kSkin, kSkin, outlines) {}
+  explicit Shapes(bool outlines = false) : surfaces(kSkin, kSkin, outlines) {}
   void add_polygon(const Polygon& polygon, const std::array<double, 3>& place = {},
                    const std::array<double, 3>& inverse_mass = {1, 1, 1}, double skin = HUGE_VAL) {
     potentials.push_back(about_centre(polygon));
@@ -85,8 +85,8 @@ Mesh random_mesh(samples::Random& random) {
   return rectangle_mesh({size, size * random.uniform(.5, 1)}, cells, at, shape);
 }
 
-Scene random_scene(samples::Random& random, int polygons, int meshes, bool outlines) {
-  Scene scene(outlines && meshes > 0);
+Shapes random_scene(samples::Random& random, int polygons, int meshes, bool outlines) {
+  Shapes scene(outlines && meshes > 0);
   for (int i = 0; i < polygons; ++i) {
     const double size = random_size(random);
     const Polygon shape = random.integer(0, 3) ? samples::random_convex(random, 6)
@@ -116,7 +116,7 @@ RandomMotion random_motion(samples::Random& random, size_t bodies, bool with_fas
   }
   return motion;
 }
-void move(Scene& scene, const RandomMotion& motion, samples::Random& random) {
+void move(Shapes& scene, const RandomMotion& motion, samples::Random& random) {
   for (size_t i = 0; i < scene.pose.size() / 3; ++i) {
     scene.pose[3 * i] += motion.drift[i].x();
     scene.pose[3 * i + 1] += motion.drift[i].y();
@@ -143,7 +143,7 @@ TEST_CASE("the search misses no touching pair of moving surfaces, large or small
     CAPTURE(mix.polygons, mix.meshes, mix.outlines);
     int touching = 0, searches = 0, steps = 0, slow_steps = 0;
     for (int round = 0; round < scaled(6); ++round) {
-      Scene scene = random_scene(random, mix.polygons, mix.meshes, mix.outlines);
+      Shapes scene = random_scene(random, mix.polygons, mix.meshes, mix.outlines);
       const RandomMotion motion =
           random_motion(random, static_cast<size_t>(scene.surfaces.body_count()), round % 2 == 1);
       Search search;
@@ -191,7 +191,7 @@ TEST_CASE("the search misses no touching pair of moving surfaces, large or small
 }
 
 TEST_CASE("candidates are found once and for all where nothing comes near", "[search][contact]") {
-  Scene scene;
+  Shapes scene;
   scene.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 0, 0});
   scene.add_polygon(samples::block(-.5, -.5, .5, .5), {1 + .99 * kSkin, 0, 0});
   scene.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 1 + 1.01 * kSkin, 0});
@@ -209,7 +209,7 @@ TEST_CASE("candidates serve until a surface has left its box, grown by half the 
   for (const bool outline : {false, true}) {
     CAPTURE(outline);
     const auto scene = [&] {
-      Scene made(outline);
+      Shapes made(outline);
       made.add_polygon(samples::block(-.5, -.5, .5, .5), {0, 0, 0});
       made.add_polygon(samples::block(-.5, -.5, .5, .5), {3, 0, 0});
       made.add_mesh(rectangle_mesh({1, 1}, {2, 2}, {0, 2}, ElementShape::quadrilateral), outline);
@@ -217,7 +217,7 @@ TEST_CASE("candidates serve until a surface has left its box, grown by half the 
       return made;
     };
     const auto stale_after = [&](auto&& change) {
-      Scene moved = scene();
+      Shapes moved = scene();
       Search search;
       CHECK(search.stale(moved.surfaces));
       search.search(moved.surfaces);
@@ -231,22 +231,22 @@ TEST_CASE("candidates serve until a surface has left its box, grown by half the 
         for (const double share : {.499, .501}) {
           CAPTURE(sign, axis, share);
           const double far = sign * share * kSkin;
-          CHECK(stale_after([&](Scene& s) { s.pose[3 + axis] += far; }) == (share > .5));
-          CHECK(stale_after([&](Scene& s) {
+          CHECK(stale_after([&](Shapes& s) { s.pose[3 + axis] += far; }) == (share > .5));
+          CHECK(stale_after([&](Shapes& s) {
                   for (size_t k = axis; k < s.displacement.size(); k += 2) s.displacement[k] = far;
                 }) == (share > .5));
         }
       }
     }
     // A corner of the mesh alone, and a turn that carries corners out of the box.
-    CHECK(stale_after([](Scene& s) { s.displacement[0] -= .6 * kSkin; }));
-    CHECK(stale_after([](Scene& s) { s.pose[2] += .1; }));
-    CHECK_FALSE(stale_after([](Scene& s) { s.pose[2] += .01; }));
+    CHECK(stale_after([](Shapes& s) { s.displacement[0] -= .6 * kSkin; }));
+    CHECK(stale_after([](Shapes& s) { s.pose[2] += .1; }));
+    CHECK_FALSE(stale_after([](Shapes& s) { s.pose[2] += .01; }));
   }
 }
 
 TEST_CASE("a search that has been forgotten is stale", "[search][contact]") {
-  Scene scene;
+  Shapes scene;
   scene.add_polygon(samples::block(0, 0, 1, 1));
   scene.place();
   Search search;
@@ -274,7 +274,7 @@ TEST_CASE("a surface that is nowhere is an error that names its body", "[search]
         -std::numeric_limits<double>::infinity()}) {
     for (const bool outline : {false, true}) {
       const auto body_of = [&](auto&& change) -> BodyIndex {
-        Scene scene(outline);
+        Shapes scene(outline);
         scene.add_polygon(samples::block(0, 0, 1, 1), {0, 0, 0});
         scene.add_polygon(samples::block(0, 0, 1, 1), {5, 0, 0});
         scene.add_mesh(one_element({{0, 5}, {1, 5}, {1, 6}, {0, 6}}), outline);
@@ -289,14 +289,14 @@ TEST_CASE("a surface that is nowhere is an error that names its body", "[search]
         return -1;
       };
       CAPTURE(nowhere, outline);
-      CHECK(body_of([](Scene&) {}) == -1);
+      CHECK(body_of([](Shapes&) {}) == -1);
       for (const size_t k : {0, 1, 2}) {
-        CHECK(body_of([&](Scene& s) { s.pose[k] = nowhere; }) == 0);
-        CHECK(body_of([&](Scene& s) { s.pose[3 + k] = nowhere; }) == 1);
+        CHECK(body_of([&](Shapes& s) { s.pose[k] = nowhere; }) == 0);
+        CHECK(body_of([&](Shapes& s) { s.pose[3 + k] = nowhere; }) == 1);
       }
       for (const size_t k : {0, 1, 6, 7}) {
-        CHECK(body_of([&](Scene& s) { s.displacement[k] = nowhere; }) == 2);
-        CHECK(body_of([&](Scene& s) { s.displacement[8 + k] = nowhere; }) == 3);
+        CHECK(body_of([&](Shapes& s) { s.displacement[k] = nowhere; }) == 2);
+        CHECK(body_of([&](Shapes& s) { s.displacement[8 + k] = nowhere; }) == 3);
       }
     }
   }
@@ -305,7 +305,7 @@ TEST_CASE("a surface that is nowhere is an error that names its body", "[search]
 TEST_CASE("pairs that no force can move, and pairs of one body, are left out",
           "[search][contact]") {
   const Polygon unit = samples::block(-.5, -.5, .5, .5);
-  Scene scene;
+  Shapes scene;
   scene.add_polygon(unit, {0, 0, 0}, {0, 0, 0});
   scene.add_polygon(unit, {.1, 0, 0}, {0, 0, 0});
   scene.add_polygon(unit, {.2, 0, 0}, {0, 0, 1});  // may turn only
@@ -324,7 +324,7 @@ TEST_CASE("the search finds the same on any number of threads", "[search][contac
   const Potential square = about_centre(samples::block(-.5, -.5, .5, .5));
   const Potential slab = about_centre(samples::block(-60, -.5, 60, .5));
   const auto scene = [&] {
-    Scene made;
+    Shapes made;
     for (int i = 0; i < kAcross * kAcross; ++i) {
       made.surfaces.add_polygon(square, {{1, 1, 1}, 2, 1, .5, true, HUGE_VAL});
       made.pose.insert(made.pose.end(), {1.01 * (i % kAcross), 1.01 * (i / kAcross), 0});
@@ -337,7 +337,7 @@ TEST_CASE("the search finds the same on any number of threads", "[search][contac
     return made;
   };
   const auto found = [&](int threads, bool some_absent) {
-    Scene moved = scene();
+    Shapes moved = scene();
     Search search;
     std::vector<BoxPair> all;
     const auto look = [&] {
