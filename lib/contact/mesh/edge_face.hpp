@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "geometry/integrals/collar.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 
@@ -30,8 +31,8 @@ struct EdgeFaceContact {
   std::int32_t edge, face;
   double slope;  ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
-  double along = 0;  ///< friction force on the edge along the face, with the dashpot beside it, N
-  double push = 0;   ///< of the dashpots across the face, N
+  Vec2 drag = Vec2::Zero();  ///< friction on the edge with the dashpot beside it, N
+  Vec2 push = Vec2::Zero();  ///< of the dashpot across the contact on the edge, N
 };
 
 /// The normal forces of a contact, N, each along the inward normal of its edge or face, on its

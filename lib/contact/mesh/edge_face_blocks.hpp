@@ -90,6 +90,7 @@ class EdgeFaceBlocks {
     return std::span(groups_).subspan(static_cast<size_t>(unit.first_group),
                                       static_cast<size_t>(unit.end_group - unit.first_group));
   }
+  [[nodiscard]] size_t group_count() const { return groups_.size(); }
   /// Each law belongs to one unit.
   [[nodiscard]] std::span<const EdgeFaceLaw> laws() const { return laws_; }
   [[nodiscard]] int most_blocks() const { return most_blocks_; }  ///< of a unit

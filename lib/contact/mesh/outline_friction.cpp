@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lib/contact/kernel.hpp"
+#include "lib/contact/law/coulomb_spring.hpp"
 #include "lib/execution/dispatch.hpp"
 #include "lib/execution/elementary.hpp"
 
@@ -25,6 +26,17 @@ APOTHEM_INLINE bool is_before(const SpringKey& one, const SpringKey& other) {
   return number(one) < number(other);
 }
 
+// Calls f(block, lane) for the contacts of a spring.
+template <class F>
+void each_contact(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
+                  const EdgeFaceGroup& group, const F& f) {
+  for (std::int32_t c = group.first; c < group.end; ++c) {
+    const std::int32_t block = unit.first + c / kBlock;
+    const auto lane = static_cast<size_t>(c % kBlock);
+    if ((blocks.met()[block] >> lane & 1U) != 0) f(block, lane);
+  }
+}
+
 }  // namespace
 
 OutlineFriction::OutlineFriction(const Outlines& outlines, const PairTable& table,
@@ -33,6 +45,7 @@ OutlineFriction::OutlineFriction(const Outlines& outlines, const PairTable& tabl
       damped_(table.damped()),
       threads_(threads),
       times_(table, inverse_mass),
+      normals_(outlines),
       all_(outlines.bodies.size()),
       workers_(static_cast<size_t>(threads_.count())) {
   std::iota(all_.begin(), all_.end(), 0);
@@ -95,6 +108,67 @@ OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& no
   return sum;
 }
 
+// What the contacts of springs add up to, without what springs remember.
+void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) {
+  with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
+    for (std::int32_t i = unit.first; i < unit.end; ++i) {
+      if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
+      find_slip(step.blocks.blocks()[i], step.blocks.touches()[i], velocities_,
+                slips_[static_cast<size_t>(i)]);
+    }
+    return 0.;
+  });
+  const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    SpringContact& sum = contacts_[static_cast<size_t>(unit.first_group) + g] = {};
+    sum.edge = groups[g].edge;
+    each_contact(step.blocks, unit, groups[g], [&](std::int32_t i, size_t lane) {
+      const EdgeFaceBlock& block = step.blocks.blocks()[i];
+      const EdgeFaceTouch& touch = step.blocks.touches()[i];
+      const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
+      sum.other = outlines_.body[block.a[lane]];
+      sum.normal += slip.at_p[lane] + slip.at_q[lane];
+      sum.place += slip.at_q[lane];
+      sum.rate_x += slip.rate_x[lane], sum.rate_y += slip.rate_y[lane];
+      sum.stiffness +=
+          block.spring[lane] * ((touch.to[lane] - touch.from[lane]) * touch.edge_length[lane]);
+      sum.deepest = std::max(sum.deepest, touch.deepest[lane]);
+    });
+  }
+}
+
+// What springs remember.
+void OutlineFriction::find_before(const Step& step) {
+  auto before = step.before.begin();
+  for (const EdgeFaceUnit& unit : step.blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+      if (!(contact.normal > 0)) continue;
+      const SpringKey key = key_of(groups[g]);
+      while (before != step.before.end() && is_before(before->key, key)) ++before;
+      if (before == step.before.end() || before->key.a != key.a || before->key.b != key.b) continue;
+      contact.is_old = true;
+      contact.force_before = before->force, contact.stiffness_before = before->stiffness;
+    }
+  }
+}
+
+// Stiffness of the contacts of a spring along its normal, N/m: their pieces of faces resist by the
+// cosine of their angle to it, and what cancels does not.
+double OutlineFriction::resistance(const Step& step, const EdgeFaceUnit& unit,
+                                   const EdgeFaceGroup& group, const SpringContact& contact) const {
+  if (!(contact.normal > 0)) return 0;
+  double sum = 0;
+  each_contact(step.blocks, unit, group, [&](std::int32_t i, size_t lane) {
+    const EdgeFaceTouch& touch = step.blocks.touches()[i];
+    const double length = (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
+    const double along = touch.tx[lane] * -contact.ny + touch.ty[lane] * contact.nx;
+    sum += step.blocks.blocks()[i].slope[lane] * length * std::max(0., along);
+  });
+  return contact.pressed / contact.normal * sum;
+}
+
 void OutlineFriction::find_times(const Step& step) {
   const std::span<const EdgeFaceLaw> laws = step.blocks.laws();
   law_times_.resize(laws.size());
@@ -102,12 +176,18 @@ void OutlineFriction::find_times(const Step& step) {
     std::ranges::fill(law_times_, LawTimes{0, 0});
     return;
   }
+  resistances_.resize(contacts_.size());
   times_.begin_step();
+  for (const EdgeFaceUnit& unit : step.blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      const size_t number = static_cast<size_t>(unit.first_group) + g;
+      resistances_[number] = resistance(step, unit, groups[g], contacts_[number]);
+      times_[laws[static_cast<size_t>(groups[g].law)].bodies].normal += resistances_[number];
+    }
+  }
   for (size_t i = 0; i < laws.size(); ++i) {
-    const double length = step.blocks.lengths()[i];
-    DampingTimes::Pair& pair = times_[laws[i].bodies];
-    pair.normal += laws[i].slope * length;
-    pair.tangential += laws[i].spring * length;
+    times_[laws[i].bodies].tangential += laws[i].spring * step.blocks.lengths()[i];
   }
   times_.end_step(step.dt);
   for (size_t i = 0; i < laws.size(); ++i) {
@@ -116,101 +196,61 @@ void OutlineFriction::find_times(const Step& step) {
   }
 }
 
-// The slip rate of contact that has closed within a long step, N m/s: what came before is no slip.
-double OutlineFriction::damped_rate(const Step& step, const EdgeFaceUnit& unit,
-                                    const EdgeFaceGroup& group, const Worker& worker,
-                                    const std::array<double, 4>& sums) {
-  double approach = 0, width = 0, depth = 0;
-  for (std::int32_t i = group.first; i < group.end; ++i) {
-    const std::int32_t block = unit.first + i / kBlock;
-    const auto lane = static_cast<size_t>(i % kBlock);
-    if ((step.blocks.met()[block] >> lane & 1U) == 0) continue;
-    const EdgeFaceTouch& touch = step.blocks.touches()[block];
-    approach += worker.slips[static_cast<size_t>(i / kBlock)].approach[lane];
+// The part of a long step in which a new contact was closed: what came before is no slip.
+double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
+                                     const EdgeFaceGroup& group, const SpringContact& contact) {
+  double width = 0, depth = 0;
+  each_contact(step.blocks, unit, group, [&](std::int32_t i, size_t lane) {
+    const EdgeFaceTouch& touch = step.blocks.touches()[i];
     width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
     depth += touch.sum[lane] * touch.edge_length[lane];
-  }
-  const double closed = approach / sums[SlipSums::normal] * step.dt;
-  return sums[SlipSums::rate] * (closed > depth / width ? depth / width / closed : 1);
+  });
+  const double approach = -(contact.nx * contact.rate_x + contact.ny * contact.rate_y);
+  const double closed = approach / contact.normal * step.dt;
+  return closed > depth / width ? depth / width / closed : 1;
 }
 
-// What does not depend on springs.
-APOTHEM_INLINE void OutlineFriction::find_slips(const Step& step, const EdgeFaceUnit& unit,
-                                                Worker& worker) const {
-  for (std::int32_t i = unit.first; i < unit.end; ++i) {
-    const auto k = static_cast<size_t>(i - unit.first);
-    if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) {
-      std::fill_n(&worker.addends[kBlock * k], kBlock, std::array<double, 4>{});
-      continue;
-    }
-    const EdgeFaceBlock& block = step.blocks.blocks()[i];
-    std::array<double, kBlock> times;
-    for (size_t l = 0; step.dashpots && l < kBlock; ++l) {
-      times[l] = law_times_[static_cast<size_t>(block.law[l])].normal;
-    }
-    find_slip(block, step.blocks.touches()[i], velocities_, step.dashpots ? &times : nullptr,
-              worker.slips[k], &worker.addends[kBlock * k]);
-  }
-}
-
-// Finds the springs and the dashpots along faces, four at a time. Returns the energy of the
-// springs, J.
-APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
-                                              Worker& worker) const {
-  constexpr std::array<double, 4> kNone{};
+// Finds springs and dashpots. Returns the energy of the springs, J.
+double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const {
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
-  FourOf<PackOf<kBlock>> rows, sums;
-  SlipMemory memory;
-  SlipSprings springs;
-  EdgeFaceBlock::Numbers stiffness;
   double energy = 0;
-  for (size_t first = 0; first < groups.size(); first += kBlock) {
-    const size_t count = std::min<size_t>(kBlock, groups.size() - first);
-    for (size_t l = 0; l < kBlock; ++l) {
-      if (l >= count) {
-        rows[l] = PackOf<kBlock>(0.), memory.coefficient[l] = memory.time[l] = memory.force[l] = 0;
-        memory.stiffness[l] = 1;
-        continue;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const EdgeFaceGroup& group = groups[g];
+    const size_t number = static_cast<size_t>(unit.first_group) + g;
+    const SpringContact& contact = contacts_[number];
+    double friction = 0, dashpot = 0, push = 0;  // N
+    if (contact.normal > 0) {
+      const double coefficient = step.blocks.laws()[static_cast<size_t>(group.law)].friction;
+      const LawTimes& times = law_times_[static_cast<size_t>(group.law)];
+      const double per_normal = 1 / contact.normal;
+      if (times.normal > 0) {
+        const double closing =
+            -(contact.nx * contact.rate_x + contact.ny * contact.rate_y) * per_normal;
+        push = std::max(-contact.pressed, times.normal * resistances_[number] * closing);
       }
-      const EdgeFaceGroup& group = groups[first + l];
-      // Most springs have one contact or two: these are summed without a branch.
-      const std::array<double, 4>* const addends =
-          &worker.addends[static_cast<size_t>(group.first)];
-      const std::int32_t contacts = group.end - group.first;
-      rows[l] = PackOf<4>::load(addends[0].data()) +
-                PackOf<4>::load(contacts > 1 ? addends[1].data() : kNone.data());
-      for (std::int32_t i = 2; i < contacts; ++i) rows[l] += PackOf<4>::load(addends[i].data());
-      const SpringKey key = key_of(group);
-      const std::span<const Spring> before = step.before;
-      while (worker.next < before.size() && is_before(before[worker.next].key, key)) ++worker.next;
-      const bool is_old = worker.next < before.size() && before[worker.next].key.a == key.a &&
-                          before[worker.next].key.b == key.b;
-      memory.force[l] = is_old ? before[worker.next].force : 0;
-      memory.stiffness[l] = is_old ? before[worker.next].stiffness : 1;
-      memory.coefficient[l] = step.blocks.laws()[static_cast<size_t>(group.law)].friction;
-      memory.time[l] = law_times_[static_cast<size_t>(group.law)].tangential;
-      if (step.finite && !is_old) {
-        std::array<double, 4> row;
-        rows[l].store(row.data());
-        row[SlipSums::rate] = damped_rate(step, unit, group, worker, row);
-        rows[l] = PackOf<4>::load(row.data());
+      if (coefficient > 0) {
+        const CoulombSpring<double> spring{
+            contact.stiffness,
+            step.limited ? coefficient * std::max(0., contact.pressed + push) : HUGE_VAL};
+        double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) * per_normal;
+        if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
+        friction = spring.after(contact.force_before, slip * step.dt);
+        if (times.tangential > 0) dashpot = spring.dashpot(friction, times.tangential, slip);
+        if (contact.stiffness > 0) energy += friction * friction / (2 * contact.stiffness);
+        worker.springs.push_back(
+            {.key = key_of(group), .force = friction, .stiffness = contact.stiffness});
       }
+      friction *= per_normal, dashpot *= per_normal, push *= per_normal;
     }
-    transpose(rows, sums);
-    sums[SlipSums::stiffness].store(stiffness.data());
-    find_springs(sums, memory, step.dt, step.limited ? 0 : HUGE_VAL, springs);
-    for (size_t l = 0; l < count; ++l) {
-      const EdgeFaceGroup& group = groups[first + l];
-      energy += springs.energy[l];
-      const auto share = [&](std::int32_t i) APOTHEM_LAMBDA {
-        worker.friction[static_cast<size_t>(i)] = springs.friction[l];
-        worker.dashpots[static_cast<size_t>(i)] = springs.dashpot[l];
-      };
-      share(group.first), share(group.end - 1);
-      for (std::int32_t i = group.first + 1; i < group.end - 1; ++i) share(i);
-      if ((springs.lanes >> l & 1U) == 0) continue;
-      worker.springs.push_back(
-          {.key = key_of(group), .force = springs.force[l], .stiffness = stiffness[l]});
+    for (std::int32_t c = group.first; c < group.end; ++c) {
+      SlipPull& pull = worker.pulls[static_cast<size_t>(c / kBlock)];
+      const auto lane = static_cast<size_t>(c % kBlock);
+      pull.friction_x[lane] = -friction * contact.ny;
+      pull.friction_y[lane] = friction * contact.nx;
+      pull.dashpot_x[lane] = push * contact.nx - dashpot * contact.ny;
+      pull.dashpot_y[lane] = push * contact.ny + dashpot * contact.nx;
+      SlipPush& pushes = worker.pushes[static_cast<size_t>(c / kBlock)];
+      pushes.x[lane] = push * contact.nx, pushes.y[lane] = push * contact.ny;
     }
   }
   return energy;
@@ -220,28 +260,24 @@ APOTHEM_INLINE double OutlineFriction::follow(const Step& step, const EdgeFaceUn
 APOTHEM_INLINE OutlineFriction::Powers OutlineFriction::pull(const Step& step,
                                                              const EdgeFaceUnit& unit,
                                                              Worker& worker, bool divided) {
-  using Pack = PackOf<kBlock>;
   Powers powers;
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
     const auto k = static_cast<size_t>(i - unit.first);
-    const OutlineSlip& slip = worker.slips[k];
-    const Pack spring = Pack::load(&worker.friction[kBlock * k]);
-    const Pack dashpot = Pack::load(&worker.dashpots[kBlock * k]);
-    const Pack rate = Pack::load(slip.rate.data());
-    EdgeFaceBlock::Numbers friction, damping;  // W
-    (spring * rate).store(friction.data());
-    (dashpot * rate + Pack::load(slip.push_power.data())).store(damping.data());
-    for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
-      powers.friction += friction[l];
-      powers.damping += damping[l];
-    }
+    const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
+    const SlipPull& pull = worker.pulls[k];
+    const SlipPush& push = worker.pushes[k];
     BlockDrag& drag = block_drags_[static_cast<size_t>(i)];
-    const Pack normal = Pack::load(slip.at_p.data()) + Pack::load(slip.at_q.data());
-    ((spring + dashpot) * normal).store(drag.along.data());
-    drag.push = slip.push;
+    for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+      powers.friction += pull.friction_x[l] * slip.rate_x[l] + pull.friction_y[l] * slip.rate_y[l];
+      powers.damping += pull.dashpot_x[l] * slip.rate_x[l] + pull.dashpot_y[l] * slip.rate_y[l];
+      const double normal = slip.at_p[l] + slip.at_q[l];
+      drag.push_x[l] = push.x[l] * normal, drag.push_y[l] = push.y[l] * normal;
+      drag.drag_x[l] = (pull.friction_x[l] + pull.dashpot_x[l]) * normal - drag.push_x[l];
+      drag.drag_y[l] = (pull.friction_y[l] + pull.dashpot_y[l]) * normal - drag.push_y[l];
+    }
     SlipForces forces;
-    find_drags(step.blocks.touches()[i], slip, spring, dashpot, forces);
+    find_drags(step.blocks.touches()[i], slip, pull, forces);
     const EdgeFaceBlock& block = step.blocks.blocks()[i];
     const auto add_at_once = [&](std::int32_t vertex, const PackOf<4>& force)
                                  APOTHEM_LAMBDA { add(force, drags_[vertex]); };
@@ -266,11 +302,10 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
   Unit& found = units_[index] = {};
   if (unit.touching == 0) return;
   // The last block may have lanes without a spring.
-  const size_t lanes = kBlock * static_cast<size_t>(unit.end - unit.first);
-  for (size_t l = lanes - kBlock; l < lanes; ++l) worker.friction[l] = worker.dashpots[l] = 0;
+  const auto last = static_cast<size_t>(unit.end - unit.first) - 1;
+  worker.pulls[last] = {}, worker.pushes[last] = {};
+  found.energy = follow(step, unit, worker);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    find_slips(step, unit, worker);
-    found.energy = follow(step, unit, worker);
     found.powers = pull(step, unit, worker, divided);
     return 0.;
   });
@@ -295,27 +330,26 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
                       body_powers_[static_cast<size_t>(i)] = begin(bodies[i], now, step);
                     }
                   });
-  find_times(step);
   units_.resize(blocks.units().size());
   block_drags_.resize(blocks.blocks().size());
+  slips_.resize(blocks.blocks().size());
+  contacts_.resize(blocks.group_count());
   for (Worker& worker : workers_) {
     const auto most = static_cast<size_t>(blocks.most_blocks());
-    if (worker.slips.size() < most) {
-      worker.slips.resize(most), worker.addends.resize(kBlock * most);
-      worker.friction.resize(kBlock * most), worker.dashpots.resize(kBlock * most);
-    }
+    if (worker.pulls.size() < most) worker.pulls.resize(most), worker.pushes.resize(most);
     worker.springs.clear(), worker.late.clear();
   }
   const auto units = static_cast<int>(blocks.units().size());
   const double per_unit = static_cast<double>(blocks.blocks().size()) / std::max(units, 1);
+  threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int) {
+    for (int i = first; i < end; ++i) find_contacts(step, blocks.units()[i]);
+  });
+  find_before(step);
+  normals_.find(contacts_);
+  find_times(step);
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
     Worker& worker = workers_[static_cast<size_t>(number)];
-    if (first == end) return;
-    const std::span<const EdgeFaceGroup> groups = blocks.groups(blocks.units()[first]);
-    const auto place =
-        std::ranges::lower_bound(step.before, key_of(groups.front()), {}, &Spring::key);
-    worker.next = static_cast<size_t>(place - step.before.begin());
     for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, divided);
   });
   // In the order of the units, as if one thread had worked on them.

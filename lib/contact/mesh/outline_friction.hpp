@@ -1,7 +1,8 @@
 // Friction and damping between outlines (docs/theory.md, Friction and damping). For every edge and
-// every body that it touches there is a spring along the face, with a dashpot beside it, which
-// together obey Coulomb's limit. Dashpots along n act in two points of each piece of an edge in a
-// face, on the edge and on the foot of the point on the face, and never pull.
+// every body that it touches there is a spring across the common normal of its neighbourhood
+// (common_normals.hpp), with a dashpot beside it, which together obey Coulomb's limit, and a
+// dashpot along this normal, which never pulls. They act on the edge and on the feet of its points
+// on the faces, where the pressure is.
 #pragma once
 
 #include <span>
@@ -11,6 +12,7 @@
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/law/pair_table.hpp"
+#include "lib/contact/mesh/common_normals.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/mesh/outline_slip.hpp"
 #include "lib/contact/surface/outlines.hpp"
@@ -53,10 +55,10 @@ class OutlineFriction {
     const VertexDrag& d = drags_[static_cast<size_t>(vertex)];
     return {d[0] + d[2], d[1] + d[3]};
   }
-  /// In the contacts of a block: the friction force along the face with the dashpot beside it, and
-  /// the force of the dashpots against the face, on the body of the edge, N.
+  /// In the contacts of a block: friction with the dashpot beside it, and the dashpot along the
+  /// normal, on the body of the edge, N.
   struct BlockDrag {
-    EdgeFaceBlock::Numbers along, push;
+    EdgeFaceBlock::Numbers drag_x, drag_y, push_x, push_y;
   };
   [[nodiscard]] const std::vector<BlockDrag>& drags() const { return block_drags_; }
 
@@ -80,22 +82,23 @@ class OutlineFriction {
   };
   /// What a thread needs.
   struct Worker {
-    std::vector<OutlineSlip> slips;              // of the blocks of a unit
-    std::vector<std::array<double, 4>> addends;  // of its lanes: see SlipSums
-    std::vector<double> friction, dashpots;      // likewise: forces over the normal force
-    std::vector<Spring> springs;                 // of all units, ascending
-    size_t next = 0;                             // among the springs of the step before
+    std::vector<SlipPull> pulls;   // of the blocks of a unit
+    std::vector<SlipPush> pushes;  // likewise
+    std::vector<Spring> springs;   // of all units, ascending
     /// On vertices that other threads have forces for as well.
     std::vector<std::pair<std::int32_t, VertexDrag>> late;
   };
 
   Powers begin(BodyIndex body, const Kinematics& now, const Step& step);
+  void find_contacts(const Step& step, const EdgeFaceUnit& unit);
+  void find_before(const Step& step);
   void find_times(const Step& step);
   void slide_unit(const Step& step, size_t index, Worker& worker, bool divided);
-  [[nodiscard]] static double damped_rate(const Step& step, const EdgeFaceUnit& unit,
-                                          const EdgeFaceGroup& group, const Worker& worker,
-                                          const std::array<double, 4>& sums);
-  void find_slips(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const;
+  [[nodiscard]] double resistance(const Step& step, const EdgeFaceUnit& unit,
+                                  const EdgeFaceGroup& group, const SpringContact& contact) const;
+  [[nodiscard]] static double closed_share(const Step& step, const EdgeFaceUnit& unit,
+                                           const EdgeFaceGroup& group,
+                                           const SpringContact& contact);
   [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const;
   [[nodiscard]] Powers pull(const Step& step, const EdgeFaceUnit& unit, Worker& worker,
                             bool divided);
@@ -104,6 +107,7 @@ class OutlineFriction {
   bool damped_;
   Threads threads_;
   DampingTimes times_;
+  CommonNormals normals_;
   // For so many steps more bodies that have become inactive may have forces, now or before.
   static constexpr int kBothVectors = 2;
   int everywhere_ = kBothVectors;
@@ -115,7 +119,10 @@ class OutlineFriction {
     double normal, tangential;  // s
   };
   std::vector<LawTimes> law_times_;
-  std::vector<Powers> body_powers_;  // of the forces of the step before
+  std::vector<OutlineSlip> slips_;       // of the blocks
+  std::vector<SpringContact> contacts_;  // of the springs: of all groups
+  std::vector<double> resistances_;      // likewise: stiffness along the normal, N/m
+  std::vector<Powers> body_powers_;      // of the forces of the step before
   std::vector<Unit> units_;
   std::vector<Worker> workers_;
 };

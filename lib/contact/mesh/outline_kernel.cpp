@@ -265,8 +265,9 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
     EdgeFaceContact& contact =
         edge_faces_.emplace_back(EdgeFaceContact{p, a, block.slope[lane], piece});
     if (!friction_ || i >= friction_->drags().size()) return;
-    contact.along = friction_->drags()[i].along[lane];
-    contact.push = friction_->drags()[i].push[lane];
+    const OutlineFriction::BlockDrag& drag = friction_->drags()[i];
+    contact.drag = {drag.drag_x[lane], drag.drag_y[lane]};
+    contact.push = {drag.push_x[lane], drag.push_y[lane]};
   });
   listed_ = true;
   return edge_faces_;

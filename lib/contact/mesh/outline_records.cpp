@@ -145,7 +145,7 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   std::vector<PatchSum> found(static_cast<size_t>(count));
   for (size_t i = 0; i < contacts.size(); ++i) {
-    const auto& [edge, face, slope, p, along, push] = contacts[i];
+    const auto& [edge, face, slope, p, drag, push] = contacts[i];
     PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
     ContactRecord& sum = of_patch.record;
     std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
@@ -166,8 +166,8 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
     sum.point += force * on_edge;
     of_patch.weight += force;
     of_patch.deepest = std::max(of_patch.deepest, p.deepest);
-    sum.tangential += (own_is_a ? along : -along) * Vec2(o.tx[face], o.ty[face]);
-    sum.damping += (own_is_a ? -push : push) * gives;
+    sum.tangential += own_is_a ? drag : Vec2(-drag);
+    sum.damping += own_is_a ? push : Vec2(-push);
   }
   size_t next = contacts.size();
   for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {
@@ -209,11 +209,11 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   const size_t first = records.size();
   for (int i = 0; i < o.size(); ++i) records.push_back({o.body[i], o.point(i), o.point(o.next[i])});
   SurfaceRecord* const record = records.data() + first;
-  for (const auto& [edge, face, slope, piece, along, push] : state.contacts) {
+  for (const auto& [edge, face, slope, piece, drag, push] : state.contacts) {
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
     for (const int k : {edge, face}) {  // the faces look the other way
-      record[k].traction -= along / (o.length[k] * thickness);
+      record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }
   for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {

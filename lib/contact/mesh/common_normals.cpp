@@ -1,0 +1,184 @@
+#include "lib/contact/mesh/common_normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace apothem {
+namespace {
+
+constexpr double kReach = 8;  // depths
+
+}  // namespace
+
+void CommonNormals::find(std::vector<SpringContact>& springs) {
+  find_places(springs);
+  for (size_t first = 0, end = 0; first < places_.size(); first = end) {
+    const Place& place = places_[first];
+    while (end < places_.size() && places_[end].loop == place.loop &&
+           places_[end].other == place.other) {
+      ++end;
+    }
+    find_neighbourhood(springs, first, end);
+  }
+}
+
+void CommonNormals::find_places(const std::vector<SpringContact>& springs) {
+  const Outlines& o = outlines_;
+  if (loop_of_.empty()) {
+    loop_of_.resize(static_cast<size_t>(o.size()));
+    at_.resize(loop_of_.size());
+    perimeter_.resize(o.loops.size());
+    for (size_t k = 0; k < o.loops.size(); ++k) {
+      const Outlines::Loop& loop = o.loops[k];
+      std::fill(loop_of_.begin() + loop.first, loop_of_.begin() + loop.end,
+                static_cast<std::int32_t>(k));
+    }
+  }
+  measured_.assign(o.loops.size(), 0);
+  places_.clear();
+  for (size_t i = 0; i < springs.size(); ++i) {
+    const SpringContact& spring = springs[i];
+    if (!(spring.normal > 0)) continue;
+    const std::int32_t loop = loop_of_[spring.edge];
+    if (measured_[loop] == 0) {
+      double sum = 0;
+      for (int v = o.loops[loop].first; v < o.loops[loop].end; ++v) {
+        at_[v] = sum;
+        sum += o.length[v];
+      }
+      perimeter_[loop] = sum;
+      measured_[loop] = 1;
+    }
+    const double on_edge = spring.place / spring.normal * o.length[spring.edge];
+    places_.push_back({loop, spring.other, at_[spring.edge] + on_edge, static_cast<std::int32_t>(i),
+                       spring.deepest});
+  }
+  std::ranges::sort(places_, {},
+                    [](const Place& p) { return std::tuple(p.loop, p.other, p.at, p.spring); });
+}
+
+// Calls f(number, weight) for the places around the place i, those before it first.
+template <class F>
+void CommonNormals::each_neighbour(size_t first, size_t end, size_t i, const F& f) const {
+  const size_t count = end - first;
+  const Place& own = places_[i];
+  const double perimeter = perimeter_[own.loop];
+  const auto visit = [&](size_t k, double distance) {
+    const double reach = kReach * std::max(own.depth, places_[k].depth);
+    const double weight = std::min(1., 2 - 2 * distance / reach);
+    if (weight > 0) f(k, weight);
+  };
+  const double farthest = std::min(kReach * deepest_, perimeter / 2);
+  for (size_t step = 1; step < count; ++step) {
+    const size_t k = i >= first + step ? i - step : i + count - step;
+    const double distance = own.at - places_[k].at + (k > i ? perimeter : 0);
+    if (!(distance < farthest)) break;
+    visit(k, distance);
+  }
+  for (size_t step = 1; step < count; ++step) {
+    const size_t k = i + step < end ? i + step : i + step - count;
+    const double distance = places_[k].at - own.at + (k < i ? perimeter : 0);
+    if (!(distance <= farthest) || (distance == farthest && distance < perimeter / 2)) break;
+    visit(k, distance);
+  }
+}
+
+// Places `first` to `end` belong to one closed line and one body.
+void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size_t first,
+                                       size_t end) {
+  const Outlines& o = outlines_;
+  const size_t count = end - first;
+  const auto inward = [&](const SpringContact& s) { return Vec2(-o.ty[s.edge], o.tx[s.edge]); };
+  const double perimeter = perimeter_[places_[first].loop];
+  // A depth reaches along the line, less by the distance over kReach. Twice around.
+  deepest_ = places_[first].depth;
+  for (size_t i = first; i < end; ++i) deepest_ = std::max(deepest_, places_[i].depth);
+  for (size_t step = 1; step < 2 * count; ++step) {
+    Place& place = places_[first + step % count];
+    const Place& before = places_[first + (step - 1) % count];
+    const double gap = place.at - before.at + (step % count == 0 ? perimeter : 0);
+    place.depth = std::max(place.depth, before.depth - gap / kReach);
+  }
+  for (size_t step = 2 * count - 1; step > 0; --step) {
+    Place& place = places_[first + (step - 1) % count];
+    const Place& behind = places_[first + step % count];
+    const double gap = behind.at - place.at + (step % count == 0 ? perimeter : 0);
+    place.depth = std::max(place.depth, behind.depth - gap / kReach);
+  }
+  for (size_t i = first; i < end; ++i) {
+    SpringContact& own = springs[places_[i].spring];
+    Vec2 sum = own.normal * inward(own);
+    bool alone = true;
+    double sizes = own.normal;
+    each_neighbour(first, end, i, [&](size_t k, double weight) {
+      const SpringContact& other = springs[places_[k].spring];
+      sum += weight * other.normal * inward(other);
+      sizes += weight * other.normal;
+      alone = false;
+    });
+    Vec2 normal = inward(own);
+    if (!alone) {
+      const double size = sum.norm();
+      normal = size > 0 ? Vec2(sum / size) : Vec2(Vec2::Zero());
+    }
+    own.nx = normal.x(), own.ny = normal.y();
+    places_[i].sizes = sizes;
+    places_[i].cancelled =
+        alone ? 0 : std::max(0., own.normal - own.normal * inward(own).dot(normal));
+  }
+  for (size_t i = first; i < end; ++i) {
+    SpringContact& own = springs[places_[i].spring];
+    double lost = places_[i].cancelled / places_[i].sizes;
+    each_neighbour(first, end, i, [&](size_t k, double weight) {
+      lost += weight * places_[k].cancelled / places_[k].sizes;
+    });
+    own.pressed = own.normal * std::max(0., 1 - lost);
+  }
+  hand_over(springs, first, end);
+}
+
+// Contact that grows takes over what contact beside it gives up: stiffness with its elastic slip.
+// The rest of what grows joins without a force, and the rest of what has gone is lost.
+void CommonNormals::hand_over(std::vector<SpringContact>& springs, size_t first, size_t end) {
+  const auto grown = [&](size_t k) {
+    const SpringContact& s = springs[places_[k].spring];
+    return std::max(0., s.stiffness - s.stiffness_before);
+  };
+  const auto gone = [&](size_t k) {
+    const SpringContact& s = springs[places_[k].spring];
+    return std::max(0., s.stiffness_before - s.stiffness);
+  };
+  for (size_t k = first; k < end; ++k) {
+    places_[k].offered = 0;
+    if (!(gone(k) > 0)) continue;
+    double wanted = 0;
+    each_neighbour(first, end, k, [&](size_t i, double weight) { wanted += weight * grown(i); });
+    if (wanted > 0) places_[k].offered = std::min(1., gone(k) / wanted);
+  }
+  added_.assign(end - first, 0);
+  for (size_t i = first; i < end; ++i) {
+    const double growth = grown(i);
+    if (!(growth > 0)) continue;
+    const SpringContact& own = springs[places_[i].spring];
+    double taken = 0, force = 0;
+    each_neighbour(first, end, i, [&](size_t k, double weight) {
+      const double from = weight * growth * places_[k].offered;
+      if (!(from > 0)) return;
+      const SpringContact& other = springs[places_[k].spring];
+      taken += from;
+      force += from * other.force_before / other.stiffness_before *
+               std::max(0., own.nx * other.nx + own.ny * other.ny);
+    });
+    if (taken > 0) added_[i - first] = std::min(1., growth / taken) * force;
+  }
+  for (size_t i = first; i < end; ++i) {
+    SpringContact& own = springs[places_[i].spring];
+    if (own.stiffness < own.stiffness_before) {
+      own.force_before *= own.stiffness / own.stiffness_before;
+    }
+    own.force_before += added_[i - first];
+  }
+}
+
+}  // namespace apothem
