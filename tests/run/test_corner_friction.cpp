@@ -113,8 +113,10 @@ TEST_CASE("a tip that is dragged over a floor has mu times the normal force", "[
     const double left = dice.between(10, 80) * degree;
     const double right = dice.below(2) == 0 ? left : dice.between(10, 80) * degree;
     const double depth = dice.between(.001, .004);
-    const int shape = dice.below(3);
-    const double end = shape == 0 ? 0 : depth * dice.between(.3, 8);
+    // A meshed tip must not be so fine at its end that the depth is beyond its collar.
+    const int shape = dice.below(kind == Kind::rigid_on_mesh ? 3 : 2);
+    const double end =
+        shape == 0 ? 0 : depth * dice.between(kind == Kind::rigid_on_mesh ? .3 : 8, 12);
     const int cells = 20 + dice.below(160);
     const double size = dice.between(.03, .15);
     CAPTURE(i, static_cast<int>(kind), left / degree, right / degree, depth, shape, end, cells,
@@ -160,6 +162,18 @@ std::string on_slope(bool meshed_body, bool meshed_slope, double steep, double f
                      -gravity * std::sin(angle), -gravity * std::cos(angle), slope, body);
 }
 
+// Down the slope, m.
+double moved_by(const Run& run) {
+  const Model& model = run.scene().model;
+  if (!model.bodies.empty()) return model.bodies[0].position.x() - run.state().pose(0).x();
+  const DeformableBody& body = model.deformables.back();
+  double moved = 0;
+  for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+    moved -= run.state().node(body.first_node + static_cast<NodeIndex>(i)).x();
+  }
+  return moved / static_cast<double>(body.mesh.nodes.size());
+}
+
 }  // namespace
 
 TEST_CASE("a stool slides down a slope as a point does, and stands below the friction angle",
@@ -171,23 +185,17 @@ TEST_CASE("a stool slides down a slope as a point does, and stands below the fri
       CAPTURE(meshed_body, steep, foot);
       const Folder folder;
       Run run(scene_of(folder, on_slope(meshed_body, true, steep, foot)), {});
+      run.advance(.25);
+      const double before = moved_by(run);
       REQUIRE(run.run() == Run::Status::done);
-      const Model& model = run.scene().model;
       const double angle = std::atan(steep * .4);
       const double acceleration = steep > 1 ? 9.81 * (std::sin(angle) - .4 * std::cos(angle)) : 0;
       const double right = acceleration * .5 * .5 / 2;
-      double moved = 0;
-      if (meshed_body) {
-        const DeformableBody& body = model.deformables.back();
-        for (size_t i = 0; i < body.mesh.nodes.size(); ++i) {
-          moved -= run.state().node(body.first_node + static_cast<NodeIndex>(i)).x() /
-                   static_cast<double>(body.mesh.nodes.size());
-        }
-      } else {
-        moved = model.bodies[0].position.x() - run.state().pose(0).x();
-      }
+      const double moved = moved_by(run);
       if (steep > 1) CHECK(moved == Approx(right).epsilon(.01));
-      if (steep < 1) CHECK(std::abs(moved) < 3e-3);
+      // It slips while it lands, and stands then.
+      if (steep < 1) CHECK(std::abs(moved) < 1e-2);
+      if (steep < 1) CHECK(std::abs(moved - before) < 1e-4);
     }
   }
 }
