@@ -1,7 +1,6 @@
 // Dynamic relaxation with kinetic damping: explicit steps, and all bodies stop whenever the kinetic
 // energy has passed a maximum (Cundall 1982; Barnes 1988). A little drag ends the cycles in which a
-// stiff mode can escape this. A body that nothing touches has no such modes, and falls without
-// drag.
+// stiff mode can escape this.
 #include "lib/dynamics/settle.hpp"
 
 #include <fmt/format.h>
@@ -20,8 +19,7 @@ constexpr double kStep = 0.5;        // of the stability limit
 constexpr double kResidual = 1e-12;  // of gravity and contact forces
 constexpr double kNoise = 0x1p-47;   // of a position; its contacts answer with their stiffness
 constexpr int kCalm = 20;            // so many steps in a row
-constexpr double kStride = .02;      // of its inradius: no body that falls goes farther in a step
-constexpr std::int64_t kMostSteps = 500'000;
+constexpr std::int64_t kMostSteps = 2'000'000;
 constexpr double kSlide = 1;  // s; of the given velocity, saturates every spring
 
 class Relaxation {
@@ -95,16 +93,11 @@ class Relaxation {
         worst_share_ = off / may;
         worst_ = i;
       }
-      const bool falls = state_.force(i).isZero(0);
       for (size_t k = 0; k < 3; ++k) {
         double& v = state_.v[at + k];
-        v += dt * a[static_cast<Eigen::Index>(k)] - (falls ? 0 : kDrag) * v;
+        v += dt * a[static_cast<Eigen::Index>(k)] - kDrag * v;
+        kinetic += v * v * (k < 2 ? body.mass : body.inertia);
       }
-      const double fastest = kStride * body.inradius / dt;
-      const double speed = hypotenuse(state_.v[at], state_.v[at + 1]);
-      if (falls && speed > fastest) state_.pose_rate(i).head<2>() *= fastest / speed;
-      kinetic += body.mass * (state_.v[at] * state_.v[at] + state_.v[at + 1] * state_.v[at + 1]) +
-                 body.inertia * state_.v[at + 2] * state_.v[at + 2];
     }
     return kinetic;
   }
