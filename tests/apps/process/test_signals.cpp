@@ -84,7 +84,7 @@ TEST_CASE("a step that does not end is broken off, and its run goes on later", "
   const std::string scene = folder.write(
       "pile.json", exchanged(hopper("remove"), "\"frames\": 6",
                              "\"frames\": 600, \"checkpoint\": { \"wall_clock\": 0.01 }"));
-  const std::string out = folder / "out", blocked = out + "/frames/bodies_000150.vtu.partial";
+  const std::string out = folder / "out", blocked = out + "/frames/bodies_000060.vtu.partial";
   std::thread blocker([&] {
     for (int i = 0; i < 6000 && !std::filesystem::exists(out + "/checkpoint.json"); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
