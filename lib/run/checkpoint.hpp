@@ -43,15 +43,16 @@ struct RunProgress {
   std::vector<HistoryPart> histories;  ///< of kHistoryFiles; empty: of a run without files
   std::vector<double> frame_times;     ///< s
   std::int64_t next_row = 1, next_frame = 1;
-  std::vector<LoadStep> load_steps;  ///< of static runs
+  std::int64_t last_row = -1, last_frame = -1;  ///< steps of the last ones
+  std::vector<LoadStep> load_steps;             ///< of static runs
   Beginning beginning;
   std::vector<AddedForce> forces;
   StopWatch* stop_watch = nullptr;  ///< of the run; null while there is none
 
   void fields(Archive& archive) {
     archive("histories", histories)("frame_times", frame_times)("next_row", next_row)(
-        "next_frame", next_frame)("load_steps", load_steps)("beginning", beginning)("forces",
-                                                                                    forces);
+        "next_frame", next_frame)("last_row", last_row)("last_frame", last_frame)(
+        "load_steps", load_steps)("beginning", beginning)("forces", forces);
     if (stop_watch) archive("stop_watch", *stop_watch);
   }
 };

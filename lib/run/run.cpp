@@ -88,6 +88,7 @@ HistoryWriter::Parts Run::resume() {
     go_on(file);
     refuse_other_beginning();
   });
+  last_row_ = progress_.last_row, last_frame_ = progress_.last_frame;
   reopen_folder(folder, {scene_hash_, false, {}, settings_.other_files}, *files_);
   if (!fault.empty()) {
     std::error_code error;
@@ -416,6 +417,7 @@ void Run::update_progress() {
   }
   progress_.next_row = rows_.next();
   progress_.next_frame = pictures_.next();
+  progress_.last_row = last_row_, progress_.last_frame = last_frame_;
   progress_.forces = forces_before_.value_or(forces_);
 }
 

@@ -384,6 +384,24 @@ TEST_CASE("a static run that is killed goes on from the checkpoint behind a load
   CHECK(content(folder / "whole/history.csv") == content(folder / "killed/history.csv"));
 }
 
+TEST_CASE("a run that is killed at its very end has its last row once", "[resume]") {
+  for (const std::string& text : {pressed_blocks(3), rubbing_scenes()[1].text}) {
+    const Folder folder;
+    Scene scene = scene_of(folder, text);
+    scene.output.checkpoint_interval = 1e-9;
+    Run whole(scene, {.folder = folder / "whole"});
+    whole.advance();  // the last checkpoint is that of the end, and the run is not closed yet
+    std::filesystem::copy(folder / "whole", folder / "killed",
+                          std::filesystem::copy_options::recursive);
+    whole.finish();
+    scene.output.checkpoint_interval.reset();
+    Run second(scene, {.folder = folder / "killed", .resume = true});
+    REQUIRE(second.run() == Run::Status::done);
+    CHECK(content(folder / "whole/history.csv") == content(folder / "killed/history.csv"));
+    CHECK(content(folder / "whole/frames.pvd") == content(folder / "killed/frames.pvd"));
+  }
+}
+
 TEST_CASE("without an interval there is no checkpoint before the run stops", "[resume]") {
   const Folder folder;
   Scene scene = scene_of(folder, rubbing_scenes()[1].text);
