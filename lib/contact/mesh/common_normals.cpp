@@ -7,7 +7,8 @@
 namespace apothem {
 namespace {
 
-constexpr double kReach = 8;  // depths
+constexpr double kReach = 8;        // depths
+constexpr double kRounded = 1e-14;  // of a push: round-off
 
 }  // namespace
 
@@ -54,8 +55,9 @@ void CommonNormals::find_places(const std::vector<SpringContact>& springs) {
     places_.push_back({loop, spring.other, at_[spring.edge] + on_edge, static_cast<std::int32_t>(i),
                        spring.deepest});
   }
-  std::ranges::sort(places_, {},
-                    [](const Place& p) { return std::tuple(p.loop, p.other, p.at, p.spring); });
+  const auto key = [](const Place& p) { return std::tuple(p.loop, p.other, p.at, p.spring); };
+  // They mostly are in order.
+  if (!std::ranges::is_sorted(places_, {}, key)) std::ranges::sort(places_, {}, key);
 }
 
 // Calls f(number, weight) for the places around the place i, those before it first.
@@ -106,6 +108,7 @@ void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size
     const double gap = behind.at - place.at + (step % count == 0 ? perimeter : 0);
     place.depth = std::max(place.depth, behind.depth - gap / kReach);
   }
+  bool bent = false;
   for (size_t i = first; i < end; ++i) {
     SpringContact& own = springs[places_[i].spring];
     Vec2 sum = own.normal * inward(own);
@@ -124,10 +127,12 @@ void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size
     }
     own.nx = normal.x(), own.ny = normal.y();
     places_[i].sizes = sizes;
-    places_[i].cancelled =
-        alone ? 0 : std::max(0., own.normal - own.normal * inward(own).dot(normal));
+    own.pressed = own.normal;
+    const double cancelled = alone ? 0 : own.normal - own.normal * inward(own).dot(normal);
+    places_[i].cancelled = cancelled > kRounded * own.normal ? cancelled : 0;
+    bent = bent || places_[i].cancelled > 0;
   }
-  for (size_t i = first; i < end; ++i) {
+  for (size_t i = first; bent && i < end; ++i) {
     SpringContact& own = springs[places_[i].spring];
     double lost = places_[i].cancelled / places_[i].sizes;
     each_neighbour(first, end, i, [&](size_t k, double weight) {
@@ -149,15 +154,17 @@ void CommonNormals::hand_over(std::vector<SpringContact>& springs, size_t first,
     const SpringContact& s = springs[places_[k].spring];
     return std::max(0., s.stiffness_before - s.stiffness);
   };
+  bool any = false;
   for (size_t k = first; k < end; ++k) {
     places_[k].offered = 0;
     if (!(gone(k) > 0)) continue;
     double wanted = 0;
     each_neighbour(first, end, k, [&](size_t i, double weight) { wanted += weight * grown(i); });
     if (wanted > 0) places_[k].offered = std::min(1., gone(k) / wanted);
+    any = any || wanted > 0;
   }
   added_.assign(end - first, 0);
-  for (size_t i = first; i < end; ++i) {
+  for (size_t i = first; any && i < end; ++i) {
     const double growth = grown(i);
     if (!(growth > 0)) continue;
     const SpringContact& own = springs[places_[i].spring];
