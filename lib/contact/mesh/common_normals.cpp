@@ -90,23 +90,20 @@ void CommonNormals::each_neighbour(size_t first, size_t end, size_t i, const F& 
 void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size_t first,
                                        size_t end) {
   const Outlines& o = outlines_;
-  const size_t count = end - first;
   const auto inward = [&](const SpringContact& s) { return Vec2(-o.ty[s.edge], o.tx[s.edge]); };
   const double perimeter = perimeter_[places_[first].loop];
   // A depth reaches along the line, less by the distance over kReach. Twice around.
   deepest_ = places_[first].depth;
   for (size_t i = first; i < end; ++i) deepest_ = std::max(deepest_, places_[i].depth);
-  for (size_t step = 1; step < 2 * count; ++step) {
-    Place& place = places_[first + step % count];
-    const Place& before = places_[first + (step - 1) % count];
-    const double gap = place.at - before.at + (step % count == 0 ? perimeter : 0);
-    place.depth = std::max(place.depth, before.depth - gap / kReach);
-  }
-  for (size_t step = 2 * count - 1; step > 0; --step) {
-    Place& place = places_[first + (step - 1) % count];
-    const Place& behind = places_[first + step % count];
-    const double gap = behind.at - place.at + (step % count == 0 ? perimeter : 0);
-    place.depth = std::max(place.depth, behind.depth - gap / kReach);
+  const auto spread = [&](size_t from, size_t to, double distance) {
+    places_[to].depth = std::max(places_[to].depth, places_[from].depth - distance / kReach);
+  };
+  for (int round = 0; round < 2; ++round) {
+    const double seam = places_[first].at + perimeter - places_[end - 1].at;
+    spread(end - 1, first, seam);
+    for (size_t i = first + 1; i < end; ++i) spread(i - 1, i, places_[i].at - places_[i - 1].at);
+    spread(first, end - 1, seam);
+    for (size_t i = end - 1; i > first; --i) spread(i, i - 1, places_[i].at - places_[i - 1].at);
   }
   bool bent = false;
   for (size_t i = first; i < end; ++i) {
