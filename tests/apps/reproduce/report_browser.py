@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "player"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "player"))
 from webdriver import Browser  # noqa: E402
 
 FIGURES = ["fig-4", "fig-14", "fig-17", "fig-26"]
