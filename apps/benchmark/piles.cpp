@@ -88,7 +88,7 @@ Model empty_model() {
   Model model;
   model.materials = {{"rock", 2000, {ElasticLaw::st_venant_kirchhoff, Plane::strain, 2e7, .2}}};
   model.contact.normal_stiffness = 2e7;
-  model.contact.friction = {.5, kTangentialShare * model.contact.normal_stiffness};
+  model.contact.friction = {.5};
   model.contact.damping = {.normal = .5, .tangential = .5};
   model.gravity = {0, -9.81};
   return model;

@@ -65,12 +65,6 @@ void exchange(Spring& spring, bool per_edge, int edges_a, int edges_b) {
   spring.key.part = part < edges_a ? edges_b + part : part - edges_a;
 }
 
-void exchange(PatchDamper& damper) {
-  for (PairForce* f : {&damper.elastic, &damper.damping}) {
-    *f = {-f->x, -f->y, f->b, f->a};
-  }
-}
-
 std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionLaw law) {
   SpringKey& key = spring.key;
   const SpringKey old = key;
@@ -93,26 +87,20 @@ std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionL
 struct Pair {
   PairHistory pair;
   std::vector<RunPlace> runs;
-  std::vector<PatchDamper> dampers;
 };
 
 std::vector<Pair> renumbered(const History& history, const Renumbering& to) {
   std::vector<Pair> pairs;
-  size_t run = 0, damper = 0;
+  size_t run = 0;
   for (const PairHistory& old : history.pairs) {
-    Pair pair{old, {}, {}};
+    Pair pair{old, {}};
     for (int k = 0; k < old.runs; ++k) pair.runs.push_back(history.runs.at(run++));
-    pair.dampers.resize(static_cast<size_t>(old.patches));
-    for (PatchDamper& d : pair.dampers) {
-      if (!history.dampers.empty()) d = history.dampers.at(damper++);
-    }
     pair.pair.a = to.surface(old.a);
     pair.pair.b = to.surface(old.b);
     if (pair.pair.a < 0 || pair.pair.b < 0) continue;
     if (pair.pair.a > pair.pair.b) {
       std::swap(pair.pair.a, pair.pair.b);
       for (RunPlace& r : pair.runs) r.of_a = !r.of_a;
-      for (PatchDamper& d : pair.dampers) exchange(d);
     }
     pairs.push_back(std::move(pair));
   }
@@ -142,8 +130,6 @@ ContactMemory hand_over(const ContactMemory& memory, const ContactNumbers& from,
   for (Pair& pair : renumbered(memory.patches, numbers)) {
     result.patches.pairs.push_back(pair.pair);
     result.patches.runs.insert(result.patches.runs.end(), pair.runs.begin(), pair.runs.end());
-    result.patches.dampers.insert(result.patches.dampers.end(), pair.dampers.begin(),
-                                  pair.dampers.end());
   }
   return result;
 }

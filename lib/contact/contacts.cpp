@@ -25,7 +25,8 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
       surfaces_(std::move(surfaces)),
       table_(std::move(table)),
       friction_law_(law.friction_law),
-      tangential_(table_.rough() || table_.damped()) {
+      tangential_(table_.rough() || table_.damped()),
+      dashpots_(surfaces_.rigid_count()) {
   std::array<bool, kernel_kinds> needed{};
   needed[polygon_kernel] = surfaces_.rigid_count() > 0;
   needed[element_kernel] = surfaces_.elements().size() > 0;
@@ -39,8 +40,8 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
         std::make_unique<ElementKernel>(surfaces_, law, table_, thickness, threads);
   }
   if (needed[outline_kernel]) {
-    kernels_[outline_kernel] = std::make_unique<OutlineKernel>(
-        surfaces_.outlines(), thickness, table_, surfaces_.inverse_mass(), threads);
+    kernels_[outline_kernel] =
+        std::make_unique<OutlineKernel>(surfaces_, thickness, table_, threads);
   }
 }
 
@@ -133,6 +134,20 @@ void Contacts::add_forces(ForceViews forces) {
     forces.beside = beside_;
   }
   each([&](Kernel& kernel) { kernel.add_forces(forces); });
+}
+
+std::span<const double> Contacts::find_dashpots(const Kinematics& now,
+                                                const Dashpots::Motion& motion, double dt,
+                                                bool first) {
+  if (!first) memory_.damp(dashpots_.lost_after(motion.velocity, dt));
+  dashpots_.clear();
+  each([&](Kernel& kernel) { kernel.add_dashpots(now, dashpots_); });
+  dashpots_.solve(motion, dt);
+  if (!first) memory_.damp(dashpots_.lost_before());
+  size_t next = 0;
+  each([&](Kernel& kernel) { kernel.keep_pushes(dashpots_, next, memory_); });
+  for (size_t c = 0; c < beside_.size(); ++c) beside_[c] += dashpots_.forces()[c];
+  return dashpots_.forces();
 }
 
 void Contacts::book_bend(Dynamics dynamics, double dt) {
@@ -246,6 +261,10 @@ void Contacts::add_stiffness(std::span<double> nodes, std::span<double> rigid) c
 Vec2 Contacts::force_on(BodyIndex body) const {
   Vec2 force = Vec2::Zero();
   each([&](const Kernel& kernel) { force += kernel.force_on(body); });
+  for (size_t i = 0; i < dashpots_.size(); ++i) {
+    if (dashpots_[i].a == body) force += dashpots_.force_on_a(i);
+    if (dashpots_[i].b == body) force -= dashpots_.force_on_a(i);
+  }
   return force;
 }
 
@@ -337,6 +356,7 @@ void Contacts::inherit(const ContactMemory& memory) {
 void Contacts::fields(Archive& archive) {
   archive("friction", memory_);
   if (tangential_) archive("beside", beside_);
+  if (table_.damped()) archive("dashpots", dashpots_);
   each([&](Kernel& kernel) { kernel.fields(archive); });
   SearchPlaces places = search_.places(surfaces_);
   archive("search", places);

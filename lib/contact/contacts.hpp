@@ -52,8 +52,8 @@ class Contacts {
   void evaluate();
   /// The first contact out of the range of its method, if there is one.
   [[nodiscard]] std::optional<ContactFault> fault() const;
-  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities (Eq. 18:
-  /// the full-step ones would pump energy in). With dt = 0 the springs keep their forces.
+  /// Friction of a step of dt (s) that ends here, with half-step velocities (Eq. 18: the full-step
+  /// ones would pump energy in). With dt = 0 the springs keep their forces.
   void slide(const Kinematics& now, double dt);
   /// The same for a state that is tried: the next slide begins where this one has begun.
   void try_slide(const Kinematics& now, double dt);
@@ -62,6 +62,11 @@ class Contacts {
   /// Has the next refresh() keep the candidates.
   void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);
+  /// After the slide, when all other forces of the step of dt (s) are known: finds those of the
+  /// dashpots, on every coordinate, N and N m. `first`: nothing has moved since the last look, and
+  /// no work is booked.
+  std::span<const double> find_dashpots(const Kinematics& now, const Dashpots::Motion& motion,
+                                        double dt, bool first);
 
   /// Ascending within a kernel, one kernel after the other. Not for every step.
   [[nodiscard]] std::vector<Contact> contacts() const;
@@ -75,6 +80,7 @@ class Contacts {
 
   /// True if there is friction or damping.
   [[nodiscard]] bool dissipates() const { return tangential_; }
+  [[nodiscard]] bool damped() const { return table_.damped(); }
   /// After the forces at the end of a drift of dt (s): books what friction and damping take on a
   /// path that bends within the step.
   void book_bend(Dynamics dynamics, double dt);
@@ -105,10 +111,6 @@ class Contacts {
   /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_stiffness(std::span<double> nodes, std::span<double> rigid) const;
-  /// See Kernel.
-  void limit_damping(std::span<const double> node_mass) {
-    each([&](Kernel& kernel) { kernel.limit_damping(node_mass); });
-  }
   /// The force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
   /// Adds the sizes of the normal forces on each body, N.
@@ -160,6 +162,7 @@ class Contacts {
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
   bool tangential_;  // there is friction or damping
   FrictionMemory memory_;
+  Dashpots dashpots_;
   // What friction and damping do to rigid bodies, N and N m: now and in the step before.
   std::vector<double> beside_, beside_before_;
   bool tried_ = false;  // the last slide was a trial

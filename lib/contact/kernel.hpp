@@ -12,6 +12,7 @@
 
 #include "geometry/spatial/boxes.hpp"
 #include "lib/contact/law/contact.hpp"
+#include "lib/contact/law/dashpots.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/law/onset_rule.hpp"
@@ -80,9 +81,9 @@ class Kernel {
   /// Where and why one of its contacts, with a share of 1 or more, is out of range. Outlines have
   /// no such contacts: beyond a collar the potential is constant.
   [[nodiscard]] virtual ContactFault fault(const Contact& /*contact*/) const { return {}; }
-  /// Friction and damping of a step of dt (s) that ends here, with half-step velocities. With dt =
-  /// 0 the springs keep their forces. Returns the work on the bodies since the last call, J, of
-  /// springs that the memory keeps.
+  /// Friction of a step of dt (s) that ends here, with half-step velocities. With dt = 0 the
+  /// springs keep their forces. Returns the work on the bodies since the last call, J, of springs
+  /// that the memory keeps.
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
   /// Before a slide that is tried: undo_slide() comes back to what contacts remember now. Only
   /// kernels that the static solver meets need these.
@@ -92,8 +93,13 @@ class Kernel {
   /// After the memory has been restored: finds the forces of friction again that the next slide
   /// needs.
   virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
-  /// Adds all forces, normal ones first.
+  /// Adds all forces but those of dashpots, normal ones first.
   virtual void add_forces(const ForceViews& forces) = 0;
+  /// After a slide: the dashpots of its contacts.
+  virtual void add_dashpots(const Kinematics& now, Dashpots& to) = 0;
+  /// Takes note of what these have been found to do; they begin at the number `next`, which goes on
+  /// to the first one of the next kernel.
+  virtual void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) = 0;
   /// At the end of a drift of dt (s): finds the impulses that contacts lack that have begun or
   /// ended in it (onset.hpp); true if there is one.
   virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
@@ -109,9 +115,6 @@ class Kernel {
   [[nodiscard]] virtual double energy() const = 0;
   /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
   [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
-  /// Before the first step: no dashpot takes more than the speed of a node in a step. Masses as in
-  /// rate().
-  virtual void limit_damping(std::span<const double> /*node_mass*/) {}
   /// Adds to each node near another body the same bound as a stiffness, N/m, and to x, y and angle
   /// of each rigid body what nodes near it have, N/m and N m.
   virtual void add_stiffness(std::span<double> /*nodes*/, std::span<double> /*rigid*/) const {}

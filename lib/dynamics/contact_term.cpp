@@ -50,6 +50,31 @@ std::vector<double> inradii_of(const Model& model) {
   return inradii;
 }
 
+// Of a body with a mesh as if it were rigid: what a support holds does not give way.
+MeshInertia inertia_of(const DeformableBody& body, const DegreesOfFreedom& dofs) {
+  const std::vector<Vec2>& nodes = body.mesh.nodes;
+  MeshInertia inertia{{1, 1, 1}, {}};
+  double mass = 0, moment = 0;
+  Vec2 centre = Vec2::Zero();
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    const size_t c = dofs.layout().node(body.first_node + static_cast<NodeIndex>(i));
+    for (const size_t axis : {0, 1}) {
+      if (dofs.is_held(c + axis)) inertia.inverse_mass[axis] = inertia.inverse_mass[2] = 0;
+    }
+    inertia.shares.push_back(dofs.mass(c));
+    mass += dofs.mass(c);
+    centre += dofs.mass(c) * nodes[i];
+  }
+  centre /= mass;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    moment += inertia.shares[i] * (nodes[i] - centre).squaredNorm();
+    inertia.shares[i] /= mass;
+  }
+  for (const size_t axis : {0, 1}) inertia.inverse_mass[axis] /= mass;
+  inertia.inverse_mass[2] /= moment;
+  return inertia;
+}
+
 }  // namespace
 
 double shortest_inradius(const Model& model) {
@@ -73,13 +98,6 @@ bool ContactTerm::touches_meshes(const Model& model) {
 }
 
 Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& dofs) {
-  const std::vector<double> node_mass = dofs.free_node_mass();
-  const auto inverse_mass = [&](const DeformableBody& body) {
-    const auto first = node_mass.begin() + body.first_node;
-    const double mass =
-        std::accumulate(first, first + static_cast<std::ptrdiff_t>(body.mesh.nodes.size()), 0.);
-    return mass > 0 ? 1 / mass : 0;
-  };
   const bool meshes = !model.deformables.empty();
   const bool outlines = meshes && model.contact.surface == ContactSurface::body;
   Surfaces surfaces(common_skin(model), meshes ? kMeshSkin * shortest_inradius(model) : 0,
@@ -98,11 +116,11 @@ Surfaces ContactTerm::surfaces_of(const Model& model, const DegreesOfFreedom& do
   if (choice.reference == PotentialChoice::Reference::length) reference = choice.length;
   for (const DeformableBody& body : model.deformables) {
     if (outlines) {
-      surfaces.add_outline(body.mesh, body.first_node, reference, inverse_mass(body));
+      surfaces.add_outline(body.mesh, body.first_node, reference, inertia_of(body, dofs));
       continue;
     }
     try {
-      surfaces.add_elements(body.mesh, body.first_node, choice, inverse_mass(body));
+      surfaces.add_elements(body.mesh, body.first_node, choice, inertia_of(body, dofs));
     } catch (const InvalidPolygon& error) {
       throw Unrunnable(fmt::format("elements of \"{}\" cannot have potentials of their own: {}; "
                                    "use another mesh or \"surface\": \"body\"",
@@ -167,7 +185,8 @@ std::string ContactTerm::describe() const {
               ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)
               : "; no friction";
   if (pair_table(model_).damped()) {
-    text += fmt::format("; viscous damping, ratios {:g} and {:g}", law.damping.normal,
+    text += fmt::format("; viscous damping, {} {:g} and {:g}",
+                        law.damping.are_times ? "times" : "ratios", law.damping.normal,
                         law.damping.tangential);
   }
   if (!law.rules.empty()) text += fmt::format("; {} rules by pair", law.rules.size());
@@ -237,6 +256,19 @@ void ContactTerm::add_forces(const Evaluation& now) {
   counts_.touching_pairs += counts_.touching_now;
   note_peaks(state);
   refuse_passage(state);
+}
+
+void ContactTerm::add_dashpots(State& state, double dt, bool onsets, bool first) {
+  std::span<const double> kicked = state.f;
+  if (onsets) {
+    with_onsets_ = state.f;
+    add_onsets(state.layout, with_onsets_);
+    kicked = with_onsets_;
+  }
+  const std::span<const double> forces = contacts_.find_dashpots(
+      state.kinematics(state.v), {dofs_.inverse_mass(), state.v, kicked, state.f, dofs_.weight()},
+      dt, first);
+  for (size_t c = 0; c < forces.size(); ++c) state.f[c] += forces[c];
 }
 
 void ContactTerm::note_peaks(const State& state) {
@@ -336,7 +368,6 @@ void ContactTerm::bound_step(StepBounds& bounds) {
     rigid = std::max(rigid, flat_mobility(body) * (body.potential.steepest + steepest));
   }
   const double of_nodes = contacts_.node_rate(dofs_.free_node_mass());
-  contacts_.limit_damping(dofs_.free_node_mass());
   const double stiffest = pair_table(model_).stiffest() * model_.thickness;
   const double rate = std::sqrt(of_nodes + stiffest * rigid);
   bounds.nodes = {2 / hypotenuse(2 / bounds.nodes.step, rate), "elements and their contacts"};

@@ -42,9 +42,11 @@ class ContactTerm final : public Term {
                                  {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
   /// Adds these impulses as a force over the second half of the step.
-  void add_onsets(State& state) const {
-    contacts_.add_onsets(2, {state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), {}});
-  }
+  void add_onsets(State& state) const { add_onsets(state.layout, state.f); }
+  [[nodiscard]] bool damped() const { return contacts_.damped(); }
+  /// Adds the forces of dashpots, when all other ones in a step of dt (s) are known; `onsets`:
+  /// there are such impulses. `first`: nothing has moved since the last look.
+  void add_dashpots(State& state, double dt, bool onsets, bool first);
   /// Throws Unstable if bodies that meet have moved so far that contacts may have been missed.
   void check_drift(const State& state, double dt);
   void watch(const State& state) override;
@@ -96,6 +98,9 @@ class ContactTerm final : public Term {
 
  private:
   static Surfaces surfaces_of(const Model& model, const DegreesOfFreedom& dofs);
+  void add_onsets(const Layout& layout, std::vector<double>& forces) const {
+    contacts_.add_onsets(2, {layout.of_rigid(forces), layout.of_nodes(forces), {}});
+  }
   void refuse_buried(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
@@ -108,6 +113,7 @@ class ContactTerm final : public Term {
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
   StrideWatch strides_;
+  std::vector<double> with_onsets_;  // all forces but those of dashpots
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
   std::string closed_notch_;

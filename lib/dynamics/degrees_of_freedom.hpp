@@ -72,6 +72,10 @@ class DegreesOfFreedom {
   /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   [[nodiscard]] bool can_move(size_t coordinate) const { return inverse_mass_[coordinate] > 0; }
+  /// The same of bodies that are absent as if they were there.
+  [[nodiscard]] bool is_held(size_t coordinate) const {
+    return !((given_inverse_mass_.empty() ? inverse_mass_ : given_inverse_mass_)[coordinate] > 0);
+  }
   /// kg and kg m^2 of every coordinate.
   [[nodiscard]] double mass(size_t coordinate) const { return mass_[coordinate]; }
   /// Gravity becomes `factor` times that of the model.

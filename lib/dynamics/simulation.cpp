@@ -32,17 +32,6 @@ const std::vector<double>& mass_of(const Elements* elements) {
   return elements ? elements->elements().mass() : kNone;
 }
 
-// The part of the relative speed of two rigid bodies that a dashpot may take in a step, at most, if
-// impulses of contacts that begin or end are worth finding. Beyond it the speeds that they are
-// found with are not those of the step, and in dense flows they make energy.
-constexpr double kGently = .75;
-
-// With the damping ratio zeta and the frequency w a dashpot takes 2 zeta w h in a step of h.
-bool damps_gently(const Model& model, const StepChoice& choice, const StepBounds& bounds) {
-  if (!choice.damped) return true;
-  return 4 * pair_table(model).largest_damping() * choice.step / bounds.bodies.step <= kGently;
-}
-
 }  // namespace
 
 Simulation::Simulation(const Model& model, const TimeSettings& time, int frames, int threads,
@@ -66,14 +55,13 @@ Simulation::Simulation(const Model& model, const TimeSettings& time, int frames,
   StepBounds bounds;
   for (const auto& term : terms_) term->bound_step(bounds);
   control_.emplace(model, time, bounds, frames, ContactTerm::touches_meshes(model));
-  onsets_ = onsets_ && damps_gently(model, step_choice(), bounds);
   if (time.statics) {
     equilibrium_ = std::make_unique<Equilibrium>(model, dofs_, terms_, contact_, time.tolerance);
   }
   try {
     find_forces(state_.v, 0);
     if (time.settled) settle(stop);
-    add_onsets(0);
+    finish_look();
   } catch (const Unstable& error) {
     throw Unrunnable(error.what(), "bodies", error.body());
   }
@@ -153,10 +141,17 @@ void Simulation::take_step() {
   dofs_.drift(state_, dt);
   if (contact_) contact_->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
+  // Contacts that begin or end within the step push in its second half as if they had pushed when
+  // they did: until then forces_ are those at its start, and then those without these impulses.
   if (needs_forces_before()) forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
+  const bool onsets = onsets_ && contact_ && contact_->find_onsets(state_, forces_, dt);
+  if (contact_ && contact_->damped()) contact_->add_dashpots(state_, dt, onsets, false);
   if (contact_ && contact_->dissipates()) contact_->book_bend(state_, forces_, dt);
-  const bool onsets = add_onsets(dt);
+  if (onsets) {
+    forces_ = state_.f;
+    contact_->add_onsets(state_);
+  }
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.kick(state_, dt / 2);
@@ -192,7 +187,7 @@ void Simulation::change_population(std::span<const BodyIndex> leave,
   for (const BodyIndex b : leave) copy_velocity(b, rest);
   for (const BodyIndex b : come) copy_velocity(b, start);
   find_forces(state_.v, 0);
-  add_onsets(0);
+  finish_look();
   const Impulse after = dofs_.momentum(state_);
   ledger_.refresh(state_);
   ledger_.add_work(energies().total_error - error);
@@ -228,14 +223,13 @@ bool Simulation::needs_forces_before() const {
   return contact_ && (onsets_ || contact_->dissipates());
 }
 
-// Contacts that begin or end within the step push in its second half as if they had pushed when
-// they did. True if there are any: state.f holds their forces as well, and forces_ the others
-// alone.
-bool Simulation::add_onsets(double dt) {
-  if (!onsets_ || !contact_ || !contact_->find_onsets(state_, forces_, dt)) return false;
-  forces_ = state_.f;
-  contact_->add_onsets(state_);
-  return true;
+// After forces that have been found where nothing has moved.
+void Simulation::finish_look() {
+  if (!contact_) return;
+  if (onsets_) contact_->find_onsets(state_, forces_, 0);
+  if (contact_->damped() && !equilibrium_) {
+    contact_->add_dashpots(state_, step_size() / 2, false, true);
+  }
 }
 
 LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
@@ -264,7 +258,7 @@ void Simulation::inherit(const ContactMemory& memory) {
     contact_->start_ledger();
   }
   find_forces(state_.v, 0);
-  add_onsets(0);
+  finish_look();
   if (equilibrium_) equilibrium_->begin_loaded();
   start_ledger();
 }

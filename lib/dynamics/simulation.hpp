@@ -1,7 +1,7 @@
 // The step loop.
 //
-//   damp, kick (Eq. 18) -> drift (Eq. 17) -> every term adds its forces -> kick, damp (Eq. 20)
-//   -> ledger
+//   damp, kick (Eq. 18) -> drift (Eq. 17) -> every term adds its forces -> dashpots of contacts ->
+//   kick, damp (Eq. 20) -> ledger
 //
 // The terms of a scene are those that it needs (term.hpp). Forces are summed in the order of the
 // list, and within contact pair by pair in ascending order: the same scene gives the same bits for
@@ -132,7 +132,7 @@ class Simulation {
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0,
                    bool still = false);
   [[nodiscard]] bool needs_forces_before() const;
-  bool add_onsets(double dt);
+  void finish_look();
   void settle(const std::function<bool()>& stop);
   void watch();
   void look_at_energy(bool last);

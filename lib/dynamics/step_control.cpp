@@ -13,9 +13,7 @@ namespace {
 // The step is chosen for two bodies. The frequency of one that is squeezed between others may be
 // higher by this factor, before a change of the step costs less than it is worth.
 constexpr double kOvershoot = 2;
-// Parts of the limit of stability that a step may take; dashpots, which are explicit, lower it.
-constexpr double kStable = .9;
-constexpr double kStableDamped = .6;
+constexpr double kStable = .9;  // part of the limit of stability that a step may take
 // The bound counts flanks that hardly press: a step may exceed it by a little.
 constexpr double kOfBound = 1.05;
 constexpr std::int64_t kPatience = 512;
@@ -53,9 +51,7 @@ void StepControl::follow(const State& state, std::span<const double> lambda) {
 
 double StepControl::largest_lambda() const {
   const double part =
-      automatic_ ? std::min(kOvershoot * safety_,
-                            std::max(choice_.damped ? kStableDamped : kStable, safety_ * kOfBound))
-                 : kOfBound;
+      automatic_ ? std::min(kOvershoot * safety_, std::max(kStable, safety_ * kOfBound)) : kOfBound;
   const double frequency = 2 * part / choice_.step;
   return frequency * frequency;
 }

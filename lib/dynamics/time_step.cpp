@@ -91,7 +91,9 @@ double lambda_of(const RigidBody& body_a, const RigidBody& body_b, const Landing
     BodyStiffness stiffness;
     stiffness.add(normal, 0, 1, landing.arm);
     stiffness.tt += normal * breadth * breadth / 12;
-    stiffness.add(springs * law.friction.tangential_stiffness, 1, 0, landing.height);
+    stiffness.add(
+        springs * law.friction.tangential_stiffness + law.friction.stiffness_ratio * normal, 1, 0,
+        landing.height);
     return rate_of(stiffness, body.inverse_mass());
   };
   return rate(body_a, a) + rate(body_b, b);
@@ -116,8 +118,10 @@ template <class Flat>
 double flat_bound(const Lander& a, const Flat& b, const PairLaw& worst) {
   const double normal =
       std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
-  return worst.normal_stiffness * normal +
-         std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness * (a.slide + b.slide);
+  const double friction = std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness +
+                          worst.friction.stiffness_ratio * worst.normal_stiffness *
+                              std::min(a.longest, b.longest) * (a.slope + b.slope);
+  return worst.normal_stiffness * normal + friction * (a.slide + b.slide);
 }
 
 // Bounds of some bodies.
@@ -157,7 +161,7 @@ StepLimit contact_step_limit(const Model& model) {
   const std::vector<Lander> all = landers(model, table.softest());
   const std::vector<FlatGroup> groups = groups_by_length(all);
   const PairLaw stiffest{.normal_stiffness = table.stiffest(),
-                         .friction = {0, table.stiffest_friction()}};
+                         .friction = table.stiffest_friction()};
   const auto bound = [&](int i) {
     double most = 0;
     for (const FlatGroup& group : groups) {

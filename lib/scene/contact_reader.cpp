@@ -86,7 +86,7 @@ void ContactReader::reference(const JsonValue& value) {
   choice.reference = chosen(in_, value, kReferences).reference;
 }
 
-// The friction of the whole scene, or of one rule for a pair. A rule takes the tangential stiffness
+// The friction of the whole scene, or of one rule for a pair. A rule takes the stiffness of springs
 // of the scene unless it gives its own, and it cannot choose the friction law.
 Friction ContactReader::friction(const JsonValue& value, bool of_scene) {
   JsonObject object(in_, value);
@@ -94,9 +94,13 @@ Friction ContactReader::friction(const JsonValue& value, bool of_scene) {
   const JsonValue& mu = object.required("coefficient", "mu, 0 or more");
   friction.coefficient = in_.number(mu, "");
   if (!(friction.coefficient >= 0)) in_.fail(mu, "must be 0 or more");
-  if (const JsonValue* v = object.optional("tangential_stiffness")) {
-    friction.tangential_stiffness = in_.positive(*v, "Pa");
+  const JsonValue* const ratio = object.optional("stiffness_ratio");
+  const JsonValue* const constant = object.optional("tangential_stiffness");
+  if (ratio && constant) {
+    in_.fail(*constant, "cannot stand beside \"stiffness_ratio\": give one of the two");
   }
+  if (ratio) friction.stiffness_ratio = in_.positive(*ratio, ""), friction.tangential_stiffness = 0;
+  if (constant) friction.tangential_stiffness = in_.positive(*constant, "Pa");
   if (of_scene) {
     if (const JsonValue* v = object.optional("law")) friction_law(*v);
   }
@@ -139,23 +143,34 @@ void ContactReader::damping_model(const JsonValue& value) {
   object.finish();
 }
 
-// `viscous` takes one ratio for both directions, or [normal, tangential]. 0 says that there is
-// none.
+// A ratio of critical damping or a time constant, of which `viscous` takes one for both directions,
+// or [normal, tangential]. 0 says that there is none.
 ContactDamping ContactReader::dashpots(JsonObject& object, bool tangential) {
-  const JsonValue& value =
-      object.required("ratio", tangential ? "a ratio of critical damping, or [normal, tangential]"
-                                          : "a ratio of critical damping");
-  const auto ratio = [&](const JsonValue& v) {
-    const double number = in_.number(v, "");
+  const JsonValue* const time = object.optional("time");
+  const JsonValue* const ratio = object.optional("ratio");
+  if (time && ratio) in_.fail(*time, "cannot stand beside \"ratio\": give one of the two");
+  const std::string needed = fmt::format("a ratio of critical damping{}, or \"time\" in s",
+                                         tangential ? ", or [normal, tangential]" : "");
+  const JsonValue& value = time ? *time : object.required("ratio", needed);
+  const auto number_of = [&](const JsonValue& v) {
+    const double number = in_.number(v, time ? "s" : "");
     if (!(number >= 0)) in_.fail(v, "must be 0 or more");
     return number;
   };
-  if (!tangential) return {ratio(value), 0, 0};
+  ContactDamping damping{.are_times = time != nullptr};
+  if (!tangential) {
+    damping.normal = number_of(value);
+    return damping;
+  }
   features_.add(Feature::viscous_damping, &value);
-  if (value.type() != JsonValue::Type::array) return {ratio(value), ratio(value), 0};
+  if (value.type() != JsonValue::Type::array) {
+    damping.normal = damping.tangential = number_of(value);
+    return damping;
+  }
   const std::vector<JsonValue>& both = in_.array(value);
   if (both.size() != 2) in_.fail(value, "must be a number or [normal, tangential]");
-  return {ratio(both[0]), ratio(both[1]), 0};
+  damping.normal = number_of(both[0]), damping.tangential = number_of(both[1]);
+  return damping;
 }
 
 // With which surface bodies with a mesh touch, and how the contact forces reach their nodes. Either

@@ -272,9 +272,11 @@ TEST_CASE("the ledger of friction and normal damping closes in a landing", "[fri
   for (const auto& [friction, damping] :
        {std::pair(0., .3), std::pair(.3, 0.), std::pair(.3, .1), std::pair(.5, .3)}) {
     CAPTURE(friction, damping);
-    CHECK(error(friction, damping, .1) < 5e-5);
-    CHECK(error(friction, damping, .2) < 3e-4);
-    CHECK(error(friction, damping, .35) < 1e-2);  // at .4 the step was halved in the contact before
+    // A dashpot begins with a jump of the force, which leaves an error of the order 3.
+    const double jump = 1e-3 * damping;
+    CHECK(error(friction, damping, .1) < 5e-5 + jump);
+    CHECK(error(friction, damping, .2) < 3e-4 + 8 * jump);
+    CHECK(error(friction, damping, .35) < 1e-2 + 43 * jump);
   }
 }
 

@@ -154,7 +154,7 @@ TEST_CASE("the ledgers close of what a turning paddle pushes", "[pivot]") {
       CHECK(std::abs(e.total_error) < 1e-3 * e.external_work);
       const Momenta p = simulation.momenta();
       CHECK(std::abs(p.angular) > 1);
-      CHECK(std::abs(p.angular_error) < 1e-11 * std::abs(p.angular));
+      CHECK(std::abs(p.angular_error) < 3e-11 * std::abs(p.angular));
       CHECK(std::hypot(p.x_error, p.y_error) < 1e-11 * std::hypot(p.x, p.y));
     }
   }

@@ -124,7 +124,7 @@ TEST_CASE("crosses that share their skeleton go on bit for bit, on any number of
     "fill": [ { "name": "cross", "material": "rock", "region": [[0, 0], [0.6, 0], [0.6, 1.2], [0, 1.2]],
                 "shapes": [ { "cross": {} } ], "diameter": { "uniform": [0.08, 0.1] },
                 "arrangement": "lattice", "count": 12, "velocity": [0, -3] } ],
-    "time": { "end": 0.06, "accuracy": 0.1 }, "output": { "frames": 1 } })");
+    "time": { "end": 0.055, "accuracy": 0.1 }, "output": { "frames": 1 } })");
   Run whole(scene, {.folder = folder / "whole"});
   REQUIRE(whole.run() == Run::Status::done);
   REQUIRE(whole.simulation().contacts().size() > 0);

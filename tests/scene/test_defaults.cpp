@@ -73,7 +73,7 @@ std::string digest(const Scene& s) {
   const ContactLaw& law = m.contact;
   add(int(law.potential.kind), int(law.potential.field), int(law.potential.reference));
   add(int(law.friction_law), int(law.surface), law.self, law.accepts_overlaps, law.damping.bulk,
-      law.penetration_warning);
+      law.friction.stiffness_ratio, law.penetration_warning);
   for (const RigidBody& body : m.bodies) {
     add(int(body.motion), body.angle, body.spin);
     add2(m.origin + body.position);
@@ -118,6 +118,8 @@ std::vector<Default> rigid_defaults() {
       {"/properties/contact/properties/reference", rigid(), "/contact/reference",
        "inscribed_circle"},
       {"/properties/contact/properties/overlaps", rigid(), "/contact/overlaps", "accept"},
+      {"/properties/contact/properties/friction/properties/stiffness_ratio", friction,
+       "/contact/friction/stiffness_ratio", 0.6},
       {"/properties/contact/properties/friction/properties/law", friction, "/contact/friction/law",
        "per_edge"},
       {"/properties/contact/properties/penetration_warning", rigid(),

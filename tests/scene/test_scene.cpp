@@ -522,7 +522,7 @@ TEST_CASE("a pivot is a point of the world that the body takes with it", "[scene
   CHECK(turning.motion.spin.size() == 1);
 }
 
-TEST_CASE("friction takes its tangential stiffness from the normal one", "[scene]") {
+TEST_CASE("the stiffness of friction springs is a ratio or a constant", "[scene]") {
   const Folder folder;
   const auto between = [&](const std::string& friction, const std::string& pairs) {
     const std::string contact = "\"reference\": \"roof\"" + friction + pairs;
@@ -537,16 +537,29 @@ TEST_CASE("friction takes its tangential stiffness from the normal one", "[scene
     return std::string(", \"pairs\": [ { \"between\": [\"target\", \"rock\"], \"friction\": { ") +
            "\"coefficient\": 0.25" + more + " } } ]";
   };
+  const std::string scene_ratio =
+      ", \"friction\": { \"coefficient\": 0.5, \"stiffness_ratio\": 0.6 }";
+  const auto is = [](const Friction& friction, double ratio, double constant) {
+    return friction.stiffness_ratio == ratio && friction.tangential_stiffness == constant;
+  };
   CHECK(kTangentialShare == .8);
-  CHECK(between(plain, "").tangential_stiffness == .8 * 20e9);
-  CHECK(between(given, "").tangential_stiffness == 3e9);
+  CHECK(is(between(plain, ""), .8, 0));
+  CHECK(is(between(given, ""), 0, 3e9));
+  CHECK(is(between(scene_ratio, ""), .6, 0));
   for (const std::string& scene : {plain, std::string()}) {
     CHECK(between(scene, pair("")).coefficient == .25);
-    CHECK(between(scene, pair("")).tangential_stiffness == .8 * 20e9);
-    CHECK(between(scene, pair(", \"tangential_stiffness\": 7e9")).tangential_stiffness == 7e9);
+    CHECK(is(between(scene, pair("")), .8, 0));
+    CHECK(is(between(scene, pair(", \"tangential_stiffness\": 7e9")), 0, 7e9));
+    CHECK(is(between(scene, pair(", \"stiffness_ratio\": 0.7")), .7, 0));
   }
-  CHECK(between(given, pair("")).tangential_stiffness == 3e9);
-  CHECK(between(given, pair(", \"tangential_stiffness\": 7e9")).tangential_stiffness == 7e9);
+  CHECK(is(between(given, pair("")), 0, 3e9));
+  CHECK(is(between(given, pair(", \"tangential_stiffness\": 7e9")), 0, 7e9));
+  CHECK(is(between(given, pair(", \"stiffness_ratio\": 0.7")), .7, 0));
+  CHECK(is(between(scene_ratio, pair("")), .6, 0));
+  CHECK_THROWS_WITH(between(", \"friction\": { \"coefficient\": 0.5, \"stiffness_ratio\": 0.6, "
+                            "\"tangential_stiffness\": 3e9 }",
+                            ""),
+                    Catch::Matchers::Contains("give one of the two"));
 }
 
 TEST_CASE("a ratio of damping may be 0", "[scene]") {

@@ -18,20 +18,11 @@ ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
       table_(table),
       thickness_(thickness),
       distribution_(law.distribution),
-      pairs_(surfaces, threads),
-      times_(table, surfaces.inverse_mass()) {
-  for (Forces* forces : {&tangential_, &damping_}) {
-    forces->clear(static_cast<size_t>(surfaces.body_count()));
-  }
+      pairs_(surfaces, threads) {
+  tangential_.clear(static_cast<size_t>(surfaces.body_count()));
 }
 
-void ElementKernel::take(std::span<const BoxPair> pairs) {
-  pairs_.take(pairs);
-  if (!table_.damped()) return;
-  std::vector<std::pair<BodyIndex, BodyIndex>> bodies;
-  for (const auto& [a, b] : pairs) bodies.emplace_back(surfaces_.body(a), surfaces_.body(b));
-  times_.take(bodies);
-}
+void ElementKernel::take(std::span<const BoxPair> pairs) { pairs_.take(pairs); }
 
 std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
   if (surfaces_.is_rigid(i)) return {};
@@ -60,7 +51,8 @@ void ElementKernel::evaluate() {
       return;
     }
     add_touch(pair);
-    touches_.back().stiffness = contact.stiffness;
+    Touch& touch = touches_.back();
+    touch.stiffness = contact.stiffness * std::min(touch.force.norm() / touch.pressure, 1.);
   }
   find_largest_force();
 }
@@ -169,7 +161,7 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   if (surfaces_.is_rigid(b)) on_b.moment += k * pair.moment_b;
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
-  touches_.push_back({a, b, force, point, offset, k * pair.weight, 0});
+  touches_.push_back({a, b, force, point, offset, k * pair.weight});
   const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
     find_corners(i, at, of_a_);
     distribute(of_a_, f, normal_);
@@ -219,72 +211,108 @@ Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners
   return sum;
 }
 
-void ElementKernel::find_times(double dt) {
-  times_.begin_step();
-  for (const Touch& t : touches_) {
-    DampingTimes::Pair& pair = times_.of(surfaces_.body(t.a), surfaces_.body(t.b));
-    pair.normal += t.stiffness;
-    pair.tangential += table_.between(pair.a, pair.b).friction.tangential_stiffness * thickness_;
-  }
-  times_.end_step(dt);
-}
-
 double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
-  if (!table_.rough() && !table_.damped()) return 0;
-  const double power_before = power(tangential_, now), damping_before = power(damping_, now);
+  if (!table_.rough()) return 0;
+  const double power_before = power(tangential_, now);
   tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
-  // A first look, perhaps with the memory of another run: as springs do, dashpots keep their force.
-  const bool dashpots = table_.damped() && dt > 0 && !now.still;
-  if (dashpots) {
-    damping_.clear(static_cast<size_t>(surfaces_.body_count()));
-    find_times(dt);
-  }
   for (Touch& t : touches_) {
-    const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
-    const Friction& friction = table_.between(body_a, body_b).friction;
-    const bool rough = friction.coefficient > 0;
-    const double size = t.force.norm();
-    if ((!rough && !dashpots) || !(size > kNoResultant * t.pressure)) continue;
-    const Vec2 tangent = tangent_of(t.force), normal = t.force / size;
-    const Vec2 point_b = t.point + t.offset;
+    const PairLaw& law = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
+    if (!law.rough() || !has_direction(t)) continue;
+    const Vec2 tangent = tangent_of(t.force), point_b = t.point + t.offset;
     find_corners(t.a, t.point, of_a_);
     find_corners(t.b, point_b, of_b_);
     const Vec2 rate = velocity_at(t.a, t.point, of_a_, now) - velocity_at(t.b, point_b, of_b_, now);
-    const auto apply = [&](const Vec2& force, Forces& to) {
-      const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
-        Resultant& sum = to.sums[surfaces_.body(i)];
-        sum.force += f;
-        if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
-        distribute(at, f, to);
-      };
-      on(t.a, force, t.point, of_a_);
-      on(t.b, -force, point_b, of_b_);
+    const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
+    const Spring old = before.empty() ? Spring() : before[0];
+    const double constant = law.friction.tangential_stiffness * thickness_;
+    t.spring_stiffness = constant > 0 ? constant : law.friction.stiffness_ratio * t.stiffness;
+    const double pressed = std::max(0., t.force.norm() + old.push);
+    const CoulombSpring<double> spring{
+        t.spring_stiffness, now.restored ? HUGE_VAL : law.friction.coefficient * pressed};
+    const double kept = old.stiffness > 0 ? std::min(1., spring.stiffness / old.stiffness) : 0;
+    t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
+    memory.keep({{element_kernel, t.a, t.b, 0}, t.spring, spring.stiffness, tangent, old.push});
+    t.friction = t.spring * tangent;
+    const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+      Resultant& sum = tangential_.sums[surfaces_.body(i)];
+      sum.force += f;
+      if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
+      distribute(at, f, tangential_);
     };
-    double push = 0;
-    if (dashpots) {
-      const DampingTimes::Pair& pair = times_.of(body_a, body_b);
-      push = std::max(-pair.normal_time * t.stiffness * rate.dot(normal), -size);
-      t.damping = push * normal;
-    }
-    if (rough) {
-      const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
-      const CoulombSpring<double> spring{
-          friction.tangential_stiffness * thickness_,
-          now.restored ? HUGE_VAL : friction.coefficient * (size + push)};
-      const double slip = rate.dot(tangent);
-      const double force = spring.after(before.empty() ? 0 : before[0].force, slip * dt);
-      memory.keep({{element_kernel, t.a, t.b, 0}, force, spring.stiffness, tangent});
-      t.friction = force * tangent;
-      apply(t.friction, tangential_);
-      if (dashpots) {
-        const double time = times_.of(body_a, body_b).tangential_time;
-        t.damping += spring.dashpot(force, time, slip) * tangent;
-      }
-    }
-    if (dashpots) apply(t.damping, damping_);
+    on(t.a, t.friction, t.point, of_a_);
+    on(t.b, -t.friction, point_b, of_b_);
   }
-  if (table_.damped()) memory.damp(-dt / 2 * (damping_before + power(damping_, now)));
   return dt / 2 * (power_before + power(tangential_, now));
+}
+
+// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
+// them.
+void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
+  struct Pair {
+    double resistance = 0, stiffness = 0, sizes = 0;
+    Vec2 force = Vec2::Zero(), places = Vec2::Zero();
+  };
+  std::map<std::pair<BodyIndex, BodyIndex>, Pair> pairs;
+  const auto pair_of = [&](const Touch& t) -> Pair& {
+    return pairs[{surfaces_.body(t.a), surfaces_.body(t.b)}];
+  };
+  for (const Touch& t : touches_) {
+    Pair& pair = pair_of(t);
+    pair.resistance += t.stiffness, pair.stiffness += t.spring_stiffness;
+    pair.force += t.force;
+    pair.sizes += t.force.norm();
+    pair.places += t.force.norm() * (surfaces_.reference(t.a) + t.point);
+  }
+  for (const Touch& t : touches_) {
+    const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
+    const PairLaw& law = table_.between(body_a, body_b);
+    if (!law.damped() || !has_direction(t) || !(t.stiffness > 0)) continue;
+    const Pair& pair = pair_of(t);
+    const double all = pair.force.norm(), size = t.force.norm();
+    const Vec2 direction = all > 0 ? Vec2(pair.force / all) : Vec2(t.force / size);
+    const Vec2 place = pair.places / pair.sizes;
+    const auto time = [&](double value, double k, const Vec2& along) {
+      return dashpot_time(value, law.damping.are_times, k,
+                          surfaces_.mobility(body_a, now, place, along) +
+                              surfaces_.mobility(body_b, now, place, along));
+    };
+    const Vec2 normal = t.force / size, across(-normal.y(), normal.x());
+    to.add({body_a,
+            body_b,
+            normal,
+            {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction),
+                             size, size / t.stiffness}},
+            t.spring_stiffness *
+                time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
+            t.spring,
+            law.friction.coefficient});
+    const auto add_side = [&](SurfaceIndex i, const Vec2& point, double sign) {
+      if (surfaces_.is_rigid(i)) return to.add_point(i, point, sign * normal, sign * across);
+      find_corners(i, point, of_a_);
+      for (size_t k = 0; k < of_a_.nodes.size(); ++k) {
+        const double share = sign * of_a_.weights[k];
+        to.add_node(of_a_.nodes[k], share * normal, share * across);
+      }
+    };
+    add_side(t.a, t.point, 1);
+    add_side(t.b, t.point + t.offset, -1);
+  }
+}
+
+void ElementKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) {
+  auto spring = memory.springs_of(element_kernel).begin();
+  for (Touch& t : touches_) {
+    const PairLaw& law = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
+    if (!law.damped() || !has_direction(t) || !(t.stiffness > 0)) continue;
+    const Vec2 normal = t.force / t.force.norm();
+    t.push = from.normal_force(next) * normal;
+    t.drag = from.tangential_force(next) * Vec2(-normal.y(), normal.x());
+    if (law.rough()) {
+      while (std::pair(spring->key.a, spring->key.b) < std::pair(t.a, t.b)) ++spring;
+      spring->push = from.normal_force(next);
+    }
+    ++next;
+  }
 }
 
 // Of forces on the bodies, W.
@@ -302,12 +330,8 @@ double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   return sum;
 }
 
-void ElementKernel::fields(Archive& archive) {
-  if (table_.damped()) archive("damping_nodes", damping_.nodes)("damping_sums", damping_.sums);
-}
-
 void ElementKernel::add_forces(const ForceViews& forces) {
-  for (const Forces* part : {&normal_, &tangential_, &damping_}) {
+  for (const Forces* part : {&normal_, &tangential_}) {
     for (const auto& [node, force] : part->nodes) {
       forces.nodes[2 * static_cast<size_t>(node)] += force.x();
       forces.nodes[2 * static_cast<size_t>(node) + 1] += force.y();
@@ -315,7 +339,7 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
   for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
     double* f = &forces.rigid[3 * static_cast<size_t>(i)];
-    for (const Forces* part : {&normal_, &tangential_, &damping_}) {
+    for (const Forces* part : {&normal_, &tangential_}) {
       f[0] += part->sums[i].force.x();
       f[1] += part->sums[i].force.y();
       f[2] += part->sums[i].moment;
@@ -331,17 +355,6 @@ std::vector<double> ElementKernel::slopes() const {
     own = std::max(own, surfaces_.shapes().slope(i));
   }
   return slope;
-}
-
-void ElementKernel::limit_damping(std::span<const double> node_mass) {
-  std::vector<DampingTimes::Nodes> nodes;
-  for (const double slope : slopes()) nodes.push_back({slope, 0});
-  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
-    if (node_mass[node] > 0) {
-      nodes[body].share = std::max(nodes[body].share, length / node_mass[node]);
-    }
-  }
-  times_.limit(std::move(nodes), thickness_);
 }
 
 double ElementKernel::rate(std::span<const double> node_mass) const {
@@ -439,12 +452,8 @@ void ElementKernel::add_records(std::vector<ContactRecord>& records) const {
     ContactRecord& sum = found[static_cast<size_t>(patch[i])];
     sum.a = surfaces_.body(t.a), sum.b = surfaces_.body(t.b);
     sum.normal += t.force;
-    // A contact without a resultant has no direction, and no damping.
-    const double size = t.force.norm();
-    const Vec2 normal = size > 0 ? Vec2(t.force / size) : Vec2(0, 0);
-    const Vec2 damping = t.damping.dot(normal) * normal;
-    sum.damping += damping;
-    sum.tangential += t.friction + (t.damping - damping);
+    sum.damping += t.push;
+    sum.tangential += t.friction + t.drag;
     sum.point += pair.weight * (surfaces_.reference(t.a) + t.point);
     sum.penetration = find_penetration(t.a, t.b, sum.penetration, depths);
     sum.phi = std::max(sum.phi, pair.largest_phi);

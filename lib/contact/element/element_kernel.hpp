@@ -18,7 +18,6 @@
 #include "geometry/integrals/contact_patches.hpp"
 #include "geometry/integrals/penetration.hpp"
 #include "lib/contact/kernel.hpp"
-#include "lib/contact/law/damping_times.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 
 namespace apothem {
@@ -38,8 +37,8 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
-  void limit_damping(std::span<const double> node_mass) override;
-  void fields(Archive& archive) override;
+  void add_dashpots(const Kinematics& now, Dashpots& to) override;
+  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
@@ -47,7 +46,7 @@ class ElementKernel final : public Kernel {
   [[nodiscard]] double rate(std::span<const double> node_mass) const override;
   [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
   [[nodiscard]] Vec2 force_on(BodyIndex body) const override {
-    return normal_.sums[body].force + tangential_.sums[body].force + damping_.sums[body].force;
+    return normal_.sums[body].force + tangential_.sums[body].force;
   }
   void add_records(std::vector<ContactRecord>& records) const override;
   void add_surfaces(std::vector<SurfaceRecord>& records) const override;
@@ -57,13 +56,14 @@ class ElementKernel final : public Kernel {
   /// Two polygons that touch.
   struct Touch {
     SurfaceIndex a, b;
-    Vec2 force;                    ///< on a, N
-    Vec2 point;                    ///< where it acts, relative to a's reference point, m
-    Vec2 offset;                   ///< a's reference point minus b's, m
-    double pressure;               ///< the sum of the sizes of what the force is the sum of, N
-    double stiffness;              ///< N/m
-    Vec2 friction = Vec2::Zero();  ///< on a, N
-    Vec2 damping = Vec2::Zero();   ///< on a, N
+    Vec2 force;            ///< on a, N
+    Vec2 point;            ///< where it acts, relative to a's reference point, m
+    Vec2 offset;           ///< a's reference point minus b's, m
+    double pressure;       ///< the sum of the sizes of what the force is the sum of, N
+    double stiffness = 0;  ///< along the force, N/m
+    double spring = 0, spring_stiffness = 0;        ///< of friction: force, N, and stiffness, N/m
+    Vec2 friction = Vec2::Zero();                   ///< on a, N
+    Vec2 push = Vec2::Zero(), drag = Vec2::Zero();  ///< of the dashpots on a, N
   };
   struct NodeForce {
     NodeIndex node = 0;
@@ -107,7 +107,9 @@ class ElementKernel final : public Kernel {
   void add_boundary(SurfaceIndex i, BoundaryDistance& boundary) const;
   double find_penetration(SurfaceIndex a, SurfaceIndex b, double floor, Depths& work) const;
   [[nodiscard]] double power(const Forces& forces, const Kinematics& now) const;
-  void find_times(double dt);
+  [[nodiscard]] static bool has_direction(const Touch& touch) {
+    return touch.force.norm() > kNoResultant * touch.pressure;
+  }
   [[nodiscard]] std::vector<int> patches() const;
 
   const Surfaces& surfaces_;
@@ -125,8 +127,7 @@ class ElementKernel final : public Kernel {
   };
   std::vector<BodyTouch> body_touches_;  // of all touches, ascending
   PairPeak largest_force_;
-  Forces normal_, tangential_, damping_;
-  DampingTimes times_;
+  Forces normal_, tangential_;
   PatchWorkspace workspace_;
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;

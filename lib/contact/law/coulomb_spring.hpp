@@ -1,5 +1,5 @@
-// The spring of friction and the dashpot beside it, as formulas for numbers and for packs of them
-// (the paper, Eqs. 12 and 14).
+// The spring of friction, as formulas for numbers and for packs of them (the paper, Eqs. 12 and
+// 14).
 #pragma once
 
 #include "lib/execution/pack.hpp"
@@ -23,12 +23,12 @@ struct CoulombSpring {
   [[nodiscard]] APOTHEM_INLINE Real after(const Real& force, const Real& slip) const {
     return within(trial(force, slip));
   }
-  /// What a dashpot of the time constant `time` (s) adds to the force of the spring at a slip rate
-  /// in m/s: together they stay within the limit. N.
-  [[nodiscard]] APOTHEM_INLINE Real dashpot(const Real& force, const Real& time,
-                                            const Real& rate) const {
-    return within(force - time * stiffness * rate) - force;
-  }
 };
+
+/// What a spring stores, J, from its force (N) and stiffness (N/m); 0 without a stiffness.
+template <class Real>
+APOTHEM_INLINE Real spring_energy(const Real& force, const Real& stiffness) {
+  return select(stiffness > Real(0.), force * force / (Real(2.) * stiffness), Real(0.));
+}
 
 }  // namespace apothem

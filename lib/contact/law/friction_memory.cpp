@@ -4,6 +4,15 @@
 #include <utility>
 
 namespace apothem {
+namespace {
+
+std::span<Spring> of_law(std::vector<Spring>& springs, int law) {
+  const auto [first, end] = std::ranges::equal_range(
+      springs, law, {}, [](const Spring& spring) { return spring.key.law; });
+  return {first, end};
+}
+
+}  // namespace
 
 void FrictionMemory::begin_step() {
   std::swap(now_, before_);
@@ -32,15 +41,12 @@ std::span<const Spring> FrictionMemory::before(int law, int a, int b) {
 }
 
 std::span<const Spring> FrictionMemory::before(int law) {
-  const auto behind = [&](int last) {
-    return std::ranges::partition_point(before_,
-                                        [&](const Spring& s) { return s.key.law <= last; });
-  };
-  const auto first = static_cast<size_t>(behind(law - 1) - before_.begin());
-  const auto end = static_cast<size_t>(behind(law) - before_.begin());
-  next_ = end;
-  return std::span(before_).subspan(first, end - first);
+  const std::span<Spring> springs = of_law(before_, law);
+  next_ = static_cast<size_t>(springs.data() + springs.size() - before_.data());
+  return springs;
 }
+
+std::span<Spring> FrictionMemory::springs_of(int law) { return of_law(now_, law); }
 
 void FrictionMemory::inherit(std::vector<Spring> springs) {
   now_ = std::move(springs);

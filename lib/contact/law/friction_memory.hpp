@@ -37,12 +37,13 @@ struct Spring {
   double force = 0;             ///< along the tangent of its contact, N
   double stiffness = 0;         ///< N/m
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
+  double push = 0;              ///< of the dashpot across it, N
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? force * force / (2 * stiffness) : 0;
   }
   void fields(Archive& archive) {
-    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent);
+    archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent)("push", push);
   }
 };
 
@@ -101,6 +102,8 @@ class FrictionMemory {
   void end_step(double work);
 
   [[nodiscard]] std::span<const Spring> springs() const { return now_; }
+  /// Those of a law.
+  [[nodiscard]] std::span<Spring> springs_of(int law);
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.

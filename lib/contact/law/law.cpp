@@ -20,9 +20,7 @@ PairLaw law_between(const ContactLaw& law, int a, int material_a, int b, int mat
     result.damping = rule.damping.value_or(result.damping);
     result.normal_stiffness = rule.normal_stiffness.value_or(result.normal_stiffness);
   }
-  if (result.friction.tangential_stiffness == 0) {
-    result.friction.tangential_stiffness = kTangentialShare * result.normal_stiffness;
-  }
+  if (result.friction.tangential_stiffness > 0) result.friction.stiffness_ratio = 0;
   return result;
 }
 

@@ -10,16 +10,25 @@
 
 namespace apothem {
 
+/// k_t over the normal stiffness of a contact by default: what R. D. Mindlin (J. Appl. Mech. 16
+/// (1949), 259) finds for elastic bodies, 2 (1 - nu)/(2 - nu), at nu = 1/3.
+inline constexpr double kTangentialShare = 0.8;
+
 struct Friction {
-  double coefficient = 0;           ///< mu; 0: none
-  double tangential_stiffness = 0;  ///< k_s, Pa; 0: kTangentialShare of the normal stiffness
+  double coefficient = 0;  ///< mu; 0: none
+  /// k_s, Pa: the paper's constant stiffness of a spring, whatever the size of its contact (Eq.
+  /// 12). 0: by the ratio.
+  double tangential_stiffness = 0;
+  /// Stiffness of the spring over the normal stiffness dN/dd of its contact.
+  double stiffness_ratio = kTangentialShare;
 };
 
-/// Viscous damping, as ratios of critical damping; 0: none.
+/// Viscous damping of contacts. 0: none.
 struct ContactDamping {
-  double normal = 0;
-  double tangential = 0;  ///< beside the friction spring, within Coulomb's limit
-  double bulk = 0;        ///< of the strains of bodies with a mesh; of the whole scene
+  double normal = 0;       ///< ratio of critical damping, or time constant, s
+  double tangential = 0;   ///< likewise, beside the friction spring, within Coulomb's limit
+  double bulk = 0;         ///< ratio for the strains of bodies with a mesh; of the whole scene
+  bool are_times = false;  ///< the first two are time constants: coefficients over stiffnesses
 };
 
 /// What acts between two bodies.
@@ -27,11 +36,18 @@ struct PairLaw {
   double normal_stiffness = 0;  ///< k_n, Pa
   Friction friction = {};
   ContactDamping damping = {};
-};
 
-/// k_s/k_n by default: what R. D. Mindlin (J. Appl. Mech. 16 (1949), 259) finds for the tangential
-/// stiffness of elastic bodies over the normal one, 2 (1 - nu)/(2 - nu), at nu = 1/3.
-inline constexpr double kTangentialShare = 0.8;
+  [[nodiscard]] bool rough() const { return friction.coefficient > 0; }
+  [[nodiscard]] bool damped() const { return damping.normal > 0 || damping.tangential > 0; }
+  /// Stiffness of the springs of boundaries, on which the normal stiffness is spread as well, over
+  /// that.
+  [[nodiscard]] double spread_ratio() const {
+    const double k = friction.tangential_stiffness;
+    return k > 0 ? k / normal_stiffness : friction.stiffness_ratio;
+  }
+  /// Of springs of one stiffness (Eq. 9), Pa.
+  [[nodiscard]] double one_stiffness() const { return spread_ratio() * normal_stiffness; }
+};
 
 /// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
 enum class FrictionLaw { resultant, per_edge };

@@ -26,13 +26,14 @@ PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& ma
     for (const BodyIndex b : first) {
       table_.push_back(law_between(law, a, material[a], b, material[b]));
       const PairLaw& pair = table_.back();
-      rough_ = rough_ || pair.friction.coefficient > 0;
-      damped_ = damped_ || pair.damping.normal > 0 || pair.damping.tangential > 0;
-      largest_damping_ = std::max(largest_damping_, pair.damping.normal);
+      rough_ = rough_ || pair.rough();
+      damped_ = damped_ || pair.damped();
       stiffest_ = std::max(stiffest_, pair.normal_stiffness);
       softest_ = std::min(softest_, pair.normal_stiffness);
-      if (!(pair.friction.coefficient > 0)) continue;
-      stiffest_friction_ = std::max(stiffest_friction_, pair.friction.tangential_stiffness);
+      if (!pair.rough()) continue;
+      const auto raise = [](double value, double& largest) { largest = std::max(largest, value); };
+      raise(pair.friction.tangential_stiffness, stiffest_friction_.tangential_stiffness);
+      raise(pair.friction.stiffness_ratio, stiffest_friction_.stiffness_ratio);
     }
   }
 }

@@ -24,21 +24,20 @@ class PairTable {
   [[nodiscard]] bool rough() const { return rough_; }
   /// True if there is viscous damping between any two bodies.
   [[nodiscard]] bool damped() const { return damped_; }
-  /// The largest ratio of normal damping between any two bodies.
-  [[nodiscard]] double largest_damping() const { return largest_damping_; }
   /// The largest and the smallest normal stiffness between any two bodies, Pa.
   [[nodiscard]] double stiffest() const { return stiffest_; }
   [[nodiscard]] double softest() const { return softest_; }
-  /// The largest tangential stiffness between any two rough bodies, Pa; 0 if there is no friction.
-  [[nodiscard]] double stiffest_friction() const { return stiffest_friction_; }
+  /// Between any two rough bodies: the largest constant stiffness of springs, Pa, and the largest
+  /// ratio of others to the normal stiffness. 0 if there are none.
+  [[nodiscard]] const Friction& stiffest_friction() const { return stiffest_friction_; }
 
  private:
   std::vector<int> kind_;  // of each body
   size_t kinds_ = 0;
   std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
   bool self_, rough_ = false, damped_ = false;
-  double largest_damping_ = 0;
-  double stiffest_ = 0, softest_ = HUGE_VAL, stiffest_friction_ = 0;
+  double stiffest_ = 0, softest_ = HUGE_VAL;
+  Friction stiffest_friction_{0, 0, 0};
 };
 
 }  // namespace apothem

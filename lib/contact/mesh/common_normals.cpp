@@ -137,6 +137,13 @@ void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size
     });
     own.pressed = own.normal * std::max(0., 1 - lost);
   }
+  // Pieces of faces resist by the cosine of their angle to the normal, and what cancels does not.
+  for (size_t i = first; i < end; ++i) {
+    SpringContact& own = springs[places_[i].spring];
+    const double along = own.slope_y * own.nx - own.slope_x * own.ny;
+    own.resistance = own.pressed / own.normal * std::max(0., along);
+    own.stiffness = own.ratio * own.resistance;
+  }
   hand_over(springs, first, end);
 }
 

@@ -22,16 +22,23 @@ struct SpringContact {
   double place = 0;       ///< its moment along the edge over the length of the edge, N
   double rate_x = 0;      ///< slip rate of the edge against the faces, times the push, N m/s
   double rate_y = 0;      ///< likewise
-  double stiffness = 0;   ///< of the spring, N/m
+  double slope_x = 0;     ///< of the potentials along the faces, which resist across them, N/m
+  double slope_y = 0;     ///< likewise
   double deepest = 0;     ///< depth, m
+  double ratio = 0;       ///< of the spring's stiffness to that along the normal
   std::int32_t edge = 0;  ///< of the outlines
   BodyIndex other = 0;    ///< the body of the faces
   // What the springs before have left; force_before is then with what neighbours hand over.
   bool is_old = false;
   double force_before = 0, stiffness_before = 0;  ///< N, N/m
+  double push_before = 0;                         ///< of the dashpot along the normal, N
   // What follows.
-  double nx = 0, ny = 0;  ///< unit vector along which the edge is pushed; 0 if there is none
-  double pressed = 0;     ///< normal force that counts for friction, N
+  double nx = 0, ny = 0;      ///< unit vector along which the edge is pushed; 0 if there is none
+  double pressed = 0;         ///< normal force that counts for friction, N
+  double resistance = 0;      ///< stiffness along the normal, N/m
+  double stiffness = 0;       ///< of the spring, N/m
+  double friction = 0;        ///< its force along (-ny, nx) on the edge, N
+  double drag = 0, push = 0;  ///< of the dashpots, along it and along the normal, N
 };
 
 class CommonNormals {

@@ -6,6 +6,7 @@
 
 #include "geometry/integrals/collar.hpp"
 #include "geometry/polygon/point.hpp"
+#include "lib/contact/law/law.hpp"
 
 namespace apothem {
 
@@ -18,12 +19,10 @@ struct EdgeFace {
 
 /// Between the edges of one body and the faces of another.
 struct EdgeFaceLaw {
-  double slope;         ///< k_n thickness / r of the faces, N/m^2
-  double spring;        ///< k_s thickness / r of the faces, N/m^2
-  double friction;      ///< mu
-  std::int32_t bodies;  ///< index of the two bodies in DampingTimes
-  bool self;            ///< both are one body
-  std::int32_t pair;    ///< index of the pair of bodies, which takes no order of the two
+  double slope;        ///< k_n thickness / r of the faces, N/m^2
+  const PairLaw* law;  ///< between the two
+  bool self;           ///< both are one body
+  std::int32_t pair;   ///< index of the pair of bodies, which takes no order of the two
 };
 
 /// An edge that meets a face.

@@ -50,7 +50,6 @@ void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const 
   }
   touches_.resize(blocks_.size());
   met_.assign(blocks_.size(), 0);
-  lengths_.assign(laws_.size(), 0);
   forces_.assign(laws_.size(), Vec2::Zero());
 }
 
@@ -107,7 +106,6 @@ void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t
       block.law[l] = number;
       block.one_law = block.one_law && number == block.law[0];
       block.slope[l] = repeated ? 0 : law.slope;
-      block.spring[l] = repeated ? 0 : law.spring;
       block.nothing[l] = repeated ? HUGE_VAL : law.self ? kNothing * o.depth[c.face] : 0;
       block.edge_is_lower[l] = o.body[c.edge] < o.body[c.face];
       if (repeated) continue;

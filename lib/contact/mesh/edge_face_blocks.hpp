@@ -30,7 +30,7 @@ struct EdgeFaceBlock {
   Vertices p, q;  ///< the edge leads from p to q,
   Vertices a, b;  ///< and the base of the face from a to b
   Vertices law;
-  Numbers slope, spring;  ///< of the law; 0 in what is repeated
+  Numbers slope;          ///< of the law; 0 in what is repeated
   Numbers nothing;        ///< up to this depth it is no contact, m
   Numbers edge_is_lower;  ///< 1 where the body of the edge has the lower number, else 0
   unsigned lanes;         ///< one bit for each candidate
@@ -106,10 +106,6 @@ class EdgeFaceBlocks {
   /// Normal force of the contacts with each law on that of the two bodies with the lower number, N.
   [[nodiscard]] std::span<Vec2> forces() { return forces_; }
   [[nodiscard]] std::span<const Vec2> forces() const { return forces_; }
-  /// Length of the contact with each law, m.
-  [[nodiscard]] std::span<double> lengths() { return lengths_; }
-  [[nodiscard]] std::span<const double> lengths() const { return lengths_; }
-
   /// Calls f(block, lane) for every contact, of all units or of one, in the order of the
   /// candidates.
   template <class F>
@@ -121,6 +117,15 @@ class EdgeFaceBlocks {
     for (auto i = static_cast<size_t>(unit.first); i < static_cast<size_t>(unit.end); ++i) {
       for (unsigned m = met_[i] & kContacts; m != 0; m &= m - 1)
         f(i, static_cast<size_t>(std::countr_zero(m)));
+    }
+  }
+  /// The same of one spring.
+  template <class F>
+  void each_contact(const EdgeFaceUnit& unit, const EdgeFaceGroup& group, const F& f) const {
+    for (std::int32_t c = group.first; c < group.end; ++c) {
+      const auto block = static_cast<size_t>(unit.first + c / kBlock);
+      const auto lane = static_cast<size_t>(c % kBlock);
+      if ((met_[block] >> lane & 1U) != 0) f(block, lane);
     }
   }
 
@@ -142,7 +147,6 @@ class EdgeFaceBlocks {
   std::vector<EdgeFaceLaw> laws_;
   std::vector<EdgeFaceTouch> touches_;
   std::vector<std::uint8_t> met_;
-  std::vector<double> lengths_;
   std::vector<Vec2> forces_;
   static constexpr int kNobody = -1, kSeveral = -2;
   std::vector<int> owners_;                  // workers, of each vertex

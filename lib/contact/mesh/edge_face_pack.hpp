@@ -76,10 +76,7 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
   Pack deepest(0.);  // squares of bounds
   double deep_deepest = 0;
   int touching = 0;
-  for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) {
-    all.lengths()[i] = 0;
-    all.forces()[i].setZero();
-  }
+  for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.forces()[i].setZero();
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     const EdgeFaceBlock& block = all.blocks()[i];
     const auto at = [](const std::vector<double>& of, const Vertices& v) APOTHEM_LAMBDA {
@@ -150,17 +147,12 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     }
     met = static_cast<std::uint8_t>(found | EdgeFaceBlocks::kPushed);
     touching += std::popcount(found);
-    EdgeFaceTouch::Numbers length;
-    put(length, (Pack::load(touch.to.data()) - Pack::load(touch.from.data())) * edge_length);
     if (block.one_law) {
-      double& sum = all.lengths()[block.law[0]];
-      sum = sum + length[0] + length[1] + length[2] + length[3];
       Vec2& force_sum = all.forces()[block.law[0]];
       force_sum = {force_sum.x() + lower_x[0] + lower_x[1] + lower_x[2] + lower_x[3],
                    force_sum.y() + lower_y[0] + lower_y[1] + lower_y[2] + lower_y[3]};
     } else {
       for (size_t l = 0; l < kBlock; ++l) {
-        all.lengths()[block.law[l]] += length[l];
         all.forces()[block.law[l]] += Vec2(lower_x[l], lower_y[l]);
       }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
@@ -26,68 +27,38 @@ APOTHEM_INLINE bool is_before(const SpringKey& one, const SpringKey& other) {
   return number(one) < number(other);
 }
 
-// Calls f(block, lane) for the contacts of a spring.
-template <class F>
-void each_contact(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
-                  const EdgeFaceGroup& group, const F& f) {
-  for (std::int32_t c = group.first; c < group.end; ++c) {
-    const std::int32_t block = unit.first + c / kBlock;
-    const auto lane = static_cast<size_t>(c % kBlock);
-    if ((blocks.met()[block] >> lane & 1U) != 0) f(block, lane);
-  }
-}
-
 }  // namespace
 
-OutlineFriction::OutlineFriction(const Outlines& outlines, const PairTable& table,
-                                 const std::vector<double>& inverse_mass, int threads)
-    : outlines_(outlines),
-      damped_(table.damped()),
+OutlineFriction::OutlineFriction(const Surfaces& surfaces, const PairTable& table, int threads)
+    : surfaces_(surfaces),
+      table_(table),
+      outlines_(surfaces.outlines()),
       threads_(threads),
-      times_(table, inverse_mass),
-      normals_(outlines),
-      all_(outlines.bodies.size()),
+      normals_(outlines_),
+      all_(outlines_.bodies.size()),
       workers_(static_cast<size_t>(threads_.count())) {
   std::iota(all_.begin(), all_.end(), 0);
 }
 
-void OutlineFriction::limit_damping(std::span<const double> node_mass, double thickness) {
-  const Outlines& o = outlines_;
-  std::vector<DampingTimes::Nodes> nodes(o.bodies.size());
-  for (size_t b = 0; b < nodes.size(); ++b) nodes[b].slope = o.bodies[b].slope();
-  for (int i = 0; i < o.size(); ++i) {
-    const double mass = o.node[i] < 0 ? 0 : node_mass[o.node[i]];
-    if (!(mass > 0)) continue;
-    const double share = (o.given_length(o.previous[i]) + o.given_length(i)) / 2;
-    nodes[o.body[i]].share = std::max(nodes[o.body[i]].share, share / mass);
-  }
-  times_.limit(std::move(nodes), thickness);
-}
-
-// Finds the velocities of the vertices, and makes room for the new forces. Returns the powers of
-// the old ones.
-OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& now,
-                                               const Step& step) {
+// Finds the velocities of the vertices, and makes room for the new forces. Returns the power of the
+// old ones, W.
+double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& step) {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
-  Powers sum;
+  double power = 0;
   const auto put = [&](int i, double vx, double vy) {
     velocities_[2 * static_cast<size_t>(i)] = vx;
     velocities_[2 * static_cast<size_t>(i) + 1] = vy;
     const VertexDrag& before = drags_before_[static_cast<size_t>(i)];
-    sum.friction += before[0] * vx + before[1] * vy;
-    sum.damping += before[2] * vx + before[3] * vy;
-    VertexDrag& drag = drags_[static_cast<size_t>(i)];
-    // A first look, perhaps with the memory of another run: as springs do, dashpots keep their
-    // force.
-    drag = step.dashpots ? VertexDrag{} : VertexDrag{0, 0, before[2], before[3]};
+    power += before[0] * vx + before[1] * vy;
+    drags_[static_cast<size_t>(i)] = {};
   };
   if (!body.is_rigid()) {
     for (int i = body.first; i < body.end; ++i) {
       const double* v = now.node_velocity.data() + 2 * static_cast<size_t>(o.node[i]);
       put(i, v[0], v[1]);
     }
-    return sum;
+    return power;
   }
   const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
   double drawn = 0, turned = 0;
@@ -105,7 +76,7 @@ OutlineFriction::Powers OutlineFriction::begin(BodyIndex b, const Kinematics& no
       put(i, vx, vy);
     }
   }
-  return sum;
+  return power;
 }
 
 // What the contacts of springs add up to, without what springs remember.
@@ -122,16 +93,18 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
   for (size_t g = 0; g < groups.size(); ++g) {
     SpringContact& sum = contacts_[static_cast<size_t>(unit.first_group) + g] = {};
     sum.edge = groups[g].edge;
-    each_contact(step.blocks, unit, groups[g], [&](std::int32_t i, size_t lane) {
+    sum.ratio = step.blocks.laws()[static_cast<size_t>(groups[g].law)].law->spread_ratio();
+    step.blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
       const EdgeFaceBlock& block = step.blocks.blocks()[i];
       const EdgeFaceTouch& touch = step.blocks.touches()[i];
-      const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
+      const OutlineSlip& slip = slips_[i];
       sum.other = outlines_.body[block.a[lane]];
       sum.normal += slip.at_p[lane] + slip.at_q[lane];
       sum.place += slip.at_q[lane];
       sum.rate_x += slip.rate_x[lane], sum.rate_y += slip.rate_y[lane];
-      sum.stiffness +=
-          block.spring[lane] * ((touch.to[lane] - touch.from[lane]) * touch.edge_length[lane]);
+      const double slope =
+          block.slope[lane] * ((touch.to[lane] - touch.from[lane]) * touch.edge_length[lane]);
+      sum.slope_x += slope * touch.tx[lane], sum.slope_y += slope * touch.ty[lane];
       sum.deepest = std::max(sum.deepest, touch.deepest[lane]);
     });
   }
@@ -150,49 +123,8 @@ void OutlineFriction::find_before(const Step& step) {
       if (before == step.before.end() || before->key.a != key.a || before->key.b != key.b) continue;
       contact.is_old = true;
       contact.force_before = before->force, contact.stiffness_before = before->stiffness;
+      contact.push_before = before->push;
     }
-  }
-}
-
-// Stiffness of the contacts of a spring along its normal, N/m: their pieces of faces resist by the
-// cosine of their angle to it, and what cancels does not.
-double OutlineFriction::resistance(const Step& step, const EdgeFaceUnit& unit,
-                                   const EdgeFaceGroup& group, const SpringContact& contact) const {
-  if (!(contact.normal > 0)) return 0;
-  double sum = 0;
-  each_contact(step.blocks, unit, group, [&](std::int32_t i, size_t lane) {
-    const EdgeFaceTouch& touch = step.blocks.touches()[i];
-    const double length = (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
-    const double along = touch.tx[lane] * -contact.ny + touch.ty[lane] * contact.nx;
-    sum += step.blocks.blocks()[i].slope[lane] * length * std::max(0., along);
-  });
-  return contact.pressed / contact.normal * sum;
-}
-
-void OutlineFriction::find_times(const Step& step) {
-  const std::span<const EdgeFaceLaw> laws = step.blocks.laws();
-  law_times_.resize(laws.size());
-  if (!step.dashpots) {
-    std::ranges::fill(law_times_, LawTimes{0, 0});
-    return;
-  }
-  resistances_.resize(contacts_.size());
-  times_.begin_step();
-  for (const EdgeFaceUnit& unit : step.blocks.units()) {
-    const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
-    for (size_t g = 0; g < groups.size(); ++g) {
-      const size_t number = static_cast<size_t>(unit.first_group) + g;
-      resistances_[number] = resistance(step, unit, groups[g], contacts_[number]);
-      times_[laws[static_cast<size_t>(groups[g].law)].bodies].normal += resistances_[number];
-    }
-  }
-  for (size_t i = 0; i < laws.size(); ++i) {
-    times_[laws[i].bodies].tangential += laws[i].spring * step.blocks.lengths()[i];
-  }
-  times_.end_step(step.dt);
-  for (size_t i = 0; i < laws.size(); ++i) {
-    const DampingTimes::Pair& pair = times_[laws[i].bodies];
-    law_times_[i] = {pair.normal_time, pair.tangential_time};
   }
 }
 
@@ -200,7 +132,7 @@ void OutlineFriction::find_times(const Step& step) {
 double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
                                      const EdgeFaceGroup& group, const SpringContact& contact) {
   double width = 0, depth = 0;
-  each_contact(step.blocks, unit, group, [&](std::int32_t i, size_t lane) {
+  step.blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
     const EdgeFaceTouch& touch = step.blocks.touches()[i];
     width += (touch.to[lane] - touch.from[lane]) * touch.edge_length[lane];
     depth += touch.sum[lane] * touch.edge_length[lane];
@@ -210,90 +142,64 @@ double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
   return closed > depth / width ? depth / width / closed : 1;
 }
 
-// Finds springs and dashpots. Returns the energy of the springs, J.
-double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) const {
+// Finds the forces of springs. Returns their energy, J.
+double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) {
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
   double energy = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
     const EdgeFaceGroup& group = groups[g];
-    const size_t number = static_cast<size_t>(unit.first_group) + g;
-    const SpringContact& contact = contacts_[number];
-    double friction = 0, dashpot = 0, push = 0;  // N
-    if (contact.normal > 0) {
-      const double coefficient = step.blocks.laws()[static_cast<size_t>(group.law)].friction;
-      const LawTimes& times = law_times_[static_cast<size_t>(group.law)];
-      const double per_normal = 1 / contact.normal;
-      if (times.normal > 0) {
-        const double closing =
-            -(contact.nx * contact.rate_x + contact.ny * contact.rate_y) * per_normal;
-        push = std::max(-contact.pressed, times.normal * resistances_[number] * closing);
-      }
-      if (coefficient > 0) {
-        const CoulombSpring<double> spring{
-            contact.stiffness,
-            step.limited ? coefficient * std::max(0., contact.pressed + push) : HUGE_VAL};
-        double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) * per_normal;
-        if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
-        friction = spring.after(contact.force_before, slip * step.dt);
-        if (times.tangential > 0) dashpot = spring.dashpot(friction, times.tangential, slip);
-        if (contact.stiffness > 0) energy += friction * friction / (2 * contact.stiffness);
-        worker.springs.push_back(
-            {.key = key_of(group), .force = friction, .stiffness = contact.stiffness});
-      }
-      friction *= per_normal, dashpot *= per_normal, push *= per_normal;
+    SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+    const double coefficient =
+        step.blocks.laws()[static_cast<size_t>(group.law)].law->friction.coefficient;
+    double pull = 0;
+    if (contact.normal > 0 && coefficient > 0) {
+      const double pressed = std::max(0., contact.pressed + contact.push_before);
+      const CoulombSpring<double> spring{contact.stiffness,
+                                         step.limited ? coefficient * pressed : HUGE_VAL};
+      double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
+      if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
+      contact.friction = spring.after(contact.force_before, slip * step.dt);
+      energy += spring_energy(contact.friction, contact.stiffness);
+      worker.springs.push_back({.key = key_of(group),
+                                .force = contact.friction,
+                                .stiffness = contact.stiffness,
+                                .push = contact.push_before});
+      pull = contact.friction / contact.normal;
     }
     for (std::int32_t c = group.first; c < group.end; ++c) {
-      SlipPull& pull = worker.pulls[static_cast<size_t>(c / kBlock)];
+      SlipPull& pulls = worker.pulls[static_cast<size_t>(c / kBlock)];
       const auto lane = static_cast<size_t>(c % kBlock);
-      pull.friction_x[lane] = -friction * contact.ny;
-      pull.friction_y[lane] = friction * contact.nx;
-      pull.dashpot_x[lane] = push * contact.nx - dashpot * contact.ny;
-      pull.dashpot_y[lane] = push * contact.ny + dashpot * contact.nx;
-      SlipPush& pushes = worker.pushes[static_cast<size_t>(c / kBlock)];
-      pushes.x[lane] = push * contact.nx, pushes.y[lane] = push * contact.ny;
+      pulls.x[lane] = -pull * contact.ny, pulls.y[lane] = pull * contact.nx;
     }
   }
   return energy;
 }
 
-// Adds the forces on the vertices. Returns the powers of these forces.
-APOTHEM_INLINE OutlineFriction::Powers OutlineFriction::pull(const Step& step,
-                                                             const EdgeFaceUnit& unit,
-                                                             Worker& worker, bool divided) {
-  Powers powers;
+// Adds the forces on the vertices. Returns their power, W.
+APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit& unit,
+                                            Worker& worker, bool divided) {
+  double power = 0;
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
-    const auto k = static_cast<size_t>(i - unit.first);
     const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
-    const SlipPull& pull = worker.pulls[k];
-    const SlipPush& push = worker.pushes[k];
-    BlockDrag& drag = block_drags_[static_cast<size_t>(i)];
+    const SlipPull& pull = worker.pulls[static_cast<size_t>(i - unit.first)];
     for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
-      powers.friction += pull.friction_x[l] * slip.rate_x[l] + pull.friction_y[l] * slip.rate_y[l];
-      powers.damping += pull.dashpot_x[l] * slip.rate_x[l] + pull.dashpot_y[l] * slip.rate_y[l];
-      const double normal = slip.at_p[l] + slip.at_q[l];
-      drag.push_x[l] = push.x[l] * normal, drag.push_y[l] = push.y[l] * normal;
-      drag.drag_x[l] = (pull.friction_x[l] + pull.dashpot_x[l]) * normal - drag.push_x[l];
-      drag.drag_y[l] = (pull.friction_y[l] + pull.dashpot_y[l]) * normal - drag.push_y[l];
+      power += pull.x[l] * slip.rate_x[l] + pull.y[l] * slip.rate_y[l];
     }
     SlipForces forces;
     find_drags(step.blocks.touches()[i], slip, pull, forces);
-    const EdgeFaceBlock& block = step.blocks.blocks()[i];
-    const auto add_at_once = [&](std::int32_t vertex, const PackOf<4>& force)
-                                 APOTHEM_LAMBDA { add(force, drags_[vertex]); };
-    if (!divided || !step.blocks.has_shared(i)) {
-      each_drag(block, forces, add_at_once);
-      continue;
-    }
-    each_drag(block, forces, [&](std::int32_t vertex, const PackOf<4>& force) APOTHEM_LAMBDA {
-      if (step.blocks.is_shared(vertex)) {
-        force.store(worker.late.emplace_back(vertex, VertexDrag{}).second.data());
-      } else {
-        add_at_once(vertex, force);
-      }
-    });
+    const bool shared = divided && step.blocks.has_shared(i);
+    each_drag(step.blocks.blocks()[i], forces,
+              [&](std::int32_t vertex, double x, double y) APOTHEM_LAMBDA {
+                if (shared && step.blocks.is_shared(vertex)) {
+                  worker.late.push_back({vertex, {x, y}});
+                  return;
+                }
+                VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
+                drag[0] += x, drag[1] += y;
+              });
   }
-  return powers;
+  return power;
 }
 
 // `divided`: several threads work. Forces on vertices that two of them have are added later.
@@ -303,10 +209,10 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
   if (unit.touching == 0) return;
   // The last block may have lanes without a spring.
   const auto last = static_cast<size_t>(unit.end - unit.first) - 1;
-  worker.pulls[last] = {}, worker.pushes[last] = {};
+  worker.pulls[last] = {};
   found.energy = follow(step, unit, worker);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    found.powers = pull(step, unit, worker, divided);
+    found.power = pull(step, unit, worker, divided);
     return 0.;
   });
 }
@@ -314,8 +220,7 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
 double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  const Step step{blocks,     memory.before(outline_kernel),   dt,
-                  now.finite, damped_ && dt > 0 && !now.still, !now.restored};
+  const Step step{blocks, memory.before(outline_kernel), dt, now.finite, !now.restored};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
   drags_.resize(n), drags_before_.resize(n);
@@ -331,12 +236,11 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
                     }
                   });
   units_.resize(blocks.units().size());
-  block_drags_.resize(blocks.blocks().size());
   slips_.resize(blocks.blocks().size());
   contacts_.resize(blocks.group_count());
   for (Worker& worker : workers_) {
     const auto most = static_cast<size_t>(blocks.most_blocks());
-    if (worker.pulls.size() < most) worker.pulls.resize(most), worker.pushes.resize(most);
+    if (worker.pulls.size() < most) worker.pulls.resize(most);
     worker.springs.clear(), worker.late.clear();
   }
   const auto units = static_cast<int>(blocks.units().size());
@@ -346,7 +250,6 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   });
   find_before(step);
   normals_.find(contacts_);
-  find_times(step);
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
     Worker& worker = workers_[static_cast<size_t>(number)];
@@ -355,18 +258,14 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   // In the order of the units, as if one thread had worked on them.
   for (const Worker& worker : workers_) {
     for (const auto& [vertex, force] : worker.late) {
-      add(PackOf<4>::load(force.data()), drags_[vertex]);
+      VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
+      drag[0] += force[0], drag[1] += force[1];
     }
   }
-  Powers powers;
-  for (const Powers& of_body : body_powers_) {
-    powers.friction += of_body.friction;
-    powers.damping += of_body.damping;
-  }
-  double energy = 0;
+  double power = 0, energy = 0;
+  for (const double of_body : body_powers_) power += of_body;
   for (const Unit& unit : units_) {
-    powers.friction += unit.powers.friction;
-    powers.damping += unit.powers.damping;
+    power += unit.power;
     energy += unit.energy;
   }
   for (Worker& worker : workers_) {
@@ -374,18 +273,149 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
     energy = 0;
   }
   everywhere_ = dt > 0 ? std::max(everywhere_ - 1, 0) : kBothVectors;
-  if (damped_) memory.damp(-dt / 2 * powers.damping);
-  return dt / 2 * powers.friction;
+  return dt / 2 * power;
 }
 
-void OutlineFriction::fields(Archive& archive) {
-  if (!damped_) return;
-  std::vector<double> damping;
-  for (const VertexDrag& drag : drags_) damping.insert(damping.end(), {drag[2], drag[3]});
-  archive("damping", damping);
-  drags_.resize(damping.size() / 2);
-  for (size_t i = 0; i < drags_.size(); ++i) {
-    drags_[i][2] = damping[2 * i], drags_[i][3] = damping[2 * i + 1];
+// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
+// them.
+void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now) {
+  const Outlines& o = outlines_;
+  for (PairSum& pair : pairs_) pair = {};
+  for (const EdgeFaceUnit& unit : blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+      if (!(contact.normal > 0)) continue;
+      PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[groups[g].law].pair)];
+      const BodyIndex own = o.body[contact.edge];
+      std::tie(pair.a, pair.b) = std::minmax(own, contact.other);
+      const Vec2 start = o.point(contact.edge);
+      const Vec2 place =
+          start + contact.place / contact.normal * (o.point(o.next[contact.edge]) - start);
+      const Vec2 force =
+          (own == pair.a ? contact.pressed : -contact.pressed) * Vec2(contact.nx, contact.ny);
+      pair.force += force;
+      pair.moment += cross(place, force);
+      pair.places += contact.pressed * place;
+      pair.sizes += contact.pressed;
+      pair.resistance += contact.resistance;
+      pair.stiffness += contact.stiffness;
+    }
+  }
+  for (PairSum& pair : pairs_) {
+    const double size = pair.force.norm();
+    if (pair.a < 0 || !(size > 0)) continue;
+    const PairLaw& law = table_.between(pair.a, pair.b);
+    const Vec2 normal = pair.force / size;
+    // The middle of the forces, moved to the line of action.
+    const Vec2 middle = pair.places / pair.sizes;
+    const Vec2 point =
+        middle + (pair.moment - cross(middle, pair.force)) / size * Vec2(normal.y(), -normal.x());
+    const auto time = [&](double value, double k, const Vec2& along) {
+      const double mobility = surfaces_.mobility(pair.a, now, point, along) +
+                              surfaces_.mobility(pair.b, now, point, along);
+      return dashpot_time(value, law.damping.are_times, k, mobility);
+    };
+    pair.normal_time = time(law.damping.normal, pair.resistance, normal);
+    pair.tangential_time =
+        time(law.damping.tangential, pair.stiffness, Vec2(-normal.y(), normal.x()));
+  }
+}
+
+// Calls f(unit, group, contact) for the springs with dashpots, in their order.
+template <class F>
+void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
+  for (const EdgeFaceUnit& unit : blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+      const PairLaw& law = *blocks.laws()[static_cast<size_t>(groups[g].law)].law;
+      if (law.damped() && contact.resistance > 0) f(unit, groups[g], law, contact);
+    }
+  }
+}
+
+void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now,
+                                   Dashpots& to) {
+  find_pairs(blocks, now);
+  each_dashpot(blocks, [&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, const PairLaw& law,
+                           const SpringContact& contact) {
+    const PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[group.law].pair)];
+    to.add({outlines_.body[contact.edge],
+            contact.other,
+            Vec2(contact.nx, contact.ny),
+            {Dashpot::Normal::of(pair.normal_time * contact.resistance, contact.pressed,
+                                 contact.resistance, contact.deepest)},
+            pair.tangential_time * contact.stiffness,
+            contact.friction,
+            law.friction.coefficient});
+    add_coordinates(blocks, unit, group, contact, to);
+  });
+}
+
+// The parts of the vertices in the rates along the normal and the tangent.
+void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
+                                      const EdgeFaceGroup& group, const SpringContact& contact,
+                                      Dashpots& to) const {
+  const Outlines& o = outlines_;
+  const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
+  const auto add = [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
+    const Outlines::Body& body = o.bodies[o.body[vertex]];
+    if (body.is_rigid()) {
+      to.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
+    } else {
+      to.add_node(o.node[vertex], normal, tangential);
+    }
+  };
+  blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
+    const EdgeFaceBlock& block = blocks.blocks()[i];
+    const EdgeFaceTouch& touch = blocks.touches()[i];
+    const OutlineSlip& slip = slips_[i];
+    const double per_normal = 1 / contact.normal;
+    const double at_p = slip.at_p[lane] * per_normal, at_q = slip.at_q[lane] * per_normal;
+    const double at_b = slip.at_b[lane] * per_normal, at_a = at_b - (at_p + at_q);
+    const Vec2 face(touch.tx[lane], touch.ty[lane]), across(face.y(), -face.x());
+    const auto turned = [&](const Vec2& e) -> Vec2 {
+      return slip.turn[lane] * per_normal * e.dot(face) * across;
+    };
+    add(block.p[lane], at_p * n, at_p * t);
+    add(block.q[lane], at_q * n, at_q * t);
+    add(block.a[lane], at_a * n + turned(n), at_a * t + turned(t));
+    add(block.b[lane], -(at_b * n + turned(n)), -(at_b * t + turned(t)));
+  });
+}
+
+void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& from, size_t& next,
+                                  FrictionMemory& memory) {
+  auto spring = memory.springs_of(outline_kernel).begin();
+  each_dashpot(blocks, [&](const EdgeFaceUnit&, const EdgeFaceGroup& group, const PairLaw& law,
+                           SpringContact& contact) {
+    contact.push = from.normal_force(next);
+    contact.drag = from.tangential_force(next);
+    ++next;
+    if (!law.rough()) return;
+    while (is_before(spring->key, key_of(group))) ++spring;
+    spring->push = contact.push;
+  });
+}
+
+void OutlineFriction::add_to(const EdgeFaceBlocks& blocks,
+                             std::span<EdgeFaceContact> contacts) const {
+  if (contacts_.size() < blocks.group_count() || slips_.size() < blocks.blocks().size()) return;
+  auto next = contacts.begin();
+  for (const EdgeFaceUnit& unit : blocks.units()) {
+    const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
+    for (size_t g = 0; g < groups.size(); ++g) {
+      const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
+      const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
+      blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
+        EdgeFaceContact& of = *next++;
+        if (!(contact.normal > 0)) return;
+        const double share = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
+        of.drag = share * (contact.friction + contact.drag) * t;
+        of.push = share * contact.push * n;
+      });
+    }
   }
 }
 

@@ -15,26 +15,24 @@ constexpr double kAbove = 1 + 1e-9;               // of bounds
 
 }  // namespace
 
-OutlineKernel::OutlineKernel(const Outlines& outlines, double thickness, const PairTable& table,
-                             const std::vector<double>& inverse_mass, int threads)
-    : outlines_(outlines),
+OutlineKernel::OutlineKernel(const Surfaces& surfaces, double thickness, const PairTable& table,
+                             int threads)
+    : outlines_(surfaces.outlines()),
       thickness_(thickness),
       table_(table),
-      slopes_{outlines, table, thickness},
+      slopes_{outlines_, table, thickness},
       threads_(threads),
-      blocks_(outlines),
+      blocks_(outlines_),
       workers_(static_cast<size_t>(threads_.count())),
-      plateaus_(outlines),
-      depths_(outlines),
-      onset_(outlines, slopes_, threads) {
-  ends_.resize(static_cast<size_t>(outlines.size()));
-  if (table.rough() || table.damped()) {
-    friction_.emplace(outlines, table, inverse_mass, threads);
-  }
+      plateaus_(outlines_),
+      depths_(outlines_),
+      onset_(outlines_, slopes_, threads) {
+  ends_.resize(static_cast<size_t>(outlines_.size()));
+  if (table.rough() || table.damped()) friction_.emplace(surfaces, table, threads);
 }
 
 void OutlineKernel::take(std::span<const BoxPair> pairs) {
-  if (friction_) friction_->take(pairs);
+  if (friction_) friction_->take(pairs.size());
   candidates_.clear();
   laws_.clear();
   pair_forces_.clear();
@@ -52,12 +50,8 @@ void OutlineKernel::take(std::span<const BoxPair> pairs) {
 }
 
 EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
-  const Friction& friction = table_.between(edges, faces).friction;
-  const double spring =
-      friction.tangential_stiffness * thickness_ / outlines_.bodies[faces].reference;
-  return {slopes_(faces, edges), spring,
-          friction.coefficient,  friction_ ? friction_->bodies(edges, faces) : 0,
-          edges == faces,        pair_number(edges, faces)};
+  return {slopes_(faces, edges), &table_.between(edges, faces), edges == faces,
+          pair_number(edges, faces)};
 }
 
 std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
@@ -262,13 +256,9 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
     CollarPiece<double> piece;
     CollarCrossings<double> top;
     collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
-    EdgeFaceContact& contact =
-        edge_faces_.emplace_back(EdgeFaceContact{p, a, block.slope[lane], piece});
-    if (!friction_ || i >= friction_->drags().size()) return;
-    const OutlineFriction::BlockDrag& drag = friction_->drags()[i];
-    contact.drag = {drag.drag_x[lane], drag.drag_y[lane]};
-    contact.push = {drag.push_x[lane], drag.push_y[lane]};
+    edge_faces_.push_back({p, a, block.slope[lane], piece});
   });
+  if (friction_) friction_->add_to(blocks_, edge_faces_);
   listed_ = true;
   return edge_faces_;
 }
@@ -394,8 +384,7 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
     const BodyIndex own = o.body[c.edge], other = o.body[c.face];
     const double both = o.bodies[own].slope() + o.bodies[other].slope();
     const PairLaw& law = table_.between(own, other);
-    const Friction& f = law.friction;
-    const double spring = f.coefficient > 0 ? f.tangential_stiffness * thickness_ : 0;
+    const double spring = law.rough() ? law.one_stiffness() * thickness_ : 0;
     for (const int i : {c.edge, o.next[c.edge], c.face, o.next[c.face]}) {
       slope[i] = std::max(slope[i], both);
       normal[i] = std::max(normal[i], law.normal_stiffness * thickness_);

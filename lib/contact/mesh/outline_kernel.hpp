@@ -27,9 +27,8 @@ namespace apothem {
 
 class OutlineKernel final : public Kernel {
  public:
-  /// `thickness` in m; `inverse_mass` of each body, 1/kg. All must outlive this object.
-  OutlineKernel(const Outlines& outlines, double thickness, const PairTable& table,
-                const std::vector<double>& inverse_mass, int threads);
+  /// `thickness` in m. All must outlive this object.
+  OutlineKernel(const Surfaces& surfaces, double thickness, const PairTable& table, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
   /// The contacts are those of edges with faces, then of edges with tops and of tops with edges.
@@ -42,6 +41,13 @@ class OutlineKernel final : public Kernel {
     if (friction_) friction_->undo_slide();
   }
   void add_forces(const ForceViews& forces) override;
+  void add_dashpots(const Kinematics& now, Dashpots& to) override {
+    if (friction_) friction_->add_dashpots(blocks_, now, to);
+  }
+  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override {
+    listed_ = false;
+    if (friction_) friction_->keep_pushes(blocks_, from, next, memory);
+  }
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
                    FrictionMemory& /*memory*/) override {
     return onset_.find(candidates_, blocks_, plateaus_, now, dynamics, dt);
@@ -49,13 +55,7 @@ class OutlineKernel final : public Kernel {
   void add_onsets(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces);
   }
-  void fields(Archive& archive) override {
-    archive("outline_onset", onset_);
-    if (friction_) friction_->fields(archive);
-  }
-  void limit_damping(std::span<const double> node_mass) override {
-    if (friction_) friction_->limit_damping(node_mass, thickness_);
-  }
+  void fields(Archive& archive) override { archive("outline_onset", onset_); }
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override;
@@ -92,7 +92,7 @@ class OutlineKernel final : public Kernel {
   const PairTable& table_;
   OutlineSlopes slopes_;
   Threads threads_;
-  std::optional<OutlineFriction> friction_;  // only where there is friction
+  std::optional<OutlineFriction> friction_;  // only where there is friction or damping
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // of these
   /// Two bodies, the lower number first, and the normal force on that one, N.

@@ -1,5 +1,5 @@
-// The slip of edges against faces, and what friction and dashpots do to the vertices, for several
-// contacts at a time. Private to outline_friction.
+// The slip of edges against faces, and what friction does to the vertices, for several contacts at
+// a time. Private to outline_friction.
 #pragma once
 
 #include <array>
@@ -11,9 +11,8 @@
 
 namespace apothem {
 
-/// What acts on the vertices: of each x and y of the friction of springs, then x and y of the
-/// forces of dashpots, N.
-using VertexDrag = std::array<double, 4>;
+/// Friction on a vertex, x and y, N.
+using VertexDrag = std::array<double, 2>;
 
 /// What is known of the slips of a block. With t, the unit tangent of the face, and n its inward
 /// normal: a force on the edge goes to both ends of the edge and of the face, and its part along t
@@ -70,21 +69,15 @@ APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& t
   put(slip.rate_x, x + turning * tx), put(slip.rate_y, y + turning * ty);
 }
 
-/// Forces on the edges of a block over the normal forces of their springs: of friction, and of the
-/// dashpots.
+/// Friction on the edges of a block over the normal forces of their springs.
 struct SlipPull {
-  using Numbers = EdgeFaceBlock::Numbers;
-  Numbers friction_x, friction_y, dashpot_x, dashpot_y;
-};
-
-/// What of the dashpots acts along the normals.
-struct SlipPush {
   EdgeFaceBlock::Numbers x, y;
 };
 
-/// The forces of a block on its vertices p, q, a and b: a pack is the VertexDrag of a lane.
+/// The forces of a block on its vertices: of a lane a pack is x and y of p, x and y of q; and of a
+/// and b.
 struct SlipForces {
-  FourOf<PackOf<4>> p, q, a, b;
+  FourOf<PackOf<4>> edge, face;
 };
 
 /// A force times the coefficients of the slip rate acts on the vertices.
@@ -93,39 +86,24 @@ APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& sl
   using Pack = PackOf<kBlock>;
   const auto load = [](const EdgeFaceTouch::Numbers& from)
                         APOTHEM_LAMBDA { return Pack::load(from.data()); };
-  const Pack tx = load(touch.tx), ty = load(touch.ty);
-  const Pack friction_x = load(pull.friction_x), friction_y = load(pull.friction_y);
-  const Pack dashpot_x = load(pull.dashpot_x), dashpot_y = load(pull.dashpot_y);
+  const Pack tx = load(touch.tx), ty = load(touch.ty), x = load(pull.x), y = load(pull.y);
   const Pack at_p = load(slip.at_p), at_q = load(slip.at_q), at_b = load(slip.at_b);
-  const Pack at_a = at_b - (at_p + at_q), turn = load(slip.turn);
-  const Pack friction_turn = (friction_x * tx + friction_y * ty) * turn;
-  const Pack dashpot_turn = (dashpot_x * tx + dashpot_y * ty) * turn;
-  const auto on_edge = [&](const Pack& at, FourOf<PackOf<4>>& of) APOTHEM_LAMBDA {
-    transpose({friction_x * at, friction_y * at, dashpot_x * at, dashpot_y * at}, of);
-  };
-  on_edge(at_p, forces.p);
-  on_edge(at_q, forces.q);
-  transpose({friction_x * at_a + friction_turn * ty, friction_y * at_a - friction_turn * tx,
-             dashpot_x * at_a + dashpot_turn * ty, dashpot_y * at_a - dashpot_turn * tx},
-            forces.a);
-  transpose({-(friction_x * at_b + friction_turn * ty), friction_turn * tx - friction_y * at_b,
-             -(dashpot_x * at_b + dashpot_turn * ty), dashpot_turn * tx - dashpot_y * at_b},
-            forces.b);
+  const Pack at_a = at_b - (at_p + at_q), turn = (x * tx + y * ty) * load(slip.turn);
+  transpose({x * at_p, y * at_p, x * at_q, y * at_q}, forces.edge);
+  transpose(
+      {x * at_a + turn * ty, y * at_a - turn * tx, -(x * at_b + turn * ty), turn * tx - y * at_b},
+      forces.face);
 }
 
-APOTHEM_INLINE void add(const PackOf<4>& force, VertexDrag& to) {
-  (PackOf<4>::load(to.data()) + force).store(to.data());
-}
-
-/// Calls f(vertex, force) for each of them, one after the other because they may share
-/// vertices.
+/// Calls f(vertex, x, y) for each force, one after the other because they may share vertices.
 template <class F>
 APOTHEM_INLINE void each_drag(const EdgeFaceBlock& block, const SlipForces& forces, const F& f) {
   for (size_t l = 0; l < kBlock; ++l) {
-    f(block.p[l], forces.p[l]);
-    f(block.q[l], forces.q[l]);
-    f(block.a[l], forces.a[l]);
-    f(block.b[l], forces.b[l]);
+    const auto &edge = forces.edge[l].v, &face = forces.face[l].v;
+    f(block.p[l], edge[0], edge[1]);
+    f(block.q[l], edge[2], edge[3]);
+    f(block.a[l], face[0], face[1]);
+    f(block.b[l], face[2], face[3]);
   }
 }
 

@@ -44,8 +44,8 @@ struct Onset::Path {
 bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
                  const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
-  std::swap(beside_, beside_before_);
-  beside_.clear();
+  std::swap(alone_, alone_before_);
+  alone_.clear();
   for (const PairInTouch& result : pairs.touching()) {
     const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
@@ -54,7 +54,7 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
     now_touching.push_back({result.a, result.b, pair.inside_a, pair.inside_b,
                             pair.own_length_a + pair.own_length_b, k * pair.force.norm(),
                             k * pair.moment_a / arm});
-    if (tangential) note_beside(*tangential, result, pair, now_touching.back());
+    if (tangential) alone_.push_back(tangential->alone(result));
   }
   changed_.clear(), impulses_.clear();
   if (!(dt > 0)) return false;
@@ -71,124 +71,77 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
               find_pair(changed_[i], now, dynamics, dt, workers_[static_cast<size_t>(worker)]);
         }
       });
-  book_losses(now, dynamics, dt);
+  book_loss(now, dynamics, dt);
   return !impulses_.empty();
 }
 
-// Where damping takes the whole force, or does so no more, the force of the pair has a kink as
-// well.
-void Onset::note_beside(const PatchTangential& tangential, const PairInTouch& pair,
-                        const PairIntegral& integral, TouchingPair& touching) {
-  constexpr double kWhole = 1e-9;  // of the force
-  constexpr std::uint64_t kFree = 0x9e3779b97f4a7c15ULL;
-  beside_.push_back(tangential.beside(pair));
-  if (!beside_.back().alone) return;
-  const PairForce& damping = beside_.back().damping;
-  const double k = table_.between(pair.a, pair.b).normal_stiffness * thickness_;
-  const double size = k * integral.force.norm();
-  const double pull = -k * integral.force.dot(Vec2(damping.x, damping.y));
-  if (!(pull > 0 && pull >= (1 - kWhole) * size * size)) return;
-  beside_.back().free = true;
-  touching.inside_a += kFree;
-}
-
-// Not where the pair has several patches, each of which has friction and damping by itself.
-bool Onset::find_beside(const PairChange& pair, Beside& first, Beside& last) const {
-  const PairLaw& law = table_.between(pair.a, pair.b);
-  if (!(law.damping.normal > 0 || law.friction.coefficient > 0)) return false;
-  first = last = {.alone = true};
-  if (pair.before >= 0) first = beside_before_[static_cast<size_t>(pair.before)];
-  if (pair.now >= 0) last = beside_[static_cast<size_t>(pair.now)];
-  return first.alone && last.alone;
-}
-
-// The work of friction and damping in the impulses, with the velocities when half of what these
-// parts change is done, after all other parts.
-void Onset::book_losses(const Kinematics& now, const Dynamics& dynamics, double dt) {
-  losses_ = {};
-  if (std::ranges::none_of(impulses_, &Impulse::beside)) return;
+// The work of friction in the impulses, with the velocities when half of what these parts change is
+// done, after all other parts.
+void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
+  loss_ = 0;
+  if (alone_.empty() && alone_before_.empty()) return;
   all_.resize(now.pose_rate.size());
   parts_.resize(now.pose_rate.size());
   for (const Impulse& i : impulses_) {
     each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
       all_[c] += sign * i.mean[k];
-      parts_[c] += sign * (i.damping[k] + i.friction[k]);
+      parts_[c] += sign * i.friction[k];
     });
   }
   for (const Impulse& i : impulses_) {
-    if (!i.beside) continue;
-    double of_damping = 0, of_friction = 0;
+    double power = 0;
     each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
       const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
       const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // for dt / 2
       const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
-      of_damping += sign * i.damping[k] * speed;
-      of_friction += sign * i.friction[k] * speed;
+      power += sign * i.friction[k] * speed;
     });
-    losses_.damping_loss += i.damping_loss - dt * of_damping;
-    losses_.loss -= dt * of_friction;
+    loss_ -= dt * power;
   }
   for (const Impulse& i : impulses_) {
     each_coordinate(i.a, i.b, [&](size_t c, size_t, double) { all_[c] = parts_[c] = 0; });
   }
 }
 
-// What friction and the dashpot beside it lack. Where they slide, they go with the normal force. A
-// spring that sticks follows the slip, which goes with the elastic part of that; its dashpot acts
-// for as long as the bodies touch.
-void Onset::find_friction(const PairLaw& law, const Beside& first, const Beside& last,
-                          const PathDamping& damping, const Worker& worker, size_t inside,
-                          Load& friction, Load& drag) {
-  constexpr double kSticks = 1 - 1e-9;  // part of Coulomb's limit
-  constexpr double kVanishes = 1e-3;    // of the mean force
-  const auto elastic = [&](size_t i) {
+// What friction lacks: it goes with the normal force. Not where the pair has several patches, each
+// of which has friction by itself.
+Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
+                                 size_t inside) const {
+  constexpr double kVanishes = 1e-3;  // of the mean force
+  Load friction{};
+  if (!table_.between(pair.a, pair.b).rough()) return friction;
+  const Alone none{.known = true};
+  const std::array<Alone, 2> at{
+      pair.before >= 0 ? alone_before_[static_cast<size_t>(pair.before)] : none,
+      pair.now >= 0 ? alone_[static_cast<size_t>(pair.now)] : none};
+  if (!at[0].known || !at[1].known) return friction;
+  const auto size = [&](size_t i) {
     const Load& load = worker.loads[i];
-    return PairForce{load[0], load[1], load[2], load[3]};
+    return std::sqrt(load[0] * load[0] + load[1] * load[1]);
   };
-  const std::array ends{elastic(0).plane().size(), elastic(inside - 1).plane().size()};
-  const std::array net{(elastic(0) + first.damping).plane().size(),
-                       (elastic(inside - 1) + last.damping).plane().size()};
-  double mean = 0, touching = 0;
-  for (size_t i = 0; i < inside; ++i) {
-    const double size = elastic(i).plane().size();
-    mean += worker.samples[i].mean * size;
-    touching += size > 0 ? worker.samples[i].mean : 0;
-  }
-  const double net_mean = law.damping.normal > 0 ? damping.net_mean : mean;
-  const double elastic_lacks = mean - (ends[0] + ends[1]) / 2;
-  const double net_lacks = net_mean - (net[0] + net[1]) / 2;
+  const std::array ends{size(0), size(inside - 1)};
+  double mean = 0;
+  for (size_t i = 0; i < inside; ++i) mean += worker.samples[i].mean * size(i);
+  const double lacks = mean - (ends[0] + ends[1]) / 2;
   // A force that is about to vanish says nothing of the rest of the step.
-  const double least = kVanishes * (mean + net_mean);
-  const auto pushes = [&](size_t end) { return ends[end] > least && net[end] > least; };
-  const double known = (pushes(0) ? 1 : 0) + (pushes(1) ? 1 : 0);
-  const double drag_lacks = touching - known / 2;
+  const double least = kVanishes * 2 * mean;
+  const double known = (ends[0] > least ? 1 : 0) + (ends[1] > least ? 1 : 0);
   for (const size_t end : {0, 1}) {
-    if (!pushes(end)) continue;
-    const Beside& at = end == 0 ? first : last;
-    const double limit = law.friction.coefficient * net[end];
-    const bool slides = (at.friction + at.drag).plane().size() >= kSticks * limit;
-    const double of_net = net_lacks / net[end] / known;
-    const double of_spring = slides ? of_net : elastic_lacks / ends[end] / known;
-    const double of_dashpot = slides ? of_net : drag_lacks / known;
-    const auto add = [](double share, const PairForce& force, Load& to) {
-      to[0] += share * force.x, to[1] += share * force.y;
-      to[2] += share * force.a, to[3] += share * force.b;
-    };
-    add(of_spring, at.friction, friction);
-    add(of_dashpot, at.drag, drag);
+    if (!(ends[end] > least)) continue;
+    const double share = lacks / ends[end] / known;
+    const PairForce& force = at[end].friction;
+    friction[0] += share * force.x, friction[1] += share * force.y;
+    friction[2] += share * force.a, friction[3] += share * force.b;
   }
+  return friction;
 }
 
 // The loads at all samples, those of convex polygons together.
-void Onset::find_loads(const Path& path, bool damped, Worker& worker) const {
+void Onset::find_loads(const Path& path, Worker& worker) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
-  worker.loads.clear(), worker.damped.clear();
+  worker.loads.clear();
   const auto add = [&](const PairIntegral& pair) {
-    if (damped) {
-      const double theta = worker.samples[worker.loads.size()].theta;
-      worker.damped.push_back({pair, path.offset(theta)});
-    }
     worker.loads.push_back(
         {k * pair.force.x(), k * pair.force.y(), k * pair.moment_a, k * pair.moment_b});
   };
@@ -287,11 +240,7 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   const int panels = std::clamp(few ? pair.panels : kFewPanels, 1, std::max(most, 1));
   const auto inside =
       static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
-  const PairLaw& law = table_.between(a, b);
-  Beside first, last;
-  const bool beside = find_beside(pair, first, last);
-  const bool damped = beside && law.damping.normal > 0;
-  find_loads(path, damped, worker);
+  find_loads(path, worker);
   std::array<OnsetForces, 4> forces;
   for (size_t i = 0; i < worker.samples.size(); ++i) {
     const Load& load = worker.loads[i];
@@ -301,26 +250,7 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       if (i + 1 == inside) forces[k].last = load[k];
     }
   }
-  Load damping{}, friction{};
-  PathDamping along{};
-  if (damped) {
-    along = damping_along(
-        {law.normal_stiffness * thickness_, law.damping.normal, surfaces_.shapes().slope(a),
-         surfaces_.shapes().slope(b), surfaces_.rigid(a).inverse_mass,
-         surfaces_.rigid(b).inverse_mass, dt, pair_rate(now, a, b)},
-        std::span(worker.samples).first(inside), std::span(worker.damped).first(inside));
-    const PairForce lacks = along.mean - .5 * (first.damping + last.damping);
-    damping = {lacks.x, lacks.y, lacks.a, lacks.b};
-    for (OnsetForces& f : forces) {
-      if (first.free) f.start_slope = 0;
-      if (last.free) f.end_slope = 0;
-    }
-  }
-  if (beside && law.friction.coefficient > 0) {
-    Load drag{};
-    find_friction(law, first, last, along, worker, inside, friction, drag);
-    for (size_t k = 0; k < 4; ++k) damping[k] += drag[k];
-  }
+  Load friction = find_friction(pair, worker, inside);
   Load missing;
   for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
   const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
@@ -331,18 +261,15 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
       OnsetForces f = forces[k];
       const double own = axis < 2 ? sign : 1;
       for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
-      rest.add(f, {own * missing[k], own * (friction[k] + damping[k])}, dynamics.others(c, f),
+      rest.add(f, {own * missing[k], own * friction[k]}, dynamics.others(c, f),
                dynamics.inverse_mass[c], now.pose_rate[c]);
     }
     return rest;
   };
   OnsetRest rest = rest_of(a, 2, 1);
   rest.add(rest_of(b, 3, -1));
-  if (!damped) {
-    const double share = rest.share();
-    for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean;
-  }
-  for (size_t k = 0; k < 4; ++k) missing[k] += damping[k] + friction[k];
+  const double share = rest.share();
+  for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean + friction[k];
   // Moments of forces at earlier positions do not balance at the end of the step. What is left over
   // goes half and half to both bodies, so that the angular momentum is kept.
   const auto balance = [&](Load& part) {
@@ -350,9 +277,8 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
     part[2] -= couple / 2;
     part[3] -= couple / 2;
   };
-  balance(missing), balance(damping), balance(friction);
-  // A dashpot begins with a jump of the force. What is left over is its work along the bent path.
-  return {a, b, missing, beside, friction, damping, damped ? -rest.energy() : 0};
+  balance(missing), balance(friction);
+  return {a, b, missing, friction};
 }
 
 void Onset::add(double scale, std::span<double> forces) const {

@@ -11,6 +11,8 @@ namespace {
 // Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
 // length: twice the worst of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
+// A contact that is narrower than this part of its depth is a point.
+constexpr double kNarrow = 1e-9;
 
 // A number of each lane; a plain number is that of the first one.
 template <class F>
@@ -58,12 +60,11 @@ APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<R
   };
   number(p.normal_stiffness,
          [&](const PairLaw& l) APOTHEM_LAMBDA { return l.normal_stiffness * thickness; });
-  number(p.tangential_stiffness, [&](const PairLaw& l) APOTHEM_LAMBDA {
-    return l.friction.tangential_stiffness * thickness;
-  });
+  number(p.stiffness_ratio,
+         [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.stiffness_ratio; });
+  number(p.constant, [&](const PairLaw& l)
+                         APOTHEM_LAMBDA { return l.friction.tangential_stiffness * thickness; });
   number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
-  number(p.normal_ratio, [](const PairLaw& l) APOTHEM_LAMBDA { return l.damping.normal; });
-  number(p.tangential_ratio, [](const PairLaw& l) APOTHEM_LAMBDA { return l.damping.tangential; });
 }
 
 // The integrals of a pair and where its bodies are, which its load needs.
@@ -87,20 +88,24 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
   // Inverse masses and slope.
   read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].a).inverse_mass.data(); },
             four);
-  p.inverse_mass_a = {four[0], four[1], four[2]};
   const Real slope_a = four[3];
   read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].b).inverse_mass.data(); },
             four);
-  p.inverse_mass_b = {four[0], four[1], four[2]};
-  p.slopes = length_a * four[3] + length_b * slope_a;
+  const Real slope_b = four[3];
+  p.slopes = length_a * slope_b + length_b * slope_a;
+  integral(kBreadthNumbers);
+  const Real breadth = four[0];
+  const auto rise = [&](const Real& slope, const Real& length) APOTHEM_LAMBDA {
+    return slope * select(length > breadth, breadth / length, Real(1.));
+  };
+  p.growth = breadth * (rise(slope_a, length_a) + rise(slope_b, length_b));
   read_between(surfaces, work, p.between);
   read_law(work, scene.thickness, p);
   p.find_direction();
 }
 
 template <class Real>
-APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bool damped,
-                                PatchStep<Real>& p, DamperOf<Real>& damper) {
+APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, PatchStep<Real>& p) {
   Real radii;
   read_lanes(radii, [&](int k) APOTHEM_LAMBDA {
     return scene.surfaces.rigid(work[k].a).radius + scene.surfaces.rigid(work[k].b).radius;
@@ -117,23 +122,12 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, bo
   rate(p.rate.a, [](const double* a, const double*) APOTHEM_LAMBDA { return a[2]; });
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
   read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].memory->patches > 0 ? 0. : 1.; });
-  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return work[k].memory->spring; });
+  const auto memory = [&](int k) APOTHEM_LAMBDA -> const PairMemory& { return *work[k].memory; };
+  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return memory(k).spring; });
+  read_lanes(p.stiffness_before, [&](int k) APOTHEM_LAMBDA { return memory(k).stiffness; });
+  read_lanes(p.push, [&](int k) APOTHEM_LAMBDA { return memory(k).push; });
   gather(p.friction_before,
-         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return work[k].memory->force; });
-  if (!damped) {  // what only dampers need
-    p.rate_before = {};
-    p.touched = Real(0.) > Real(0.);
-    damper = {};
-    return;
-  }
-  const auto last = [&](int k) APOTHEM_LAMBDA -> const DampingMemory& { return *work[k].damping; };
-  gather(p.rate_before, [&](int k) APOTHEM_LAMBDA -> const PairRate& { return last(k).pair.rate; });
-  read_lanes(p.touched, [&](int k) APOTHEM_LAMBDA { return work[k].memory->touched() ? 1. : 0.; });
-  gather(damper, [&](int k) APOTHEM_LAMBDA -> const PatchDamper& { return last(k).patch; });
-  PairVectorOf<Real> damping_before;
-  gather(damping_before,
-         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return last(k).pair.damping; });
-  p.friction_before = p.friction_before - damping_before;
+         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return memory(k).force; });
 }
 
 template <class Real>
@@ -172,40 +166,82 @@ APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
 
 }  // namespace
 
-void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, Tangential kind,
-                       PatchDamper* dampers, PatchForces<double>* forces) {
+void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
+                         PatchFriction<double>* friction) {
   using Pack = PackOf<kComparedLanes>;
   std::array<PairWork, kComparedLanes> all;
-  std::array<PatchDamper, kComparedLanes> damper_of;
-  std::array<PatchForces<double>, kComparedLanes> forces_of;
+  std::array<PatchFriction<double>, kComparedLanes> friction_of;
   std::ranges::copy(work, all.begin());
   std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // for nobody
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     PatchStep<Pack> p;
-    PatchForces<Pack> found;
-    DamperOf<Pack> damper;
+    PatchFriction<Pack> found;
     read_pair(scene, all.data(), p);
-    read_memory(scene, all.data(), kind.damped, p, damper);
+    read_memory(scene, all.data(), p);
     // What the spring of one patch of several did before is not known: it may have been elsewhere.
     p.friction_before = p.force_at_point(p.spring * p.normal.turned());
-    step_patch(p, kind.rough, kind.damped, scene.dt, damper, found);
-    scatter(found, [&](int k) APOTHEM_LAMBDA -> PatchForces<double>& { return forces_of[k]; });
-    scatter(damper, [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damper_of[k]; });
+    rub(p, scene.dt, found);
+    scatter(found, [&](int k) APOTHEM_LAMBDA -> PatchFriction<double>& { return friction_of[k]; });
     return 0.;
   });
-  std::copy_n(damper_of.begin(), work.size(), dampers);
-  std::copy_n(forces_of.begin(), work.size(), forces);
+  std::copy_n(friction_of.begin(), work.size(), friction);
 }
 
-void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
+bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to) {
+  const RigidIndex a = bodies.first, b = bodies.second;
+  PatchStep<double> p;
+  const PairWork work{.a = a, .b = b, .integral = &patch, .law = &law, .load = nullptr};
+  read_pair(scene, &work, p);
+  const double stiffness = p.stiffness();
+  if (!p.has_direction || !(stiffness > 0)) return false;
+  const Vec2 point(p.point.x, p.point.y), behind = point + Vec2(p.between.x, p.between.y);
+  const auto mobility = [&](const Vec2& along) {
+    const auto of = [&](RigidIndex body, const Vec2& arm) {
+      const std::array<double, 3>& w = scene.surfaces.rigid(body).inverse_mass;
+      const double lever = cross(arm, along);
+      return w[0] * along.x() * along.x() + w[1] * along.y() * along.y() + w[2] * lever * lever;
+    };
+    return of(a, point) + of(b, behind);
+  };
+  const auto rate = [&](double value, double k, const Vec2& along) {
+    return k * dashpot_time(value, law.damping.are_times, k, mobility(along));
+  };
+  const Vec2 normal(p.normal.x, p.normal.y), across(-p.normal.y, p.normal.x);
+  const double pressed = p.normal_stiffness * p.size;
+  const double normal_rate = rate(law.damping.normal, stiffness, normal);
+  Dashpot dashpot{.a = a, .b = b, .normal = normal, .across = {}};
+  if (law.rough()) {
+    dashpot.tangential_rate = rate(law.damping.tangential, p.tangential_stiffness(), across);
+    dashpot.spring = spring;
+    dashpot.coefficient = law.friction.coefficient;
+  }
+  // The strip of the contact as two dashpots that resist its turning as a spread one does.
+  const double apart = patch.breadth / std::sqrt(12.), off = point.dot(across) - patch.middle;
+  const bool both = apart > kNarrow * pressed / stiffness;
+  const double share = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
+  const std::array<double, 2> along{both ? -off - apart : 0, both ? apart - off : 0};
+  const std::array<double, 2> shares{1 - share, share};
+  for (const size_t k : {0, 1}) {
+    const double part = both ? .5 : shares[k];  // of the stiffness
+    dashpot.across[k] =
+        Dashpot::Normal::of(part * normal_rate, shares[k] * pressed, part * stiffness, patch.depth);
+  }
+  to.add(dashpot);
+  to.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);
+  to.add_rigid(b, -1, {behind + along[0] * across, behind + along[1] * across}, behind);
+  return true;
+}
+
+void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
                const BodyStiffness& held_a, const BodyStiffness& held_b) {
   PatchStep<double> p;
   read_pair(scene, &work, p);
   BodyStiffness a = held_a, b = held_b;
   hold(&work, p, a, b);
-  const PairForce f = whole_force(p, beside);
-  *work.load = {{f.x, f.y, f.a, a, {beside.x, beside.y, beside.a}},
-                {-f.x, -f.y, f.b, b, {-beside.x, -beside.y, beside.b}},
+  const PairForce f = whole_force(p, friction);
+  *work.load = {{f.x, f.y, f.a, a, {friction.x, friction.y, friction.a}},
+                {-f.x, -f.y, f.b, b, {-friction.x, -friction.y, friction.b}},
                 p.normal_stiffness * p.size,
                 work.a,
                 work.b};
@@ -216,41 +252,28 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   const PairWork* const work = work_.data();
   PatchStep<Pack> p;
   read_pair(scene, work, p);
-  PatchForces<Pack> forces;
-  if (kind_.any()) {
-    DamperOf<Pack> damper;
-    read_memory(scene, work, kind_.damped, p, damper);
-    step_patch(p, kind_.rough, kind_.damped, scene.dt, damper, forces);
+  PatchFriction<Pack> friction;
+  if (rough_) {
+    read_memory(scene, work, p);
+    rub(p, scene.dt, friction);
     const auto memory = [&](int k) APOTHEM_LAMBDA -> PairMemory& { return *work[k].memory; };
-    scatter(forces.all, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
-    if (kind_.damped) {
-      const auto damping = [&](int k) APOTHEM_LAMBDA -> DampingMemory& { return *work[k].damping; };
-      const auto pair = [&](int k) APOTHEM_LAMBDA -> PairDamping& { return damping(k).pair; };
-      PairVectorOf<Pack> before;
-      gather(before, [&](int k) APOTHEM_LAMBDA -> const PairForce& { return pair(k).damping; });
-      const Pack lost = Pack(-scene.dt / 2) * (forces.damping + before).power(p.rate);
-      const PairDampingOf<Pack> now{forces.damping, p.rate};
-      scatter(now, [&](int k) APOTHEM_LAMBDA -> PairDamping& { return pair(k); });
-      scatter(damper, [&](int k) APOTHEM_LAMBDA -> PatchDamper& { return damping(k).patch; });
-      for (int k = 0; k < kAtOnce; ++k) work[k].book->damping_loss = lost.v[k];
+    scatter(friction.force, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
+    const Pack energy = spring_energy(friction.spring, friction.stiffness);
+    for (int k = 0; k < kAtOnce; ++k) {
+      memory(k).spring = friction.spring.v[k];
+      memory(k).stiffness = friction.stiffness.v[k];
+      memory(k).tangent = {friction.tangent.x.v[k], friction.tangent.y.v[k]};
+      memory(k).patches = 1;
+      work[k].book->energy = energy.v[k];
+      work[k].book->loss = friction.lost.v[k];
     }
-    if (kind_.rough) {
-      const Pack energy = forces.spring * forces.spring / (Pack(2.) * p.tangential_stiffness);
-      for (int k = 0; k < kAtOnce; ++k) {
-        memory(k).spring = forces.spring.v[k];
-        memory(k).tangent = {forces.tangent.x.v[k], forces.tangent.y.v[k]};
-        work[k].book->energy = energy.v[k];
-        work[k].book->loss = forces.lost.v[k];
-      }
-    }
-    for (int k = 0; k < kAtOnce; ++k) memory(k).patches = 1;
   }
-  hold(work, p, forces.held_a, forces.held_b);
-  const PairVectorOf<Pack> f = whole_force(p, forces.all);
-  const PairVectorOf<Pack>& beside = forces.all;
-  write_load(f.x, f.y, f.a, forces.held_a, {beside.x, beside.y, beside.a},
+  hold(work, p, friction.held_a, friction.held_b);
+  const PairVectorOf<Pack>& beside = friction.force;
+  const PairVectorOf<Pack> f = whole_force(p, beside);
+  write_load(f.x, f.y, f.a, friction.held_a, {beside.x, beside.y, beside.a},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_a; });
-  write_load(-f.x, -f.y, f.b, forces.held_b, {-beside.x, -beside.y, beside.b},
+  write_load(-f.x, -f.y, f.b, friction.held_b, {-beside.x, -beside.y, beside.b},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_b; });
   const Pack normal = p.normal_stiffness * p.size;
   for (int k = 0; k < kAtOnce; ++k) {
@@ -266,7 +289,6 @@ void PairBatch::flush(const PairScene& scene) {
   PairWork again = work_[static_cast<size_t>(count_ - 1)];
   again.load = &spare_.load;
   again.memory = &spare_.memory;
-  again.damping = &spare_.damping;
   again.book = &spare_.book;
   std::fill(work_.begin() + count_, work_.end(), again);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {

@@ -1,11 +1,11 @@
-// Steps of touching pairs of rigid bodies, four at a time: friction and damping of pairs that have
-// one contact patch, and the loads of all. The formulas are those of patch_laws.hpp and
-// pair_load.hpp.
+// Steps of touching pairs of rigid bodies, four at a time: friction of pairs that have one contact
+// patch, and the loads of all. The formulas are those of patch_laws.hpp and pair_load.hpp.
 #pragma once
 
 #include <array>
 #include <span>
 
+#include "lib/contact/law/dashpots.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/law/law.hpp"
@@ -13,9 +13,6 @@
 #include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
-
-using PatchDamper = DamperOf<double>;
-using PairDamping = PairDampingOf<double>;
 
 /// How the two rigid bodies of a pair move against each other.
 inline PairRate pair_rate(const Kinematics& now, RigidIndex a, RigidIndex b) {
@@ -28,32 +25,21 @@ inline PairRate pair_rate(const Kinematics& now, RigidIndex a, RigidIndex b) {
 struct PairScene {
   const Surfaces& surfaces;
   double thickness;                 ///< m
-  const Kinematics* now = nullptr;  ///< not needed without friction and damping
+  const Kinematics* now = nullptr;  ///< not needed without friction
   double dt = 0;                    ///< s
-};
-
-/// What acts between two bodies beside the normal force.
-struct Tangential {
-  bool rough = false, damped = false;
-  [[nodiscard]] bool any() const { return rough || damped; }
-  bool operator==(const Tangential&) const = default;
 };
 
 /// What a pair remembers from step to step. Its patches and edges have more, if it has several.
 struct PairMemory {
-  PairForce force = {};           ///< friction and damping; moments about the mass centres
+  PairForce force = {};           ///< friction; moments about the mass centres
   double spring = 0;              ///< force of the friction spring of the only patch, N
-  VectorOf<double> tangent = {};  ///< along which it acts
+  double stiffness = 0;           ///< of it, N/m
+  double push = 0;                ///< of the dashpot across it, N
+  VectorOf<double> tangent = {};  ///< along which the spring acts
   int patches = -1;               ///< in the last step; -1 if the bodies did not touch
   int split = -1;                 ///< number among the pairs that are split, or -1
 
   [[nodiscard]] bool touched() const { return patches >= 0; }
-};
-
-/// The same where any pair is damped.
-struct DampingMemory {
-  PairDamping pair;
-  PatchDamper patch;  ///< of the only patch
 };
 
 /// A pair, or one of its contact patches, what it remembers, and where its results go.
@@ -62,26 +48,28 @@ struct PairWork {
   const PairIntegral* integral;
   const PairLaw* law;
   PairLoad* load;
-  PairMemory* memory = nullptr;      ///< null without friction and damping
-  DampingMemory* damping = nullptr;  ///< null without damping
-  PairBook* book = nullptr;          ///< null without friction and damping
+  PairMemory* memory = nullptr;  ///< null without friction
+  PairBook* book = nullptr;      ///< null without friction
 };
 
-/// Friction and damping of so many contact patches, kComparedLanes at most. Those of `work` are not
-/// written to.
-void find_patch_forces(const PairScene& scene, std::span<const PairWork> work, Tangential kind,
-                       PatchDamper* dampers, PatchForces<double>* forces);
-/// The load of a pair with these forces beside the normal one. `held_a`, `held_b`: how its friction
-/// springs hold the bodies.
-void load_pair(const PairScene& scene, const PairWork& work, const PairForce& beside,
+/// Friction of so many contact patches, kComparedLanes at most. Those of `work` are not written to.
+void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
+                         PatchFriction<double>* friction);
+/// The dashpots of a contact patch of two bodies; false if it has none, because its force has no
+/// direction. `spring`: force of the friction spring in it, N.
+bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to);
+/// The load of a pair with this friction beside the normal force. `held_a`, `held_b`: how its
+/// friction springs hold the bodies.
+void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
                const BodyStiffness& held_a, const BodyStiffness& held_b);
 
 /// Pairs of at most one contact patch, collected until there are enough of them.
 class PairBatch {
  public:
-  void add(const PairScene& scene, Tangential kind, const PairWork& work) {
-    if (!(kind == kind_)) flush(scene);
-    kind_ = kind;
+  void add(const PairScene& scene, bool rough, const PairWork& work) {
+    if (rough != rough_) flush(scene);
+    rough_ = rough;
     work_[static_cast<size_t>(count_)] = work;
     if (++count_ == kAtOnce) flush(scene);
   }
@@ -94,12 +82,11 @@ class PairBatch {
   void step(const PairScene& scene);
 
   int count_ = 0;
-  Tangential kind_;
+  bool rough_ = false;
   std::array<PairWork, kAtOnce> work_{};
   struct {
     PairLoad load;
     PairMemory memory;
-    DampingMemory damping;
     PairBook book;
   } spare_ = {};
 };

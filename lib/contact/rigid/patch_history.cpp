@@ -18,25 +18,10 @@ const PairMemory* PatchTangential::memory_of(const PairInTouch& pair) const {
   return slot < memory_.size() && memory_[slot].touched() ? &memory_[slot] : nullptr;
 }
 
-std::span<const PatchDamper> PatchTangential::dampers_of(const PairInTouch& pair,
-                                                         const PairMemory& memory) const {
-  if (!table_.damped()) return {};
-  if (memory.patches == 1) return {&damping_[static_cast<size_t>(pair.slot)].patch, 1};
-  return now_.dampers_of(memory);
-}
-
 void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
                              const PairInTouch& pair) const {
   const PairMemory* const memory = memory_of(pair);
   if (!memory || memory->patches == 0) return;
-  const std::span<const PatchDamper> dampers = dampers_of(pair, *memory);
-  for (size_t j = 0; j < std::min(dampers.size(), patches.size()); ++j) {
-    const PatchDamper& damper = dampers[j];
-    patches[j].damping += Vec2(damper.damping.x, damper.damping.y);
-    if (damper.tangential != 0) {
-      patches[j].tangential += damper.tangential * tangent_of(patches[j].normal);
-    }
-  }
   std::vector<Spring> springs;
   add_springs(pair, *memory, now_, springs);
   for (size_t i = 0; i < springs.size(); ++i) {
@@ -45,16 +30,36 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
   }
 }
 
+double PatchTangential::spring_in(const PairInTouch& pair, size_t patch) const {
+  const PairMemory* const memory = memory_of(pair);
+  if (!memory || per_edge_) return 0;
+  if (memory->patches == 1) return memory->spring;
+  const std::span<const Spring> springs = now_.springs_of(*memory);
+  return patch < springs.size() ? springs[patch].force : 0;
+}
+
+void PatchTangential::keep_push(const PairInTouch& pair, size_t patch, double push) {
+  PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
+  if (memory.patches == 1 && !per_edge_) {
+    memory.push = push;
+  } else if (memory.split >= 0) {
+    const Place& place = now_.places[static_cast<size_t>(memory.split)];
+    if (patch < static_cast<size_t>(place.springs) && !per_edge_) {
+      now_.springs[static_cast<size_t>(place.first_spring) + patch].push = push;
+    }
+  }
+}
+
 // Those of a pair; `lists` are those of the step that `memory` is of.
 void PatchTangential::add_springs(const PairInTouch& pair, const PairMemory& memory,
                                   const Lists& lists, std::vector<Spring>& springs) const {
-  const PairLaw& law = table_.between(pair.a, pair.b);
-  if (!kind_of(law).rough) return;
+  if (!table_.between(pair.a, pair.b).rough()) return;
   if (memory.patches == 1 && !per_edge_) {
     springs.push_back({{polygon_kernel, pair.a, pair.b, 0},
                        memory.spring,
-                       law.friction.tangential_stiffness * thickness_,
-                       {memory.tangent.x, memory.tangent.y}});
+                       memory.stiffness,
+                       {memory.tangent.x, memory.tangent.y},
+                       memory.push});
     return;
   }
   const std::span<const Spring> listed = lists.springs_of(memory);
@@ -73,7 +78,7 @@ void PatchTangential::add_springs(std::vector<Spring>& springs) const {
 }
 
 void PatchTangential::History::fields(Archive& archive) {
-  archive("pairs", pairs)("runs", runs)("dampers", dampers)("damping", damping)("springs", springs);
+  archive("pairs", pairs)("runs", runs)("springs", springs);
 }
 
 void PatchTangential::fields(Archive& archive) {
@@ -98,14 +103,9 @@ PatchTangential::History PatchTangential::history() const {
     const PairMemory* const memory = memory_of(pair);
     if (!memory) continue;
     const std::span<const RunPlace> runs = now_.runs_of(*memory);
-    const std::span<const PatchDamper> dampers = dampers_of(pair, *memory);
     history.pairs.push_back(
         {pair.a, pair.b, memory->patches, static_cast<int>(runs.size()), memory->force});
     history.runs.insert(history.runs.end(), runs.begin(), runs.end());
-    history.dampers.insert(history.dampers.end(), dampers.begin(), dampers.end());
-    if (table_.damped()) {
-      history.damping.push_back(damping_[static_cast<size_t>(pair.slot)].pair);
-    }
     add_springs(pair, *memory, now_, history.springs);
   }
   return history;
@@ -116,28 +116,21 @@ bool PatchTangential::adopt() {
   const History from = std::move(*inherited_);
   inherited_.reset();
   memory_.assign(pairs_.slots(), {});
-  damping_.assign(table_.damped() ? pairs_.slots() : 0, {});
   now_.clear();
   left_.clear();
   auto touching = pairs_.touching().begin();
   const auto touching_end = pairs_.touching().end();
-  size_t run = 0, damper = 0, spring = 0;
-  for (size_t i = 0; i < from.pairs.size(); ++i) {
-    const PairHistory& old = from.pairs[i];
+  size_t run = 0, spring = 0;
+  for (const PairHistory& old : from.pairs) {
     const std::pair pair(old.a, old.b);
     const auto pair_of = [](const Spring& s) { return std::pair(s.key.a, s.key.b); };
     while (spring < from.springs.size() && pair_of(from.springs[spring]) < pair) ++spring;
     size_t end = spring;
     while (end < from.springs.size() && pair_of(from.springs[end]) == pair) ++end;
-    Inherited of_pair{old, {}};
+    Inherited of_pair{old};
     of_pair.runs = std::span(from.runs).subspan(run, static_cast<size_t>(old.runs));
     run += of_pair.runs.size();
-    if (!from.dampers.empty()) {
-      of_pair.dampers = std::span(from.dampers).subspan(damper, static_cast<size_t>(old.patches));
-      damper += of_pair.dampers.size();
-    }
     of_pair.springs = std::span(from.springs).subspan(spring, end - spring);
-    if (i < from.damping.size()) of_pair.damping = from.damping[i];
     while (touching != touching_end && std::pair(touching->a, touching->b) < pair) ++touching;
     if (touching != touching_end && std::pair(touching->a, touching->b) == pair) {
       take(*touching, of_pair);
@@ -145,7 +138,7 @@ bool PatchTangential::adopt() {
     }
     double energy = 0;
     for (const Spring& s : of_pair.springs) energy += s.energy();
-    left_.push_back({old.a, old.b, old.force, of_pair.damping, energy});
+    left_.push_back({old.a, old.b, old.force, energy});
   }
   return true;
 }
@@ -158,11 +151,9 @@ void PatchTangential::take(const PairInTouch& pair, const Inherited& from) {
   if (own_spring && !from.springs.empty()) {
     const Spring& spring = from.springs[0];
     memory.spring = spring.force;
+    memory.stiffness = spring.stiffness;
+    memory.push = spring.push;
     memory.tangent = {spring.tangent.x(), spring.tangent.y()};
-  }
-  if (DampingMemory* const damping = damping_of(pair)) {
-    damping->pair = from.damping;
-    if (alone && !from.dampers.empty()) damping->patch = from.dampers[0];
   }
   const auto append = [](auto& list, const auto& items, int& first, int& count) {
     first = static_cast<int>(list.size());
@@ -171,9 +162,8 @@ void PatchTangential::take(const PairInTouch& pair, const Inherited& from) {
   };
   Place place;
   append(now_.runs, from.runs, place.first_run, place.runs);
-  if (!alone) append(now_.dampers, from.dampers, place.first_damper, place.dampers);
   if (!own_spring) append(now_.springs, from.springs, place.first_spring, place.springs);
-  if (place.runs + place.dampers + place.springs == 0) return;
+  if (place.runs + place.springs == 0) return;
   memory.split = static_cast<int>(now_.places.size());
   now_.places.push_back(place);
 }

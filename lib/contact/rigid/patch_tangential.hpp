@@ -1,5 +1,5 @@
-// Friction and normal damping between polygons of rigid bodies: the forces beside the normal ones,
-// by contact patches (docs/theory.md, Friction). Only scenes that ask for them have this.
+// Friction between polygons of rigid bodies, by contact patches (docs/theory.md, Friction). Only
+// scenes that ask for it have this.
 //
 //   resultant   one spring for each patch, at right angles to its normal force (Eqs. 10-14)
 //   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
@@ -27,23 +27,21 @@ namespace apothem {
 
 class PatchTangential {
  public:
-  /// What a pair had in a step. The lists of runs, dampers and springs follow in the order of the
+  /// What a pair had in a step. The lists of runs and springs follow in the order of the
   /// pairs.
   struct PairHistory {
     RigidIndex a, b;
     int patches, runs;
-    PairForce force;  // friction and damping; moments about the mass centres
+    PairForce force;  // friction; moments about the mass centres
     void fields(Archive& archive) {
       archive("a", a)("b", b)("patches", patches)("runs", runs)("force", force);
     }
   };
   /// What all pairs remember, for archives and for other simulations.
   struct History {
-    std::vector<PairHistory> pairs;    ///< ascending
-    std::vector<RunPlace> runs;        ///< of pairs that are not both convex, or of per_edge
-    std::vector<PatchDamper> dampers;  ///< of every patch, where any pair is damped
-    std::vector<PairDamping> damping;  ///< of every pair, where any pair is damped
-    std::vector<Spring> springs;       ///< ascending
+    std::vector<PairHistory> pairs;  ///< ascending
+    std::vector<RunPlace> runs;      ///< of pairs that are not both convex, or of per_edge
+    std::vector<Spring> springs;     ///< ascending
     void fields(Archive& archive);
   };
 
@@ -60,36 +58,31 @@ class PatchTangential {
   /// step further, and hands the loads of each block to take(loads).
   template <class Take>
   void step(int first, int end, int worker, const Take& take);
-  /// Books what friction and damping have lost.
+  /// Books what friction has lost.
   void end_step(FrictionMemory& memory);
 
   /// undo_step() comes back to what pairs remember now.
   void remember() { kept_ = inherited_ ? *inherited_ : history(); }
   void undo_step() { inherited_ = kept_; }
 
-  /// What acts beside the normal force of a pair.
-  struct Beside {
-    bool alone = false;       ///< the pair has one patch; otherwise it is not known
-    bool free = false;        ///< damping takes the whole normal force
-    PairForce damping = {};   ///< along the normal
-    PairForce friction = {};  ///< of the spring
-    PairForce drag = {};      ///< of the dashpot beside the spring
-    void fields(Archive& archive) {
-      archive("alone", alone)("free", free)("damping", damping)("friction", friction)("drag", drag);
-    }
+  /// The friction of a pair that has one patch; of others it is not known.
+  struct Alone {
+    bool known = false;
+    PairForce friction = {};
+    void fields(Archive& archive) { archive("known", known)("friction", friction); }
   };
-  [[nodiscard]] Beside beside(const PairInTouch& pair) const {
+  [[nodiscard]] Alone alone(const PairInTouch& pair) const {
     const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
     if (memory.patches != 1) return {};
-    if (!table_.damped()) return {true, false, {}, memory.force};
-    const DampingMemory& damping = damping_[static_cast<size_t>(pair.slot)];
-    const PairForce& normal = damping.patch.damping;
-    return {true, false, normal, memory.force - damping.pair.damping,
-            damping.pair.damping - normal};
+    return {true, memory.force};
   }
+  /// Force of the spring in a patch, N.
+  [[nodiscard]] double spring_in(const PairInTouch& pair, size_t patch) const;
+  /// The dashpot there pushes so much, N, which the next step has to know.
+  void keep_push(const PairInTouch& pair, size_t patch, double push);
 
-  /// Adds friction and damping to the records of a pair, one for each patch. `runs`: of the pair,
-  /// needed by the law per_edge.
+  /// Adds friction to the records of a pair, one for each patch. `runs`: of the pair, needed by the
+  /// law per_edge.
   void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
               const PairInTouch& pair) const;
   /// Appends the springs of all pairs, ascending.
@@ -109,34 +102,28 @@ class PatchTangential {
   // What a pair has in the lists.
   struct Place {
     int runs = 0, first_run = 0;
-    int dampers = 0, first_damper = 0;
     int springs = 0, first_spring = 0;
   };
-  // Of pairs that are split. Dampers and springs of only one patch are in the slot of its pair.
+  // Of pairs that are split. The spring of an only patch is in the slot of its pair.
   struct Lists {
     std::vector<Place> places;
     std::vector<RunPlace> runs;
-    std::vector<PatchDamper> dampers;
     std::vector<Spring> springs;
 
-    void clear() { places.clear(), runs.clear(), dampers.clear(), springs.clear(); }
+    void clear() { places.clear(), runs.clear(), springs.clear(); }
     [[nodiscard]] std::span<const RunPlace> runs_of(const PairMemory& pair) const;
-    [[nodiscard]] std::span<const PatchDamper> dampers_of(const PairMemory& pair) const;
     [[nodiscard]] std::span<const Spring> springs_of(const PairMemory& pair) const;
   };
   // What a pair takes over.
   struct Inherited {
     const PairHistory& old;
-    PairDamping damping;
     std::span<const RunPlace> runs = {};
-    std::span<const PatchDamper> dampers = {};
     std::span<const Spring> springs = {};
   };
   // A pair of another state that does not touch in this one.
   struct Left {
     RigidIndex a, b;
     PairForce force;
-    PairDamping damping;
     double energy;  // of its springs, J
   };
 
@@ -154,15 +141,14 @@ class PatchTangential {
     // What the patches of a pair add up to.
     struct Sum {
       PairRate rate;
-      PairForce force = {}, damping = {};
+      PairForce force = {};
       BodyStiffness held_a = {}, held_b = {};  // by its friction springs
     };
     void step_pair(const PairInTouch& touching, PairLoad& load, PairBook& book);
-    void step_patches(const PairInTouch& touching, const PairWork& pair, Tangential kind,
-                      const Place& to);
+    void step_patches(const PairInTouch& touching, const PairWork& pair, const Place& to);
+    void step_springs(const PairWork& pair, const Place& to, Sum& sum);
     void find_shares();
-    template <class T, class Add>
-    void inherit(std::span<const T> before, std::vector<T>& heirs, Add&& add) const;
+    void inherit();
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;
     void per_edge(const PairWork& pair, std::span<const BoundaryRun> runs, const Place& to,
                   Sum& sum);
@@ -174,18 +160,12 @@ class PatchTangential {
     std::span<const RunPlace> runs_;
     std::span<const PairIntegral> patches_;
     PairMemory before_;
-    DampingMemory damping_before_;
     size_t ancestors_ = 0;
     std::vector<double> shares_;  // of each ancestor that goes to each patch of now
     std::vector<Spring> patch_springs_;
-    std::vector<PatchDamper> dampers_;
-    std::vector<PatchForces<double>> forces_;  // of the patches
+    std::vector<PatchFriction<double>> friction_;  // of the patches
   };
 
-  [[nodiscard]] Tangential kind_of(const PairLaw& law) const {
-    const bool damped = law.damping.normal > 0 || law.damping.tangential > 0;
-    return {law.friction.coefficient > 0, damped && !kinematics_.still};
-  }
   void make_room();
   void release(const Left& last, FrictionMemory& memory) const;
   void release_ended(FrictionMemory& memory);
@@ -193,12 +173,7 @@ class PatchTangential {
   void take(const PairInTouch& pair, const Inherited& from);
   void add_springs(const PairInTouch& pair, const PairMemory& memory, const Lists& lists,
                    std::vector<Spring>& springs) const;
-  [[nodiscard]] std::span<const PatchDamper> dampers_of(const PairInTouch& pair,
-                                                        const PairMemory& memory) const;
   void fetch(const PairInTouch& pair) const;
-  [[nodiscard]] DampingMemory* damping_of(const PairInTouch& pair) {
-    return table_.damped() ? &damping_[static_cast<size_t>(pair.slot)] : nullptr;
-  }
   // Null where a pair has not touched in the last step.
   [[nodiscard]] const PairMemory* memory_of(const PairInTouch& pair) const;
 
@@ -211,7 +186,6 @@ class PatchTangential {
   std::vector<Range> ranges_;  // one for each thread
   // Of each slot; those that are free remember nothing.
   std::vector<PairMemory> memory_;
-  std::vector<DampingMemory> damping_;  // where any pair is damped
   Lists now_, before_;
   std::optional<History> inherited_;  // not adopted yet
   std::vector<Left> left_;

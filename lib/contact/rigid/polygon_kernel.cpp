@@ -29,7 +29,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       threads_(threads),
       found_(static_cast<size_t>(threads_.count())),
       loads_(surfaces, threads) {
-  if (table.rough() || table.damped()) {
+  if (table.rough()) {
     tangential_.emplace(surfaces, pairs_, law, table, thickness, threads);
   }
 }
@@ -125,7 +125,7 @@ void PolygonKernel::sum_loads(const Part& part) {
   }
 }
 
-// The loads of pairs that have neither friction nor damping.
+// The loads of pairs in scenes without friction.
 void PolygonKernel::find_normal_loads(int first, int end, int worker) {
   const PairScene scene{surfaces_, thickness_};
   Found& found = found_[static_cast<size_t>(worker)];
@@ -133,7 +133,7 @@ void PolygonKernel::find_normal_loads(int first, int end, int worker) {
     found.loads.resize(static_cast<size_t>(std::min(PatchTangential::kBlock, end - block)));
     for (size_t k = 0; k < found.loads.size(); ++k) {
       const PairInTouch& pair = pairs_.touching()[static_cast<size_t>(block) + k];
-      found.batch.add(scene, {},
+      found.batch.add(scene, false,
                       {.a = pair.a,
                        .b = pair.b,
                        .integral = &pairs_.integral(pair),
@@ -143,6 +143,42 @@ void PolygonKernel::find_normal_loads(int first, int end, int worker) {
     found.batch.flush(scene);
     add_block(found.loads, worker);
   }
+}
+
+// Calls f(pair, number of the patch, integrals) for all patches of damped pairs.
+template <class F>
+void PolygonKernel::each_patch(const F& f) const {
+  for (const PairInTouch& pair : pairs_.touching()) {
+    if (!table_.between(pair.a, pair.b).damped()) continue;
+    if (pair.split < 0) {
+      f(pair, size_t{0}, pairs_.integral(pair));
+      continue;
+    }
+    const std::span<const PairIntegral> patches = pairs_.patches(pair);
+    for (size_t i = 0; i < patches.size(); ++i) f(pair, i, patches[i]);
+  }
+}
+
+void PolygonKernel::add_dashpots(const Kinematics& /*now*/, Dashpots& to) {
+  const PairScene scene{surfaces_, thickness_};
+  damped_.clear();
+  each_patch([&](const PairInTouch& pair, size_t i, const PairIntegral& patch) {
+    const PairLaw& law = table_.between(pair.a, pair.b);
+    const double spring = tangential_ && law.rough() ? tangential_->spring_in(pair, i) : 0;
+    damped_.push_back(add_dashpot(scene, {pair.a, pair.b}, patch, law, spring, to));
+  });
+}
+
+void PolygonKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& /*memory*/) {
+  auto damped = damped_.begin();
+  pushes_.clear(), drags_.clear();
+  each_patch([&](const PairInTouch& pair, size_t i, const PairIntegral&) {
+    const bool known = *damped++ != 0;
+    pushes_.push_back(known ? from.normal_force(next) : 0);
+    drags_.push_back(known ? from.tangential_force(next) : 0);
+    if (tangential_) tangential_->keep_push(pair, i, pushes_.back());
+    next += known;
+  });
 }
 
 void PolygonKernel::add_block(std::span<const PairLoad> loads, int worker) {
@@ -168,6 +204,7 @@ void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
   std::vector<BoundaryRun> runs;
   std::vector<PairIntegral> patches;
   std::vector<double> deepest;
+  size_t dashpot = 0;
   for (const PairInTouch& pair : pairs_.touching()) {
     const RigidIndex a = pair.a, b = pair.b;
     const PlacedPotential view_a = surfaces_.shapes().view(a);
@@ -183,7 +220,17 @@ void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
                          stiffness(a, b) * patch.force, Vec2::Zero(), deepest[i],
                          patch.largest_phi});
     }
-    if (tangential_) tangential_->add_to(std::span(records).subspan(first), runs, pair);
+    const std::span<ContactRecord> of_pair = std::span(records).subspan(first);
+    if (tangential_) tangential_->add_to(of_pair, runs, pair);
+    if (!table_.between(a, b).damped()) continue;
+    for (ContactRecord& record : of_pair) {
+      if (dashpot == pushes_.size()) break;
+      const double size = record.normal.norm();
+      const Vec2 normal = size > 0 ? Vec2(record.normal / size) : Vec2(Vec2::Zero());
+      record.damping += pushes_[dashpot] * normal;
+      record.tangential += drags_[dashpot] * Vec2(-normal.y(), normal.x());
+      ++dashpot;
+    }
   }
 }
 

@@ -38,11 +38,13 @@ class PolygonKernel final : public Kernel {
     if (tangential_ && tangential_->adopt()) pairs_.forget_ended();
   }
   void add_forces(const ForceViews& forces) override;
+  void add_dashpots(const Kinematics& now, Dashpots& to) override;
+  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
   bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
                    FrictionMemory& memory) override {
     const bool found =
         onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
-    if (found) memory.add(onset_.losses());
+    if (found) memory.lose(onset_.loss());
     return found;
   }
   void add_onsets(double scale, const ForceViews& forces) const override {
@@ -64,9 +66,12 @@ class PolygonKernel final : public Kernel {
   void fields(Archive& archive) override {
     if (tangential_) archive("tangential", *tangential_);
     archive("onset", onset_);
+    if (table_.damped()) archive("pushes", pushes_)("drags", drags_);
   }
 
  private:
+  template <class F>
+  void each_patch(const F& f) const;
   /// k_n times the thickness, N/m.
   [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
     return table_.between(a, b).normal_stiffness * thickness_;
@@ -101,6 +106,9 @@ class PolygonKernel final : public Kernel {
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;
   std::vector<double> deepest_;  // of each patch, m
+  std::vector<char> damped_;     // of each patch of damped pairs, whether it has dashpots
+  // Of these: the forces of their dashpots along the normal, and along the tangent, N.
+  std::vector<double> pushes_, drags_;
 };
 
 }  // namespace apothem

@@ -21,7 +21,6 @@ void Surfaces::reserve_polygons(size_t polygons, size_t vertices) {
   bodies_.reserve(polygons);
   pose_.reserve(polygons);
   rigid_.reserve(polygons);
-  inverse_mass_.reserve(polygons);
 }
 
 void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
@@ -33,26 +32,46 @@ void Surfaces::add_polygon(const Potential& potential, const Rigid& rigid) {
   rigid_.push_back(rigid);
   rigid_.back().slope = shapes_.slope(i);
   rigid_.back().radius = shapes_.radius(i);
-  inverse_mass_.push_back(std::max(rigid.inverse_mass[0], rigid.inverse_mass[1]));
   if (collars_) outlines_.add_rigid(potential.vertices, i, 1 / potential.steepest);
 }
 
 void Surfaces::add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,
-                           double inverse_mass) {
-  inverse_mass_.push_back(inverse_mass);
+                           MeshInertia inertia) {
+  deformable_.push_back({std::move(inertia), first_node, mesh.nodes});
   outlines_.add_mesh(mesh, boundary(mesh), first_node, reference);
   kinds_.push_back(SurfaceKind::outline);
   bodies_.push_back(body_count_++);
 }
 
 void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice,
-                            double inverse_mass) {
-  inverse_mass_.push_back(inverse_mass);
+                            MeshInertia inertia) {
+  deformable_.push_back({std::move(inertia), first_node, mesh.nodes});
   elements_.add(mesh, boundary(mesh), first_node, body_count_, choice, shapes_);
   kinds_.resize(shapes_.size(), SurfaceKind::element);
   bodies_.resize(shapes_.size(), body_count_);
   pose_.resize(shapes_.size());
   ++body_count_;
+}
+
+double Surfaces::mobility(BodyIndex body, const Kinematics& now, const Vec2& point,
+                          const Vec2& along) const {
+  const auto of = [&](const std::array<double, 3>& w, const Vec2& centre) {
+    const double lever = cross(point - centre, along);
+    return w[0] * along.x() * along.x() + w[1] * along.y() * along.y() + w[2] * lever * lever;
+  };
+  if (body < rigid_count()) {
+    const double* const pose = &now.pose[3 * static_cast<size_t>(body)];
+    return of(rigid_[static_cast<size_t>(body)].inverse_mass, {pose[0], pose[1]});
+  }
+  const Body& mesh = deformable_[static_cast<size_t>(body - rigid_count())];
+  Vec2 centre = Vec2::Zero();
+  if (mesh.inertia.inverse_mass[2] > 0) {
+    for (size_t i = 0; i < mesh.inertia.shares.size(); ++i) {
+      const double* const u = &now.displacement[2 * (static_cast<size_t>(mesh.first_node) + i)];
+      centre += mesh.inertia.shares[i] * (mesh.nodes[i] + Vec2(u[0], u[1]));
+    }
+  }
+  return of(mesh.inertia.inverse_mass, centre);
 }
 
 void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {

@@ -24,6 +24,12 @@ namespace apothem {
 
 enum class SurfaceKind : unsigned char { polygon, element, outline };
 
+/// A body with a mesh as a rigid one.
+struct MeshInertia {
+  std::array<double, 3> inverse_mass{};  ///< 1/m, 1/m, 1/I; 0 where supports hold it
+  std::vector<double> shares;            ///< of each node in the mass
+};
+
 class Surfaces {
  public:
   /// How far boundaries may move between two searches, twice over, m: the polygons of rigid bodies
@@ -50,12 +56,12 @@ class Surfaces {
   /// Adds the polygon of the next rigid body. The potential is about its mass centre and must
   /// outlive this object.
   void add_polygon(const Potential& potential, const Rigid& rigid);
-  /// Adds the boundary of the next deformable body: see Outlines::add_mesh. `inverse_mass` in 1/kg.
+  /// Adds the boundary of the next deformable body: see Outlines::add_mesh.
   void add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,
-                   double inverse_mass = 0);
+                   MeshInertia inertia = {});
   /// Adds the outermost elements of the next deformable body: see ElementSurfaces::add.
   void add_elements(const Mesh& mesh, NodeIndex first_node, const PotentialChoice& choice,
-                    double inverse_mass = 0);
+                    MeshInertia inertia = {});
 
   /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
   void place_all(const Kinematics& now);
@@ -81,8 +87,10 @@ class Surfaces {
     const std::array<double, 3>& w = rigid_[i].inverse_mass;
     return w[0] + w[1] + w[2] > 0;
   }
-  /// Of each body against a force through its mass centre, 1/kg; 0 where forces cannot move it.
-  [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
+  /// How much a body, as a rigid one, gives way at a point to a force of 1 N along a unit vector,
+  /// 1/kg.
+  [[nodiscard]] double mobility(BodyIndex body, const Kinematics& now, const Vec2& point,
+                                const Vec2& along) const;
   /// Largest inscribed circle of a polygon, or smallest length r of an element's potential, m.
   [[nodiscard]] double inradius(SurfaceIndex i) const {
     return is_rigid(i) ? rigid_[static_cast<size_t>(i)].inradius : 1 / shapes_.slope(i);
@@ -128,7 +136,13 @@ class Surfaces {
   std::vector<SurfaceKind> kinds_;
   std::vector<BodyIndex> bodies_;
   int body_count_ = 0;
-  std::vector<double> inverse_mass_;
+  /// Of each deformable body.
+  struct Body {
+    MeshInertia inertia;
+    NodeIndex first_node;
+    std::vector<Vec2> nodes;  // in the mesh as given, m
+  };
+  std::vector<Body> deformable_;
   std::vector<Rigid> rigid_;
   std::vector<RigidIndex> moving_;
   std::vector<std::uint8_t> absent_;  // of each body; empty while all are there

@@ -69,8 +69,11 @@ TEST_CASE("rigid motion of the pair as a whole is no slip", "[outline_friction][
     }
     pair->slide(1);
     REQUIRE_FALSE(pair->contacts->friction().springs().empty());
+    double stiffest = 0;  // where pushes cancel a spring has hardly any stiffness
     for (const Spring& s : pair->contacts->friction().springs())
-      CHECK(std::abs(s.force) < 1e-13 * s.stiffness);
+      stiffest = std::max(stiffest, s.stiffness);
+    for (const Spring& s : pair->contacts->friction().springs())
+      CHECK(std::abs(s.force) < 1e-13 * stiffest);
   }
 }
 
@@ -164,14 +167,14 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   bodies.slide(1);
   const FrictionMemory& memory = bodies.contacts->friction();
   // Stick: both bodies in turn, k_s (l/r_t + l/r_c) times the slip along the faces of the floor and
-  // the block's bottom, and along its sides as far as they are near these and pressed with them.
+  // the block's bottom. The block's sides count as far as they are near these and pressed with
+  // them, less what their pushes cancel.
   double both = 0;
   for (const Spring& spring : memory.springs()) both += spring.stiffness;
   const double level = .5 * ((1 + 2 * d) / .5 + (1 - 2 * d) / .1);
-  CHECK(both == Approx(level + .5 * 2 * d / .1));
+  CHECK(both == Approx(level).epsilon(.005));
   const double along = -1e3 * friction_on(bodies, 0).x();
-  CHECK(along > level);
-  CHECK(along < both);
+  CHECK(along == Approx(both).epsilon(.001));
   CHECK(bodies.on_rigid(0).force.x() == Approx(-1e-3 * along).epsilon(1e-10));
   CHECK(friction_on(bodies, 1).x() == Approx(1e-3 * along).epsilon(1e-10));
   CHECK(bodies.contacts->force_on(1).x() == Approx(1e-3 * along).epsilon(1e-10));

@@ -1,0 +1,171 @@
+// One impact, said in several ways: on a rigid floor and on a floor of stiff elements, with
+// friction and damping, a rigid body leaves with the same velocity.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "apps/cases/samples.hpp"
+#include "tests/run/scenes.hpp"
+
+using namespace apothem;
+using namespace apothem::test;
+
+namespace {
+
+constexpr double kStiffness = 1e8, kReference = .02;  // Pa, m
+
+struct Impact {
+  std::vector<Vec2> polygon;
+  Vec2 velocity;  // m/s
+  double spin;    // rad/s
+  double friction;
+  std::string damping;
+};
+
+std::string text_of(const std::vector<Vec2>& polygon) {
+  std::string text;
+  for (const Vec2& v : polygon)
+    text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", v.x(), v.y());
+  return "[" + text + "]";
+}
+
+// Velocity and spin with which the body leaves. `cell` of the floor's mesh, m; 0: a rigid floor.
+Eigen::Vector3d left_with(const Impact& impact, double cell, const std::string& friction = "") {
+  const double stiff = 3000 * kStiffness;
+  const int cells = cell > 0 ? static_cast<int>(1.2 / cell) : 0;
+  const std::string floor =
+      cell > 0
+          ? fmt::format(
+                R"("mesh": {{ "rectangle": {{ "size": [1.2, 0.2], "cells": [{}, 2], "origin": [-0.6, -0.2] }} }},
+                   "supports": [ {{ "where": {{ "group": "bottom" }}, "fix": ["x", "y"] }} ])",
+                cells)
+          : std::string(
+                R"("motion": "fixed", "polygon": [[-1, -0.2], [1, -0.2], [1, 0], [-1, 0]])");
+  const Folder folder;
+  const Scene scene = scene_of(
+      folder, fmt::format(
+                  R"({{ "materials": {{ "m": {{ "density": 2000, "young": {}, "poisson": 0.3 }} }},
+      "contact": {{ "normal_stiffness": {}, "reference": {}, "penetration_warning": 10,
+                    "friction": {{ "coefficient": {}{} }}{} }},
+      "bodies": [ {{ "name": "floor", "material": "m", {} }},
+                  {{ "name": "body", "material": "m", "polygon": {}, "velocity": [{}, {}], "spin": {} }} ],
+      "time": {{ "end": 0.012 }} }})",
+                  stiff, kStiffness, kReference, impact.friction, friction,
+                  impact.damping.empty() ? "" : ", \"damping\": " + impact.damping, floor,
+                  text_of(impact.polygon), impact.velocity.x(), impact.velocity.y(), impact.spin));
+  Run run(scene, {});
+  while (run.step()) {
+  }
+  const State& state = run.simulation().state();
+  const RigidIndex body = cell > 0 ? 0 : 1;
+  return state.pose_rate(body);
+}
+
+std::vector<Vec2> box(double width, double height) {
+  constexpr double kGap = 1e-4;
+  return {{-width / 2, kGap},
+          {width / 2, kGap},
+          {width / 2, height + kGap},
+          {-width / 2, height + kGap}};
+}
+
+// A convex polygon above the floor, on a corner or with an edge along it.
+std::vector<Vec2> random_polygon(samples::Random& random, int corners) {
+  std::vector<Vec2> ring;
+  const double squeeze = random.uniform(.5, 1);
+  const bool flat = random.uniform(0, 1) < .3;
+  for (int i = 0; i < corners; ++i) {
+    const double at = 2 * std::numbers::pi * (i + random.uniform(0, .6)) / corners;
+    ring.emplace_back(.1 * std::cos(at), .1 * squeeze * std::sin(at));
+  }
+  double turn = random.uniform(0, 2 * std::numbers::pi);
+  if (flat) {
+    const Vec2 edge = ring[1] - ring[0];
+    turn = -std::atan2(edge.y(), edge.x());
+  }
+  double lowest = 1;
+  for (Vec2& v : ring) {
+    v = Vec2(std::cos(turn) * v.x() - std::sin(turn) * v.y(),
+             std::sin(turn) * v.x() + std::cos(turn) * v.y());
+    lowest = std::min(lowest, v.y());
+  }
+  for (Vec2& v : ring) v.y() += 1e-4 - lowest;
+  return ring;
+}
+
+std::string ratio(double value) {
+  return fmt::format(R"({{ "model": "viscous", "ratio": {}, "bulk": 0 }})", value);
+}
+
+}  // namespace
+
+TEST_CASE("a box that lands flat leaves floors of both kinds alike, with friction and damping",
+          "[friction][damping]") {
+  // By integrations with springs and dashpots spread over the length in contact.
+  struct Row {
+    double friction, ratio;
+    Vec2 right;
+  };
+  for (const auto& [friction, value, right] :
+       {Row{0, 0, {1.2, 2}}, Row{.3, 0, {.2406, 2.2561}}, Row{.3, .1, {.2312, 1.7445}},
+        Row{.3, .5, {.3553, .8524}}}) {
+    const Impact impact{box(.2, .2), {1.2, -2}, 0, friction, value > 0 ? ratio(value) : ""};
+    CAPTURE(friction, value);
+    const double one_percent = .01 * impact.velocity.norm();
+    for (const double cell : {0., .02}) {
+      CAPTURE(cell);
+      const Eigen::Vector3d left = left_with(impact, cell);
+      CHECK(std::abs(left.x() - right.x()) < one_percent);
+      CHECK(std::abs(left.y() - right.y()) < one_percent);
+    }
+  }
+}
+
+TEST_CASE("a constant tangential stiffness is softer the longer the contact", "[friction]") {
+  const Impact impact{box(.2, .2), {1.2, -2}, 0, .3, ""};
+  const Eigen::Vector3d left = left_with(impact, 0, ", \"tangential_stiffness\": 8e7");
+  CHECK(left.x() == Approx(.992).epsilon(.01));
+  CHECK(left.y() == Approx(2.006).epsilon(.005));
+}
+
+TEST_CASE("a flat landing has the restitution of a spring and a dashpot that cannot pull",
+          "[damping]") {
+  // T. Schwager and T. Poeschel, Granular Matter 9 (2007) 465, below critical damping.
+  for (const double z : {.05, .2, .5}) {
+    const double w = std::sqrt(1 - z * z);
+    double angle = std::atan2(2 * z * w, 2 * z * z - 1);
+    const double right = std::exp(-z / w * angle);
+    for (const double cell : {0., .05}) {
+      CAPTURE(z, cell);
+      const Eigen::Vector3d left = left_with({box(.2, .2), {0, -2}, 0, 0, ratio(z)}, cell);
+      CHECK(left.y() / 2 == Approx(right).epsilon(.01));
+    }
+  }
+}
+
+TEST_CASE("impacts of random polygons leave floors of both kinds alike", "[friction][damping]") {
+  samples::Random random(41);
+  const int cases = long_run() ? 200 : 12;
+  int alike = 0;
+  double worst = 0;
+  for (int i = 0; i < cases; ++i) {
+    const int corners = random.integer(3, random.integer(0, 1) == 0 ? 8 : 64);
+    Impact impact{random_polygon(random, corners),
+                  {random.uniform(-1.5, 1.5), -random.uniform(.5, 2)},
+                  random.uniform(-3, 3),
+                  random.integer(0, 1) == 0 ? 0 : .3,
+                  ""};
+    const int damping = random.integer(0, 2);
+    if (damping > 0) impact.damping = ratio(damping == 1 ? .1 : .5);
+    const Eigen::Vector3d rigid = left_with(impact, 0), meshed = left_with(impact, .01);
+    const double apart = (rigid - meshed).head<2>().cwiseAbs().maxCoeff() / impact.velocity.norm();
+    CAPTURE(i, corners, impact.friction, impact.damping, rigid.transpose(), meshed.transpose());
+    alike += apart < .01;
+    worst = std::max(worst, apart);
+    CHECK(apart < (impact.friction > 0 ? .05 : .01));
+  }
+  INFO(alike << " of " << cases << ", worst " << worst);
+  CHECK(alike >= cases * 8 / 10);
+}
