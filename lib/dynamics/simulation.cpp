@@ -141,17 +141,9 @@ void Simulation::take_step() {
   dofs_.drift(state_, dt);
   if (contact_) contact_->check_drift(state_, dt);
   clock_.lap(Phase::integrate);
-  // Contacts that begin or end within the step push in its second half as if they had pushed when
-  // they did: until then forces_ are those at its start, and then those without these impulses.
   if (needs_forces_before()) forces_ = state_.f;
   find_forces(state_.v, dt, control_->deciding_lambda());
-  const bool onsets = onsets_ && contact_ && contact_->find_onsets(state_, forces_, dt);
-  if (contact_ && contact_->damped()) contact_->add_dashpots(state_, dt, onsets, false);
-  if (contact_ && contact_->dissipates()) contact_->book_bend(state_, forces_, dt);
-  if (onsets) {
-    forces_ = state_.f;
-    contact_->add_onsets(state_);
-  }
+  const bool onsets = contact_ && finish_contact(dt);
   ledger_.book_after_drift(state_, dt);
   for (const auto& term : terms_) term->book(state_, dt / 2, ledger_);
   dofs_.kick(state_, dt / 2);
@@ -221,6 +213,19 @@ void Simulation::find_forces(std::span<const double> velocity, double dt, double
 
 bool Simulation::needs_forces_before() const {
   return contact_ && (onsets_ || contact_->dissipates());
+}
+
+// After the forces at the end of the drift, with those at its start in forces_. Contacts that begin
+// or end within the step push in its second half as if they had pushed when they did. True if there
+// are any: state.f holds their forces as well, and forces_ the others alone.
+bool Simulation::finish_contact(double dt) {
+  const bool onsets = onsets_ && contact_->find_onsets(state_, forces_, dt);
+  if (contact_->damped()) contact_->add_dashpots(state_, dt, onsets, false);
+  if (contact_->dissipates()) contact_->book_bend(state_, forces_, dt);
+  if (!onsets) return false;
+  forces_ = state_.f;
+  contact_->add_onsets(state_);
+  return true;
 }
 
 // After forces that have been found where nothing has moved.

@@ -132,6 +132,7 @@ class Simulation {
   void find_forces(std::span<const double> velocity, double dt, double lambda_limit = 0,
                    bool still = false);
   [[nodiscard]] bool needs_forces_before() const;
+  bool finish_contact(double dt);
   void finish_look();
   void settle(const std::function<bool()>& stop);
   void watch();

@@ -6,7 +6,6 @@
 
 #include "geometry/spatial/groups.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
-#include "lib/contact/law/pair_vector.hpp"
 #include "lib/contact/law/stiffness.hpp"
 #include "lib/mesh/locate.hpp"
 

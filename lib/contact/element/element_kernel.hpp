@@ -18,6 +18,7 @@
 #include "geometry/integrals/contact_patches.hpp"
 #include "geometry/integrals/penetration.hpp"
 #include "lib/contact/kernel.hpp"
+#include "lib/contact/law/pair_vector.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 
 namespace apothem {

@@ -7,8 +7,9 @@ namespace apothem {
 namespace {
 
 std::span<Spring> of_law(std::vector<Spring>& springs, int law) {
-  const auto [first, end] = std::ranges::equal_range(
-      springs, law, {}, [](const Spring& spring) { return spring.key.law; });
+  const auto of = [](const Spring& spring) { return spring.key.law; };
+  const auto first = std::ranges::lower_bound(springs, law, {}, of);
+  const auto end = std::ranges::upper_bound(springs, law, {}, of);
   return {first, end};
 }
 

@@ -121,8 +121,7 @@ TEST_CASE("a contact does not pull, and friction with its dashpot obeys Coulomb"
 }
 
 TEST_CASE("chains of masses with dashpots of any strength do not grow", "[damping]") {
-  // With the heavier one the dashpots are content with one pass, with the other they agree.
-  const double pressed = GENERATE(1e30, 1e9);
+  // So much presses that the dashpots are content with one pass.
   samples::Random random(5);
   for (int i = 0; i < 300; ++i) {
     CAPTURE(i);
@@ -150,7 +149,7 @@ TEST_CASE("chains of masses with dashpots of any strength do not grow", "[dampin
       }
       Dashpots dashpots(0);
       for (Eigen::Index d = 0; d < chain.rates.size(); ++d) {
-        dashpots.add({0, 1, {1, 0}, {Dashpot::Normal{chain.rates(d), pressed, 1e9}}});
+        dashpots.add({0, 1, {1, 0}, {Dashpot::Normal{chain.rates(d), kHeavy, 1e9}}});
         for (Eigen::Index c = 0; c < n; ++c) {
           dashpots.add_node(static_cast<NodeIndex>(c), {chain.directions(d, c), 0}, {0, 0});
         }
