@@ -27,14 +27,38 @@ constexpr double kCoarsest = .6;
 struct Lander {
   std::vector<Landing> landings;
   double longest = 0;   // m
-  double mobility = 0;  // the highest, 1/kg
+  double mobility = 0;  // the highest, with friction springs in proportion, 1/kg
   double slope = 0;     // of the potential, 1/m
   double slide = 0;     // the same along the strips, 1/kg
   int pieces = 1;       // the most
 };
 
+// lambda over the normal stiffness of a body on a landing of this breadth (m), 1/kg. Friction
+// springs have `ratio` times this stiffness.
+double mobility_of(const RigidBody& body, const Landing& landing, double breadth, double ratio) {
+  BodyStiffness stiffness;
+  stiffness.add(1, 0, 1, landing.arm);
+  stiffness.tt += breadth * breadth / 12;
+  stiffness.add(ratio, 1, 0, landing.height);
+  return rate_of(stiffness, body.inverse_mass());
+}
+
+// lambda over the thickness of two bodies that lie on each other with these landings: that of the
+// normal force, and with the springs of friction beside it.
+double lambda_of(const RigidBody& body_a, const RigidBody& body_b, const Landing& a,
+                 const Landing& b, const PairLaw& law) {
+  const double slopes = body_a.potential.steepest + body_b.potential.steepest;
+  const double normal = law.normal_stiffness * std::min(a.length, b.length) * slopes;
+  if (!law.rough()) return normal * (a.mobility + b.mobility);
+  const double breadth = std::min(a.breadth, b.breadth);
+  const int springs = std::max(a.pieces, b.pieces);
+  const double ratio =
+      law.friction.stiffness_ratio + springs * law.friction.tangential_stiffness / normal;
+  return normal * (mobility_of(body_a, a, breadth, ratio) + mobility_of(body_b, b, breadth, ratio));
+}
+
 // The landings of all bodies at the deepest impact that they may have with one that is flat.
-std::vector<Lander> landers(const Model& model, double softest) {
+std::vector<Lander> landers(const Model& model, double softest, double ratio) {
   const std::vector<double> speeds = fastest_speeds(model);
   // Of each body the fastest and the flattest other one.
   const auto other = [&](auto&& value, auto&& better, double none) {
@@ -69,34 +93,15 @@ std::vector<Lander> landers(const Model& model, double softest) {
     lander.landings = landings(body, energy / (softest * model.thickness * slopes));
     for (const Landing& landing : lander.landings) {
       lander.longest = std::max(lander.longest, landing.length);
-      lander.mobility = std::max(lander.mobility, landing.mobility);
+      lander.mobility =
+          std::max(lander.mobility, ratio > 0 ? mobility_of(body, landing, landing.breadth, ratio)
+                                              : landing.mobility);
       lander.slide = std::max(lander.slide, landing.slide);
       lander.pieces = std::max(lander.pieces, landing.pieces);
     }
     all.push_back(std::move(lander));
   }
   return all;
-}
-
-// lambda over the thickness of two bodies that lie on each other with these landings: that of the
-// normal force, and with the springs of friction beside it.
-double lambda_of(const RigidBody& body_a, const RigidBody& body_b, const Landing& a,
-                 const Landing& b, const PairLaw& law) {
-  const double slopes = body_a.potential.steepest + body_b.potential.steepest;
-  const double normal = law.normal_stiffness * std::min(a.length, b.length) * slopes;
-  if (!(law.friction.coefficient > 0)) return normal * (a.mobility + b.mobility);
-  const double breadth = std::min(a.breadth, b.breadth);
-  const int springs = std::max(a.pieces, b.pieces);
-  const auto rate = [&](const RigidBody& body, const Landing& landing) {
-    BodyStiffness stiffness;
-    stiffness.add(normal, 0, 1, landing.arm);
-    stiffness.tt += normal * breadth * breadth / 12;
-    stiffness.add(
-        springs * law.friction.tangential_stiffness + law.friction.stiffness_ratio * normal, 1, 0,
-        landing.height);
-    return rate_of(stiffness, body.inverse_mass());
-  };
-  return rate(body_a, a) + rate(body_b, b);
 }
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }
@@ -118,10 +123,8 @@ template <class Flat>
 double flat_bound(const Lander& a, const Flat& b, const PairLaw& worst) {
   const double normal =
       std::min(a.longest, b.longest) * (a.mobility + b.mobility) * (a.slope + b.slope);
-  const double friction = std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness +
-                          worst.friction.stiffness_ratio * worst.normal_stiffness *
-                              std::min(a.longest, b.longest) * (a.slope + b.slope);
-  return worst.normal_stiffness * normal + friction * (a.slide + b.slide);
+  return worst.normal_stiffness * normal +
+         std::max(a.pieces, b.pieces) * worst.friction.tangential_stiffness * (a.slide + b.slide);
 }
 
 // Bounds of some bodies.
@@ -158,7 +161,8 @@ std::vector<FlatGroup> groups_by_length(const std::vector<Lander>& all) {
 
 StepLimit contact_step_limit(const Model& model) {
   const PairTable table = pair_table(model);
-  const std::vector<Lander> all = landers(model, table.softest());
+  const std::vector<Lander> all =
+      landers(model, table.softest(), table.stiffest_friction().stiffness_ratio);
   const std::vector<FlatGroup> groups = groups_by_length(all);
   const PairLaw stiffest{.normal_stiffness = table.stiffest(),
                          .friction = table.stiffest_friction()};

@@ -7,7 +7,7 @@ namespace apothem {
 namespace {
 
 constexpr int kMostSweeps = 50;
-constexpr double kAgree = 1e-10;  // of the largest impulse, or of what presses over the step
+constexpr double kAgree = 1e-6;  // of the largest impulse, or of what presses over the step
 
 }  // namespace
 
