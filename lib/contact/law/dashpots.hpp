@@ -1,4 +1,4 @@
-// All dashpots of a step (docs/theory.md, Damping of contacts).
+// All dashpots of a step (docs/theory.md, Dashpots).
 //
 // A contact of any two surfaces has one direction in the coordinates along its normal and one along
 // its tangent: g.v is the rate at which its two sides move against each other, and the impulse J on
