@@ -265,20 +265,18 @@ void ContactTerm::add_dashpots(State& state, double dt, bool onsets, bool first)
     add_onsets(state.layout, with_onsets_);
     kicked = with_onsets_;
   }
-  // What dashpots do moves servo walls too, along their directions.
-  std::span<const double> inverse_mass = dofs_.inverse_mass();
+  rails_.clear();
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {
-    if (!d.servo || d.axis > 1) continue;
-    if (inverse_mass.data() != yielding_.data()) {
-      yielding_ = dofs_.inverse_mass();
-      inverse_mass = yielding_;
-    }
-    const double along = d.servo->direction[d.axis];
-    yielding_[d.coordinate] = along * along / dofs_.mass(d.coordinate);
+    if (!d.servo || d.axis != 0) continue;
+    const double mass = dofs_.mass(d.coordinate);
+    const double before = Vec2(&state.v[d.coordinate]).dot(d.servo->direction);
+    const double rate = d.servo->rate(state.time, Vec2(&state.f[d.coordinate]), before, mass, dt);
+    rails_.push_back(
+        {static_cast<RigidIndex>(d.coordinate / 3), d.servo->direction, 1 / mass, rate - before});
   }
-  const std::span<const double> forces =
-      contacts_.find_dashpots(state.kinematics(state.v),
-                              {inverse_mass, state.v, kicked, state.f, dofs_.weight()}, dt, first);
+  const std::span<const double> forces = contacts_.find_dashpots(
+      state.kinematics(state.v),
+      {dofs_.inverse_mass(), state.v, kicked, state.f, dofs_.weight(), rails_}, dt, first);
   for (size_t c = 0; c < forces.size(); ++c) state.f[c] += forces[c];
 }
 

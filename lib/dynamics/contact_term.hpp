@@ -113,8 +113,8 @@ class ContactTerm final : public Term {
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
   StrideWatch strides_;
-  std::vector<double> with_onsets_;  // all forces but those of dashpots
-  std::vector<double> yielding_;     // inverse masses with those of servo walls
+  std::vector<double> with_onsets_;            // all forces but those of dashpots
+  std::vector<Dashpots::Motion::Rail> rails_;  // servo walls
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;
   std::string closed_notch_;

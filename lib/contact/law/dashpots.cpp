@@ -77,55 +77,112 @@ double Dashpots::lost_after(std::span<const double> velocity, double dt) const {
   return -dt / 2 * (power - gain_);
 }
 
+// The velocity along a rail is one number, and both coordinates have it. Impulses across it go into
+// what holds the rail.
+void Dashpots::put_on(std::span<const Motion::Rail> rails) {
+  for (size_t i = 0; i < solved_.size(); ++i) {
+    const auto first = static_cast<size_t>(solved_[i].first), end = first + entries(i).size();
+    for (size_t e = first; e < end; ++e) {
+      for (const Motion::Rail& rail : rails) {
+        if (entries_[e].coordinate != 3 * static_cast<std::uint32_t>(rail.body)) continue;
+        Entry &x = entries_[e], &y = entries_[e + 1];
+        across_rails_.push_back(x), across_rails_.push_back(y);
+        across_at_.insert(across_at_.end(), 2, static_cast<std::uint32_t>(i));
+        Entry &lost_x = across_rails_.end()[-2], &lost_y = across_rails_.end()[-1];
+        for (size_t k = 0; k < 3; ++k) {
+          const double along = Vec2(x.part[k], y.part[k]).dot(rail.direction);
+          x.part[k] = along * rail.direction.x(), y.part[k] = along * rail.direction.y();
+          lost_x.part[k] -= x.part[k], lost_y.part[k] -= y.part[k];
+        }
+      }
+    }
+  }
+}
+
+void Dashpots::find_kicks(const Motion& motion, double dt) {
+  const std::span<const double> w = motion.inverse_mass;
+  kick_.resize(w.size()), velocity_.resize(w.size());
+  for (size_t c = 0; c < w.size(); ++c) {
+    const double g = motion.weight.empty() ? 0 : motion.weight[c];
+    kick_[c] = dt / 2 * w[c] * (motion.before[c] + motion.after[c] + 2 * g);
+  }
+  inverse_mass_ = w;
+  across_rails_.clear(), across_at_.clear();
+  if (!motion.rails.empty()) {
+    put_on(motion.rails);
+    with_rails_.assign(w.begin(), w.end());
+    for (const Motion::Rail& rail : motion.rails) {
+      for (const size_t axis : {0, 1}) {
+        const size_t c = 3 * static_cast<size_t>(rail.body) + axis;
+        with_rails_[c] = rail.inverse_mass;
+        kick_[c] = rail.gain * rail.direction[static_cast<Eigen::Index>(axis)];
+      }
+    }
+    inverse_mass_ = with_rails_;
+  }
+  for (size_t c = 0; c < w.size(); ++c) velocity_[c] = motion.velocity[c] + kick_[c];
+}
+
 // A contact that has begun within the last drift, or will end within the next one, acts for as long
 // as it is closed, and any other one for half of both.
-void Dashpots::begin(const Motion& motion, double dt) {
-  const std::span<const double> w = motion.inverse_mass;
-  velocity_.resize(w.size());
+void Dashpots::find_rates(double dt) {
+  reach_.assign(kick_.size(), 0.);
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     const Dashpot& of = dashpots_[i];
     Solved& solved = solved_[i];
-    std::array<double, 3> mobility{}, before{}, gains{};  // gains of the kicks
-    solved.d01 = solved.d02 = solved.d12 = 0;
+    std::array<double, 3> before{}, kick{};
     for (const Entry& e : entries(i)) {
-      const size_t c = e.coordinate;
-      const double v = motion.velocity[c], g = motion.weight.empty() ? 0 : motion.weight[c];
-      const double gain = dt / 2 * w[c] * (motion.before[c] + motion.after[c] + 2 * g);
-      velocity_[c] = v + gain;
       for (size_t k = 0; k < 3; ++k) {
-        mobility[k] += w[c] * e.part[k] * e.part[k];
-        before[k] += e.part[k] * v;
-        gains[k] += e.part[k] * gain;
+        kick[k] += e.part[k] * kick_[e.coordinate];
+        before[k] += e.part[k] * (velocity_[e.coordinate] - kick_[e.coordinate]);
       }
-      solved.d01 += w[c] * e.part[0] * e.part[1];
-      solved.d02 += w[c] * e.part[0] * e.part[2];
-      solved.d12 += w[c] * e.part[1] * e.part[2];
     }
     const auto share_of = [&](double approach, const Dashpot::Normal& normal) {
       return approach * dt > normal.depth ? normal.mean * normal.depth / (approach * dt) : .5;
     };
     double share = 0;  // of the contact: where it is deeper
-    for (size_t k = 0; k < 3; ++k) {
-      double rate = of.tangential_rate;
-      if (k < 2) {
-        rate = of.across[k].rate;
-        const double both =
-            share_of(-before[k], of.across[k]) + share_of(before[k] + gains[k], of.across[k]);
-        share = std::max(share, rate > 0 ? both : 0);
-        rate *= both;
-      } else {
-        rate *= share;
+    for (size_t k = 0; k < 2; ++k) {
+      const Dashpot::Normal& across = of.across[k];
+      const double both = share_of(-before[k], across) + share_of(before[k] + kick[k], across);
+      if (across.rate > 0) share = std::max(share, both);
+      solved.along[k] = {0, across.rate * both * dt, before[k]};
+    }
+    solved.along[2] = {0, of.tangential_rate * share * dt, before[2]};
+    for (const Entry& e : entries(i)) {
+      for (size_t k = 0; k < 3; ++k) {
+        reach_[e.coordinate] += solved.along[k].gain * std::abs(e.part[k]);
       }
-      rate *= dt;
-      const double x = rate * mobility[k], theta = x > 2 ? 1 - 1 / x : .5, part = 1 + theta * x;
-      solved.along[k] = {1 - 1 / part, rate * theta / part, rate * (1 - theta) * before[k] / part};
+    }
+  }
+}
+
+// x counts what the impulses of all dashpots of these bodies do to the rate.
+void Dashpots::find_gains() {
+  for (size_t i = 0; i < dashpots_.size(); ++i) {
+    Solved& solved = solved_[i];
+    std::array<double, 3> mobility{}, coupled{};
+    solved.d01 = solved.d02 = solved.d12 = 0;
+    for (const Entry& e : entries(i)) {
+      const double w = inverse_mass_[e.coordinate];
+      for (size_t k = 0; k < 3; ++k) {
+        mobility[k] += w * e.part[k] * e.part[k];
+        coupled[k] += w * std::abs(e.part[k]) * reach_[e.coordinate];
+      }
+      solved.d01 += w * e.part[0] * e.part[1];
+      solved.d02 += w * e.part[0] * e.part[2];
+      solved.d12 += w * e.part[1] * e.part[2];
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      const double rate = solved.along[k].gain, before = solved.along[k].offset, x = coupled[k];
+      const double theta = x > 2 ? 1 - 1 / x : .5, part = 1 + theta * rate * mobility[k];
+      solved.along[k] = {1 - 1 / part, rate * theta / part, rate * (1 - theta) * before / part};
     }
   }
 }
 
 // Has the dashpots of a contact agree with all others as they are. Returns the largest change of an
 // impulse, N s.
-double Dashpots::relax(size_t i, std::span<const double> inverse_mass, double dt) {
+double Dashpots::relax(size_t i, double dt) {
   const Dashpot& of = dashpots_[i];
   Solved& solved = solved_[i];
   std::array<double, 3> rate{};
@@ -150,7 +207,7 @@ double Dashpots::relax(size_t i, std::span<const double> inverse_mass, double dt
          limit - spring);
   for (const Entry& e : entries(i)) {
     velocity_[e.coordinate] +=
-        inverse_mass[e.coordinate] *
+        inverse_mass_[e.coordinate] *
         (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
   }
   return std::max({std::abs(change[0]), std::abs(change[1]), std::abs(change[2])});
@@ -158,30 +215,36 @@ double Dashpots::relax(size_t i, std::span<const double> inverse_mass, double dt
 
 void Dashpots::solve(const Motion& motion, double dt) {
   dt_ = dt;
-  begin(motion, dt);
+  find_kicks(motion, dt);
+  find_rates(dt);
+  find_gains();
   double pressed = 0;
   for (const Dashpot& of : dashpots_) {
     pressed = std::max(pressed, of.across[0].pressed + of.across[1].pressed);
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0, largest = pressed * dt;
-    for (size_t i = 0; i < dashpots_.size(); ++i) relax(i, motion.inverse_mass, dt);
+    for (size_t i = 0; i < dashpots_.size(); ++i) relax(i, dt);
     for (size_t i = dashpots_.size(); i-- > 0;) {
-      change = std::max(change, relax(i, motion.inverse_mass, dt));
+      change = std::max(change, relax(i, dt));
       const std::array<Along, 3>& along = solved_[i].along;
       largest = std::max(largest, std::abs(along[0].impulse + along[1].impulse));
     }
     if (change <= kAgree * largest) break;
   }
+  sum_forces(motion, dt);
+}
+
+void Dashpots::sum_forces(const Motion& motion, double dt) {
   forces_.assign(motion.inverse_mass.size(), 0.);
-  for (size_t i = 0; i < dashpots_.size(); ++i) {
+  const auto add_force = [&](const Entry& e, size_t i) {
     const std::array<Along, 3>& along = solved_[i].along;
-    for (const Entry& e : entries(i)) {
-      for (size_t k = 0; k < 3; ++k) {
-        forces_[e.coordinate] += e.part[k] * along[k].impulse / dt;
-      }
-    }
+    for (size_t k = 0; k < 3; ++k) forces_[e.coordinate] += e.part[k] * along[k].impulse / dt;
+  };
+  for (size_t i = 0; i < dashpots_.size(); ++i) {
+    for (const Entry& e : entries(i)) add_force(e, i);
   }
+  for (size_t k = 0; k < across_rails_.size(); ++k) add_force(across_rails_[k], across_at_[k]);
   // The mean velocities of both half kicks.
   double power = 0;
   gain_ = 0;

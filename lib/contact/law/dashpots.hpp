@@ -4,11 +4,13 @@
 // its tangent: g.v is the rate at which its two sides move against each other, and the impulse J on
 // them changes v by W J g, with the inverse masses W. A dashpot of the coefficient c gives
 //
-//   J = -c h [theta g.v1 + (1 - theta) g.v0],   theta = max(1/2, 1 - 1/x),   x = c h g.W g,
+//   J = -c h [theta g.v1 + (1 - theta) g.v0],   theta = max(1/2, 1 - 1/x),
+//   x = sum over the coordinates q of W_q |g_q| sum over all contacts j of c_j h |g_jq|,
 //
 // over a step of h from the velocities v0 half a step before to v1 half a step behind: the midpoint
-// rule where it bears it, and beyond no more than what brings the two sides to rest. The dashpots
-// of all contacts are solved for together, one after the other forwards and backwards, until they
+// rule where it bears it, and beyond no more than what brings the two sides to rest. x is the part
+// of the rate that all dashpots at these bodies would take at v0. The dashpots of all contacts are
+// solved for together, one after the other forwards and backwards, until they
 // agree. This takes energy with any coefficient, step and masses, and however often it is done: the
 // step needs no bound for it. g vanishes in rigid motion, so that momenta are kept.
 //
@@ -61,6 +63,15 @@ class Dashpots {
     /// All other forces in the second half of the step before and in the first half of the next, N.
     std::span<const double> before, after;
     std::span<const double> weight;  ///< of gravity, besides; may be empty
+    /// Bodies that are steered, so that their inverse masses above are 0, but give way along a
+    /// direction: servo walls.
+    struct Rail {
+      RigidIndex body;
+      Vec2 direction;       ///< of unit length
+      double inverse_mass;  ///< along it, 1/kg
+      double gain;          ///< of the speed along it in this step by all other forces, m/s
+    };
+    std::span<const Rail> rails = {};
   };
 
   explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
@@ -123,14 +134,24 @@ class Dashpots {
     double d01 = 0, d02 = 0, d12 = 0;  // what an impulse along one does to another rate, 1/kg
   };
   void add(size_t coordinate, const std::array<double, 3>& part);
+  void put_on(std::span<const Motion::Rail> rails);
+  void find_kicks(const Motion& motion, double dt);
+  void sum_forces(const Motion& motion, double dt);
   [[nodiscard]] std::span<const Entry> entries(size_t i) const;
-  void begin(const Motion& motion, double dt);
-  double relax(size_t i, std::span<const double> inverse_mass, double dt);
+  void find_rates(double dt);
+  void find_gains();
+  double relax(size_t i, double dt);
 
   size_t nodes_;  // the first coordinate of a node
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
+  std::vector<Entry> across_rails_;       // what entries of bodies on rails have lost
+  std::vector<std::uint32_t> across_at_;  // the contacts of these
+  std::vector<double> with_rails_;        // inverse masses, also of bodies on rails
+  std::span<const double> inverse_mass_;  // of this step
+  std::vector<double> reach_;     // of the dashpots of a coordinate together: impulse per velocity
+  std::vector<double> kick_;      // by all other forces over this step
   std::vector<double> velocity_;  // half a step behind, with the impulses so far
   std::vector<double> forces_;
   double lost_ = 0;  // J
