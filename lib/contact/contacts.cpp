@@ -136,9 +136,8 @@ void Contacts::add_forces(ForceViews forces) {
   each([&](Kernel& kernel) { kernel.add_forces(forces); });
 }
 
-std::span<const double> Contacts::find_dashpots(const Kinematics& now,
-                                                const Dashpots::Motion& motion, double dt,
-                                                bool first) {
+void Contacts::add_dashpots(const Kinematics& now, const Dashpots::Motion& motion, double dt,
+                            bool first, std::span<double> forces) {
   if (!first) memory_.damp(dashpots_.lost_after(motion.velocity, dt));
   dashpots_.clear();
   each([&](Kernel& kernel) { kernel.add_dashpots(now, dashpots_); });
@@ -146,8 +145,8 @@ std::span<const double> Contacts::find_dashpots(const Kinematics& now,
   if (!first) memory_.damp(dashpots_.lost_before());
   size_t next = 0;
   each([&](Kernel& kernel) { kernel.keep_pushes(dashpots_, next, memory_); });
-  for (size_t c = 0; c < beside_.size(); ++c) beside_[c] += dashpots_.forces()[c];
-  return dashpots_.forces();
+  dashpots_.add_forces(beside_);
+  dashpots_.add_forces(forces);
 }
 
 void Contacts::book_bend(Dynamics dynamics, double dt) {

@@ -62,11 +62,11 @@ class Contacts {
   /// Has the next refresh() keep the candidates.
   void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);
-  /// After the slide, when all other forces of the step of dt (s) are known: finds those of the
-  /// dashpots, on every coordinate, N and N m. `first`: nothing has moved since the last look, and
-  /// no work is booked.
-  std::span<const double> find_dashpots(const Kinematics& now, const Dashpots::Motion& motion,
-                                        double dt, bool first);
+  /// After the slide, when all other forces of the step of dt (s) are known: adds those of the
+  /// dashpots to the forces on every coordinate, N and N m. `first`: nothing has moved since the
+  /// last look, and no work is booked.
+  void add_dashpots(const Kinematics& now, const Dashpots::Motion& motion, double dt, bool first,
+                    std::span<double> forces);
 
   /// Ascending within a kernel, one kernel after the other. Not for every step.
   [[nodiscard]] std::vector<Contact> contacts() const;

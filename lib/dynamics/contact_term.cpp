@@ -274,10 +274,9 @@ void ContactTerm::add_dashpots(State& state, double dt, bool onsets, bool first)
     rails_.push_back(
         {static_cast<RigidIndex>(d.coordinate / 3), d.servo->direction, 1 / mass, rate - before});
   }
-  const std::span<const double> forces = contacts_.find_dashpots(
-      state.kinematics(state.v),
-      {dofs_.inverse_mass(), state.v, kicked, state.f, dofs_.weight(), rails_}, dt, first);
-  for (size_t c = 0; c < forces.size(); ++c) state.f[c] += forces[c];
+  contacts_.add_dashpots(state.kinematics(state.v),
+                         {dofs_.inverse_mass(), state.v, kicked, state.f, dofs_.weight(), rails_},
+                         dt, first, state.f);
 }
 
 void ContactTerm::note_peaks(const State& state) {

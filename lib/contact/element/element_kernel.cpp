@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "geometry/spatial/groups.hpp"
 #include "lib/contact/law/coulomb_spring.hpp"
@@ -244,29 +243,35 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
   return dt / 2 * (power_before + power(tangential_, now));
 }
 
-// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
-// them.
-void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
-  struct Pair {
-    double resistance = 0, stiffness = 0, sizes = 0;
-    Vec2 force = Vec2::Zero(), places = Vec2::Zero();
-  };
-  std::map<std::pair<BodyIndex, BodyIndex>, Pair> pairs;
-  const auto pair_of = [&](const Touch& t) -> Pair& {
-    return pairs[{surfaces_.body(t.a), surfaces_.body(t.b)}];
-  };
-  for (const Touch& t : touches_) {
-    Pair& pair = pair_of(t);
+// What touches between two bodies.
+void ElementKernel::find_damped_pairs() {
+  damped_pairs_.clear();
+  pair_of_.resize(touches_.size());
+  std::pair<BodyIndex, BodyIndex> last(-1, -1);
+  for (const BodyTouch& of : body_touches_) {
+    if (const std::pair bodies(of.a, of.b); bodies != last) {
+      damped_pairs_.emplace_back();
+      last = bodies;
+    }
+    DampedPair& pair = damped_pairs_.back();
+    const Touch& t = touches_[static_cast<size_t>(of.touch)];
+    pair_of_[static_cast<size_t>(of.touch)] = damped_pairs_.size() - 1;
     pair.resistance += t.stiffness, pair.stiffness += t.spring_stiffness;
     pair.force += t.force;
     pair.sizes += t.force.norm();
     pair.places += t.force.norm() * (surfaces_.reference(t.a) + t.point);
   }
+}
+
+// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
+// them.
+void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
+  find_damped_pairs();
   for (const Touch& t : touches_) {
     const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
     const PairLaw& law = table_.between(body_a, body_b);
     if (!law.damped() || !has_direction(t) || !(t.stiffness > 0)) continue;
-    const Pair& pair = pair_of(t);
+    const DampedPair& pair = damped_pairs_[pair_of_[static_cast<size_t>(&t - touches_.data())]];
     const double all = pair.force.norm(), size = t.force.norm();
     const Vec2 direction = all > 0 ? Vec2(pair.force / all) : Vec2(t.force / size);
     const Vec2 place = pair.places / pair.sizes;

@@ -97,6 +97,7 @@ class ElementKernel final : public Kernel {
   }
   void add_touch(const PairInTouch& result);
   void find_largest_force();
+  void find_damped_pairs();
   /// What looking for a penetration works in.
   struct Depths {
     PatchWorkspace workspace;
@@ -127,6 +128,15 @@ class ElementKernel final : public Kernel {
     auto operator<=>(const BodyTouch&) const = default;
   };
   std::vector<BodyTouch> body_touches_;  // of all touches, ascending
+  /// Sums over what touches between two damped bodies.
+  struct DampedPair {
+    double resistance = 0, stiffness = 0;  ///< along the forces, and of the friction springs, N/m
+    double sizes = 0;                      ///< of the forces, N
+    Vec2 force = Vec2::Zero();             ///< N
+    Vec2 places = Vec2::Zero();            ///< by the sizes, N m
+  };
+  std::vector<DampedPair> damped_pairs_;
+  std::vector<size_t> pair_of_;  // of each touch
   PairPeak largest_force_;
   Forces normal_, tangential_;
   PatchWorkspace workspace_;

@@ -25,44 +25,66 @@ Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffnes
   return {rate, pressed, power * pressed / stiffness, 2 / (power + 1)};
 }
 
-void Dashpots::add(size_t coordinate, const std::array<double, 3>& part) {
-  const auto c = static_cast<std::uint32_t>(coordinate);
-  for (auto e = static_cast<size_t>(solved_.back().first); e < entries_.size(); ++e) {
-    if (entries_[e].coordinate != c) continue;
-    for (size_t k = 0; k < 3; ++k) entries_[e].part[k] += part[k];
+void Dashpots::clear() {
+  for (const Moved& moved : moved_) {
+    if (moved.coordinate < index_.size()) index_[moved.coordinate] = kNone;
+  }
+  dashpots_.clear(), solved_.clear(), entries_.clear(), moved_.clear();
+  across_rails_.clear(), of_these_.clear();
+}
+
+// The place of the first of these coordinates, which are next to each other, among the moved ones.
+std::uint32_t Dashpots::find(size_t first, size_t count) {
+  if (first + count > index_.size()) index_.resize(first + count, kNone);
+  std::uint32_t& index = index_[first];
+  if (index != kNone) return index;
+  index = static_cast<std::uint32_t>(moved_.size());
+  for (size_t c = first; c < first + count; ++c) {
+    moved_.push_back({.coordinate = static_cast<std::uint32_t>(c)});
+  }
+  return index;
+}
+
+// A node that comes again in a contact has the same entries.
+template <size_t count>
+void Dashpots::add(size_t first, const std::array<Parts, count>& parts) {
+  const std::uint32_t index = find(first, count);
+  Moved& moved = moved_[index];
+  if (moved.end > solved_.back().first) {
+    for (size_t c = 0; c < count; ++c) {
+      for (size_t k = 0; k < 3; ++k) entries_[moved.end - count + c].part[k] += parts[c][k];
+    }
     return;
   }
-  entries_.push_back({c, part});
+  for (size_t c = 0; c < count; ++c) {
+    entries_.push_back({index + static_cast<std::uint32_t>(c), parts[c]});
+  }
+  moved.end = static_cast<std::uint32_t>(entries_.size());
 }
 
 void Dashpots::add_node(NodeIndex node, const Vec2& normal, const Vec2& tangential) {
-  const size_t first = nodes_ + 2 * static_cast<size_t>(node);
-  add(first, {normal.x(), 0, tangential.x()});
-  add(first + 1, {normal.y(), 0, tangential.y()});
+  add<2>(nodes_ + 2 * static_cast<size_t>(node),
+         {Parts{normal.x(), 0, tangential.x()}, Parts{normal.y(), 0, tangential.y()}});
 }
 
 void Dashpots::add_point(RigidIndex body, const Vec2& arm, const Vec2& normal,
                          const Vec2& tangential) {
-  const size_t first = 3 * static_cast<size_t>(body);
-  add(first, {normal.x(), 0, tangential.x()});
-  add(first + 1, {normal.y(), 0, tangential.y()});
-  add(first + 2, {cross(arm, normal), 0, cross(arm, tangential)});
+  add<3>(3 * static_cast<size_t>(body),
+         {Parts{normal.x(), 0, tangential.x()}, Parts{normal.y(), 0, tangential.y()},
+          Parts{cross(arm, normal), 0, cross(arm, tangential)}});
 }
 
 void Dashpots::add_rigid(RigidIndex body, double sign, const std::array<Vec2, 2>& normal_at,
                          const Vec2& tangential_at) {
-  const auto c = static_cast<std::uint32_t>(3 * static_cast<size_t>(body));
   const Vec2 n = sign * dashpots_.back().normal, t(-n.y(), n.x());
-  entries_.push_back({c, {n.x(), n.x(), t.x()}});
-  entries_.push_back({c + 1, {n.y(), n.y(), t.y()}});
-  entries_.push_back(
-      {c + 2, {cross(normal_at[0], n), cross(normal_at[1], n), cross(tangential_at, t)}});
+  add<3>(3 * static_cast<size_t>(body),
+         {Parts{n.x(), n.x(), t.x()}, Parts{n.y(), n.y(), t.y()},
+          Parts{cross(normal_at[0], n), cross(normal_at[1], n), cross(tangential_at, t)}});
 }
 
 std::span<const Dashpots::Entry> Dashpots::entries(size_t i) const {
-  const auto first = static_cast<size_t>(solved_[i].first);
-  const size_t end =
-      i + 1 < solved_.size() ? static_cast<size_t>(solved_[i + 1].first) : entries_.size();
+  const size_t first = solved_[i].first;
+  const size_t end = i + 1 < solved_.size() ? solved_[i + 1].first : entries_.size();
   return {entries_.data() + first, end - first};
 }
 
@@ -73,68 +95,67 @@ Vec2 Dashpots::force_on_a(size_t i) const {
 
 double Dashpots::lost_after(std::span<const double> velocity, double dt) const {
   double power = 0;
-  for (size_t c = 0; c < forces_.size(); ++c) power += forces_[c] * velocity[c];
+  for (const Moved& moved : moved_) {
+    if (moved.coordinate < velocity.size()) power += moved.force * velocity[moved.coordinate];
+  }
   return -dt / 2 * (power - gain_);
 }
 
 // The velocity along a rail is one number, and both coordinates have it. Impulses across it go into
 // what holds the rail.
-void Dashpots::put_on(std::span<const Motion::Rail> rails) {
+void Dashpots::put_on(const Motion::Rail& rail) {
+  const size_t coordinate = 3 * static_cast<size_t>(rail.body);
+  if (coordinate >= index_.size() || index_[coordinate] == kNone) return;
+  // A body comes with all of its coordinates, one behind the other.
+  const std::uint32_t index = index_[coordinate];
+  moving_[index].inverse_mass = moving_[index + 1].inverse_mass = rail.inverse_mass;
+  moved_[index].kick = rail.gain * rail.direction.x();
+  moved_[index + 1].kick = rail.gain * rail.direction.y();
   for (size_t i = 0; i < solved_.size(); ++i) {
-    const auto first = static_cast<size_t>(solved_[i].first), end = first + entries(i).size();
+    const size_t first = solved_[i].first, end = first + entries(i).size();
     for (size_t e = first; e < end; ++e) {
-      for (const Motion::Rail& rail : rails) {
-        if (entries_[e].coordinate != 3 * static_cast<std::uint32_t>(rail.body)) continue;
-        Entry &x = entries_[e], &y = entries_[e + 1];
-        across_rails_.push_back(x), across_rails_.push_back(y);
-        across_at_.insert(across_at_.end(), 2, static_cast<std::uint32_t>(i));
-        Entry &lost_x = across_rails_.end()[-2], &lost_y = across_rails_.end()[-1];
-        for (size_t k = 0; k < 3; ++k) {
-          const double along = Vec2(x.part[k], y.part[k]).dot(rail.direction);
-          x.part[k] = along * rail.direction.x(), y.part[k] = along * rail.direction.y();
-          lost_x.part[k] -= x.part[k], lost_y.part[k] -= y.part[k];
-        }
+      if (entries_[e].moved != index) continue;
+      Entry &x = entries_[e], &y = entries_[e + 1];
+      Entry across_x = x, across_y = y;
+      for (size_t k = 0; k < 3; ++k) {
+        const double along = Vec2(x.part[k], y.part[k]).dot(rail.direction);
+        x.part[k] = along * rail.direction.x(), y.part[k] = along * rail.direction.y();
+        across_x.part[k] -= x.part[k], across_y.part[k] -= y.part[k];
       }
+      across_rails_.push_back(across_x), across_rails_.push_back(across_y);
+      of_these_.insert(of_these_.end(), 2, static_cast<std::uint32_t>(i));
     }
   }
 }
 
 void Dashpots::find_kicks(const Motion& motion, double dt) {
-  const std::span<const double> w = motion.inverse_mass;
-  kick_.resize(w.size()), velocity_.resize(w.size());
-  for (size_t c = 0; c < w.size(); ++c) {
-    const double g = motion.weight.empty() ? 0 : motion.weight[c];
-    kick_[c] = dt / 2 * w[c] * (motion.before[c] + motion.after[c] + 2 * g);
+  moving_.resize(moved_.size());
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    Moved& moved = moved_[i];
+    const size_t c = moved.coordinate;
+    const double w = motion.inverse_mass[c], g = motion.weight.empty() ? 0 : motion.weight[c];
+    moved.kick = dt / 2 * w * (motion.before[c] + motion.after[c] + 2 * g);
+    moved.reach = moved.force = 0;
+    moving_[i].inverse_mass = w;
   }
-  inverse_mass_ = w;
-  across_rails_.clear(), across_at_.clear();
-  if (!motion.rails.empty()) {
-    put_on(motion.rails);
-    with_rails_.assign(w.begin(), w.end());
-    for (const Motion::Rail& rail : motion.rails) {
-      for (const size_t axis : {0, 1}) {
-        const size_t c = 3 * static_cast<size_t>(rail.body) + axis;
-        with_rails_[c] = rail.inverse_mass;
-        kick_[c] = rail.gain * rail.direction[static_cast<Eigen::Index>(axis)];
-      }
-    }
-    inverse_mass_ = with_rails_;
+  for (const Motion::Rail& rail : motion.rails) put_on(rail);
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    moving_[i].velocity = motion.velocity[moved_[i].coordinate] + moved_[i].kick;
   }
-  for (size_t c = 0; c < w.size(); ++c) velocity_[c] = motion.velocity[c] + kick_[c];
 }
 
 // A contact that has begun within the last drift, or will end within the next one, acts for as long
 // as it is closed, and any other one for half of both.
 void Dashpots::find_rates(double dt) {
-  reach_.assign(kick_.size(), 0.);
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     const Dashpot& of = dashpots_[i];
     Solved& solved = solved_[i];
     std::array<double, 3> before{}, kick{};
     for (const Entry& e : entries(i)) {
+      const double kicked = moved_[e.moved].kick, v = moving_[e.moved].velocity - kicked;
       for (size_t k = 0; k < 3; ++k) {
-        kick[k] += e.part[k] * kick_[e.coordinate];
-        before[k] += e.part[k] * (velocity_[e.coordinate] - kick_[e.coordinate]);
+        kick[k] += e.part[k] * kicked;
+        before[k] += e.part[k] * v;
       }
     }
     const auto share_of = [&](double approach, const Dashpot::Normal& normal) {
@@ -149,9 +170,8 @@ void Dashpots::find_rates(double dt) {
     }
     solved.along[2] = {0, of.tangential_rate * share * dt, before[2]};
     for (const Entry& e : entries(i)) {
-      for (size_t k = 0; k < 3; ++k) {
-        reach_[e.coordinate] += solved.along[k].gain * std::abs(e.part[k]);
-      }
+      double& reach = moved_[e.moved].reach;
+      for (size_t k = 0; k < 3; ++k) reach += solved.along[k].gain * std::abs(e.part[k]);
     }
   }
 }
@@ -163,10 +183,10 @@ void Dashpots::find_gains() {
     std::array<double, 3> mobility{}, coupled{};
     solved.d01 = solved.d02 = solved.d12 = 0;
     for (const Entry& e : entries(i)) {
-      const double w = inverse_mass_[e.coordinate];
+      const double w = moving_[e.moved].inverse_mass, all = w * moved_[e.moved].reach;
       for (size_t k = 0; k < 3; ++k) {
         mobility[k] += w * e.part[k] * e.part[k];
-        coupled[k] += w * std::abs(e.part[k]) * reach_[e.coordinate];
+        coupled[k] += all * std::abs(e.part[k]);
       }
       solved.d01 += w * e.part[0] * e.part[1];
       solved.d02 += w * e.part[0] * e.part[2];
@@ -187,7 +207,7 @@ double Dashpots::relax(size_t i, double dt) {
   Solved& solved = solved_[i];
   std::array<double, 3> rate{};
   for (const Entry& e : entries(i)) {
-    const double v = velocity_[e.coordinate];
+    const double v = moving_[e.moved].velocity;
     for (size_t k = 0; k < 3; ++k) rate[k] += e.part[k] * v;
   }
   std::array<double, 3> change;
@@ -206,9 +226,9 @@ double Dashpots::relax(size_t i, double dt) {
   follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
          limit - spring);
   for (const Entry& e : entries(i)) {
-    velocity_[e.coordinate] +=
-        inverse_mass_[e.coordinate] *
-        (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
+    Moving& moving = moving_[e.moved];
+    moving.velocity += moving.inverse_mass *
+                       (e.part[0] * change[0] + e.part[1] * change[1] + e.part[2] * change[2]);
   }
   return std::max({std::abs(change[0]), std::abs(change[1]), std::abs(change[2])});
 }
@@ -236,25 +256,36 @@ void Dashpots::solve(const Motion& motion, double dt) {
 }
 
 void Dashpots::sum_forces(const Motion& motion, double dt) {
-  forces_.assign(motion.inverse_mass.size(), 0.);
-  const auto add_force = [&](const Entry& e, size_t i) {
+  const auto force = [&](size_t i, const Entry& e) {
     const std::array<Along, 3>& along = solved_[i].along;
-    for (size_t k = 0; k < 3; ++k) forces_[e.coordinate] += e.part[k] * along[k].impulse / dt;
+    return (e.part[0] * along[0].impulse + e.part[1] * along[1].impulse +
+            e.part[2] * along[2].impulse) *
+           (1 / dt);
   };
   for (size_t i = 0; i < dashpots_.size(); ++i) {
-    for (const Entry& e : entries(i)) add_force(e, i);
+    for (const Entry& e : entries(i)) moved_[e.moved].force += force(i, e);
   }
-  for (size_t k = 0; k < across_rails_.size(); ++k) add_force(across_rails_[k], across_at_[k]);
+  for (size_t k = 0; k < across_rails_.size(); ++k) {
+    const Entry& e = across_rails_[k];
+    moved_[e.moved].force += force(of_these_[k], e);
+  }
   // The mean velocities of both half kicks.
   double power = 0;
   gain_ = 0;
-  for (size_t c = 0; c < forces_.size(); ++c) {
-    const double f = forces_[c], w = dt / 4 * motion.inverse_mass[c];
+  for (const Moved& moved : moved_) {
+    const size_t c = moved.coordinate;
+    const double f = moved.force, w = dt / 4 * motion.inverse_mass[c];
     const double g = motion.weight.empty() ? 0 : motion.weight[c];
     power += f * (motion.velocity[c] + w * (motion.before[c] + f + g));
     gain_ += f * w * (motion.after[c] + f + g);
   }
   lost_ = -dt / 2 * power;
+}
+
+void Dashpots::add_forces(std::span<double> to) const {
+  for (const Moved& moved : moved_) {
+    if (moved.coordinate < to.size()) to[moved.coordinate] += moved.force;
+  }
 }
 
 }  // namespace apothem

@@ -77,11 +77,11 @@ class Dashpots {
   explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
 
   /// The contacts of a step are added anew, always in the same order.
-  void clear() { dashpots_.clear(), solved_.clear(), entries_.clear(); }
+  void clear();
   /// Begins a contact, whose coordinates follow.
   void add(const Dashpot& dashpot) {
     dashpots_.push_back(dashpot);
-    solved_.push_back({.first = static_cast<std::int32_t>(entries_.size()), .along = {}});
+    solved_.push_back({.first = static_cast<std::uint32_t>(entries_.size()), .along = {}});
   }
   /// How the velocity of a node, or of a rigid body, counts in the rates of the last contact: along
   /// the normal at both places, and along the tangent. Vectors for a node; for a body a force acts
@@ -106,20 +106,39 @@ class Dashpots {
     return solved_[i].along[2].impulse / dt_;
   }
   [[nodiscard]] Vec2 force_on_a(size_t i) const;
-  /// On every coordinate, N and N m; empty before the first step.
-  [[nodiscard]] std::span<const double> forces() const { return forces_; }
+  /// Adds the forces on the first coordinates, as many as there are, N and N m.
+  void add_forces(std::span<double> to) const;
   /// What they take from the bodies, J: in the second half of the last step, and in the first half
   /// of the next one, whose velocities these are.
   [[nodiscard]] double lost_before() const { return lost_; }
   [[nodiscard]] double lost_after(std::span<const double> velocity, double dt) const;
 
-  void fields(Archive& archive) { archive("forces", forces_)("gain", gain_); }
+  void fields(Archive& archive) {
+    if (archive.loads()) clear();
+    archive("moved", moved_)("gain", gain_);
+  }
 
  private:
-  // How a coordinate counts in the three rates of a contact.
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  // A coordinate that dashpots move.
+  struct Moved {
+    std::uint32_t coordinate = 0;
+    std::uint32_t end = 0;  // behind its last entries, and those of the coordinates next to it
+    double kick = 0;        // by all other forces over this step
+    double reach = 0;       // of its dashpots together: impulse per velocity, N s/(m/s)
+    double force = 0;
+
+    // What the ledger needs of the step before.
+    void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
+  };
+  struct Moving {
+    double inverse_mass, velocity;  // half a step behind, with the impulses so far
+  };
+  using Parts = std::array<double, 3>;
+  // How such a coordinate counts in the three rates of a contact.
   struct Entry {
-    std::uint32_t coordinate;
-    std::array<double, 3> part;
+    std::uint32_t moved;
+    Parts part;
   };
   // Of one of these rates. An impulse becomes kept times itself, less gain times the rate half a
   // step behind, less offset.
@@ -129,32 +148,31 @@ class Dashpots {
   };
   // What is found of a contact.
   struct Solved {
-    std::int32_t first;                // of its entries
+    std::uint32_t first;               // of its entries
     std::array<Along, 3> along;        // along the normal at both places, and along the tangent
     double d01 = 0, d02 = 0, d12 = 0;  // what an impulse along one does to another rate, 1/kg
   };
-  void add(size_t coordinate, const std::array<double, 3>& part);
-  void put_on(std::span<const Motion::Rail> rails);
-  void find_kicks(const Motion& motion, double dt);
-  void sum_forces(const Motion& motion, double dt);
+  std::uint32_t find(size_t first, size_t count);
+  template <size_t count>
+  void add(size_t first, const std::array<Parts, count>& parts);
+  void put_on(const Motion::Rail& rail);
   [[nodiscard]] std::span<const Entry> entries(size_t i) const;
+  void find_kicks(const Motion& motion, double dt);
   void find_rates(double dt);
   void find_gains();
   double relax(size_t i, double dt);
+  void sum_forces(const Motion& motion, double dt);
 
   size_t nodes_;  // the first coordinate of a node
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
-  std::vector<Entry> across_rails_;       // what entries of bodies on rails have lost
-  std::vector<std::uint32_t> across_at_;  // the contacts of these
-  std::vector<double> with_rails_;        // inverse masses, also of bodies on rails
-  std::span<const double> inverse_mass_;  // of this step
-  std::vector<double> reach_;     // of the dashpots of a coordinate together: impulse per velocity
-  std::vector<double> kick_;      // by all other forces over this step
-  std::vector<double> velocity_;  // half a step behind, with the impulses so far
-  std::vector<double> forces_;
-  double lost_ = 0;  // J
+  std::vector<Moved> moved_;             // in the order in which they were first added
+  std::vector<Moving> moving_;           // the same
+  std::vector<std::uint32_t> index_;     // of every coordinate in this list, or kNone
+  std::vector<Entry> across_rails_;      // what entries of bodies on rails have lost
+  std::vector<std::uint32_t> of_these_;  // the contacts of those
+  double lost_ = 0;                      // J
   double gain_ = 0;  // of their power, in a half of the first half of the next step, W
   double dt_ = 1;
 };

@@ -23,6 +23,12 @@ struct PatchSum {
     record.normal += force;
     moment += cross(point, force);
   }
+  /// What presses on an edge there, with that size (N) and depth (m).
+  void press(const Vec2& point, double size, double depth) {
+    record.point += size * point;
+    weight += size;
+    deepest = std::max(deepest, depth);
+  }
 };
 
 // The mean of where edges are pushed, moved across the force until the force has the moment there
@@ -36,83 +42,104 @@ Vec2 loading_point(const PatchSum& patch) {
   return mean + (patch.moment - cross(mean, force)) / squared * Vec2(force.y(), -force.x());
 }
 
-// The boundary of an overlap goes on in the next face or at a vertex, or crosses over to the other
-// outline, or goes on inside the top.
-// The number of the patch of each contact, then of each edge and each face of the plateaus;
-// ascending pairs of bodies.
-std::vector<int> patches_of(const OutlineState& state) {
-  const Outlines& o = state.outlines();
-  const std::vector<EdgeFaceContact>& contacts = state.contacts;
-  const auto from = [&](int edge, int face) {
-    return std::lower_bound(contacts.begin(), contacts.end(), std::pair(edge, face),
-                            [](const EdgeFaceContact& c, const std::pair<int, int>& key) {
-                              return std::pair(c.edge, c.face) < key;
-                            });
-  };
-  const std::vector<OutlinePlateaus::Edge>& edges = state.plateaus.edges();
-  const std::vector<OutlinePlateaus::Face>& faces = state.plateaus.faces();
-  const int first_edge = static_cast<int>(contacts.size());
-  const int first_face = first_edge + static_cast<int>(edges.size());
-  Groups groups(contacts.size() + edges.size() + faces.size());
-  std::vector<std::pair<int, int>> keys;
-  const auto each = [&](int edge, BodyIndex in, auto&& f) {
-    const Outlines::Body& body = o.bodies[in];
-    for (auto it = from(edge, body.first);
-         it != contacts.end() && it->edge == edge && it->face < body.end; ++it) {
-      f(static_cast<int>(it - contacts.begin()));
+// Puts the contacts, and then the edges and the faces of the plateaus, into patches: the boundary
+// of an overlap goes on in the next face or at a vertex, or crosses over to the other outline, or
+// goes on inside the top.
+class PatchGroups {
+ public:
+  explicit PatchGroups(const OutlineState& state)
+      : o_(state.outlines()),
+        contacts_(state.contacts),
+        edges_(state.plateaus.edges()),
+        faces_(state.plateaus.faces()),
+        first_face_(contacts_.size() + edges_.size()),
+        groups_(first_face_ + faces_.size()) {
+    for (size_t i = 0; i < contacts_.size(); ++i) join_contact(i);
+    join_plateaus();
+  }
+  /// The number of the patch of each; ascending pairs of bodies.
+  std::vector<int> numbers() { return groups_.numbers(keys_); }
+
+ private:
+  [[nodiscard]] size_t from(int edge, int face) const {
+    return static_cast<size_t>(
+        std::lower_bound(contacts_.begin(), contacts_.end(), std::pair(edge, face),
+                         [](const EdgeFaceContact& c, const std::pair<int, int>& key) {
+                           return std::pair(c.edge, c.face) < key;
+                         }) -
+        contacts_.begin());
+  }
+  // Calls f(number) for the contacts of an edge with the faces of a body.
+  template <class F>
+  void each(int edge, BodyIndex in, const F& f) const {
+    const Outlines::Body& body = o_.bodies[in];
+    for (size_t k = from(edge, body.first);
+         k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < body.end; ++k) {
+      f(k);
     }
-  };
-  for (int i = 0; i < first_edge; ++i) {
-    const EdgeFaceContact& c = contacts[i];
-    keys.push_back(std::minmax(o.body[c.edge], o.body[c.face]));
-    const auto back = from(c.face, c.edge);
-    if (back != contacts.end() && back->edge == c.face && back->face == c.edge) {
-      groups.join(i, static_cast<int>(back - contacts.begin()));
+  }
+  void join(size_t i, size_t k) { groups_.join(static_cast<int>(i), static_cast<int>(k)); }
+
+  void join_contact(size_t i) {
+    const EdgeFaceContact& c = contacts_[i];
+    keys_.push_back(std::minmax(o_.body[c.edge], o_.body[c.face]));
+    const size_t back = from(c.face, c.edge);
+    if (back < contacts_.size() && contacts_[back].edge == c.face &&
+        contacts_[back].face == c.edge) {
+      join(i, back);
     }
-    each(c.edge, o.body[c.face], [&](int k) {
-      const EdgeFaceContact& d = contacts[k];
-      if ((d.face == o.next[c.face] || d.face == o.previous[c.face]) &&
+    each(c.edge, o_.body[c.face], [&](size_t k) {
+      const EdgeFaceContact& d = contacts_[k];
+      if ((d.face == o_.next[c.face] || d.face == o_.previous[c.face]) &&
           d.piece.from <= c.piece.to && c.piece.from <= d.piece.to) {
-        groups.join(i, k);
+        join(i, k);
       }
     });
-    if (c.piece.to >= 1) {
-      each(o.next[c.edge], o.body[c.face], [&](int k) {
-        if (contacts[k].piece.from <= 0) groups.join(i, k);
-      });
+    if (c.piece.to < 1) return;
+    each(o_.next[c.edge], o_.body[c.face], [&](size_t k) {
+      if (contacts_[k].piece.from <= 0) join(i, k);
+    });
+  }
+
+  // By the numbers of edges and faces, and the body inside whose top they are.
+  void join_plateaus() {
+    std::map<std::pair<int, BodyIndex>, size_t> edge_at, face_at;
+    for (size_t k = 0; k < edges_.size(); ++k) {
+      const OutlinePlateaus::Edge& on = edges_[k];
+      keys_.push_back(std::minmax(o_.body[on.edge], on.in));
+      const size_t i = edge_at[{on.edge, on.in}] = contacts_.size() + k;
+      each(on.edge, on.in, [&](size_t contact) { join(i, contact); });
+    }
+    for (size_t k = 0; k < faces_.size(); ++k) {
+      const OutlinePlateaus::Face& on = faces_[k];
+      keys_.push_back(std::minmax(o_.body[on.face], on.in));
+      face_at[{on.face, on.in}] = first_face_ + k;
+    }
+    const auto join_at = [&](const auto& at, size_t i, int number, BodyIndex in) {
+      if (const auto it = at.find({number, in}); it != at.end()) join(i, it->second);
+    };
+    for (size_t k = 0; k < edges_.size(); ++k) {
+      const OutlinePlateaus::Edge& on = edges_[k];
+      join_at(edge_at, contacts_.size() + k, o_.next[on.edge], on.in);
+      join_at(face_at, contacts_.size() + k, on.edge, on.in);
+    }
+    for (size_t k = 0; k < faces_.size(); ++k) {
+      join_at(face_at, first_face_ + k, o_.next[faces_[k].face], faces_[k].in);
+    }
+    if (face_at.empty()) return;
+    for (size_t i = 0; i < contacts_.size(); ++i) {
+      join_at(face_at, i, contacts_[i].face, o_.body[contacts_[i].edge]);
     }
   }
-  // Inside tops: by the numbers of edges and faces, and the body they are in.
-  std::map<std::pair<int, BodyIndex>, int> edge_at, face_at;
-  for (int i = first_edge; i < first_face; ++i) {
-    const OutlinePlateaus::Edge& on = edges[i - first_edge];
-    keys.push_back(std::minmax(o.body[on.edge], on.in));
-    edge_at[{on.edge, on.in}] = i;
-    each(on.edge, on.in, [&](int k) { groups.join(i, k); });
-  }
-  for (size_t k = 0; k < faces.size(); ++k) {
-    const OutlinePlateaus::Face& on = faces[k];
-    keys.push_back(std::minmax(o.body[on.face], on.in));
-    face_at[{on.face, on.in}] = first_face + static_cast<int>(k);
-  }
-  const auto join_at = [&](const auto& at, int i, int number, BodyIndex in) {
-    if (const auto it = at.find({number, in}); it != at.end()) groups.join(i, it->second);
-  };
-  for (int i = first_edge; i < first_face; ++i) {
-    const OutlinePlateaus::Edge& on = edges[i - first_edge];
-    join_at(edge_at, i, o.next[on.edge], on.in);
-    join_at(face_at, i, on.edge, on.in);
-  }
-  for (size_t k = 0; k < faces.size(); ++k) {
-    join_at(face_at, first_face + static_cast<int>(k), o.next[faces[k].face], faces[k].in);
-  }
-  if (!face_at.empty()) {
-    for (int i = 0; i < first_edge; ++i) {
-      join_at(face_at, i, contacts[i].face, o.body[contacts[i].edge]);
-    }
-  }
-  return groups.numbers(keys);
-}
+
+  const Outlines& o_;
+  const std::vector<EdgeFaceContact>& contacts_;
+  const std::vector<OutlinePlateaus::Edge>& edges_;
+  const std::vector<OutlinePlateaus::Face>& faces_;
+  size_t first_face_;
+  Groups groups_;
+  std::vector<std::pair<int, int>> keys_;
+};
 
 // How far apart two vertices of a closed line are, in edges.
 int steps_between(const Outlines& outlines, int vertex, int other) {
@@ -134,72 +161,86 @@ bool is_a(const Outlines& outlines, const PatchSum& patch, int edge) {
   return steps_between(outlines, edge, patch.edge) <= steps_between(outlines, edge, patch.face);
 }
 
+// Sums what is found into the patches.
+class PatchSums {
+ public:
+  PatchSums(const OutlineState& state, int patches)
+      : o_(state.outlines()),
+        slopes_(state.slopes),
+        depths_(o_),
+        found_(static_cast<size_t>(patches)) {}
+
+  void add(int patch, const EdgeFaceContact& contact) {
+    const auto& [edge, face, slope, p, drag, push] = contact;
+    PatchSum& sum = of(patch, o_.body[edge], o_.body[face], edge, face);
+    const double force = slope * p.sum * o_.length[edge];
+    const Vec2 on_edge = point_of(o_, edge, p.sum > 0 ? p.first / p.sum : 0);
+    const bool own_is_a = is_a(o_, sum, edge);
+    if (own_is_a) {
+      sum.add(on_edge, force * inward(edge));
+    } else {
+      sum.add(point_of(o_, face, p.area > 0 ? p.along / (p.area * o_.length[face]) : 0),
+              slope * p.area * inward(face));
+    }
+    sum.press(on_edge, force, p.deepest);
+    sum.record.penetration = depths_.of_piece(edge, face, p, sum.record.penetration);
+    sum.record.tangential += own_is_a ? drag : Vec2(-drag);
+    sum.record.damping += own_is_a ? push : Vec2(-push);
+  }
+
+  void add(int patch, const OutlinePlateaus::Edge& on) {
+    PatchSum& sum = of(patch, o_.body[on.edge], on.in, on.edge, -1);
+    const double depth = o_.bodies[on.in].depth;
+    const double force = slopes_(on.in, o_.body[on.edge]) * depth * on.sum * o_.length[on.edge];
+    const Vec2 on_edge = point_of(o_, on.edge, on.sum > 0 ? on.first / on.sum : 0);
+    if (is_a(o_, sum, on.edge)) sum.add(on_edge, force * inward(on.edge));
+    sum.press(on_edge, force, depth);
+    sum.record.penetration = depths_.of_edge(on.edge, on.in, sum.record.penetration);
+  }
+
+  void add(int patch, const OutlinePlateaus::Face& on) {
+    PatchSum& sum = found_[static_cast<size_t>(patch)];
+    std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[on.face], on.in);
+    if (!is_a(o_, sum, on.face)) return;
+    const double area = on.moment.area;
+    sum.add(point_of(o_, on.face, area > 0 ? on.moment.along / (area * o_.length[on.face]) : 0),
+            slopes_(o_.body[on.face], on.in) * area * inward(on.face));
+  }
+
+  void finish(std::vector<ContactRecord>& records) {
+    for (PatchSum& sum : found_) {
+      sum.record.point = loading_point(sum);
+      const BodyIndex a = sum.record.a, b = sum.record.b;
+      sum.record.phi = sum.deepest * std::max(o_.bodies[a].slope(), o_.bodies[b].slope());
+      records.push_back(sum.record);
+    }
+  }
+
+ private:
+  PatchSum& of(int patch, BodyIndex body, BodyIndex other, int edge, int face) {
+    PatchSum& sum = found_[static_cast<size_t>(patch)];
+    std::tie(sum.record.a, sum.record.b) = std::minmax(body, other);
+    if (sum.edge < 0) sum.edge = edge, sum.face = face;
+    return sum;
+  }
+  [[nodiscard]] Vec2 inward(int edge) const { return {-o_.ty[edge], o_.tx[edge]}; }
+
+  const Outlines& o_;
+  const OutlineSlopes& slopes_;
+  OutlineDepths depths_;
+  std::vector<PatchSum> found_;
+};
+
 }  // namespace
 
 void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& records) {
-  const Outlines& o = state.outlines();
-  const OutlineSlopes& slopes = state.slopes;
-  const std::vector<EdgeFaceContact>& contacts = state.contacts;
-  const std::vector<int> patch = patches_of(state);
-  OutlineDepths depths(o);
-  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<PatchSum> found(static_cast<size_t>(count));
-  for (size_t i = 0; i < contacts.size(); ++i) {
-    const auto& [edge, face, slope, p, drag, push] = contacts[i];
-    PatchSum& of_patch = found[static_cast<size_t>(patch[i])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[edge], o.body[face]);
-    if (of_patch.edge < 0) of_patch.edge = edge, of_patch.face = face;
-    sum.penetration = depths.of_piece(edge, face, p, sum.penetration);
-    const bool own_is_a = is_a(o, of_patch, edge);
-    const double force = slope * p.sum * o.length[edge];
-    const Vec2 inward(-o.ty[edge], o.tx[edge]);
-    const double area = slope * p.area;
-    const Vec2 gives(-o.ty[face], o.tx[face]);
-    const Vec2 on_edge = point_of(o, edge, p.sum > 0 ? p.first / p.sum : 0);
-    if (own_is_a) {
-      of_patch.add(on_edge, force * inward);
-    } else {
-      of_patch.add(point_of(o, face, p.area > 0 ? p.along / (p.area * o.length[face]) : 0),
-                   area * gives);
-    }
-    sum.point += force * on_edge;
-    of_patch.weight += force;
-    of_patch.deepest = std::max(of_patch.deepest, p.deepest);
-    sum.tangential += own_is_a ? drag : Vec2(-drag);
-    sum.damping += own_is_a ? push : Vec2(-push);
-  }
-  size_t next = contacts.size();
-  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {
-    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[on.edge], on.in);
-    if (of_patch.edge < 0) of_patch.edge = on.edge;
-    const double depth = o.bodies[on.in].depth;
-    const double force = slopes(on.in, o.body[on.edge]) * depth * on.sum * o.length[on.edge];
-    const Vec2 inward(-o.ty[on.edge], o.tx[on.edge]);
-    const Vec2 on_edge = point_of(o, on.edge, on.sum > 0 ? on.first / on.sum : 0);
-    if (is_a(o, of_patch, on.edge)) of_patch.add(on_edge, force * inward);
-    sum.point += force * on_edge;
-    of_patch.weight += force;
-    of_patch.deepest = std::max(of_patch.deepest, depth);
-    sum.penetration = depths.of_edge(on.edge, on.in, sum.penetration);
-  }
-  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) {
-    PatchSum& of_patch = found[static_cast<size_t>(patch[next++])];
-    ContactRecord& sum = of_patch.record;
-    std::tie(sum.a, sum.b) = std::minmax(o.body[on.face], on.in);
-    if (!is_a(o, of_patch, on.face)) continue;
-    const double area = on.moment.area;
-    of_patch.add(point_of(o, on.face, area > 0 ? on.moment.along / (area * o.length[on.face]) : 0),
-                 slopes(o.body[on.face], on.in) * area * Vec2(-o.ty[on.face], o.tx[on.face]));
-  }
-  for (PatchSum& sum : found) {
-    sum.record.point = loading_point(sum);
-    const BodyIndex a = sum.record.a, b = sum.record.b;
-    sum.record.phi = sum.deepest * std::max(o.bodies[a].slope(), o.bodies[b].slope());
-    records.push_back(sum.record);
-  }
+  const std::vector<int> patch = PatchGroups(state).numbers();
+  PatchSums sums(state, patch.empty() ? 0 : *std::ranges::max_element(patch) + 1);
+  auto next = patch.begin();
+  for (const EdgeFaceContact& contact : state.contacts) sums.add(*next++, contact);
+  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) sums.add(*next++, on);
+  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) sums.add(*next++, on);
+  sums.finish(records);
 }
 
 void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& records) {

@@ -196,16 +196,10 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
   const double stiffness = p.stiffness();
   if (!p.has_direction || !(stiffness > 0)) return false;
   const Vec2 point(p.point.x, p.point.y), behind = point + Vec2(p.between.x, p.between.y);
-  const auto mobility = [&](const Vec2& along) {
-    const auto of = [&](RigidIndex body, const Vec2& arm) {
-      const std::array<double, 3>& w = scene.surfaces.rigid(body).inverse_mass;
-      const double lever = cross(arm, along);
-      return w[0] * along.x() * along.x() + w[1] * along.y() * along.y() + w[2] * lever * lever;
-    };
-    return of(a, point) + of(b, behind);
-  };
   const auto rate = [&](double value, double k, const Vec2& along) {
-    return k * dashpot_time(value, law.damping.are_times, k, mobility(along));
+    const double mobility = mobility_at(scene.surfaces.rigid(a).inverse_mass, point, along) +
+                            mobility_at(scene.surfaces.rigid(b).inverse_mass, behind, along);
+    return k * dashpot_time(value, law.damping.are_times, k, mobility);
   };
   const Vec2 normal(p.normal.x, p.normal.y), across(-p.normal.y, p.normal.x);
   const double pressed = p.normal_stiffness * p.size;

@@ -55,13 +55,9 @@ void Surfaces::add_elements(const Mesh& mesh, NodeIndex first_node, const Potent
 
 double Surfaces::mobility(BodyIndex body, const Kinematics& now, const Vec2& point,
                           const Vec2& along) const {
-  const auto of = [&](const std::array<double, 3>& w, const Vec2& centre) {
-    const double lever = cross(point - centre, along);
-    return w[0] * along.x() * along.x() + w[1] * along.y() * along.y() + w[2] * lever * lever;
-  };
   if (body < rigid_count()) {
-    const double* const pose = &now.pose[3 * static_cast<size_t>(body)];
-    return of(rigid_[static_cast<size_t>(body)].inverse_mass, {pose[0], pose[1]});
+    const Vec2 centre(&now.pose[3 * static_cast<size_t>(body)]);
+    return mobility_at(rigid_[static_cast<size_t>(body)].inverse_mass, point - centre, along);
   }
   const Body& mesh = deformable_[static_cast<size_t>(body - rigid_count())];
   Vec2 centre = Vec2::Zero();
@@ -71,7 +67,7 @@ double Surfaces::mobility(BodyIndex body, const Kinematics& now, const Vec2& poi
       centre += mesh.inertia.shares[i] * (mesh.nodes[i] + Vec2(u[0], u[1]));
     }
   }
-  return of(mesh.inertia.inverse_mass, centre);
+  return mobility_at(mesh.inertia.inverse_mass, point - centre, along);
 }
 
 void Surfaces::set_absent(const std::vector<std::uint8_t>& absent) {

@@ -30,6 +30,15 @@ struct MeshInertia {
   std::vector<double> shares;            ///< of each node in the mass
 };
 
+/// How much a rigid body gives way to a force of 1 N along a unit vector at `arm` (m) from its mass
+/// centre, 1/kg: `inverse_mass` along x and y, 1/kg, and of rotation, 1/(kg m^2).
+inline double mobility_at(const std::array<double, 3>& inverse_mass, const Vec2& arm,
+                          const Vec2& along) {
+  const double lever = cross(arm, along);
+  return inverse_mass[0] * along.x() * along.x() + inverse_mass[1] * along.y() * along.y() +
+         inverse_mass[2] * lever * lever;
+}
+
 class Surfaces {
  public:
   /// How far boundaries may move between two searches, twice over, m: the polygons of rigid bodies
