@@ -38,26 +38,6 @@ double distance2(const Segment& s, const Segment& t) {
       {distance2(s.from, t), distance2(s.to, t), distance2(t.from, s), distance2(t.to, s)});
 }
 
-// Even-odd rule.
-bool inside(const Vec2& p, const PlacedPotential& y, const Vec2& shift) {
-  bool result = false;
-  for (int k = 0; k < y.size; ++k) {
-    const double dy0 = y.y[k] + shift.y() - p.y();
-    const double dy1 = y.y[k + 1] + shift.y() - p.y();
-    if ((dy0 > 0) == (dy1 > 0)) continue;
-    const double dx0 = y.x[k] + shift.x() - p.x();
-    const double dx1 = y.x[k + 1] + shift.x() - p.x();
-    if ((dx0 * dy1 - dx1 * dy0 > 0) == (dy1 > dy0)) result = !result;
-  }
-  return result;
-}
-
-Box box_of(const PlacedPotential& p, const Vec2& shift) {
-  Box box;
-  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + shift.x(), p.y[i] + shift.y());
-  return box;
-}
-
 // The edges of x whose boxes are nearer than `margin` to the box of the other polygon. Lowers
 // `rest2` to the squared distance of the others.
 void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, double margin2,
@@ -84,7 +64,7 @@ std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& othe
                      const Vec2& shift, double margin2, double& rest2) {
   std::uint64_t set = 0;
   for (const Segment& s : segments) {
-    if (s.distance2 <= margin2 || inside(s.from, other, shift)) {
+    if (s.distance2 <= margin2 || encloses(other, shift, s.from)) {
       set |= std::uint64_t{1} << (s.edge % 64);
     } else {
       rest2 = std::min(rest2, s.distance2);
@@ -102,9 +82,7 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const Box box_b = box_of(b, zero);
   const double size =
       (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) + (box_b.y1 - box_b.y0);
-  double finite = size;
-  for (int i = 0; i < a.size; ++i) finite += 0 * (a.x[i] + offset.x()) + 0 * (a.y[i] + offset.y());
-  for (int i = 0; i < b.size; ++i) finite += 0 * b.x[i] + 0 * b.y[i];
+  const double finite = size + all_finite(a, b, offset.x(), offset.y());
   // Distances are rounded; what is no farther away than that is near.
   const double round = 1e-12 * size;
   if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};
