@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "geometry/integrals/placement.hpp"
+#include "geometry/polygon/segment.hpp"
 
 namespace apothem {
 
@@ -239,8 +240,7 @@ class Splitter {
     for (int i = 0; i < p.size; ++i) {
       const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
       const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
-      const double share = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-      const double distance2 = (from - share * edge).squaredNorm();
+      const auto [share, distance2] = nearest_on_segment(from, edge);
       if (distance2 < place.distance2) place = {i, share, distance2};
     }
     return place;

@@ -40,10 +40,6 @@ std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const 
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 using Ring = std::vector<Vec2>;
 using Parts = std::vector<lower_envelope::SignedRing<double>>;
 
@@ -100,10 +96,6 @@ double volume_under_distance(const PlacedPotential& p, const PlacedPotential& ot
   }
   return DistanceVolume<double>().over(placed_distance(p), x, y);
 }
-
-}  // namespace
-
-namespace {
 
 // A pair in the frame of b.
 struct ClippedPair {

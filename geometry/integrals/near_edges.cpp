@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/placed_potential.hpp"
+#include "geometry/polygon/segment.hpp"
 
 namespace apothem {
 
@@ -19,11 +20,7 @@ double distance2(const Box& a, const Box& b) {
 }
 
 double distance2(const Vec2& point, const Segment& s) {
-  const Vec2 along = s.to - s.from;
-  const Vec2 arm = point - s.from;
-  const double length2 = along.squaredNorm();  // 0 if rounding has merged two vertices
-  const double share = length2 > 0 ? std::clamp(arm.dot(along) / length2, 0., 1.) : 0;
-  return (arm - share * along).squaredNorm();
+  return nearest_on_segment(point - s.from, s.to - s.from).distance2;
 }
 
 // Segments that cross up to round-off have an end that is as near as that, or cross clearly.
