@@ -2,6 +2,8 @@
 // pairs of an edge and a cell at a time. This header is private to the integrals.
 #pragma once
 
+#include <cstdint>
+
 #include "lib/execution/pack.hpp"
 
 namespace apothem::edge_detail {
@@ -17,6 +19,35 @@ using CellPack = PackOf<kComparedLanes>;
 struct CellHeights {
   CellPack own, before, after, foot, foot_from_end;
 };
+
+/// A line of edges: their starts and gradients.
+struct CellLine {
+  CellPack x, y, gx, gy;
+};
+
+/// The heights of points over cells. line(0) are the edges of the cells, line(-1) and line(1) those
+/// before and after.
+template <class Line>
+APOTHEM_INLINE CellHeights cell_heights(const Line& line, const CellPack& px, const CellPack& py,
+                                        bool distance) {
+  const CellPack zero(0.);
+  const CellLine own = line(0), after = line(1);
+  const auto over = [&](const CellLine& l)
+                        APOTHEM_LAMBDA { return l.gx * (px - l.x) + l.gy * (py - l.y); };
+  CellHeights h{over(own), over(line(-1)), over(after), zero, zero};
+  if (distance) {
+    h.foot = own.gy * (px - own.x) - own.gx * (py - own.y);
+    h.foot_from_end = own.gy * (px - after.x) - own.gx * (py - after.y);
+  }
+  return h;
+}
+
+/// True in lane k if bit k is set.
+APOTHEM_INLINE CellPack::Mask listed_lanes(unsigned bits) {
+  using Bits = CellPack::Mask::Vector;
+  const Bits lane{1, 2, 4, 8};
+  return {(lane & static_cast<std::int64_t>(bits)) == lane};
+}
 
 /// Cells: their depths, and the sides of the vertices at their starts and ends.
 struct CellShapes {

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "geometry/integrals/listed_lanes.hpp"
 #include "lib/execution/dispatch.hpp"
 
 namespace apothem {
@@ -84,15 +83,9 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).y + (lanes[k].cell - 1); }, cy);
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gx + (lanes[k].cell - 1); }, gx);
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gy + (lanes[k].cell - 1); }, gy);
-    const auto heights = [&](const Pack& qx, const Pack& qy) APOTHEM_LAMBDA {
-      const auto over = [&](size_t i)
-                            APOTHEM_LAMBDA { return gx[i] * (qx - cx[i]) + gy[i] * (qy - cy[i]); };
-      CellHeights h{over(1), over(0), over(2), zero, zero};
-      if (distance) {
-        h.foot = gy[1] * (qx - cx[1]) - gx[1] * (qy - cy[1]);
-        h.foot_from_end = gy[1] * (qx - cx[2]) - gx[1] * (qy - cy[2]);
-      }
-      return h;
+    const auto line = [&](int i) APOTHEM_LAMBDA {
+      const auto k = static_cast<size_t>(i + 1);
+      return CellLine{cx[k], cy[k], gx[k], gy[k]};
     };
     const CellShapes cells{of_y([](const PlacedPotential& p, const Lane& lane)
                                     APOTHEM_LAMBDA { return p.cells->depth[lane.cell]; }),
@@ -102,8 +95,9 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
                                     APOTHEM_LAMBDA { return p.cells->side[lane.cell + 1]; })};
     const Pack::Mask listed = listed_lanes(listed_ >> first);
     CellParts parts;
-    if (!edge_detail::find_parts(heights(px, py), heights(end_x, end_y), cells, listed, distance,
-                                 parts)) {
+    if (!edge_detail::find_parts(cell_heights(line, px, py, distance),
+                                 cell_heights(line, end_x, end_y, distance), cells, listed,
+                                 distance, parts)) {
       continue;
     }
     const Pack top{double(kTop)}, edge_end{double(kEdge)};
@@ -117,38 +111,24 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
     note(own0_, parts.end0 == zero), note(own1_, parts.end1 == zero);
     note(border0_, parts.end0 > edge_end), note(border1_, parts.end1 > edge_end);
     parts.s0.store(s0_.data() + first), parts.s1.store(s1_.data() + first);
-    // The moments of SegmentMoments, and the integrals of `accumulate`.
-    const Pack &s0 = parts.s0, &s1 = parts.s1, &v0 = parts.v0, &v1 = parts.v1;
-    const Pack h = s1 - s0;
-    const Pack sum = h * (v0 + v1) / Pack(2.);
-    const Pack moment = h * (v0 * (Pack(2.) * s0 + s1) + v1 * (s0 + Pack(2.) * s1)) / Pack(6.);
-    const Pack larger = select(v0 < v1, v1, v0);
-    const Pack largest = select(zero < larger, larger, zero);
-    const Pack qx = px - of_y([](const PlacedPotential& p, const Lane&)
-                                  APOTHEM_LAMBDA { return p.reference.x(); });
-    const Pack qy = py - of_y([](const PlacedPotential& p, const Lane&)
-                                  APOTHEM_LAMBDA { return p.reference.y(); });
-    const Pack ex = vx[1] - vx[0], ey = vy[1] - vy[0];
-    const Pack length = square_root(ex * ex + ey * ey);
-    const auto rows = [&](auto& of) APOTHEM_LAMBDA {
-      return [&of, first](int k) APOTHEM_LAMBDA {
-        return reinterpret_cast<double*>(&of[static_cast<size_t>(first + k)]);
+    SegmentMoments<Pack> moments;
+    moments.add(parts.there, parts.s0, parts.v0, parts.s1, parts.v1);
+    const auto at = [first](auto& of) APOTHEM_LAMBDA {
+      return [&of, first ](int k) APOTHEM_LAMBDA -> auto& {
+        return of[static_cast<size_t>(first + k)];
       };
     };
-    write_rows({qx, qy, ex, ey}, rows(edge_));
+    const EdgeFrame<Pack> edge{px - of_y([](const PlacedPotential& p, const Lane&)
+                                             APOTHEM_LAMBDA { return p.reference.x(); }),
+                               py - of_y([](const PlacedPotential& p, const Lane&)
+                                             APOTHEM_LAMBDA { return p.reference.y(); }),
+                               vx[1] - vx[0], vy[1] - vy[0]};
+    scatter(edge, at(edge_));
     // Of those that are parts of a run.
     if (any(parts.there & ((parts.end0 > edge_end) | (parts.end1 > edge_end)))) {
-      double sums[kPack], firsts[kPack], most[kPack];
-      sum.store(sums), moment.store(firsts), largest.store(most);
-      for (int k = 0; k < kPack; ++k) moments_[first + k] = {sums[k], firsts[k], most[k]};
+      scatter(moments, at(moments_));
     }
-    write_rows({ey * sum, zero - ex * sum,
-                zero - ((qx * ex + qy * ey) * sum + (ex * ex + ey * ey) * moment), length * sum},
-               rows(integrals_));
-    const auto second = rows(integrals_);
-    write_rows(
-        {length * (qx * sum + ex * moment), length * (qy * sum + ey * moment), length * h, largest},
-        [&](int k) APOTHEM_LAMBDA { return second(k) + 4; });
+    scatter(along_edge(edge, moments, parts.s1 - parts.s0), at(integrals_));
   }
 }
 
@@ -199,8 +179,7 @@ bool CollarPair::join_parts_of_edge(Bits parts) {
       last = next;
     }
     if (last != first) {
-      integrals_[first] = {};
-      accumulate(edge_[first], moments, s1_[last] - s0_[first], integrals_[first]);
+      integrals_[first] = along_edge(edge_[first], moments, s1_[last] - s0_[first]);
     }
     add_run(first, last);
   }

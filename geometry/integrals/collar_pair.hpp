@@ -17,18 +17,15 @@ namespace apothem {
 /// Nothing is allocated.
 class CollarPair {
  public:
-  /// An edge in the frame of the other polygon: its start relative to that one's reference point,
-  /// and the vector to its end.
-  struct Edge {
-    double qx, qy, ex, ey;
-  };
+  /// An edge in the frame of the other polygon.
+  using Edge = edge_detail::EdgeFrame<double>;
   /// A run, as of walk_runs (edge_trace.hpp).
   struct Run {
     bool of_a;
     int edge, edge0, edge1;
     double s0, s1;
     const Edge* placed;
-    const edge_detail::Half* integrals;
+    const edge_detail::EdgeSums<double>* integrals;
   };
 
   /// Finds the runs; false if the collars do not tell them, or there are too many edges. The
@@ -64,7 +61,7 @@ class CollarPair {
   std::array<double, kMost> s0_, s1_;
   std::array<Edge, kMost> edge_;
   std::array<Moments, kMost> moments_;  // of phi along a part
-  std::array<edge_detail::Half, kMost> integrals_;
+  std::array<edge_detail::EdgeSums<double>, kMost> integrals_;
   // Lanes that are listed, that have a part, and how it begins and ends.
   Bits listed_ = 0, there_ = 0, own0_ = 0, own1_ = 0, border0_ = 0, border1_ = 0;
   bool deep_ = false;  // whether a part reaches the depth of its cell

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/integrals/edge_trace.hpp"
-#include "geometry/integrals/listed_lanes.hpp"
 #include "lib/execution/dispatch.hpp"
 
 namespace apothem {
@@ -16,8 +15,7 @@ namespace {
 
 // The box of a polygon, so much larger that rounding lets nothing outside reach into it.
 Box reach_of(const PlacedPotential& p, double dx, double dy) {
-  Box box;
-  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + dx, p.y[i] + dy);
+  const Box box = box_of(p, {dx, dy});
   return box.grown(kFarAway * box.extent());
 }
 
@@ -36,18 +34,6 @@ void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& re
     if ((start & end) == 0) f(e);
     start = end;
   }
-}
-
-// Even-odd rule.
-bool encloses(const PlacedPotential& y, double px, double py) {
-  bool inside = false;
-  for (int k = 0; k < y.size; ++k) {
-    const double y0 = y.y[k] - py, y1 = y.y[k + 1] - py;
-    if ((y0 > 0) == (y1 > 0)) continue;
-    const double x0 = y.x[k] - px, x1 = y.x[k + 1] - px;
-    if ((x0 * y1 - x1 * y0 > 0) == (y1 > y0)) inside = !inside;
-  }
-  return inside;
 }
 
 }  // namespace
@@ -71,15 +57,12 @@ void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, doubl
 void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
                              double dy, std::uint64_t near) {
   edges_.clear();
+  const auto add = [&](int e) { edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0}); };
   if (near != NearEdges::kAll) {
-    for_each_edge(near, x.size, [&](int e) {
-      edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
-    });
-    return;
+    for_each_edge(near, x.size, add);
+  } else {
+    for_each_edge(x, dx, dy, reach_of(y, 0, 0), add);
   }
-  for_each_edge(x, dx, dy, reach_of(y, 0, 0), [&](int e) {
-    edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0});
-  });
 }
 
 // Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
@@ -90,7 +73,7 @@ void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, 
                             double dy) {
   if (edges_.empty()) return;
   const auto begins_inside = [&](const Edge& edge) {
-    return encloses(y, x.x[edge.index] + dx, x.y[edge.index] + dy);
+    return encloses(y, Vec2::Zero(), {x.x[edge.index] + dx, x.y[edge.index] + dy});
   };
   // Where all edges are deeper, none of them follows another one.
   const bool round = static_cast<int>(edges_.size()) == x.size;
@@ -151,24 +134,6 @@ bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
   return before || after;
 }
 
-APOTHEM_INLINE void CollarTrace::place(const PlacedPotential& y, int first, double px, double py,
-                                       double* row) const {
-  const auto over = [&](int i) APOTHEM_LAMBDA {
-    return Pack::load(y.gx + i) * (Pack(px) - Pack::load(y.x + i)) +
-           Pack::load(y.gy + i) * (Pack(py) - Pack::load(y.y + i));
-  };
-  over(first).store(row + kHeight * kPack);
-  over(first - 1).store(row + kHeightBefore * kPack);
-  over(first + 1).store(row + kHeightAfter * kPack);
-  if (!distance_) return;
-  const auto foot = [&](int vertex) APOTHEM_LAMBDA {
-    return Pack::load(y.gy + first) * (Pack(px) - Pack::load(y.x + vertex)) -
-           Pack::load(y.gx + first) * (Pack(py) - Pack::load(y.y + vertex));
-  };
-  foot(first).store(row + kFoot * kPack);
-  foot(first + 1).store(row + kFootFromEnd * kPack);
-}
-
 // Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
 bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   constexpr double kNear = 1e-9;  // phi
@@ -192,13 +157,11 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
 
 // The pieces of an edge in the cells of a window.
 APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
-                                                           const Window& window, const double* from,
-                                                           const double* to) {
-  const auto row = [](const double* of, Row k)
-                       APOTHEM_LAMBDA { return Pack::load(of + k * kPack); };
-  const auto heights = [&](const double* of) APOTHEM_LAMBDA {
-    return CellHeights{row(of, kHeight), row(of, kHeightBefore), row(of, kHeightAfter),
-                       row(of, kFoot), row(of, kFootFromEnd)};
+                                                           const Window& window) {
+  const auto line = [&](int i) APOTHEM_LAMBDA {
+    const int k = window.first + i;
+    return CellLine{Pack::load(y.x + k), Pack::load(y.y + k), Pack::load(y.gx + k),
+                    Pack::load(y.gy + k)};
   };
   const Pack zero(0.);
   const CellShapes cells{Pack::load(y.cells->depth.data() + window.first),
@@ -209,8 +172,9 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
     if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
   }
   CellParts parts;
-  if (!find_parts(heights(from), heights(to), cells, listed & (cells.depth > zero), distance_,
-                  parts)) {
+  if (!find_parts(cell_heights(line, edge_->px, edge_->py, distance_),
+                  cell_heights(line, end_x_, end_y_, distance_), cells,
+                  listed & (cells.depth > zero), distance_, parts)) {
     return Found::all;
   }
   enum { s0_, s1_, v0_, v1_, end0_, end1_, kNumbers };
@@ -238,15 +202,6 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
 
 APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
                                              double dx, double dy) {
-  const size_t windows = windows_.size();
-  double* from = rows_.data();
-  double* to = from + windows * kRows * kPack;
-  const auto place_all = [&](double px, double py, double* rows) APOTHEM_LAMBDA {
-    for (size_t i = 0; i < windows; ++i) {
-      place(y, windows_[i].first, px, py, rows + i * kRows * kPack);
-    }
-  };
-  int placed = -1;  // the vertex of x in `to`
   // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
   // a border, in a cell that need not be listed, or need not be so deep.
   int ended = -1, last = -1;
@@ -255,16 +210,12 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
     const int e = listed.index;
     const PlacedEdge& edge = listed.placed;
     edge_ = &edge;
-    std::swap(from, to);
-    if (placed != e || edge.shortened) place_all(edge.px, edge.py, from);
-    placed = edge.shortened ? -1 : e + 1;
     end_x_ = edge.shortened ? edge.px + edge.ex : x.x[e + 1] + dx;
     end_y_ = edge.shortened ? edge.py + edge.ey : x.y[e + 1] + dy;
-    place_all(end_x_, end_y_, to);
     count_ = 0;
     Found found = Found::all;
-    for (size_t i = 0; i < windows && found == Found::all; ++i) {
-      found = trace_cells(y, windows_[i], from + i * kRows * kPack, to + i * kRows * kPack);
+    for (size_t i = 0; i < windows_.size() && found == Found::all; ++i) {
+      found = trace_cells(y, windows_[i]);
     }
     if (distance_ && found == Found::all) found = trace_sectors(y);
     if (found == Found::neighbour) return false;
@@ -280,14 +231,14 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
     if (e == 0) first_begins = begins;
     if (last + 1 == e && ended >= 0 && !begins) {
       if (add_neighbours(y, ended)) return false;
-      listed.deep = encloses(y, edge.px, edge.py);
+      listed.deep = encloses(y, Vec2::Zero(), {edge.px, edge.py});
     }
     last = e, ended = ends;
   }
   const bool round = last == x.size - 1 && edges_[0].index == 0;
   if (round && ended >= 0 && !first_begins) {
     if (add_neighbours(y, ended)) return false;
-    edges_[0].deep = encloses(y, edges_[0].placed.px, edges_[0].placed.py);
+    edges_[0].deep = encloses(y, Vec2::Zero(), {edges_[0].placed.px, edges_[0].placed.py});
   }
   return true;
 }
@@ -298,7 +249,6 @@ bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, doub
   // A cell has one piece, and so has the sector of each of its two vertices.
   if (const size_t most = size_t{3} * kPack * windows_.size(); pieces_.size() < most)
     pieces_.resize(most);
-  if (const size_t all = 2 * kRows * kPack * windows_.size(); rows_.size() < all) rows_.resize(all);
   bool done = true;
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     done = trace_edges(x, y, dx, dy);

@@ -64,9 +64,6 @@ class CollarTrace {
     int first;
     unsigned cells;
   };
-  // What a point is compared with in a window: heights over the edges, those before and those
-  // after; of a distance field also where its foot is, from both ends of the edges. So many packs.
-  enum Row : size_t { kHeight, kHeightBefore, kHeightAfter, kFoot, kFootFromEnd, kRows };
   [[nodiscard]] bool sector_at(const PlacedPotential& y, int vertex) const {
     return distance_ && y.cells->reflex(vertex);
   }
@@ -77,12 +74,10 @@ class CollarTrace {
   bool add_cell(int cell);
   bool add_neighbours(const PlacedPotential& y, int cell);
   [[nodiscard]] Window* window_of(int cell);
-  void place(const PlacedPotential& y, int first, double px, double py, double* row) const;
   bool trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
   bool trace_edges(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
   [[nodiscard]] bool touches(const PlacedPotential& y, int c) const;
-  Found trace_cells(const PlacedPotential& y, const Window& window, const double* from,
-                    const double* to);
+  Found trace_cells(const PlacedPotential& y, const Window& window);
   Found trace_sectors(const PlacedPotential& y);
   Found trace_sector(const PlacedPotential& y, int vertex);
   Found check_borders(const PlacedPotential& y, const Piece& piece, int before, int after);
@@ -91,7 +86,6 @@ class CollarTrace {
 
   std::vector<Edge> edges_;
   std::vector<Window> windows_;                    // of y, in ascending order of their first cells
-  std::vector<double> rows_;                       // of the ends of an edge, for each window
   bool distance_ = false;                          // phi is the distance from the boundary
   const edge_detail::PlacedEdge* edge_ = nullptr;  // the one at hand
   double end_x_ = 0, end_y_ = 0;                   // its end

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "geometry/integrals/placement.hpp"
+#include "geometry/polygon/segment.hpp"
 
 namespace apothem {
 
@@ -23,48 +24,22 @@ class Splitter {
 
   /// Finds all runs and returns what pair_integral returns.
   PairIntegral find_runs(NearEdges& near) {
-    runs_.clear();
-    const double dx = offset_.x();
-    const double dy = offset_.y();
-    const HeightRows height = height_rows(a_, b_, work_.edge.values);
-    if (b_.convex() && separated(heights(a_, b_, dx, dy, height.of_a), a_, b_, b_.steepest, near)) {
-      return {};
-    }
-    if (a_.convex() &&
-        separated(heights(b_, a_, -dx, -dy, height.of_b), a_, b_, a_.steepest, near)) {
-      return {};
-    }
     const auto begin = [&] {
       runs_.clear();
       work_.halves.clear();
       work_.crossed.clear();
+      of_a_ = 0;
     };
-    const auto by_pair = [&](std::span<const CollarPair::Run> runs) {
-      begin();
-      RunEnds ends(work_.edge.ends);
-      Half half_a, half_b;
-      size_t middle = 0;
-      for (const CollarPair::Run& run : runs) {
-        add(run.of_a, run.edge, *run.placed, {run.s0, run.edge0, run.s1, run.edge1}, *run.integrals,
-            run.of_a ? half_a : half_b, ends);
-        if (!run.of_a) continue;
-        of_a_ = size();
-        middle = ends.used();
-      }
-      return std::pair(edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle),
-                       ends.closed());
-    };
-    const auto by_edges = [&] {
-      begin();
-      RunEnds ends(work_.edge.ends);
-      const Half half_a = trace(true, near.of_a, near.of_b, height.of_a, height.spare, ends);
-      of_a_ = size();
-      const size_t middle = ends.used();
-      const Half half_b = trace(false, near.of_b, near.of_a, height.of_b, height.spare, ends);
-      return std::pair(edge_detail::join(a_, b_, offset_, half_a, half_b, ends, middle),
-                       ends.closed());
-    };
-    return with_collars(a_, b_, offset_, near, work_.edge, by_pair, by_edges);
+    begin();
+    return integrate_pair<true>(
+        a_, b_, offset_, near, work_.edge, begin,
+        [&](bool of_a, int e, const auto& edge, const RunSpan& span, const EdgeSums<double>& sums) {
+          work_.halves.push_back(sums);
+          add_run(of_a, e, edge, span, sums);
+          work_.crossed.push_back(span.edge0);
+          work_.crossed.push_back(span.edge1);
+          if (of_a) of_a_ = size();
+        });
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
@@ -110,52 +85,10 @@ class Splitter {
   }
 
  private:
-  // Finds the runs on the edges of a inside b if `of_a`, otherwise those on the edges of b inside
-  // a. Returns their sum, with a weight that is NaN if a coordinate is not finite.
-  Half trace(bool of_a, std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
-             RunEnds& ends) {
-    const PlacedPotential& x = of_a ? a_ : b_;
-    const PlacedPotential& y = of_a ? b_ : a_;
-    const double dx = of_a ? offset_.x() : -offset_.x();
-    const double dy = of_a ? offset_.y() : -offset_.y();
-    Half sum;
-    sum.weight += walk_runs<true>(x, y, dx, dy, near, near_y, rows, spare, work_.edge,
-                                  [&](int e, const PlacedEdge& edge, double s0, int edge0,
-                                      double s1, int edge1, const SegmentMoments<double>& moments) {
-                                    Half half;
-                                    accumulate(edge, moments, s1 - s0, half);
-                                    add(of_a, e, edge, {s0, edge0, s1, edge1}, half, sum, ends);
-                                  });
-    return sum;
-  }
-
-  // The ends of a run, as of walk_runs.
-  struct Ends {
-    double s0;
-    int edge0;
-    double s1;
-    int edge1;
-  };
-
-  // Adds a run of edge e, which is long as a whole or in part.
-  template <class Edge>
-  void add(bool of_a, int e, const Edge& edge, const Ends& run, const Half& half, Half& sum,
-           RunEnds& ends) {
-    double from = run.s0, to = run.s1;
-    if constexpr (requires { edge.shortened; }) from = edge.share(from), to = edge.share(to);
-    work_.halves.push_back(half);
-    sum.add(half);
-    if (from == 0) sum.enter(e);
-    ends.add(edge, run.s0, run.s1);
-    add_run(of_a, e, edge, run, from, to, half);
-    work_.crossed.push_back(run.edge0);
-    work_.crossed.push_back(run.edge1);
-  }
-
   // The integrals are those that `combine` makes of one run.
   template <class Edge>
-  void add_run(bool of_a, int e, const Edge& edge, const Ends& ends, double from, double to,
-               const Half& half) {
+  void add_run(bool of_a, int e, const Edge& edge, const RunSpan& span,
+               const EdgeSums<double>& half) {
     const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
     const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
     const double x = edge.qx - shift_x, y = edge.qy - shift_y;  // about a's reference point
@@ -164,9 +97,9 @@ class Splitter {
       centre = {(half.wx - shift_x * half.weight) / half.weight,
                 (half.wy - shift_y * half.weight) / half.weight};
     }
-    runs_.push_back({{of_a, e, 0, from, to, half.length},
-                     {x + ends.s0 * edge.ex, y + ends.s0 * edge.ey},
-                     {x + ends.s1 * edge.ex, y + ends.s1 * edge.ey},
+    runs_.push_back({{of_a, e, 0, edge.share(span.s0), edge.share(span.s1), half.length},
+                     {x + span.s0 * edge.ex, y + span.s0 * edge.ey},
+                     {x + span.s1 * edge.ex, y + span.s1 * edge.ey},
                      of_a ? Vec2(-half.fx, -half.fy) : Vec2(half.fx, half.fy),
                      of_a ? turn - half.moment : half.moment,
                      of_a ? half.moment : -half.moment - turn,
@@ -307,8 +240,7 @@ class Splitter {
     for (int i = 0; i < p.size; ++i) {
       const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
       const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
-      const double share = std::clamp(from.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-      const double distance2 = (from - share * edge).squaredNorm();
+      const auto [share, distance2] = nearest_on_segment(from, edge);
       if (distance2 < place.distance2) place = {i, share, distance2};
     }
     return place;

@@ -46,8 +46,8 @@ struct PatchWorkspace {
     double cost2;    ///< square of the cost of joining them, m^2
     int end, other;  ///< numbers of the two ends
   };
-  EdgeWorkspace edge;                         ///< memory of the integrals along edges
-  std::vector<edge_detail::Half> halves;      ///< integrals per run
+  EdgeWorkspace edge;                                 ///< memory of the integrals along edges
+  std::vector<edge_detail::EdgeSums<double>> halves;  ///< integrals per run
   std::vector<edge_detail::Half> of_a, of_b;  ///< integrals per patch, on edges of a and of b
   std::vector<int> crossed;                   ///< per end: crossed edge of the other polygon or -1
   std::vector<int> parent;                    ///< per run: union-find forest of the patches

@@ -31,69 +31,6 @@ APOTHEM_INLINE double largest(const Four& p) {
 constexpr double kSimilar = 3.99;
 bool is_long(double radius, double of_other) { return !(radius < kSimilar * of_other); }
 
-// One of the linear functions along each edge.
-struct Line {
-  Four base, slope, height;
-
-  APOTHEM_INLINE Line(const Row<Four>& row, int i, const Four& s)
-      : base(row.a[i]), slope(row.b[i] - row.a[i]), height(base + s * slope) {}
-  // In each lane this one or the other.
-  APOTHEM_INLINE void take(const Four::Mask& mask, const Line& other) {
-    base = select(mask, other.base, base);
-    slope = select(mask, other.slope, slope);
-    height = select(mask, other.height, height);
-  }
-};
-
-// phi along edges, which is a concave lower envelope of four functions: most have one piece or two.
-// Where there are more, walk_envelope finds them.
-APOTHEM_INLINE void integrate_envelope(const Row<Four>& row, const Four& s0, const Four& s1,
-                                       const Four::Mask& inside, EnvelopeMoments<Four>& moments) {
-  Line first[4] = {{row, 0, s0}, {row, 1, s0}, {row, 2, s0}, {row, 3, s0}};
-  Line last[4] = {{row, 0, s1}, {row, 1, s1}, {row, 2, s1}, {row, 3, s1}};
-  // The lowest function at the start, of equals the one that falls faster, and at the end, of
-  // equals the one that was lower before.
-  const auto lower_first = [](Line& p, const Line& q) APOTHEM_LAMBDA {
-    p.take((!(q.height >= p.height)) | ((q.height == p.height) & (q.slope < p.slope)), q);
-  };
-  const auto lower_last = [](Line& p, const Line& q) APOTHEM_LAMBDA {
-    p.take((q.height < p.height) | ((q.height == p.height) & (q.slope > p.slope)), q);
-  };
-  lower_first(first[0], first[1]);
-  lower_last(last[0], last[1]);
-  lower_first(first[2], first[3]);
-  lower_last(last[2], last[3]);
-  lower_first(first[0], first[2]);
-  lower_last(last[0], last[2]);
-  const Line& p = first[0];
-  const Line& q = last[0];
-  const Four zero(0.), fall = p.slope - q.slope;
-  const Four above = q.base + s0 * q.slope - p.height;
-  const Four gap = select(above < zero, zero, above);
-  const Four::Mask two = gap < (s1 - s0) * fall;
-  const Four meeting = s0 + gap / fall;
-  const Four::Mask early = two & (!(s1 < meeting));
-  const Four middle = select(early, meeting, s1);
-  const Four::Mask flatter = two & (magnitude(q.slope) < magnitude(p.slope));
-  const Four by_first = p.base + middle * p.slope, by_last = q.base + middle * q.slope;
-  const Four middle_height = select(flatter, by_last, by_first);
-  // A function below the meeting of these two is a third piece; without a meeting one that is
-  // lower at the end is a second one.
-  const Four lower = select(by_last < by_first, by_last, by_first);
-  Four::Mask more = (!two) & (q.height < p.base + s1 * p.slope);
-  for (int i = 0; i < 4; ++i) {
-    more = more | (early & (row.a[i] + middle * (row.b[i] - row.a[i]) < lower));
-  }
-  const Four::Mask simple = inside & (!more), goes_on = simple & early & (!(middle >= s1));
-  moments.add(simple & ((!two) | (middle > s0)), s0, p.height, middle, middle_height);
-  moments.add(goes_on, middle, middle_height, s1, q.base + s1 * q.slope);
-  // No edge may depend on which others are in its pack.
-  if (!any(inside & more)) return;
-  walk_envelope(row, s0, s1, inside & more,
-                [&](const Four::Mask& there, const Four& u1, const Four& v1, const Four& u2,
-                    const Four& v2) APOTHEM_LAMBDA { moments.add(there, u1, v1, u2, v2); });
-}
-
 }  // namespace
 
 // Makes room for the largest number of pairs of polygons with so many sides.
@@ -123,14 +60,13 @@ void ConvexPairs::fill_up(Side& side, Numbers*& to) {
 // and the first one again. Returns how far outside one edge of y all of x lies, in the unit of the
 // heights; 0 if there is no such edge. `edges` become those of x that are not wholly beyond one
 // edge of y by more than `margin`, by bits.
-template <bool is_quad>
+template <bool quads>
 APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, double dx, double dy,
                                                 double margin, Numbers* rows, unsigned& edges) {
-  const int size = is_quad ? 4 : x.size, groups = is_quad ? 1 : y.groups;
+  const int size = quads ? 4 : x.size, groups = quads ? 1 : y.groups;
   const Four least(-margin);
-  // Edges of y that a vertex is beyond, by bits; of quadrilaterals all in one number.
-  std::array<unsigned, kMostSides + 1> beyond;
-  unsigned beyond_all = ~0U, of_quad = 0;
+  std::array<unsigned, kMostSides + 1> beyond;  // edges of y that a vertex is beyond, by bits
+  unsigned beyond_all = ~0U;
   const auto height = [&](int v, int g) APOTHEM_LAMBDA {
     const int first = kLanes * g;
     return Four::load(y.gx + first) * (Four(x.x[v] + dx) - Four::load(y.start_x + first)) +
@@ -143,27 +79,15 @@ APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, do
       h.store(rows[v * groups + g].v.data());
       of_vertex |= bits(h < least) << (kLanes * g);
     }
-    if constexpr (is_quad) {
-      of_quad |= of_vertex << (4 * v);
-    } else {
-      beyond[static_cast<size_t>(v)] = of_vertex;
-      beyond_all &= of_vertex;
-    }
+    beyond[static_cast<size_t>(v)] = of_vertex;
+    beyond_all &= of_vertex;
   }
   for (int g = 0; g < groups; ++g) rows[size * groups + g] = rows[g];
-  if constexpr (is_quad) {
-    unsigned both = of_quad & (of_quad >> 4 | of_quad << 12);  // ends of an edge
-    beyond_all = both & both >> 8 & 15U;
-    both |= both >> 2;
-    both |= both >> 1;  // bit 4 v: edge v is beyond some edge of y
-    edges = (~both & 0x1111U) * 0x1248U >> 12 & 15U;
-  } else {
-    beyond[static_cast<size_t>(size)] = beyond[0];
-    edges = 0;
-    for (int v = 0; v < size; ++v) {
-      const auto k = static_cast<size_t>(v);
-      edges |= unsigned{(beyond[k] & beyond[k + 1]) == 0} << v;
-    }
+  beyond[static_cast<size_t>(size)] = beyond[0];
+  edges = 0;
+  for (int v = 0; v < size; ++v) {
+    const auto k = static_cast<size_t>(v);
+    edges |= unsigned{(beyond[k] & beyond[k + 1]) == 0} << v;
   }
   if (beyond_all == 0) return 0;
   // A number that is not finite keeps the polygons together.
@@ -187,12 +111,17 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
   const bool a_is_long = is_long(a.radius, b.radius), b_is_long = is_long(b.radius, a.radius);
   pair.first = found_;
   pair.of_a = pair.of_b = 0;
-  const auto apart = [&](double gap, double steepest) APOTHEM_LAMBDA {
+  const bool quads = a.size == 4 && b.size == 4;
+  const auto apart = [&](const Side& x, const Side& y, double dx, double dy, double margin,
+                         Numbers* heights, unsigned& edges) APOTHEM_LAMBDA {
+    const double gap = quads ? find_heights<true>(x, y, dx, dy, margin, heights, edges)
+                             : find_heights<false>(x, y, dx, dy, margin, heights, edges);
     if (!(gap > 0)) return false;
+    const double steepest = y.steepest;
     if (pair.near->margin == 0 && steepest > 0) {
       const double round_off = kRoundOff * (a.radius + b.radius);
-      const double margin = gap / steepest - round_off;
-      if (margin > round_off) *pair.near = {0, 0, margin};
+      const double apart_by = gap / steepest - round_off;
+      if (apart_by > round_off) *pair.near = {0, 0, apart_by};
     }
     return true;
   };
@@ -201,15 +130,8 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
   const double margin_a = a_is_long ? kRoundOff * a.radius * b.steepest : 0;
   const double margin_b = b_is_long ? kRoundOff * b.radius * a.steepest : 0;
   unsigned edges_a, edges_b;
-  if (a.size == 4 && b.size == 4) {
-    if (apart(find_heights<true>(a, b, pair.dx, pair.dy, margin_a, of_a, edges_a), b.steepest) ||
-        apart(find_heights<true>(b, a, -pair.dx, -pair.dy, margin_b, of_b, edges_b), a.steepest)) {
-      return;
-    }
-  } else if (apart(find_heights<false>(a, b, pair.dx, pair.dy, margin_a, of_a, edges_a),
-                   b.steepest) ||
-             apart(find_heights<false>(b, a, -pair.dx, -pair.dy, margin_b, of_b, edges_b),
-                   a.steepest)) {
+  if (apart(a, b, pair.dx, pair.dy, margin_a, of_a, edges_a) ||
+      apart(b, a, -pair.dx, -pair.dy, margin_b, of_b, edges_b)) {
     return;
   }
   rows = of_b + std::ptrdiff_t{b.size + 1} * a.groups;
@@ -232,7 +154,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
     // Written at once, as it will be read.
     Four(Four::Vector{x.x[e] + dx - y.reference_x, x.y[e] + dy - y.reference_y, x.x[e + 1] - x.x[e],
                       x.y[e + 1] - x.y[e]})
-        .store(next->frame.v.data());
+        .store(&next->frame.qx);
     next->part = found_ + static_cast<int>(next - first);
     next->number = e;
     next->whole = true;
@@ -271,11 +193,11 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
 }
 
 // Four edges over polygons with so many groups of edges: their parts inside, and phi along
-// these, as `accumulate` does it one by one.
+// these.
 template <bool one_group>
 APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   std::array<Four, one_group ? 4 : kMostSides> from, until;
-  FourOf<Four> rows, frame;
+  FourOf<Four> rows;
   for (int g = 0; g < (one_group ? 1 : groups); ++g) {
     const auto put = [&](auto& to) APOTHEM_LAMBDA {
       for (size_t i = 0; i < 4; ++i) to[static_cast<size_t>(kLanes * g) + i] = rows[i];
@@ -285,37 +207,27 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
     read_rows([&](int k) APOTHEM_LAMBDA { return edges[k].until[g].v.data(); }, rows);
     put(until);
   }
-  read_rows([&](int k) APOTHEM_LAMBDA { return edges[k].frame.v.data(); }, frame);
-  const Four &qx = frame[0], &qy = frame[1], &ex = frame[2], &ey = frame[3], zero(0.);
+  EdgeFrame<Four> edge;
+  gather(
+      edge, [&](int k) APOTHEM_LAMBDA -> const auto& { return edges[k].frame; });
   const int lines = one_group ? 4 : kLanes * groups;
   const Row<Four> row{from.data(), until.data(), lines, lines};
   Four s0, s1;
   const Four::Mask inside = clip(row, s0, s1);
-  EnvelopeMoments<Four> moments;
-  if (any(inside)) {
-    if constexpr (one_group) {
-      integrate_envelope(row, s0, s1, inside, moments);
-    } else {
-      walk_envelope(row, s0, s1, inside,
-                    [&](const Four::Mask& there, const Four& u1, const Four& v1, const Four& u2,
-                        const Four& v2) APOTHEM_LAMBDA { moments.add(there, u1, v1, u2, v2); });
-    }
-  }
-  const Four length2 = ex * ex + ey * ey, length = square_root(length2);
-  const Four &sum = moments.sum, &first = moments.first;
-  const auto there = [&](const Four& p) APOTHEM_LAMBDA { return select(inside, p, zero); };
+  const SegmentMoments<Four> moments = any(inside)
+                                           ? envelope_moments(row, s0, s1, inside)
+                                           : SegmentMoments<Four>();  // 0 where nothing lies inside
+  const Four zero(0.), nowhere(std::numeric_limits<double>::quiet_NaN());
   const auto part = [&](int k) APOTHEM_LAMBDA -> Part& {
     return parts_[static_cast<size_t>(edges[k].part)];
   };
-  write_rows({there(ey * sum), there(-(ex * sum)),
-              there(-((qx * ex + qy * ey) * sum + length2 * first)), there(length * sum)},
-             [&](int k) APOTHEM_LAMBDA { return part(k).linear.v.data(); });
-  write_rows({there(length * (qx * sum + ex * first)), there(length * (qy * sum + ey * first)),
-              there(length * (s1 - s0)), there(moments.largest)},
-             [&](int k) APOTHEM_LAMBDA { return part(k).others.v.data(); });
-  const Four nowhere(std::numeric_limits<double>::quiet_NaN());
+  scatter(
+      along_edge(edge, moments, select(inside, s1 - s0, zero)), [&](int k) APOTHEM_LAMBDA -> auto& {
+        return part(k).sums;
+      });
   const Four start = select(inside, s0, nowhere), end = select(inside, s1, nowhere);
-  write_rows({qx + start * ex, qx + end * ex, qy + start * ey, qy + end * ey},
+  write_rows({edge.qx + start * edge.ex, edge.qx + end * edge.ex, edge.qy + start * edge.ey,
+              edge.qy + end * edge.ey},
              [&](int k) APOTHEM_LAMBDA { return part(k).ends.v.data(); });
   const unsigned enter = bits(inside & (s0 == zero));
   for (int k = 0; k < kLanes; ++k) {
@@ -330,7 +242,7 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
 template <class F>
 APOTHEM_INLINE void ConvexPairs::each_part(const Part* from, const Part* until, const F& f) {
   static constexpr double kNoEnd = std::numeric_limits<double>::quiet_NaN();
-  static constexpr Part kNone{{}, {}, {kNoEnd, kNoEnd, kNoEnd, kNoEnd}, 0, false};
+  static constexpr Part kNone{{}, {kNoEnd, kNoEnd, kNoEnd, kNoEnd}, 0, false};
   const auto count = until - from;
   f(count > 0 ? *from : kNone);
   f(count > 1 ? from[1] : kNone);
@@ -357,8 +269,8 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
     Four linear(0.), others(0.), most(0.);
     inside = 0;
     each_part(from, until, [&](const Part& part) APOTHEM_LAMBDA {
-      const Four more = Four::load(part.others.v.data());
-      linear += Four::load(part.linear.v.data());
+      const Four more = Four::load(&part.sums.wx);
+      linear += Four::load(&part.sums.fx);
       others += more;
       most = larger(most, more);
       inside |= std::uint64_t{part.enters} << part.number;

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/integrals/edge_sums.hpp"
 #include "geometry/integrals/near_edges.hpp"
 #include "geometry/integrals/pair_integral.hpp"
 #include "geometry/integrals/placed_potential.hpp"
@@ -69,18 +70,16 @@ class ConvexPairs {
   // An edge that may enter the other polygon.
   struct Edge {
     const Numbers *from, *until;  // the heights of its ends over the edges of that one
-    Numbers frame;                // its start relative to the reference point of that one, and
-                                  // the vector along it
+    edge_detail::EdgeFrame<double> frame;
     int part, number;
     bool whole;  // it has not been shortened at its start
   };
-  // What lies of an edge inside the other polygon, with the numbers of a Half.
-  struct Part {
-    Numbers linear;  // fx, fy, moment, weight
-    Numbers others;  // wx, wy, length, largest
-    Numbers ends;    // x of its start and its end, and y; no numbers if nothing lies inside
-    int number;      // of the edge
-    bool enters;     // it begins at the start of the edge
+  // What lies of an edge inside the other polygon.
+  struct alignas(32) Part {
+    edge_detail::EdgeSums<double> sums;
+    Numbers ends;  // x of its start and its end, and y; no numbers if nothing lies inside
+    int number;    // of the edge
+    bool enters;   // it begins at the start of the edge
   };
 
   static Side side(const PlacedPotential& p) {
@@ -100,7 +99,7 @@ class ConvexPairs {
   void make_room();
   static void fill_up(Side& side, Numbers*& to);
   void find(Pair& pair, Numbers*& rows);
-  template <bool is_quad>
+  template <bool quads>
   static double find_heights(const Side& x, const Side& y, double dx, double dy, double margin,
                              Numbers* rows, unsigned& edges);
   void list_edges(const Side& x, const Side& y, double dx, double dy, unsigned edges,

@@ -12,65 +12,14 @@ namespace apothem {
 
 using namespace edge_detail;
 
-namespace {
-
-// The integrals of phi of y along the edges of x.
-Half integrate_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                    std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
-                    EdgeWorkspace& workspace, RunEnds& ends) {
-  Half half;
-  half.weight += walk_runs<false>(x, y, dx, dy, near, near_y, rows, spare, workspace,
-                                  [&](int e, const PlacedEdge& edge, double s0, int, double s1, int,
-                                      const SegmentMoments<double>& moments) {
-                                    accumulate(edge, moments, s1 - s0, half);
-                                    if (s0 == 0 && edge.first == 0) half.enter(e);
-                                    ends.add(edge, s0, s1);
-                                  });  // a NaN is added, so that it is never taken for "no contact"
-  return half;
-}
-
-}  // namespace
-
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                            EdgeWorkspace& workspace, NearEdges& near) {
   if (ConvexPairs::serves(a) && ConvexPairs::serves(b)) {
     workspace.convex.add(a, b, offset, near);
     return workspace.convex.evaluate()[0];
   }
-  const HeightRows height = height_rows(a, b, workspace.values);
-  const double dx = offset.x();
-  const double dy = offset.y();
-  if (b.convex() && separated(heights(a, b, dx, dy, height.of_a), a, b, b.steepest, near)) {
-    return {};
-  }
-  if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
-    return {};
-  }
-  const auto by_pair = [&](std::span<const CollarPair::Run> runs) {
-    RunEnds ends(workspace.ends);
-    Half of_a, of_b;
-    size_t middle = 0;
-    for (const CollarPair::Run& run : runs) {
-      Half& half = run.of_a ? of_a : of_b;
-      half.add(*run.integrals);
-      if (run.s0 == 0) half.enter(run.edge);
-      ends.add(*run.placed, run.s0, run.s1);
-      if (run.of_a) middle = ends.used();
-    }
-    return std::pair(join(a, b, offset, of_a, of_b, ends, middle), ends.closed());
-  };
-  const auto by_edges = [&] {
-    RunEnds ends(workspace.ends);
-    const Half of_a =  // in the frame of b
-        integrate_runs(a, b, dx, dy, near.of_a, near.of_b, height.of_a, height.spare, workspace,
-                       ends);
-    const size_t middle = ends.used();
-    const Half of_b =  // in the frame of a
-        integrate_runs(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b, height.spare, workspace,
-                       ends);
-    return std::pair(join(a, b, offset, of_a, of_b, ends, middle), ends.closed());
-  };
-  return with_collars(a, b, offset, near, workspace, by_pair, by_edges);
+  const auto nothing = [](const auto&...) {};
+  return integrate_pair<false>(a, b, offset, near, workspace, nothing, nothing);
 }
 
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
@@ -90,10 +39,6 @@ std::vector<lower_envelope::Line<double>> lines(const PlacedPotential& p, const 
   }
   return result;
 }
-
-}  // namespace
-
-namespace {
 
 using Ring = std::vector<Vec2>;
 using Parts = std::vector<lower_envelope::SignedRing<double>>;
@@ -151,10 +96,6 @@ double volume_under_distance(const PlacedPotential& p, const PlacedPotential& ot
   }
   return DistanceVolume<double>().over(placed_distance(p), x, y);
 }
-
-}  // namespace
-
-namespace {
 
 // A pair in the frame of b.
 struct ClippedPair {
@@ -252,7 +193,8 @@ class FineLines {
   std::vector<Fine> gx_, gy_;
 };
 
-// integrate_runs in long double, for polygons at their given positions.
+// The integrals of phi of y along the edges of x in long double, for polygons at their given
+// positions.
 Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnds& ends) {
   const FineLines lines(y);
   Half half;
@@ -264,7 +206,7 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnd
     Fine s0, s1;
     if (!clip(row, s0, s1)) continue;
     const Fine share = s1 - s0;
-    EnvelopeMoments<Fine> moments;  // along the part of the edge inside y
+    SegmentMoments<Fine> moments;  // along the part of the edge inside y
     walk_envelope(row, s0, s1, true, [&](bool there, Fine u1, Fine v1, Fine u2, Fine v2) {
       moments.add(there, (u1 - s0) / share, v1, (u2 - s0) / share, v2);
     });
@@ -273,10 +215,10 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnd
     part.qy = static_cast<double>(edge.qy + s0 * edge.ey);
     part.ex = static_cast<double>(share * edge.ex);
     part.ey = static_cast<double>(share * edge.ey);
-    accumulate(part,
-               {static_cast<double>(moments.sum), static_cast<double>(moments.first),
-                static_cast<double>(moments.largest)},
-               1, half);
+    const SegmentMoments<double> rounded{static_cast<double>(moments.sum),
+                                         static_cast<double>(moments.first),
+                                         static_cast<double>(moments.largest)};
+    half.add(along_edge(part, rounded, 1.));
     ends.add(part, 0, 1);
   }
   return half;

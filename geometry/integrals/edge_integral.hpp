@@ -39,7 +39,6 @@ struct EdgeWorkspace {
   CollarTrace collar;              ///< memory for both
   CollarPair pair;                 ///< memory for pairs with few near edges
   ConvexPairs convex;              ///< memory for pairs of convex polygons with few sides
-  bool collars = true;             ///< whether edges in the collar of a polygon go by it alone
 };
 
 /// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if

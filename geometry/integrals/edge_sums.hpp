@@ -2,26 +2,58 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "geometry/polygon/segment_moments.hpp"
+#include "lib/execution/pack.hpp"
 
 namespace apothem::edge_detail {
 
-// The integrals of phi of y along the edges of x, in the frame of y, without the sign of Eq. 7.
+// The integrals of phi of y along edges of x, in the frame of y, without the sign of Eq. 7.
 // Positions and moments are relative to y's reference point.
-struct Half {
-  double fx = 0, fy = 0;              // SUM n INT phi ds, m
-  double moment = 0;                  // SUM INT phi (x cross n) ds, m^2
-  double weight = 0, wx = 0, wy = 0;  // SUM INT phi ds, m, and SUM INT phi x ds, m^2
-  double length = 0;                  // length of the edges of x inside y, m
-  double largest = 0;                 // largest phi along the edges
-  std::uint64_t inside = 0;           // vertices of x inside y: see PairIntegral
+template <class Real>
+struct EdgeSums {
+  Real fx = 0, fy = 0;              // SUM n INT phi ds, m
+  Real moment = 0;                  // SUM INT phi (x cross n) ds, m^2
+  Real weight = 0, wx = 0, wy = 0;  // SUM INT phi ds, m, and SUM INT phi x ds, m^2
+  Real length = 0;                  // length of the edges of x inside y, m
+  Real largest = 0;                 // largest phi along the edges
+};
+
+// An edge of x in the frame of y: its start relative to y's reference point, and the vector to its
+// end.
+template <class Real>
+struct EdgeFrame {
+  Real qx, qy, ex, ey;
+  // As of BasicEdge: it is the whole edge.
+  [[nodiscard]] Real share(const Real& s) const { return s; }
+};
+
+// The integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
+// `inside` is the share of the edge that lies inside the other polygon.
+template <class Edge, class Real>
+APOTHEM_INLINE EdgeSums<Real> along_edge(const Edge& edge, const SegmentMoments<Real>& m,
+                                         const Real& inside) {
+  const Real &qx = edge.qx, &qy = edge.qy, &ex = edge.ex, &ey = edge.ey;
+  const Real length2 = ex * ex + ey * ey, length = square_root(length2);
+  const Real zero(0.);  // so that no number is -0
+  return {.fx = zero + ey * m.sum,
+          .fy = zero - ex * m.sum,
+          .moment = zero - ((qx * ex + qy * ey) * m.sum + length2 * m.first),
+          .weight = zero + length * m.sum,
+          .wx = zero + length * (qx * m.sum + ex * m.first),
+          .wy = zero + length * (qy * m.sum + ey * m.first),
+          .length = length * inside,
+          .largest = m.largest};
+}
+
+// The sums over all edges of a polygon.
+struct Half : EdgeSums<double> {
+  std::uint64_t inside = 0;  // vertices of x inside y: see PairIntegral
 
   // Counts vertex i as inside.
   void enter(int i) { inside ^= std::uint64_t{1} << (i % 64); }
-  void add(const Half& other) {
+  void add(const EdgeSums<double>& other) {
     fx += other.fx, fy += other.fy;
     moment += other.moment;
     weight += other.weight, wx += other.wx, wy += other.wy;
@@ -29,22 +61,5 @@ struct Half {
     largest = std::max(largest, other.largest);
   }
 };
-
-// Adds the integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
-// `inside` is the share of the edge that lies inside the other polygon.
-template <class Edge>
-inline void accumulate(const Edge& edge, const SegmentMoments<double>& m, double inside,
-                       Half& half) {
-  const double qx = edge.qx, qy = edge.qy, ex = edge.ex, ey = edge.ey;
-  const double length = std::sqrt(ex * ex + ey * ey);
-  half.fx += ey * m.sum;
-  half.fy -= ex * m.sum;
-  half.moment -= (qx * ex + qy * ey) * m.sum + (ex * ex + ey * ey) * m.first;
-  half.weight += length * m.sum;
-  half.wx += length * (qx * m.sum + ex * m.first);
-  half.wy += length * (qy * m.sum + ey * m.first);
-  half.length += length * inside;
-  half.largest = std::max(half.largest, m.largest);
-}
 
 }  // namespace apothem::edge_detail

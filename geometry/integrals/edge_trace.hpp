@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 
 #include "geometry/integrals/edge_integral.hpp"
 #include "geometry/integrals/edge_sums.hpp"
@@ -107,21 +106,16 @@ APOTHEM_INLINE void walk_envelope(const Row<Real>& row, const Real& s0, const Re
   }
 }
 
-// phi integrated along edges, by the linear pieces that walk_envelope finds.
+// phi integrated along edges from s0 to s1.
 template <class Real>
-struct EnvelopeMoments {
-  Real sum{0}, first{0}, largest{0};  // as in SegmentMoments
-
-  APOTHEM_INLINE void add(const Truth<Real>& there, const Real& u1, const Real& v1, const Real& u2,
-                          const Real& v2) {
-    const Real h = u2 - u1;
-    sum = select(there, sum + h * (v1 + v2) / Real(2), sum);
-    first = select(
-        there, first + h * (v1 * (Real(2) * u1 + u2) + v2 * (u1 + Real(2) * u2)) / Real(6), first);
-    const Real larger = select(v1 < v2, v2, v1);
-    largest = select(there & (largest < larger), larger, largest);
-  }
-};
+APOTHEM_INLINE SegmentMoments<Real> envelope_moments(const Row<Real>& row, const Real& s0,
+                                                     const Real& s1, const Truth<Real>& inside) {
+  SegmentMoments<Real> moments;
+  walk_envelope(row, s0, s1, inside,
+                [&](const Truth<Real>& there, const Real& u1, const Real& v1, const Real& u2,
+                    const Real& v2) APOTHEM_LAMBDA { moments.add(there, u1, v1, u2, v2); });
+  return moments;
+}
 
 // Growth of a box, relative to its extent, beyond which rounding lets nothing reach into it.
 inline constexpr double kFarAway = 1e-9;
@@ -172,17 +166,6 @@ inline void add_capped(double u1, double v1, double u2, double v2,
   const double u = u1 + (1 - v1) / (v2 - v1) * (u2 - u1);
   moments.add(u1, std::min(v1, 1.0), u, 1);
   moments.add(u, 1, u2, std::min(v2, 1.0));
-}
-
-/// 0, or NaN if a coordinate of two polygons is not finite. If edges are known to be near each
-/// other, all are finite.
-inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                         std::uint64_t near_x, std::uint64_t near_y) {
-  double finite = 0;  // sum of 0 * coordinate
-  if (near_x != NearEdges::kAll && near_y != NearEdges::kAll) return finite;
-  for (int i = 0; i < y.size; ++i) finite += 0 * y.x[i] + 0 * y.y[i];
-  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
-  return finite;
 }
 
 /// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
@@ -306,16 +289,19 @@ void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& 
 /// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
 /// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
 /// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and `near_y`
-/// those of y that may enter x. Returns 0, or NaN without any call if y is not convex and a
-/// coordinate is not finite.
+/// those of y that may enter x. `collars` tells whether edges in the collar of y go by it alone.
+/// Returns 0, or NaN without any call if y is not convex and a coordinate is not finite.
 template <bool crossings, class Run>
 double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                  std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
-                 EdgeWorkspace& workspace, const Run& run) {
+                 EdgeWorkspace& workspace, bool collars, const Run& run) {
   if (!y.convex()) {
-    if (const double finite = all_finite(x, y, dx, dy, near, near_y); !(finite == 0)) return finite;
+    // If edges are known to be near each other, all coordinates are finite.
+    if (near == NearEdges::kAll || near_y == NearEdges::kAll) {
+      if (const double finite = all_finite(x, y, dx, dy); !(finite == 0)) return finite;
+    }
     CollarTrace& collar = workspace.collar;
-    collar.find(x, y, dx, dy, near, near_y, workspace.collars);
+    collar.find(x, y, dx, dy, near, near_y, collars);
     size_t r = 0;
     bool nodes = false;  // whether they are placed
     for (const CollarTrace::Edge& edge : collar.edges()) {
@@ -338,11 +324,7 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
     const Row<double> row = row_of(edge, e, y, rows, spare);
     double s0, s1;
     if (!clip(row, s0, s1)) return;
-    EnvelopeMoments<double> found;
-    walk_envelope(row, s0, s1, true, [&](bool there, double u1, double v1, double u2, double v2) {
-      found.add(there, u1, v1, u2, v2);
-    });
-    const SegmentMoments<double> moments{found.sum, found.first, found.largest};
+    const SegmentMoments<double> moments = envelope_moments(row, s0, s1, true);
     if constexpr (crossings) {
       run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
     } else {
@@ -372,6 +354,7 @@ class RunEnds {
   }
   /// Number of coordinates.
   [[nodiscard]] size_t used() const { return used_; }
+  void clear() { used_ = 0; }
   /// True if the runs are the sides of closed polygons, as the boundary of an overlap is, so that
   /// none is missing. Runs that lie on each other may count twice; then it is false.
   [[nodiscard]] bool closed() const {
@@ -390,25 +373,6 @@ class RunEnds {
   std::vector<double>& buffer_;
   size_t used_ = 0;
 };
-
-/// The integrals of a pair by those ways that are known, the fastest first. Each tells the result
-/// and whether its runs are closed. If they are not, features of the polygons coincide up to
-/// round-off, and the next way is taken: of a few near edges `by_pair`, after CollarPair has found
-/// the runs; by collars; at last by the whole potentials, both of them `by_edges`.
-template <class ByPair, class ByEdges>
-PairIntegral with_collars(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                          const NearEdges& near, EdgeWorkspace& workspace, const ByPair& by_pair,
-                          const ByEdges& by_edges) {
-  if (workspace.pair.find(a, b, offset, near)) {
-    const auto [pair, closed] = by_pair(workspace.pair.runs());
-    if (closed) return pair;
-  }
-  workspace.collars = true;
-  const auto [pair, closed] = by_edges();
-  if (closed || std::isnan(pair.weight) || (a.convex() && b.convex())) return pair;
-  workspace.collars = false;
-  return by_edges().first;
-}
 
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
 /// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.
@@ -446,6 +410,80 @@ APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const Placed
     if (margin > kRoundOff * (a.radius + b.radius)) near = {0, 0, margin};
   }
   return true;
+}
+
+/// The ends of a run along its edge, and the edges of the other polygon that it crosses there, as
+/// of walk_runs.
+struct RunSpan {
+  double s0;
+  int edge0;
+  double s1;
+  int edge1;
+};
+
+/// Computes the integrals of a pair. Arguments and result are those of pair_integral. Calls
+/// run(of_a, e, edge, span, sums) for every run of edge e of a, and then of b; before the first one
+/// it calls begin().
+///
+/// The runs are found by those ways that are known, the fastest first. If they are not closed,
+/// features of the polygons coincide up to round-off, and the next way is taken: of a few near
+/// edges CollarPair; collars; at last the whole potentials.
+template <bool crossings, class Begin, class Run>
+PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+                            NearEdges& near, EdgeWorkspace& workspace, const Begin& begin,
+                            const Run& run) {
+  const double dx = offset.x(), dy = offset.y();
+  const HeightRows height = height_rows(a, b, workspace.values);
+  if (b.convex() && separated(heights(a, b, dx, dy, height.of_a), a, b, b.steepest, near)) {
+    return {};
+  }
+  if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
+    return {};
+  }
+  RunEnds ends(workspace.ends);
+  Half half_a, half_b;
+  size_t middle = 0;
+  const auto start = [&] {
+    ends.clear();
+    half_a = half_b = {};
+    middle = 0;
+    begin();
+  };
+  const auto take = [&](bool of_a, int e, const auto& edge, const RunSpan& span,
+                        const EdgeSums<double>& sums) {
+    Half& half = of_a ? half_a : half_b;
+    half.add(sums);
+    if (edge.share(span.s0) == 0) half.enter(e);
+    ends.add(edge, span.s0, span.s1);
+    if (of_a) middle = ends.used();
+    run(of_a, e, edge, span, sums);
+  };
+  const auto pair = [&] { return join(a, b, offset, half_a, half_b, ends, middle); };
+  if (workspace.pair.find(a, b, offset, near)) {
+    start();
+    for (const CollarPair::Run& r : workspace.pair.runs()) {
+      take(r.of_a, r.edge, *r.placed, {r.s0, r.edge0, r.s1, r.edge1}, *r.integrals);
+    }
+    if (ends.closed()) return pair();
+  }
+  for (const bool collars : {true, false}) {
+    start();
+    const auto walk = [&](bool of_a) {
+      return [&, of_a](int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
+                       const SegmentMoments<double>& moments) {
+        take(of_a, e, edge, {s0, edge0, s1, edge1}, along_edge(edge, moments, s1 - s0));
+      };
+    };
+    // A NaN is added to the weight, so that it is never taken for "no contact".
+    half_a.weight += walk_runs<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
+                                          height.spare, workspace, collars, walk(true));
+    half_b.weight += walk_runs<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
+                                          height.spare, workspace, collars, walk(false));
+    if (ends.closed() || std::isnan(half_a.weight + half_b.weight) || (a.convex() && b.convex())) {
+      break;
+    }
+  }
+  return pair();
 }
 
 }  // namespace apothem::edge_detail

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/integrals/edge_integral.hpp"
+#include "geometry/integrals/placed_potential.hpp"
+#include "geometry/polygon/segment.hpp"
 
 namespace apothem {
 
@@ -19,11 +20,7 @@ double distance2(const Box& a, const Box& b) {
 }
 
 double distance2(const Vec2& point, const Segment& s) {
-  const Vec2 along = s.to - s.from;
-  const Vec2 arm = point - s.from;
-  const double length2 = along.squaredNorm();  // 0 if rounding has merged two vertices
-  const double share = length2 > 0 ? std::clamp(arm.dot(along) / length2, 0., 1.) : 0;
-  return (arm - share * along).squaredNorm();
+  return nearest_on_segment(point - s.from, s.to - s.from).distance2;
 }
 
 // Segments that cross up to round-off have an end that is as near as that, or cross clearly.
@@ -36,26 +33,6 @@ double distance2(const Segment& s, const Segment& t) {
   if (separates(s, t) && separates(t, s)) return 0;
   return std::min(
       {distance2(s.from, t), distance2(s.to, t), distance2(t.from, s), distance2(t.to, s)});
-}
-
-// Even-odd rule.
-bool inside(const Vec2& p, const PlacedPotential& y, const Vec2& shift) {
-  bool result = false;
-  for (int k = 0; k < y.size; ++k) {
-    const double dy0 = y.y[k] + shift.y() - p.y();
-    const double dy1 = y.y[k + 1] + shift.y() - p.y();
-    if ((dy0 > 0) == (dy1 > 0)) continue;
-    const double dx0 = y.x[k] + shift.x() - p.x();
-    const double dx1 = y.x[k + 1] + shift.x() - p.x();
-    if ((dx0 * dy1 - dx1 * dy0 > 0) == (dy1 > dy0)) result = !result;
-  }
-  return result;
-}
-
-Box box_of(const PlacedPotential& p, const Vec2& shift) {
-  Box box;
-  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + shift.x(), p.y[i] + shift.y());
-  return box;
 }
 
 // The edges of x whose boxes are nearer than `margin` to the box of the other polygon. Lowers
@@ -84,7 +61,7 @@ std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& othe
                      const Vec2& shift, double margin2, double& rest2) {
   std::uint64_t set = 0;
   for (const Segment& s : segments) {
-    if (s.distance2 <= margin2 || inside(s.from, other, shift)) {
+    if (s.distance2 <= margin2 || encloses(other, shift, s.from)) {
       set |= std::uint64_t{1} << (s.edge % 64);
     } else {
       rest2 = std::min(rest2, s.distance2);
@@ -102,9 +79,7 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const Box box_b = box_of(b, zero);
   const double size =
       (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) + (box_b.y1 - box_b.y0);
-  double finite = size;
-  for (int i = 0; i < a.size; ++i) finite += 0 * (a.x[i] + offset.x()) + 0 * (a.y[i] + offset.y());
-  for (int i = 0; i < b.size; ++i) finite += 0 * b.x[i] + 0 * b.y[i];
+  const double finite = size + all_finite(a, b, offset.x(), offset.y());
   // Distances are rounded; what is no farther away than that is near.
   const double round = 1e-12 * size;
   if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};

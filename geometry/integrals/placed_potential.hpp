@@ -37,6 +37,34 @@ struct PlacedPotential {
   [[nodiscard]] bool convex() const { return !roof && !distance; }
 };
 
+/// The box of a polygon moved by `shift`.
+inline Box box_of(const PlacedPotential& p, const Vec2& shift) {
+  Box box;
+  for (int i = 0; i < p.size; ++i) box.include(p.x[i] + shift.x(), p.y[i] + shift.y());
+  return box;
+}
+
+/// Whether a polygon moved by `shift` encloses a point, by the even-odd rule and without a
+/// tolerance.
+inline bool encloses(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
+  bool inside = false;
+  for (int k = 0; k < p.size; ++k) {
+    const double y0 = p.y[k] + shift.y() - point.y(), y1 = p.y[k + 1] + shift.y() - point.y();
+    if ((y0 > 0) == (y1 > 0)) continue;
+    const double x0 = p.x[k] + shift.x() - point.x(), x1 = p.x[k + 1] + shift.x() - point.x();
+    if ((x0 * y1 - x1 * y0 > 0) == (y1 > y0)) inside = !inside;
+  }
+  return inside;
+}
+
+/// 0, or NaN if a coordinate of two polygons is not finite, x moved by (dx, dy).
+inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
+  double finite = 0;  // sum of 0 * coordinate
+  for (int i = 0; i < y.size; ++i) finite += 0 * y.x[i] + 0 * y.y[i];
+  for (int i = 0; i < x.size; ++i) finite += 0 * (x.x[i] + dx) + 0 * (x.y[i] + dy);
+  return finite;
+}
+
 /// The nodes of a roof at its present position, m. They are made where a contact is so deep that
 /// they are needed.
 struct RoofNodes {

@@ -142,18 +142,7 @@ bool PlacedShapes::top_inside(int i, int j, const Vec2& offset) const {
   const Vec2 edge(x[1] - x[0], y[1] - y[0]);
   const Vec2 top =
       offset + Vec2(x[0], y[0]) + shape.top.x() * edge + shape.top.y() * Vec2(-edge.y(), edge.x());
-  // Even-odd rule, for convex and other shapes.
-  const PlacedPotential other = view(j);
-  bool inside = false;
-  for (int k = 0; k < other.size; ++k) {
-    const double dy0 = other.y[k] - top.y();
-    const double dy1 = other.y[k + 1] - top.y();
-    if ((dy0 > 0) == (dy1 > 0)) continue;
-    const double dx0 = other.x[k] - top.x();
-    const double dx1 = other.x[k + 1] - top.x();
-    if ((dx0 * dy1 - dx1 * dy0 > 0) == (dy1 > dy0)) inside = !inside;
-  }
-  return inside;
+  return encloses(view(j), Vec2::Zero(), top);
 }
 
 }  // namespace apothem

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 
 namespace apothem {
@@ -25,10 +26,7 @@ Box box_between(const Vec2& a, const Vec2& b) {
 }
 
 double square_distance(const Vec2& point, const Vec2& a, const Vec2& b) {
-  const Vec2 along = b - a, from = point - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? std::clamp(from.dot(along) / length2, 0., 1.) : 0;
-  return (from - t * along).squaredNorm();
+  return nearest_on_segment(point - a, b - a).distance2;
 }
 
 // Rounding may hide a crossing only where an end lies on the other segment, and then that end is

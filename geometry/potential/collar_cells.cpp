@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 
 namespace apothem {
@@ -38,8 +39,7 @@ CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights)
 }
 
 double distance(const Vec2& point, const Vec2& from, const Vec2& along) {
-  const double share = std::clamp((point - from).dot(along) / along.squaredNorm(), 0., 1.);
-  return (point - from - share * along).norm();
+  return std::sqrt(nearest_on_segment(point - from, along).distance2);
 }
 
 // The distance of two edges that do not cross, m.

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/integrals/collar_pack.hpp"
+#include "geometry/integrals/collar.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/surface/outlines.hpp"
 
@@ -51,7 +51,7 @@ inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, E
   const CollarFace<double> face = o.face(a);
   CollarPiece<double> piece;
   CollarCrossings<double> top;
-  if (!collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
+  if (!deep_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
   const EdgeFaceForces<double> f =
       edge_face_forces(piece, block.slope[l], o.length[p], 1 / face.length);
   pushes[l] = {f.edge_start, f.edge_end, f.face_start, f.face_end};
@@ -83,10 +83,11 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
       return pack_of<kBlock>([&](size_t l)
                                  APOTHEM_LAMBDA { return of[static_cast<size_t>(v[l])]; });
     };
-    const CollarFaces<Pack> face{at(o.x, block.a),      at(o.y, block.a),  at(o.x, block.b),
-                                 at(o.y, block.b),      at(o.tx, block.a), at(o.ty, block.a),
-                                 at(o.length, block.a), at(o.mx, block.a), at(o.my, block.a),
-                                 at(o.mx, block.b),     at(o.my, block.b), at(o.plain, block.a)};
+    const CollarFace<Pack> face{at(o.x, block.a),      at(o.y, block.a),  at(o.x, block.b),
+                                at(o.y, block.b),      at(o.tx, block.a), at(o.ty, block.a),
+                                at(o.length, block.a), at(o.mx, block.a), at(o.my, block.a),
+                                at(o.mx, block.b),     at(o.my, block.b), at(o.depth, block.a),
+                                at(o.plain, block.a)};
     const Pack px = at(o.x, block.p), py = at(o.y, block.p);
     const Pack qx = at(o.x, block.q), qy = at(o.y, block.q);
     const CollarPieces<Pack> piece = collar_pieces(face, px, py, qx, qy);

@@ -225,10 +225,10 @@ APOTHEM_INLINE void OutlinePath::place(Face& face) const {
                   after = along(face.b, face.after);
   const Mitre<Pack> a(before.x, before.y, own.x, own.y);
   const Mitre<Pack> b(own.x, own.y, after.x, after.y);
-  face.at = {at_.x[face.a], at_.y[face.a], at_.x[face.b], at_.y[face.b], own.x, own.y,
-             own.length,    a.x,           a.y,           b.x,           b.y,   Pack(0.)};
-  face.at.plain =
-      plain_depth(Pack(face.depth), collar_event(face.at.length, face.at.alpha(), face.at.beta()));
+  face.at = {at_.x[face.a], at_.y[face.a],    at_.x[face.b], at_.y[face.b], own.x,
+             own.y,         own.length,       a.x,           a.y,           b.x,
+             b.y,           Pack(face.depth), Pack(0.)};
+  face.at = face.at.with_plain();
   face.placed = true;
 }
 
@@ -273,7 +273,7 @@ APOTHEM_INLINE void OutlinePath::find_forces() {
 
 // A candidate that may cross the top of the collar at one of the places.
 void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
-  const CollarFaces<Pack>& f = face.at;
+  const CollarFace<Pack>& f = face.at;
   const CollarFace<double> at{f.ax.v[l],  f.ay.v[l],     f.bx.v[l],   f.by.v[l],  f.tx.v[l],
                               f.ty.v[l],  f.length.v[l], f.max.v[l],  f.may.v[l], f.mbx.v[l],
                               f.mby.v[l], face.depth,    f.plain.v[l]};
@@ -281,7 +281,7 @@ void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
   const Vec2 q(at_.x[near.q].v[l], at_.y[near.q].v[l]);
   CollarPiece<double> piece;
   CollarCrossings<double> top;
-  if (!collar_piece(at, p.x(), p.y(), q.x(), q.y(), piece, top)) return;
+  if (!deep_collar_piece(at, p.x(), p.y(), q.x(), q.y(), piece, top)) return;
   const Vec2 edge = q - p;
   const double length = edge.norm();
   const EdgeFaceForces<double> force = edge_face_forces(piece, near.slope, length, 1 / at.length);

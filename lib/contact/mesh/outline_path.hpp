@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/integrals/collar_pack.hpp"
+#include "geometry/integrals/collar.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/law/onset_rule.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
@@ -58,7 +58,7 @@ class OutlinePath {
     size_t before, a, b, after;
     double depth;
     bool placed = false;
-    CollarFaces<Pack> at = {};
+    CollarFace<Pack> at = {};
   };
   /// A candidate: the corners of its edge, and its face.
   struct Near {

@@ -3,7 +3,7 @@
 #include <complex>
 
 #include "geometry/exact/overlap.hpp"
-#include "geometry/integrals/collar_pack.hpp"
+#include "geometry/integrals/collar.hpp"
 #include "tests/contact/outline_pairs.hpp"
 
 using namespace apothem;
@@ -345,10 +345,11 @@ void compare_packs(int count) {
       return each([&](const EdgeAndFace& e) { return e.face.*number; });
     };
     using Face = CollarFace<double>;
-    const CollarFaces<Pack> faces{
-        of_face(&Face::ax),  of_face(&Face::ay),  of_face(&Face::bx),     of_face(&Face::by),
-        of_face(&Face::tx),  of_face(&Face::ty),  of_face(&Face::length), of_face(&Face::max),
-        of_face(&Face::may), of_face(&Face::mbx), of_face(&Face::mby),    of_face(&Face::plain)};
+    const CollarFace<Pack> faces{of_face(&Face::ax),     of_face(&Face::ay),  of_face(&Face::bx),
+                                 of_face(&Face::by),     of_face(&Face::tx),  of_face(&Face::ty),
+                                 of_face(&Face::length), of_face(&Face::max), of_face(&Face::may),
+                                 of_face(&Face::mbx),    of_face(&Face::mby), of_face(&Face::depth),
+                                 of_face(&Face::plain)};
     const CollarPieces<Pack> found =
         collar_pieces(faces, each([](const EdgeAndFace& e) { return e.p.x(); }),
                       each([](const EdgeAndFace& e) { return e.p.y(); }),
