@@ -175,7 +175,8 @@ void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int s
     worker.fresh.push_back({p, results.size(), integral});
   }
   make_room(results);
-  results.push_back({pairs_[p].first, pairs_[p].second, slot, split});
+  results.push_back(
+      {pairs_[p].first, pairs_[p].second, slot, split, static_cast<int>(results.size())});
 }
 
 // Puts the lists of the workers together.
@@ -186,6 +187,7 @@ void PairIntegrals::collect() {
     const auto split = static_cast<int>(parts_.size());
     for (PairInTouch pair : worker.results) {
       if (pair.split >= 0) pair.split += split;
+      pair.number = static_cast<int>(touching_.size());
       make_room(touching_);
       touching_.push_back(pair);
     }

@@ -22,8 +22,9 @@ inline constexpr double kDeepestPhi = 0.95;
 /// A pair that touches.
 struct PairInTouch {
   SurfaceIndex a, b;
-  int slot;        ///< where what is known of it is kept for as long as it touches
-  int split = -1;  ///< number among the pairs that are split into contact patches; -1 if it is not
+  int slot;         ///< where what is known of it is kept for as long as it touches
+  int split = -1;   ///< number among the pairs that are split into contact patches; -1 if it is not
+  int number = -1;  ///< in the list of all that touch
 };
 
 /// The pairs of a list that touch, and their integrals. A pair keeps its slot from one evaluation
