@@ -34,7 +34,6 @@ bool ElementKernel::convex(SurfaceIndex i) const {
 
 void ElementKernel::evaluate() {
   pairs_.evaluate([](const PairInTouch&, const PairIntegral&, int) {});
-  pairs_.forget_ended();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   contacts_.clear();
   touches_.clear();

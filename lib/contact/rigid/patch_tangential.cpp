@@ -153,15 +153,9 @@ void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book
   for (const PairBook& pair : books_) book.add(pair);
 }
 
-// Begins to bring what a pair needs to the cache.
+// Begins to bring to the cache what a pair needs and is not in the order of the pairs.
 void PatchTangential::fetch(const PairInTouch& pair) const {
-  const auto fetch = [](const auto& object) {
-    const char* const first = reinterpret_cast<const char*>(&object);
-    for (size_t at = 0; at < sizeof(object); at += 64) __builtin_prefetch(first + at);
-    __builtin_prefetch(first + sizeof(object) - 1);
-  };
   surfaces_.fetch_inertia(pair.b);
-  fetch(pairs_.integral(pair));
   __builtin_prefetch(&kinematics_.pose_rate[3 * static_cast<size_t>(pair.b)]);
 }
 

@@ -43,7 +43,6 @@ void PolygonKernel::evaluate() {
         std::min(surfaces_.inradius(pair.a), surfaces_.inradius(pair.b)),
         pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
   });
-  pairs_.forget_ended();
   summary_ = {.relative = 0};
   for (const Found& found : found_) summary_.include(found.summary);
 }

@@ -329,7 +329,7 @@ TEST_CASE("what pairs remember follows them through every search",
     Bodies other = random_heap(same, rough_law(law, .3), 8);
     size_t ended = 0, before = 0;
     for (int i = 0; i < 60; ++i) {
-      other.contacts->forget_search();  // slots have a new order in every step
+      other.contacts->forget_search();  // in every step
       step(bodies, .01);
       step(other, .01);
       REQUIRE(bodies.rigid_force == other.rigid_force);
