@@ -45,6 +45,23 @@ std::span<Record> records_between(std::span<Record> records, const ContactKey& f
   };
   return {at(first), at(end)};
 }
+/// Those of the pair of a key.
+template <class Record>
+std::span<Record> records_of_pair(std::span<Record> records, const ContactKey& pair) {
+  return records_between(records, pair, {pair.law, pair.a, pair.b + 1, 0});
+}
+/// The same where they probably begin at this place.
+template <class Record>
+std::span<Record> records_of_pair(std::span<Record> records, const ContactKey& pair, size_t guess) {
+  const auto of_pair = [&](size_t i) {
+    return i < records.size() && !is_before(records[i].key, pair) &&
+           !is_before(pair, records[i].key);
+  };
+  if (!of_pair(guess) || (guess > 0 && of_pair(guess - 1))) return records_of_pair(records, pair);
+  size_t end = guess + 1;
+  while (of_pair(end)) ++end;
+  return records.subspan(guess, end - guess);
+}
 template <class Record>
 std::span<Record> records_of_law(std::span<Record> records, int law) {
   return records_between(records, {law, 0, 0, 0}, {law + 1, 0, 0, 0});

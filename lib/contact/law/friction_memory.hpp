@@ -113,6 +113,7 @@ class FrictionMemory {
 
   [[nodiscard]] std::span<Spring> springs() { return springs_.now(); }
   [[nodiscard]] std::span<const Spring> springs() const { return springs_.now(); }
+  [[nodiscard]] std::span<const Spring> springs_before() const { return springs_.before(); }
   /// Those of a law.
   [[nodiscard]] std::span<Spring> springs_of(int law) {
     return records_of_law(springs_.now(), law);

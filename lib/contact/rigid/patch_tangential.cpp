@@ -78,28 +78,26 @@ double PatchTangential::lost_at_end(std::span<const Spring> springs) const {
   return energy - scene_.dt / 2 * force.power(pair_rate(kinematics_, pair.a, pair.b));
 }
 
-// After an evaluation without a step they may be elsewhere, or not there.
+// Where the last step has put them, unless there has been an evaluation or an undone step since.
 std::span<Spring> PatchTangential::springs_of(const PairInTouch& pair) const {
-  const std::span<Spring> all = memory_.springs();
-  const ContactKey key{polygon_kernel, pair.a, pair.b, 0};
   const auto number = static_cast<size_t>(pair.number);
-  if (number + 1 < places_.size() || places_.empty()) {
-    const size_t first = place_of(number).spring, end = place_of(number + 1).spring;
-    if (end <= all.size() && first < end && all[first].key.law == key.law &&
-        all[first].key.a == pair.a && all[first].key.b == pair.b) {
-      return all.subspan(first, end - first);
-    }
-  }
-  return records_between(all, key, {polygon_kernel, pair.a, pair.b + 1, 0});
+  const size_t guess = number < places_.size() ? place_of(number).spring : number;
+  return records_of_pair(memory_.springs(), {polygon_kernel, pair.a, pair.b, 0}, guess);
 }
 
-PatchTangential::Alone PatchTangential::alone(const PairInTouch& pair) const {
-  if (pairs_.patches(pair).size() != 1) return {};
-  Alone alone{.known = true};
-  for (const Spring& spring : springs_of(pair)) {
-    alone.friction = alone.friction + spring.on_bodies;
-  }
-  return alone;
+std::optional<PairForce> PatchTangential::friction_of(RigidIndex a, RigidIndex b,
+                                                      std::span<const Spring> springs,
+                                                      std::span<const PatchRun> runs) const {
+  const ContactKey pair{polygon_kernel, a, b, 0};
+  const std::span<const Spring> all = records_of_pair(springs, pair);
+  const bool alone =
+      per_edge_ ? std::ranges::all_of(records_of_pair(runs, pair),
+                                      [](const PatchRun& run) { return run.place.patch == 0; })
+                : all.size() == 1;
+  if (!alone) return {};
+  PairForce sum;
+  for (const Spring& spring : all) sum = sum + spring.on_bodies;
+  return sum;
 }
 
 double PatchTangential::spring_in(const PairInTouch& pair, size_t patch) const {
@@ -251,7 +249,7 @@ void PatchTangential::Range::find_shares(const ContactKey& pair) {
   if (before_.empty()) return;
   runs_before_.clear();
   const std::span<const PatchRun> runs = all_.memory_.runs().before();
-  for (const PatchRun& run : records_between(runs, pair, {pair.law, pair.a, pair.b + 1, 0})) {
+  for (const PatchRun& run : records_of_pair(runs, pair)) {
     runs_before_.push_back(run.place);
   }
   const size_t heirs = patches_.size();

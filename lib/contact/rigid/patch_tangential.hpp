@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,13 +39,15 @@ class PatchTangential {
   /// Books what friction has lost.
   void end_step();
 
-  /// The friction of a pair that has one patch; of others it is not known.
-  struct Alone {
-    bool known = false;
-    PairForce friction = {};
-    void fields(Archive& archive) { archive("known", known)("friction", friction); }
-  };
-  [[nodiscard]] Alone alone(const PairInTouch& pair) const;
+  /// The friction of a pair that has one patch, now and in the step before; of others it is not
+  /// known. Not for every pair.
+  [[nodiscard]] std::optional<PairForce> friction(RigidIndex a, RigidIndex b) const {
+    const FrictionMemory& memory = memory_;
+    return friction_of(a, b, memory.springs(), memory.runs().now());
+  }
+  [[nodiscard]] std::optional<PairForce> friction_before(RigidIndex a, RigidIndex b) const {
+    return friction_of(a, b, memory_.springs_before(), memory_.runs().before());
+  }
   /// Force of the spring in a patch, N.
   [[nodiscard]] double spring_in(const PairInTouch& pair, size_t patch) const;
   /// The dashpot there pushes so much, N, which the next step has to know.
@@ -108,6 +111,9 @@ class PatchTangential {
   };
 
   void make_room();
+  [[nodiscard]] std::optional<PairForce> friction_of(RigidIndex a, RigidIndex b,
+                                                     std::span<const Spring> springs,
+                                                     std::span<const PatchRun> runs) const;
   [[nodiscard]] double lost_at_end(std::span<const Spring> springs) const;
   [[nodiscard]] Place place_of(size_t number) const {
     return places_.empty() ? Place{number, 0} : places_[number];
