@@ -40,8 +40,11 @@ APOTHEM_INLINE bool is_before(const ContactKey& one, const ContactKey& other) {
 template <class Record>
 std::span<Record> records_between(std::span<Record> records, const ContactKey& first,
                                   const ContactKey& end) {
+  const auto before = [](const ContactKey& one, const ContactKey& other) {
+    return is_before(one, other);
+  };
   const auto at = [&](const ContactKey& key) {
-    return std::ranges::lower_bound(records, key, is_before, &Record::key);
+    return std::ranges::lower_bound(records, key, before, &Record::key);
   };
   return {at(first), at(end)};
 }

@@ -4,6 +4,7 @@
 
 #include "geometry/integrals/contact_patches.hpp"
 #include "geometry/integrals/penetration.hpp"
+#include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/execution/parallel.hpp"
 #include "tests/contact/bodies.hpp"
 
