@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "lib/contact/kernel.hpp"
 
 namespace apothem {
 namespace {
-
-using History = PatchTangential::History;
-using PairHistory = PatchTangential::PairHistory;
 
 // The numbers in another scene of what belongs to bodies: -1 where there is no heir.
 class Renumbering {
@@ -55,19 +51,8 @@ class Renumbering {
   std::vector<int> heirs_, surfaces_, vertices_, body_of_vertex_;
 };
 
-// The force on the first body of a pair becomes that on the second one: the tangent turns round,
-// and the number along it stays.
-void exchange(Spring& spring, bool per_edge, int edges_a, int edges_b) {
-  std::swap(spring.key.a, spring.key.b);
-  spring.tangent = -spring.tangent;
-  if (!per_edge) return;
-  const int part = spring.key.part;
-  spring.key.part = part < edges_a ? edges_b + part : part - edges_a;
-}
-
-std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionLaw law) {
-  SpringKey& key = spring.key;
-  const SpringKey old = key;
+std::optional<ContactKey> renumbered(const ContactKey& old, const Renumbering& to) {
+  ContactKey key = old;
   if (key.law == outline_kernel) {
     key.b = to.is_rigid_vertex(old.a) ? to.vertex(old.b) : to.body(old.b);
     key.a = to.vertex(old.a);
@@ -76,61 +61,66 @@ std::optional<Spring> renumbered(Spring spring, const Renumbering& to, FrictionL
     key.b = to.surface(old.b);
   }
   if (key.a < 0 || key.b < 0) return {};
-  if (key.law != outline_kernel && key.a > key.b) {
-    const bool per_edge = key.law == polygon_kernel && law == FrictionLaw::per_edge;
-    exchange(spring, per_edge, per_edge ? to.edges(old.a) : 0, per_edge ? to.edges(old.b) : 0);
-  }
-  return spring;
+  return key;
 }
 
-// The patches of one pair with all that belongs to them.
-struct Pair {
-  PairHistory pair;
-  std::vector<RunPlace> runs;
-};
+// The lower number comes first, but for edges and their partners.
+bool is_exchanged(const ContactKey& key) { return key.law != outline_kernel && key.a > key.b; }
 
-std::vector<Pair> renumbered(const History& history, const Renumbering& to) {
-  std::vector<Pair> pairs;
-  size_t run = 0;
-  for (const PairHistory& old : history.pairs) {
-    Pair pair{old, {}};
-    for (int k = 0; k < old.runs; ++k) pair.runs.push_back(history.runs.at(run++));
-    pair.pair.a = to.surface(old.a);
-    pair.pair.b = to.surface(old.b);
-    if (pair.pair.a < 0 || pair.pair.b < 0) continue;
-    if (pair.pair.a > pair.pair.b) {
-      std::swap(pair.pair.a, pair.pair.b);
-      for (RunPlace& r : pair.runs) r.of_a = !r.of_a;
+// The force on the first body of a pair becomes that on the second one: the tangent turns round,
+// and the number along it stays.
+void exchange(Spring& spring) {
+  std::swap(spring.key.a, spring.key.b);
+  spring.tangent = -spring.tangent;
+  const PairForce& on = spring.on_bodies;
+  spring.on_bodies = {-on.x, -on.y, on.b, on.a};
+}
+
+void exchange(PatchRun& run) {
+  std::swap(run.key.a, run.key.b);
+  run.place.of_a = !run.place.of_a;
+}
+
+// The records of pairs that have heirs, in the order of their new numbers.
+template <class Record>
+std::vector<Record> renumbered(std::span<const Record> records, const Renumbering& to,
+                               const auto& finish) {
+  std::vector<Record> result;
+  for (Record record : records) {
+    const ContactKey old = record.key;
+    const std::optional<ContactKey> key = renumbered(old, to);
+    if (!key) continue;
+    record.key = *key;
+    if (is_exchanged(*key)) {
+      exchange(record);
+      finish(record, old);
     }
-    pairs.push_back(std::move(pair));
+    result.push_back(record);
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-    return std::tie(p.pair.a, p.pair.b) < std::tie(q.pair.a, q.pair.b);
-  });
-  return pairs;
+  std::ranges::sort(result, {}, &Record::key);
+  return result;
 }
 
 }  // namespace
 
-ContactMemory hand_over(const ContactMemory& memory, const ContactNumbers& from,
-                        const ContactNumbers& to, std::span<const BodyIndex> heirs) {
+FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
+                         const ContactNumbers& to, std::span<const BodyIndex> heirs) {
   const Renumbering numbers(from, to, heirs);
-  const auto heirs_of = [&](std::span<const Spring> springs) {
-    std::vector<Spring> result;
-    for (const Spring& spring : springs) {
-      if (auto heir = renumbered(spring, numbers, from.law)) result.push_back(*heir);
-    }
-    std::ranges::sort(result, {}, &Spring::key);
-    return result;
+  // Edges of an overlap are numbered through both bodies.
+  const auto renumber_edge = [&](Spring& spring, const ContactKey& old) {
+    if (spring.key.law != polygon_kernel || from.law != FrictionLaw::per_edge) return;
+    const int of_a = numbers.edges(old.a), of_b = numbers.edges(old.b);
+    spring.key.part = old.part < of_a ? of_b + old.part : old.part - of_a;
   };
-  ContactMemory result;
-  result.friction.inherit(heirs_of(memory.friction.springs()));
-  if (from.law != to.law) return result;
-  result.patches.springs = heirs_of(memory.patches.springs);
-  for (Pair& pair : renumbered(memory.patches, numbers)) {
-    result.patches.pairs.push_back(pair.pair);
-    result.patches.runs.insert(result.patches.runs.end(), pair.runs.begin(), pair.runs.end());
+  std::vector<Spring> springs = renumbered(memory.springs(), numbers, renumber_edge);
+  std::vector<PatchRun> runs =
+      renumbered(memory.runs().now(), numbers, [](const PatchRun&, const ContactKey&) {});
+  if (from.law != to.law) {
+    std::erase_if(springs, [](const Spring& s) { return s.key.law == polygon_kernel; });
+    runs.clear();
   }
+  FrictionMemory result;
+  result.inherit(std::move(springs), std::move(runs));
   return result;
 }
 

@@ -7,7 +7,6 @@
 #include "lib/archive/archive.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/law.hpp"
-#include "lib/contact/rigid/patch_tangential.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
@@ -34,18 +33,10 @@ struct ContactNumbers {
   }
 };
 
-/// The friction springs of meshes, and what pairs of rigid bodies remember. The names are those of
-/// Contacts::fields().
-struct ContactMemory {
-  FrictionMemory friction;
-  PatchTangential::History patches;
-  void fields(Archive& archive) { archive("friction", friction)("tangential", patches); }
-};
-
 /// The memory of contacts whose bodies both have an heir in another scene, by the numbers there.
 /// `heirs`: for each body of `from` its number in `to`, or -1. Springs between rigid bodies are
 /// left out if the friction laws of the two scenes differ.
-ContactMemory hand_over(const ContactMemory& memory, const ContactNumbers& from,
-                        const ContactNumbers& to, std::span<const BodyIndex> heirs);
+FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
+                         const ContactNumbers& to, std::span<const BodyIndex> heirs);
 
 }  // namespace apothem

@@ -33,7 +33,7 @@ Contacts::Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, P
   needed[outline_kernel] = surfaces_.size() > surfaces_.shapes().size();
   if (needed[polygon_kernel]) {
     kernels_[polygon_kernel] =
-        std::make_unique<PolygonKernel>(surfaces_, law, table_, thickness, threads);
+        std::make_unique<PolygonKernel>(surfaces_, law, table_, memory_, thickness, threads);
   }
   if (needed[element_kernel]) {
     kernels_[element_kernel] =
@@ -115,7 +115,6 @@ void Contacts::slide(const Kinematics& now, double dt) {
 
 void Contacts::try_slide(const Kinematics& now, double dt) {
   drop_trial();
-  each([](Kernel& kernel) { kernel.remember(); });
   slide(now, dt);
   tried_ = tangential_;
 }
@@ -178,7 +177,7 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
   return std::minmax({body[contact.a], body[contact.b]});
 }
 
-std::pair<BodyIndex, BodyIndex> Contacts::bodies(const SpringKey& key) const {
+std::pair<BodyIndex, BodyIndex> Contacts::bodies(const ContactKey& key) const {
   if (key.law != outline_kernel) return {surfaces_.body(key.a), surfaces_.body(key.b)};
   // The partner of an edge is a body, or a face of a mesh that slides on a rigid body.
   const Outlines& o = surfaces_.outlines();
@@ -273,7 +272,7 @@ void Contacts::add_force_sizes(std::span<double> of_bodies) const {
 
 std::vector<double> Contacts::friction_sizes() const {
   std::vector<double> sizes(static_cast<size_t>(surfaces_.body_count()));
-  for (const Spring& spring : springs()) {
+  for (const Spring& spring : memory_.springs()) {
     const auto [a, b] = bodies(spring.key);
     sizes[a] += std::abs(spring.force);
     sizes[b] += std::abs(spring.force);
@@ -285,13 +284,6 @@ std::vector<ContactRecord> Contacts::records() const {
   std::vector<ContactRecord> records;
   each([&](const Kernel& kernel) { kernel.add_records(records); });
   return records;
-}
-
-std::vector<Spring> Contacts::springs() const {
-  std::vector<Spring> springs;
-  each([&](const Kernel& kernel) { kernel.add_springs(springs); });
-  springs.insert(springs.end(), memory_.springs().begin(), memory_.springs().end());
-  return springs;
 }
 
 std::vector<SurfaceRecord> Contacts::surface_records() const {
@@ -343,13 +335,8 @@ ContactNumbers Contacts::numbers() const {
   return numbers;
 }
 
-void Contacts::inherit(const ContactMemory& memory) {
-  if (!tangential_) return;
-  memory_ = memory.friction;
-  // The table of kernels has a PolygonKernel in this place, or none.
-  if (auto* kernel = static_cast<PolygonKernel*>(kernels_[polygon_kernel].get())) {
-    kernel->inherit(memory.patches);
-  }
+void Contacts::inherit(const FrictionMemory& memory) {
+  if (tangential_) memory_ = memory;
 }
 
 void Contacts::fields(Archive& archive) {

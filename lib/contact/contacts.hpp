@@ -74,7 +74,7 @@ class Contacts {
   [[nodiscard]] int count() const;
   /// The bodies of a contact, and of a spring.
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
-  [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const SpringKey& key) const;
+  [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const ContactKey& key) const;
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const FrictionMemory& friction() const { return memory_; }
 
@@ -120,7 +120,9 @@ class Contacts {
   /// One for each contact patch.
   [[nodiscard]] std::vector<ContactRecord> records() const;
   /// The friction springs of all contacts, in ascending order of their keys.
-  [[nodiscard]] std::vector<Spring> springs() const;
+  [[nodiscard]] std::vector<Spring> springs() const {
+    return {memory_.springs().begin(), memory_.springs().end()};
+  }
   /// The boundary edges that take part in contact with meshes.
   [[nodiscard]] std::vector<SurfaceRecord> surface_records() const;
 
@@ -134,7 +136,7 @@ class Contacts {
   /// The numbers that the memory of contacts goes by.
   [[nodiscard]] ContactNumbers numbers() const;
   /// Takes over the memory of other contacts, by the numbers of these.
-  void inherit(const ContactMemory& memory);
+  void inherit(const FrictionMemory& memory);
 
  private:
   void hand_out_pairs();

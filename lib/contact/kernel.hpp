@@ -83,11 +83,8 @@ class Kernel {
   [[nodiscard]] virtual ContactFault fault(const Contact& /*contact*/) const { return {}; }
   /// Friction of a step of dt (s) that ends here, with half-step velocities. With dt = 0 the
   /// springs keep their forces. Returns the work on the bodies since the last call, J, of springs
-  /// that the memory keeps.
+  /// whose losses it does not book itself.
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
-  /// Before a slide that is tried: undo_slide() comes back to what contacts remember now. Only
-  /// kernels that the static solver meets need these.
-  virtual void remember() {}
   /// Takes back the last slide, whose step the memory takes back.
   virtual void undo_slide() {}
   /// After the memory has been restored: finds the forces of friction again that the next slide
@@ -127,8 +124,6 @@ class Kernel {
   virtual void add_force_sizes(std::span<double> /*of_bodies*/) const {}
   /// Appends one record for each contact patch; ascending pairs of bodies.
   virtual void add_records(std::vector<ContactRecord>& records) const = 0;
-  /// Appends the friction springs that it keeps itself, in ascending order.
-  virtual void add_springs(std::vector<Spring>& /*springs*/) const {}
   /// Appends the boundary edges of its surfaces.
   virtual void add_surfaces(std::vector<SurfaceRecord>& /*records*/) const {}
 

@@ -83,7 +83,7 @@ class ContactTerm final : public Term {
   void set_absent(const std::vector<std::uint8_t>& absent) { contacts_.set_absent(absent); }
 
   /// See Simulation::inherit.
-  void inherit(const ContactMemory& memory) { contacts_.inherit(memory); }
+  void inherit(const FrictionMemory& memory) { contacts_.inherit(memory); }
 
   /// What was wrong with the contact of a body with itself in one of the last looks, in words.
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }

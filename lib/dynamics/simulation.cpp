@@ -257,7 +257,7 @@ LoadStep Simulation::balance(double time, const std::function<bool()>& stop) {
   return result;
 }
 
-void Simulation::inherit(const ContactMemory& memory) {
+void Simulation::inherit(const FrictionMemory& memory) {
   if (contact_) {
     contact_->inherit(memory);
     contact_->start_ledger();

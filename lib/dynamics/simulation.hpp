@@ -28,7 +28,7 @@
 
 namespace apothem {
 
-struct ContactMemory;
+class FrictionMemory;
 struct ContactNumbers;
 class ContactTerm;
 class Elements;
@@ -70,7 +70,7 @@ class Simulation {
 
   /// Takes over what contacts of another simulation remember, by the numbers of this one's
   /// contacts, before the first step.
-  void inherit(const ContactMemory& memory);
+  void inherit(const FrictionMemory& memory);
   [[nodiscard]] ContactNumbers contact_numbers() const;
 
   /// All that changes while a simulation runs: enough to continue it bit for bit. What is loaded

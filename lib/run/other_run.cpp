@@ -15,28 +15,17 @@ namespace {
 
 constexpr double kSameTime = 1e-6;  // of the time
 
-// What contacts remember, as it stands in a file: in one of the terms of the simulation, and only
-// where there is friction or damping.
-nlohmann::json contacts_of(const nlohmann::json& simulation) {
-  nlohmann::json contacts;
+// What contacts remember, as it stands in a file: in one of the terms of the simulation, if there
+// is contact.
+FrictionMemory memory_in(const nlohmann::json& simulation) {
+  FrictionMemory memory;
   for (const auto& [name, term] : simulation.items()) {
     if (name.starts_with("term_") && term.is_object() && term.contains("contacts")) {
-      contacts = term["contacts"];
+      JsonLoader archive(term["contacts"]);
+      archive("friction", memory);
     }
   }
-  const nlohmann::json none = nlohmann::json::array();
-  if (!contacts.is_object()) {
-    contacts["friction"] = {{"springs", none},
-                            {"energy", 0},
-                            {"balanced_energy", 0},
-                            {"friction_loss", 0},
-                            {"damping_loss", 0}};
-  }
-  if (!contacts.contains("tangential")) {
-    contacts["tangential"] = {
-        {"pairs", none}, {"runs", none}, {"dampers", none}, {"damping", none}, {"springs", none}};
-  }
-  return contacts;
+  return memory;
 }
 
 }  // namespace
@@ -80,9 +69,7 @@ void OtherRun::load(const std::string& file) {
   // The time of a static run is that of its load histories: the velocities of what it drives are
   // none that bodies have.
   if (simulation.contains("equilibrium")) std::fill(state_.v.begin(), state_.v.end(), 0.);
-  const nlohmann::json contacts = contacts_of(simulation);
-  JsonLoader of_contacts(contacts);
-  memory_.fields(of_contacts);
+  memory_ = memory_in(simulation);
 }
 
 Beginning OtherRun::move_into(Scene& scene) {
@@ -109,7 +96,7 @@ void OtherRun::hand_contacts_to(Simulation& simulation) const {
   const ContactNumbers numbers = simulation.contact_numbers();
   const bool both = !numbers.bodies.empty() && !record_.contacts.bodies.empty();
   simulation.inherit(both ? hand_over(memory_, record_.contacts, numbers, heirs_)
-                          : ContactMemory());
+                          : FrictionMemory());
 }
 
 std::vector<std::string> not_moved(const Model& model, const Beginning& beginning) {

@@ -31,7 +31,7 @@ class OtherRun {
   Beginning beginning_;
   ModelRecord record_;
   State state_;
-  ContactMemory memory_;
+  FrictionMemory memory_;
   std::vector<BodyIndex> heirs_;
 };
 

@@ -142,7 +142,7 @@ TEST_CASE("bodies keep their springs where others come, go, or stand in another 
 
     // Without what contacts remember, friction would begin anew.
     Json forgetful = Json::parse(content(folder / "first/checkpoint.json"));
-    forgetful["simulation"]["term_0"]["contacts"]["tangential"]["springs"] = Json::array();
+    forgetful["simulation"]["term_0"]["contacts"]["friction"]["springs"] = Json::array();
     write_file(folder / "first/checkpoint.json", sealed(forgetful.dump()));
     Run third(scene_of(folder, other), {.folder = folder / "third", .from = folder / "first"});
     CHECK(third.simulation().contact_forces()[1].friction < .01 * on.friction);

@@ -24,7 +24,7 @@ struct Impact {
   std::string damping;
 };
 
-std::string text_of(const std::vector<Vec2>& polygon) {
+std::string vertices_text(const std::vector<Vec2>& polygon) {
   std::string text;
   for (const Vec2& v : polygon)
     text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", v.x(), v.y());
@@ -45,16 +45,17 @@ Eigen::Vector3d left_with(const Impact& impact, double cell, const std::string& 
                 R"("motion": "fixed", "polygon": [[-1, -0.2], [1, -0.2], [1, 0], [-1, 0]])");
   const Folder folder;
   const Scene scene = scene_of(
-      folder, fmt::format(
-                  R"({{ "materials": {{ "m": {{ "density": 2000, "young": {}, "poisson": 0.3 }} }},
+      folder,
+      fmt::format(
+          R"({{ "materials": {{ "m": {{ "density": 2000, "young": {}, "poisson": 0.3 }} }},
       "contact": {{ "normal_stiffness": {}, "reference": {}, "penetration_warning": 10,
                     "friction": {{ "coefficient": {}{} }}{} }},
       "bodies": [ {{ "name": "floor", "material": "m", {} }},
                   {{ "name": "body", "material": "m", "polygon": {}, "velocity": [{}, {}], "spin": {} }} ],
       "time": {{ "end": 0.012 }} }})",
-                  stiff, kStiffness, kReference, impact.friction, friction,
-                  impact.damping.empty() ? "" : ", \"damping\": " + impact.damping, floor,
-                  text_of(impact.polygon), impact.velocity.x(), impact.velocity.y(), impact.spin));
+          stiff, kStiffness, kReference, impact.friction, friction,
+          impact.damping.empty() ? "" : ", \"damping\": " + impact.damping, floor,
+          vertices_text(impact.polygon), impact.velocity.x(), impact.velocity.y(), impact.spin));
   Run run(scene, {});
   while (run.step()) {
   }

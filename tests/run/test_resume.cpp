@@ -487,7 +487,7 @@ TEST_CASE("a checkpoint that is missing, damaged or of another scene is refused"
        {"/scene_hash", "/potentials", "/progress", "/progress/next_row", "/simulation",
         "/simulation/state/x", "/simulation/ledger", "/simulation/step_control/size",
         "/simulation/term_0", "/simulation/term_0/contacts/search",
-        "/simulation/term_0/contacts/tangential/springs/0/force"}) {
+        "/simulation/term_0/contacts/friction/springs/0/force"}) {
     INFO(missing);
     write(without(missing));
     refused("is not a checkpoint");

@@ -33,7 +33,6 @@ bool ElementKernel::convex(SurfaceIndex i) const {
 
 void ElementKernel::evaluate() {
   pairs_.evaluate([](const PairInTouch&, const PairIntegral&, int) {});
-  pairs_.forget_ended();
   normal_.clear(static_cast<size_t>(surfaces_.body_count()));
   contacts_.clear();
   touches_.clear();
@@ -212,6 +211,7 @@ Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners
 double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!table_.rough()) return 0;
   const double power_before = power(tangential_, now);
+  ContactWalk<const Spring> walk = memory.before(element_kernel);
   tangential_.clear(static_cast<size_t>(surfaces_.body_count()));
   for (Touch& t : touches_) {
     const PairLaw& law = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
@@ -220,7 +220,8 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     find_corners(t.a, t.point, of_a_);
     find_corners(t.b, point_b, of_b_);
     const Vec2 rate = velocity_at(t.a, t.point, of_a_, now) - velocity_at(t.b, point_b, of_b_, now);
-    const std::span<const Spring> before = memory.before(element_kernel, t.a, t.b);
+    const ContactKey key{element_kernel, t.a, t.b, 0};
+    const std::span<const Spring> before = walk.find(key);
     const Spring old = before.empty() ? Spring() : before[0];
     const double constant = law.friction.tangential_stiffness * thickness_;
     t.spring_stiffness = constant > 0 ? constant : law.friction.stiffness_ratio * t.stiffness;
@@ -229,7 +230,7 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
         t.spring_stiffness, now.restored ? HUGE_VAL : law.friction.coefficient * pressed};
     const double kept = old.stiffness > 0 ? std::min(1., spring.stiffness / old.stiffness) : 0;
     t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
-    memory.keep({{element_kernel, t.a, t.b, 0}, t.spring, spring.stiffness, tangent, old.push});
+    memory.keep({key, t.spring, spring.stiffness, tangent, old.push});
     t.friction = t.spring * tangent;
     const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
       Resultant& sum = tangential_.sums[surfaces_.body(i)];

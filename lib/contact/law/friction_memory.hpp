@@ -12,38 +12,45 @@
 // not store is dissipated.
 #pragma once
 
-#include <algorithm>
-#include <compare>
-#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "geometry/integrals/contact_patches.hpp"
 #include "lib/archive/archive.hpp"
+#include "lib/contact/law/contact.hpp"
+#include "lib/contact/law/contact_history.hpp"
+#include "lib/contact/law/pair_vector.hpp"
 
 namespace apothem {
 
-/// Who touches what. Keys ascend within a step.
-struct SpringKey {
-  int law;   ///< of the kernel whose contact it is: see kernel.hpp
-  int a, b;  ///< two surfaces, or an edge and its partner
-  int part;  ///< patch of the pair, or edge of its overlap; 0 where a pair has one spring
-  auto operator<=>(const SpringKey&) const = default;
-  void fields(Archive& archive) { archive("law", law)("a", a)("b", b)("part", part); }
-};
-
 struct Spring {
-  SpringKey key;
+  ContactKey key;
   double force = 0;             ///< along the tangent of its contact, N
   double stiffness = 0;         ///< N/m
   Vec2 tangent = Vec2::Zero();  ///< direction of the force; zero where the law does not need it
   double push = 0;              ///< of the dashpot across it, N
+  /// What it does to two rigid bodies, with the moments about their mass centres; zero where one of
+  /// the bodies deforms.
+  PairForce on_bodies = {};
 
   [[nodiscard]] double energy() const {
     return stiffness > 0 ? force * force / (2 * stiffness) : 0;
   }
   void fields(Archive& archive) {
     archive("key", key)("force", force)("stiffness", stiffness)("tangent", tangent)("push", push);
+    if (key.law == polygon_kernel) archive("on_bodies", on_bodies);
+  }
+};
+
+/// A run of boundary in the overlap of two rigid bodies that are split into patches, by which their
+/// patches are found again. Its part is its number in the pair.
+struct PatchRun {
+  ContactKey key;
+  RunPlace place;
+  void fields(Archive& archive) {
+    archive("key", key)("of_a", place.of_a)("edge", place.edge)("patch", place.patch)(
+        "from", place.from)("to", place.to)("length", place.length);
   }
 };
 
@@ -67,12 +74,15 @@ class FrictionMemory {
   void begin_step();
   /// Takes back the last step, with all that has been lost in it: that step can be made anew.
   void undo_step();
-  /// The springs that a pair had in the step before, in the order of their parts; empty if it is
-  /// new. Pairs must be asked for in ascending order.
-  [[nodiscard]] std::span<const Spring> before(int law, int a, int b);
-  /// All springs that a law had in the step before. The next law to be asked for must be a later
-  /// one.
-  [[nodiscard]] std::span<const Spring> before(int law);
+  /// Finds the springs that pairs of a law had in the step before.
+  [[nodiscard]] ContactWalk<const Spring> before(int law) const {
+    return ContactWalk(records_of_law(springs_.before(), law));
+  }
+  /// The same for the pairs from `first` on that come before `end`.
+  [[nodiscard]] ContactWalk<const Spring> before(const ContactKey& first,
+                                                 const ContactKey& end) const {
+    return ContactWalk(records_between(springs_.before(), first, end));
+  }
   void add(const PairBook& book) {
     energy_ += book.energy;
     loss_ += book.loss;
@@ -80,30 +90,36 @@ class FrictionMemory {
   }
   /// Keeps a spring for the next step; in ascending order of the keys.
   void keep(const Spring& spring) {
-    now_.push_back(spring);
+    springs_.keep(spring);
     energy_ += spring.energy();
     balanced_ += spring.energy();
   }
   /// Keeps springs that store `energy` together, J; in ascending order. What the list holds
   /// afterwards is of no use.
   void keep(std::vector<Spring>& springs, double energy) {
-    if (now_.empty()) {
-      now_.swap(springs);
-    } else {
-      now_.insert(now_.end(), springs.begin(), springs.end());
-    }
+    springs_.keep(springs);
     energy_ += energy;
     balanced_ += energy;
   }
+  /// Keeps so many springs of a law that books itself what they store and lose; it writes them
+  /// before others keep theirs.
+  std::span<Spring> make_room(size_t springs) { return springs_.make_room(springs); }
   /// What a spring has lost that is not kept here, J.
   void lose(double energy) { loss_ += energy; }
-  /// Closes the step. `work`: what the springs that are kept here have done on the bodies since the
-  /// step before, J. What the bodies have lost and the springs do not store is dissipated.
+  /// Closes the step. `work`: what the springs whose losses no law books have done on the bodies
+  /// since the step before, J. What the bodies have lost and the springs do not store is
+  /// dissipated.
   void end_step(double work);
 
-  [[nodiscard]] std::span<const Spring> springs() const { return now_; }
+  [[nodiscard]] std::span<Spring> springs() { return springs_.now(); }
+  [[nodiscard]] std::span<const Spring> springs() const { return springs_.now(); }
+  [[nodiscard]] std::span<const Spring> springs_before() const { return springs_.before(); }
   /// Those of a law.
-  [[nodiscard]] std::span<Spring> springs_of(int law);
+  [[nodiscard]] std::span<Spring> springs_of(int law) {
+    return records_of_law(springs_.now(), law);
+  }
+  [[nodiscard]] ContactHistory<PatchRun>& runs() { return runs_; }
+  [[nodiscard]] const ContactHistory<PatchRun>& runs() const { return runs_; }
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
@@ -111,21 +127,23 @@ class FrictionMemory {
   /// Energy that contact damping takes from the bodies, J, and its sum since the start.
   void damp(double energy) { damping_loss_ += energy; }
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
-  /// Takes over the springs of another simulation, in ascending order of their keys.
-  void inherit(std::vector<Spring> springs);
+  /// Takes over the springs and runs of another simulation, in ascending order of their keys.
+  void inherit(std::vector<Spring> springs, std::vector<PatchRun> runs);
   /// What has been dissipated so far does not count.
   void start_ledger() { loss_ = damping_loss_ = 0; }
 
   void fields(Archive& archive) {
-    archive("springs", now_)("energy", energy_)("balanced_energy", balanced_)(
-        "friction_loss", loss_)("damping_loss", damping_loss_);
+    springs_.fields(archive, "springs");
+    runs_.fields(archive, "runs");
+    archive("energy", energy_)("balanced_energy", balanced_)("friction_loss", loss_)("damping_loss",
+                                                                                     damping_loss_);
   }
 
  private:
-  std::vector<Spring> now_, before_;
-  size_t next_ = 0;                            // of the springs before
+  ContactHistory<Spring> springs_;
+  ContactHistory<PatchRun> runs_;
   double energy_ = 0;                          // of all springs, J
-  double balanced_ = 0, balanced_before_ = 0;  // of those that are kept here, J
+  double balanced_ = 0, balanced_before_ = 0;  // of those whose losses no law books, J
   double loss_ = 0, damping_loss_ = 0;         // J
   struct Sums {
     double energy = 0, balanced = 0, loss = 0, damping_loss = 0;

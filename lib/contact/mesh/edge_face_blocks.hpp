@@ -53,7 +53,7 @@ struct EdgeFaceTouch {
 struct EdgeFaceGroup {
   std::int32_t first, end;  ///< among those of the unit
   std::int32_t law;
-  std::int32_t edge, partner;  ///< the spring's key: see SpringKey
+  std::int32_t edge, partner;  ///< the spring's key: see ContactKey
 };
 
 struct EdgeFaceUnit {

@@ -15,16 +15,8 @@ namespace {
 
 constexpr double kSlipTime = 100, kVelocityTime = 5;  // ns
 
-APOTHEM_INLINE SpringKey key_of(const EdgeFaceGroup& group) {
+APOTHEM_INLINE ContactKey key_of(const EdgeFaceGroup& group) {
   return {outline_kernel, group.edge, group.partner, 0};
-}
-
-// Of two keys of this law.
-APOTHEM_INLINE bool is_before(const SpringKey& one, const SpringKey& other) {
-  const auto number = [](const SpringKey& key) APOTHEM_LAMBDA {
-    return static_cast<std::uint64_t>(key.a) << 32 | static_cast<std::uint32_t>(key.b);
-  };
-  return number(one) < number(other);
 }
 
 }  // namespace
@@ -111,19 +103,17 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
 }
 
 // What springs remember.
-void OutlineFriction::find_before(const Step& step) {
-  auto before = step.before.begin();
+void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> walk) {
   for (const EdgeFaceUnit& unit : step.blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
     for (size_t g = 0; g < groups.size(); ++g) {
       SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
       if (!(contact.normal > 0)) continue;
-      const SpringKey key = key_of(groups[g]);
-      while (before != step.before.end() && is_before(before->key, key)) ++before;
-      if (before == step.before.end() || before->key.a != key.a || before->key.b != key.b) continue;
+      const std::span<const Spring> before = walk.find(key_of(groups[g]));
+      if (before.empty()) continue;
       contact.is_old = true;
-      contact.force_before = before->force, contact.stiffness_before = before->stiffness;
-      contact.push_before = before->push;
+      contact.force_before = before[0].force, contact.stiffness_before = before[0].stiffness;
+      contact.push_before = before[0].push;
     }
   }
 }
@@ -220,7 +210,7 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
 double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
   const Outlines& o = outlines_;
-  const Step step{blocks, memory.before(outline_kernel), dt, now.finite, !now.restored};
+  const Step step{blocks, dt, now.finite, !now.restored};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
   drags_.resize(n), drags_before_.resize(n);
@@ -248,7 +238,7 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int) {
     for (int i = first; i < end; ++i) find_contacts(step, blocks.units()[i]);
   });
-  find_before(step);
+  find_before(step, memory.before(outline_kernel));
   normals_.find(contacts_);
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {

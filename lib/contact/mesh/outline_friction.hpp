@@ -58,7 +58,6 @@ class OutlineFriction {
  private:
   struct Step {
     const EdgeFaceBlocks& blocks;
-    std::span<const Spring> before;  ///< the springs of the step before
     double dt;
     bool finite;   ///< see Kinematics
     bool limited;  ///< false: springs keep forces above their limits
@@ -78,7 +77,7 @@ class OutlineFriction {
 
   [[nodiscard]] double begin(BodyIndex body, const Kinematics& now, const Step& step);
   void find_contacts(const Step& step, const EdgeFaceUnit& unit);
-  void find_before(const Step& step);
+  void find_before(const Step& step, ContactWalk<const Spring> walk);
   void slide_unit(const Step& step, size_t index, Worker& worker, bool divided);
   [[nodiscard]] static double closed_share(const Step& step, const EdgeFaceUnit& unit,
                                            const EdgeFaceGroup& group,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "lib/execution/elementary.hpp"
 
@@ -44,8 +45,7 @@ struct Onset::Path {
 bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
                  const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
-  std::swap(alone_, alone_before_);
-  alone_.clear();
+  tangential_ = tangential;
   for (const PairInTouch& result : pairs.touching()) {
     const PairIntegral& pair = pairs.integral(result);
     if (!(dt > 0) && pair.largest_phi < kAtFirst) continue;
@@ -54,7 +54,6 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
     now_touching.push_back({result.a, result.b, pair.inside_a, pair.inside_b,
                             pair.own_length_a + pair.own_length_b, k * pair.force.norm(),
                             k * pair.moment_a / arm});
-    if (tangential) alone_.push_back(tangential->alone(result));
   }
   changed_.clear(), impulses_.clear();
   if (!(dt > 0)) return false;
@@ -79,7 +78,7 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
 // done, after all other parts.
 void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
   loss_ = 0;
-  if (alone_.empty() && alone_before_.empty()) return;
+  if (!tangential_) return;
   all_.resize(now.pose_rate.size());
   parts_.resize(now.pose_rate.size());
   for (const Impulse& i : impulses_) {
@@ -110,11 +109,10 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
   constexpr double kVanishes = 1e-3;  // of the mean force
   Load friction{};
   if (!table_.between(pair.a, pair.b).rough()) return friction;
-  const Alone none{.known = true};
-  const std::array<Alone, 2> at{
-      pair.before >= 0 ? alone_before_[static_cast<size_t>(pair.before)] : none,
-      pair.now >= 0 ? alone_[static_cast<size_t>(pair.now)] : none};
-  if (!at[0].known || !at[1].known) return friction;
+  const std::optional<PairForce> none = PairForce{};
+  const std::array at{pair.before >= 0 ? tangential_->friction_before(pair.a, pair.b) : none,
+                      pair.now >= 0 ? tangential_->friction(pair.a, pair.b) : none};
+  if (!at[0] || !at[1]) return friction;
   const auto size = [&](size_t i) {
     const Load& load = worker.loads[i];
     return std::sqrt(load[0] * load[0] + load[1] * load[1]);
@@ -129,7 +127,7 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
   for (const size_t end : {0, 1}) {
     if (!(ends[end] > least)) continue;
     const double share = lacks / ends[end] / known;
-    const PairForce& force = at[end].friction;
+    const PairForce& force = *at[end];
     friction[0] += share * force.x, friction[1] += share * force.y;
     friction[2] += share * force.a, friction[3] += share * force.b;
   }

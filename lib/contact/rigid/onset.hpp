@@ -37,10 +37,7 @@ class Onset {
   /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
-  void fields(Archive& archive) {
-    watch_.fields(archive);
-    if (table_.rough()) archive("alone", alone_);
-  }
+  void fields(Archive& archive) { watch_.fields(archive); }
 
  private:
   /// Force on a, and the moments on a and b about their mass centres, N and N m.
@@ -50,7 +47,6 @@ class Onset {
     Load mean;      ///< J / dt
     Load friction;  ///< of it
   };
-  using Alone = PatchTangential::Alone;
   /// Where the two polygons of a pair are within a step.
   struct Path;
   /// What a thread needs.
@@ -81,7 +77,7 @@ class Onset {
   double thickness_;
   Threads threads_;
   OnsetWatch watch_;
-  std::vector<Alone> alone_, alone_before_;  // of the pairs of the watch
+  const PatchTangential* tangential_ = nullptr;  // of the last call
   std::vector<PairChange> changed_;
   std::vector<Impulse> impulses_;  // of these
   double loss_ = 0;

@@ -121,13 +121,13 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
   rate(p.rate.y, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[1] - b[1]; });
   rate(p.rate.a, [](const double* a, const double*) APOTHEM_LAMBDA { return a[2]; });
   rate(p.rate.b, [](const double*, const double* b) APOTHEM_LAMBDA { return b[2]; });
-  read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].memory->patches > 0 ? 0. : 1.; });
-  const auto memory = [&](int k) APOTHEM_LAMBDA -> const PairMemory& { return *work[k].memory; };
-  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return memory(k).spring; });
-  read_lanes(p.stiffness_before, [&](int k) APOTHEM_LAMBDA { return memory(k).stiffness; });
-  read_lanes(p.push, [&](int k) APOTHEM_LAMBDA { return memory(k).push; });
+  read_lanes(p.begins, [&](int k) APOTHEM_LAMBDA { return work[k].begins ? 1. : 0.; });
+  const auto before = [&](int k) APOTHEM_LAMBDA -> const Spring& { return *work[k].before; };
+  read_lanes(p.spring, [&](int k) APOTHEM_LAMBDA { return before(k).force; });
+  read_lanes(p.stiffness_before, [&](int k) APOTHEM_LAMBDA { return before(k).stiffness; });
+  read_lanes(p.push, [&](int k) APOTHEM_LAMBDA { return before(k).push; });
   gather(p.friction_before,
-         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return memory(k).force; });
+         [&](int k) APOTHEM_LAMBDA -> const PairForce& { return before(k).on_bodies; });
 }
 
 template <class Real>
@@ -250,14 +250,14 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
   if (rough_) {
     read_memory(scene, work, p);
     rub(p, scene.dt, friction);
-    const auto memory = [&](int k) APOTHEM_LAMBDA -> PairMemory& { return *work[k].memory; };
-    scatter(friction.force, [&](int k) APOTHEM_LAMBDA -> PairForce& { return memory(k).force; });
+    const auto now = [&](int k) APOTHEM_LAMBDA -> Spring& { return *work[k].now; };
+    scatter(friction.force, [&](int k) APOTHEM_LAMBDA -> PairForce& { return now(k).on_bodies; });
     const Pack energy = spring_energy(friction.spring, friction.stiffness);
     for (int k = 0; k < kAtOnce; ++k) {
-      memory(k).spring = friction.spring.v[k];
-      memory(k).stiffness = friction.stiffness.v[k];
-      memory(k).tangent = {friction.tangent.x.v[k], friction.tangent.y.v[k]};
-      memory(k).patches = 1;
+      now(k).force = friction.spring.v[k];
+      now(k).stiffness = friction.stiffness.v[k];
+      now(k).tangent = {friction.tangent.x.v[k], friction.tangent.y.v[k]};
+      now(k).push = p.push.v[k];
       work[k].book->energy = energy.v[k];
       work[k].book->loss = friction.lost.v[k];
     }
@@ -282,7 +282,7 @@ void PairBatch::flush(const PairScene& scene) {
   // Lanes that are left over do the last pair again, for nobody.
   PairWork again = work_[static_cast<size_t>(count_ - 1)];
   again.load = &spare_.load;
-  again.memory = &spare_.memory;
+  again.now = &spare_.now;
   again.book = &spare_.book;
   std::fill(work_.begin() + count_, work_.end(), again);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {

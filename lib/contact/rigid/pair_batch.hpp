@@ -29,18 +29,8 @@ struct PairScene {
   double dt = 0;                    ///< s
 };
 
-/// What a pair remembers from step to step. Its patches and edges have more, if it has several.
-struct PairMemory {
-  PairForce force = {};           ///< friction; moments about the mass centres
-  double spring = 0;              ///< force of the friction spring of the only patch, N
-  double stiffness = 0;           ///< of it, N/m
-  double push = 0;                ///< of the dashpot across it, N
-  VectorOf<double> tangent = {};  ///< along which the spring acts
-  int patches = -1;               ///< in the last step; -1 if the bodies did not touch
-  int split = -1;                 ///< number among the pairs that are split, or -1
-
-  [[nodiscard]] bool touched() const { return patches >= 0; }
-};
+/// What a patch remembers that was not there in the step before.
+inline const Spring kNoSpring{};
 
 /// A pair, or one of its contact patches, what it remembers, and where its results go.
 struct PairWork {
@@ -48,8 +38,10 @@ struct PairWork {
   const PairIntegral* integral;
   const PairLaw* law;
   PairLoad* load;
-  PairMemory* memory = nullptr;  ///< null without friction
-  PairBook* book = nullptr;      ///< null without friction
+  const Spring* before = &kNoSpring;  ///< in the step before
+  bool begins = true;                 ///< the pair had no patch in the step before
+  Spring* now = nullptr;              ///< but for its key; null without friction
+  PairBook* book = nullptr;           ///< null without friction
 };
 
 /// Friction of so many contact patches, kComparedLanes at most. Those of `work` are not written to.
@@ -86,7 +78,7 @@ class PairBatch {
   std::array<PairWork, kAtOnce> work_{};
   struct {
     PairLoad load;
-    PairMemory memory;
+    Spring now;
     PairBook book;
   } spare_ = {};
 };

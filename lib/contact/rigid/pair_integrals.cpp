@@ -16,8 +16,6 @@ constexpr int kLargestMargin = -3;
 constexpr int kSoon = 32;
 constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
 constexpr int kLate = 256;
-constexpr size_t kManyFresh = 1024;
-constexpr size_t kFewFresh = 8;  // pairs are few if they are less than one in so many
 
 // For one more. Large scenes need the memory.
 template <class T>
@@ -27,44 +25,28 @@ void make_room(std::vector<T>& list) {
 
 }  // namespace
 
-// Pairs that were there before keep what is known of their edges, and their slots. The lists of
-// before are not kept: searches are rare, and large scenes need the memory.
-SlotOrder& PairIntegrals::take(std::span<const BoxPair> pairs) {
+// Pairs that were there before keep what is known of their edges. The lists of before are not kept:
+// searches are rare, and large scenes need the memory.
+void PairIntegrals::take(std::span<const BoxPair> pairs) {
   const std::vector<BoxPair> pairs_before = std::move(pairs_);
   const std::vector<Near> near_before = std::move(near_);
-  const std::vector<int> slots_before = std::move(slots_);
   pairs_.assign(pairs.begin(), pairs.end());
   near_.assign(pairs_.size(), {});
-  slots_.assign(pairs_.size(), -1);
-  order_.begin(integrals_.size());
   size_t old = 0;
-  const auto pass = [&] {  // a pair that is not in reach any more
-    if (slots_before[old] >= 0) end_now(pairs_before[old], slots_before[old]);
-    ++old;
-  };
   for (size_t p = 0; p < pairs_.size(); ++p) {
-    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) pass();
+    while (old < pairs_before.size() && pairs_before[old] < pairs_[p]) ++old;
     if (old == pairs_before.size()) break;
-    if (pairs_before[old] != pairs_[p]) continue;
-    near_[p] = near_before[old];
-    if (slots_before[old] >= 0) slots_[p] = order_.add(slots_before[old]);
-    ++old;
+    if (pairs_before[old] == pairs_[p]) near_[p] = near_before[old++];
   }
-  while (old < pairs_before.size()) pass();
-  for (PairInTouch& pair : ended_) pair.slot = order_.add(pair.slot);
-  order_.end();
-  order_.apply(integrals_);
-  free_.clear();
   touching_.clear();
-  return order_;
 }
 
 void PairIntegrals::begin() {
   touching_.clear();
   for (Worker& worker : workers_) {
     worker.results.clear();
-    worker.fresh.clear();
-    worker.ended.clear();
+    worker.integrals.clear();
+    worker.first = 0;
     worker.parts.clear();
     worker.runs.clear();
     worker.whole_runs.clear();
@@ -116,16 +98,10 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
       shapes.fetch_coordinates(pairs_[p + kPairsAhead / 2].second);
     }
     const auto [a, b] = pairs_[p];
-    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) {
-      note_end(p, worker);
-      continue;
-    }
+    if (apart(boxes[static_cast<size_t>(a)], boxes[static_cast<size_t>(b)])) continue;
     const Vec2 between = surfaces_.between(a, b);
     find_near(p, between, worker.near_edges);
-    if (near_[p].edges.none()) {
-      note_end(p, worker);
-      continue;
-    }
+    if (near_[p].edges.none()) continue;
     const PlacedPotential view_a = shapes.view(a);
     const PlacedPotential view_b = shapes.view(b);
     if (split_ != Split::all && ConvexPairs::serves(view_a) && ConvexPairs::serves(view_b)) {
@@ -148,10 +124,7 @@ void PairIntegrals::evaluate_convex(int index) {
     const size_t p = *pair++;
     if (integral.touching()) {
       add(p, integral, index, -1);
-      continue;
-    }
-    note_end(p, worker);
-    if (near_[p].edges.margin > 0) {
+    } else if (near_[p].edges.margin > 0) {
       note_margin(p, surfaces_.between(pairs_[p].first, pairs_[p].second));
     }
   }
@@ -167,66 +140,27 @@ void PairIntegrals::note_margin(size_t p, const Vec2& between) {
 void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int split) {
   Worker& worker = workers_[static_cast<size_t>(index)];
   std::vector<PairInTouch>& results = results_of(index);
-  int slot = slots_[p];
-  if (slot >= 0) {
-    integrals_[static_cast<size_t>(slot)] = integral;
-  } else {
-    slot = ~static_cast<int>(worker.fresh.size());
-    worker.fresh.push_back({p, results.size(), integral});
-  }
+  make_room(worker.integrals);
+  worker.integrals.push_back(integral);
   make_room(results);
-  results.push_back({pairs_[p].first, pairs_[p].second, slot, split});
+  const auto number = static_cast<int>(results.size());
+  results.push_back({pairs_[p].first, pairs_[p].second, number, index, split});
 }
 
 // Puts the lists of the workers together.
 void PairIntegrals::collect() {
   parts_.clear();
   for (Worker& worker : workers_) {
-    const size_t first = &worker == workers_.data() ? 0 : touching_.size();
     const auto split = static_cast<int>(parts_.size());
+    worker.first = &worker == workers_.data() ? 0 : static_cast<int>(touching_.size());
     for (PairInTouch pair : worker.results) {
       if (pair.split >= 0) pair.split += split;
+      pair.number += worker.first;
       make_room(touching_);
       touching_.push_back(pair);
     }
     parts_.insert(parts_.end(), worker.parts.begin(), worker.parts.end());
-    for (const size_t p : worker.ended) {
-      end_now(pairs_[p], slots_[p]);
-      slots_[p] = -1;
-    }
-    give_slots(worker, first);
   }
-  // Those that have ended before the last search come in between.
-  std::ranges::sort(ended_, [](const PairInTouch& p, const PairInTouch& q) {
-    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
-  });
-}
-
-// To the pairs that are new, of a worker whose results begin there in the list of all.
-void PairIntegrals::give_slots(Worker& worker, size_t first) {
-  for (const Fresh& fresh : worker.fresh) {
-    int& slot = slots_[fresh.pair];
-    if (free_.empty()) {
-      slot = static_cast<int>(integrals_.size());
-      make_room(integrals_);
-      integrals_.push_back(fresh.integral);
-    } else {
-      slot = free_.back();
-      free_.pop_back();
-      integrals_[static_cast<size_t>(slot)] = fresh.integral;
-    }
-    touching_[first + fresh.result].slot = slot;
-  }
-  // At the start all pairs are new, and hardly any later: large scenes need the memory.
-  const size_t count = worker.fresh.size();
-  if (count > kManyFresh && kFewFresh * count > touching_.size()) {
-    std::vector<Fresh>().swap(worker.fresh);
-  }
-}
-
-void PairIntegrals::forget_ended() {
-  for (const PairInTouch& pair : ended_) free_.push_back(pair.slot);
-  ended_.clear();
 }
 
 void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
@@ -243,10 +177,7 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
                               worker.pair_patches, near)
             : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
   if (near.margin > margin) note_margin(p, between);
-  if (!integral.touching()) {
-    note_end(p, worker);
-    return;
-  }
+  if (!integral.touching()) return;
   if (!split) {
     add(p, integral, index, -1);
     return;

@@ -10,7 +10,6 @@
 #include "geometry/integrals/contact_patches.hpp"
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/law/pair_table.hpp"
-#include "lib/contact/rigid/slot_order.hpp"
 #include "lib/execution/parallel.hpp"
 
 namespace apothem {
@@ -22,13 +21,12 @@ inline constexpr double kDeepestPhi = 0.95;
 /// A pair that touches.
 struct PairInTouch {
   SurfaceIndex a, b;
-  int slot;        ///< where what is known of it is kept for as long as it touches
+  int number;      ///< in the list of all that touch
+  int worker;      ///< that has found it
   int split = -1;  ///< number among the pairs that are split into contact patches; -1 if it is not
 };
 
-/// The pairs of a list that touch, and their integrals. A pair keeps its slot from one evaluation
-/// to the next, so that nothing has to be moved or looked for while the same pairs touch; after a
-/// search slots are in the order of the pairs again.
+/// The pairs of a list that touch, and their integrals.
 class PairIntegrals {
  public:
   /// Which touching pairs are split into contact patches.
@@ -37,11 +35,10 @@ class PairIntegrals {
   PairIntegrals(const Surfaces& surfaces, int threads, Split split = Split::none)
       : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
 
-  /// What is kept in slots elsewhere has to follow the order that this returns.
-  SlotOrder& take(std::span<const BoxPair> pairs);
+  void take(std::span<const BoxPair> pairs);
   /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls found(pair,
   /// integral, worker) for each that touches, in ascending order within each thread; the lower
-  /// worker has the lower pairs. Slots of new pairs are not known before the end.
+  /// worker has the lower pairs.
   template <class F>
   void evaluate(const F& found) {
     begin();
@@ -52,7 +49,7 @@ class PairIntegrals {
                         const size_t before = results.size();
                         p = evaluate_some(p, static_cast<size_t>(end), worker);
                         for (size_t i = before; i < results.size(); ++i) {
-                          found(results[i], result(results[i], worker), worker);
+                          found(results[i], integral(results[i]), worker);
                         }
                       }
                     });
@@ -65,7 +62,8 @@ class PairIntegrals {
   [[nodiscard]] const std::vector<PairInTouch>& touching() const { return touching_; }
   /// Of the whole pair, for unit stiffness: force on a, moments about the reference points.
   [[nodiscard]] const PairIntegral& integral(const PairInTouch& pair) const {
-    return integrals_[static_cast<size_t>(pair.slot)];
+    const Worker& worker = workers_[static_cast<size_t>(pair.worker)];
+    return worker.integrals[static_cast<size_t>(pair.number - worker.first)];
   }
   /// A bound of the penetration of a touching pair, m.
   [[nodiscard]] double deepest(const PairInTouch& pair, const PairIntegral& integral) const;
@@ -93,13 +91,6 @@ class PairIntegrals {
   /// How many pairs are split.
   [[nodiscard]] size_t split_pairs() const { return parts_.size(); }
 
-  /// How many slots there are, with those that are free.
-  [[nodiscard]] size_t slots() const { return integrals_.size(); }
-  /// Pairs that have touched and do so no more, ascending. Their slots are not free until they are
-  /// forgotten.
-  [[nodiscard]] const std::vector<PairInTouch>& ended() const { return ended_; }
-  void forget_ended();
-
   /// Energy of all pairs for unit thickness, N. Not for every step.
   [[nodiscard]] double energy(const PairTable& table) const;
 
@@ -126,18 +117,14 @@ class PairIntegrals {
     int patches, runs;
     int worker, first_patch, first_run;  // first_patch < 0 if the only patch is the whole pair
   };
-  struct Fresh {
-    size_t pair, result;
-    PairIntegral integral;
-  };
   struct Worker {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
     std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // numbers of those collected
     // Of the touching pairs that it has found. The first worker's results begin the list of all.
     std::vector<PairInTouch> results;
-    std::vector<Fresh> fresh;   // that have no slot yet
-    std::vector<size_t> ended;  // numbers of pairs
+    std::vector<PairIntegral> integrals;  // of these
+    int first = 0;                        // number of the first one in the list of all
     // Of those that it has split.
     std::vector<Parts> parts;
     std::vector<RunPlace> runs;
@@ -152,21 +139,11 @@ class PairIntegrals {
   void evaluate_convex(int worker);
   void note_margin(size_t pair, const Vec2& between);
   void add(size_t pair, const PairIntegral& integral, int worker, int split);
-  void note_end(size_t pair, Worker& worker) {
-    if (slots_[pair] >= 0) worker.ended.push_back(pair);
-  }
-  void end_now(const BoxPair& pair, int slot) { ended_.push_back({pair.first, pair.second, slot}); }
   void collect();
-  void give_slots(Worker& worker, size_t first);
   void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,
                       int worker);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
     return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
-  }
-  // Of a pair that has perhaps no slot yet.
-  [[nodiscard]] const PairIntegral& result(const PairInTouch& pair, int worker) const {
-    if (pair.slot >= 0) return integral(pair);
-    return workers_[static_cast<size_t>(worker)].fresh[static_cast<size_t>(~pair.slot)].integral;
   }
   [[nodiscard]] const Parts* parts_of(const PairInTouch& pair) const {
     return pair.split < 0 ? nullptr : &parts_[static_cast<size_t>(pair.split)];
@@ -178,12 +155,8 @@ class PairIntegrals {
   Split split_;
   std::vector<BoxPair> pairs_;
   std::vector<Near> near_;  // of each pair
-  std::vector<int> slots_;  // the same; -1 where it does not touch
-  std::vector<PairInTouch> touching_, ended_;
-  std::vector<Parts> parts_;             // of the pairs that are split
-  std::vector<PairIntegral> integrals_;  // of each slot
-  std::vector<int> free_;                // slots
-  SlotOrder order_;
+  std::vector<PairInTouch> touching_;
+  std::vector<Parts> parts_;              // of the pairs that are split
   mutable std::vector<double> energies_;  // of each of these, when they are asked for, N
   std::vector<Worker> workers_;
 };

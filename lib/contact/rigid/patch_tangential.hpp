@@ -4,12 +4,12 @@
 //   resultant   one spring for each patch, at right angles to its normal force (Eqs. 10-14)
 //   per_edge    one spring for each edge of the overlap (Eq. 9), the older law, for comparison
 //
-// What a pair remembers is kept in its slot (pair_integrals.hpp) and renewed there. The patches of
-// pairs that are split are lists, which are made anew in every step.
+// What patches remember are the springs of the friction memory, one for each: they are found by
+// their pairs, and renewed in every step. Patches of pairs that are split are found again by the
+// runs of boundary that they share with those of the step before.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,60 +21,32 @@
 #include "lib/contact/law/pair_table.hpp"
 #include "lib/contact/rigid/pair_batch.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
-#include "lib/execution/parallel.hpp"
 
 namespace apothem {
 
 class PatchTangential {
  public:
-  /// What a pair had in a step. The lists of runs and springs follow in the order of the
-  /// pairs.
-  struct PairHistory {
-    RigidIndex a, b;
-    int patches, runs;
-    PairForce force;  // friction; moments about the mass centres
-    void fields(Archive& archive) {
-      archive("a", a)("b", b)("patches", patches)("runs", runs)("force", force);
-    }
-  };
-  /// What all pairs remember, for archives and for other simulations.
-  struct History {
-    std::vector<PairHistory> pairs;  ///< ascending
-    std::vector<RunPlace> runs;      ///< of pairs that are not both convex, or of per_edge
-    std::vector<Spring> springs;     ///< ascending
-    void fields(Archive& archive);
-  };
-
   /// `thickness` in m. All must outlive this object.
   PatchTangential(const Surfaces& surfaces, const PairIntegrals& pairs, const ContactLaw& law,
-                  const PairTable& table, double thickness, int threads);
+                  const PairTable& table, FrictionMemory& memory, double thickness, int threads);
 
-  /// After a search: slots have another order.
-  void put_in_order(SlotOrder& order);
-  /// Begins a step of dt (s): see Kernel::slide. Pairs that have ended can be forgotten then. `now`
-  /// is used until the step ends.
-  void begin_step(const Kinematics& now, double dt, FrictionMemory& memory);
+  /// Begins a step of dt (s): see Kernel::slide. `now` is used until the step ends.
+  void begin_step(const Kinematics& now, double dt);
   /// Takes the touching pairs from number `first` to `end`, which are blocks of kBlock pairs, one
   /// step further, and hands the loads of each block to take(loads).
   template <class Take>
   void step(int first, int end, int worker, const Take& take);
   /// Books what friction has lost.
-  void end_step(FrictionMemory& memory);
+  void end_step();
 
-  /// undo_step() comes back to what pairs remember now.
-  void remember() { kept_ = inherited_ ? *inherited_ : history(); }
-  void undo_step() { inherited_ = kept_; }
-
-  /// The friction of a pair that has one patch; of others it is not known.
-  struct Alone {
-    bool known = false;
-    PairForce friction = {};
-    void fields(Archive& archive) { archive("known", known)("friction", friction); }
-  };
-  [[nodiscard]] Alone alone(const PairInTouch& pair) const {
-    const PairMemory& memory = memory_[static_cast<size_t>(pair.slot)];
-    if (memory.patches != 1) return {};
-    return {true, memory.force};
+  /// The friction of a pair that has one patch, now and in the step before; of others it is not
+  /// known. Not for every pair.
+  [[nodiscard]] std::optional<PairForce> friction(RigidIndex a, RigidIndex b) const {
+    const FrictionMemory& memory = memory_;
+    return friction_of(a, b, memory.springs(), memory.runs().now());
+  }
+  [[nodiscard]] std::optional<PairForce> friction_before(RigidIndex a, RigidIndex b) const {
+    return friction_of(a, b, memory_.springs_before(), memory_.runs().before());
   }
   /// Force of the spring in a patch, N.
   [[nodiscard]] double spring_in(const PairInTouch& pair, size_t patch) const;
@@ -85,46 +57,14 @@ class PatchTangential {
   /// law per_edge.
   void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
               const PairInTouch& pair) const;
-  /// Appends the springs of all pairs, ascending.
-  void add_springs(std::vector<Spring>& springs) const;
-
-  /// Takes over what pairs have remembered before, or in another simulation: the next step begins
-  /// with it.
-  void inherit(History history) { inherited_ = std::move(history); }
-  /// Has the touching pairs do so now; false if there is nothing to take over.
-  bool adopt();
-  void fields(Archive& archive);
 
   /// Pairs whose sums are booked together, so that they do not depend on the number of threads.
   static constexpr int kBlock = 32;
 
  private:
-  // What a pair has in the lists.
+  // Where the springs and the runs of a touching pair begin.
   struct Place {
-    int runs = 0, first_run = 0;
-    int springs = 0, first_spring = 0;
-  };
-  // Of pairs that are split. The spring of an only patch is in the slot of its pair.
-  struct Lists {
-    std::vector<Place> places;
-    std::vector<RunPlace> runs;
-    std::vector<Spring> springs;
-
-    void clear() { places.clear(), runs.clear(), springs.clear(); }
-    [[nodiscard]] std::span<const RunPlace> runs_of(const PairMemory& pair) const;
-    [[nodiscard]] std::span<const Spring> springs_of(const PairMemory& pair) const;
-  };
-  // What a pair takes over.
-  struct Inherited {
-    const PairHistory& old;
-    std::span<const RunPlace> runs = {};
-    std::span<const Spring> springs = {};
-  };
-  // A pair of another state that does not touch in this one.
-  struct Left {
-    RigidIndex a, b;
-    PairForce force;
-    double energy;  // of its springs, J
+    size_t spring = 0, run = 0;
   };
 
   // The pairs that one thread takes a step further.
@@ -132,10 +72,12 @@ class PatchTangential {
    public:
     explicit Range(PatchTangential& all) : all_(all) {}
 
-    void step_block(int first, int end, PairBook& book);
+    void begin(size_t first, size_t end);
+    void step_block(size_t first, size_t end, PairBook& book);
+    void finish();
 
-    std::vector<PairLoad> loads;         // of the block
-    std::vector<Spring> springs_before;  // of the pair at hand
+    std::vector<PairLoad> loads;  // of the block
+    std::vector<double> ended;    // what each pair that has ended has lost, J
 
    private:
     // What the patches of a pair add up to.
@@ -144,66 +86,68 @@ class PatchTangential {
       PairForce force = {};
       BodyStiffness held_a = {}, held_b = {};  // by its friction springs
     };
-    void step_pair(const PairInTouch& touching, PairLoad& load, PairBook& book);
-    void step_patches(const PairInTouch& touching, const PairWork& pair, const Place& to);
-    void step_springs(const PairWork& pair, const Place& to, Sum& sum);
-    void find_shares();
+    void step_pair(size_t number, PairLoad& load, PairBook& book);
+    void step_patches(const PairInTouch& touching, const PairWork& pair);
+    void step_springs(const PairWork& pair, Sum& sum);
+    void keep_runs(const ContactKey& pair, size_t number) const;
+    void find_shares(const ContactKey& pair);
     void inherit();
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;
-    void per_edge(const PairWork& pair, std::span<const BoundaryRun> runs, const Place& to,
-                  Sum& sum);
+    void per_edge(const PairWork& pair, std::span<const BoundaryRun> runs, Sum& sum);
 
     PatchTangential& all_;
     PairBatch batch_;
     std::vector<PairBook> books_;  // of the pairs of the block
+    ContactWalk<const Spring> walk_;
     // Of the pair at hand.
     std::span<const RunPlace> runs_;
     std::span<const PairIntegral> patches_;
-    PairMemory before_;
-    size_t ancestors_ = 0;
-    std::vector<double> shares_;  // of each ancestor that goes to each patch of now
+    std::span<const Spring> before_;
+    std::span<Spring> now_;
+    std::vector<RunPlace> runs_before_;
+    std::vector<double> shares_;  // of each patch before that goes to each patch of now
     std::vector<Spring> patch_springs_;
     std::vector<PatchFriction<double>> friction_;  // of the patches
   };
 
   void make_room();
-  void release(const Left& last, FrictionMemory& memory) const;
-  void release_ended(FrictionMemory& memory);
-  [[nodiscard]] History history() const;
-  void take(const PairInTouch& pair, const Inherited& from);
-  void add_springs(const PairInTouch& pair, const PairMemory& memory, const Lists& lists,
-                   std::vector<Spring>& springs) const;
+  [[nodiscard]] std::optional<PairForce> friction_of(RigidIndex a, RigidIndex b,
+                                                     std::span<const Spring> springs,
+                                                     std::span<const PatchRun> runs) const;
+  [[nodiscard]] double lost_at_end(std::span<const Spring> springs) const;
+  [[nodiscard]] Place place_of(size_t number) const {
+    return places_.empty() ? Place{number, 0} : places_[number];
+  }
+  [[nodiscard]] std::span<Spring> springs_of(const PairInTouch& pair) const;
   void fetch(const PairInTouch& pair) const;
-  // Null where a pair has not touched in the last step.
-  [[nodiscard]] const PairMemory* memory_of(const PairInTouch& pair) const;
 
   const Surfaces& surfaces_;
   const PairIntegrals& pairs_;
   bool per_edge_;
   const PairTable& table_;
+  FrictionMemory& memory_;
   double thickness_;
-  Threads threads_;
   std::vector<Range> ranges_;  // one for each thread
-  // Of each slot; those that are free remember nothing.
-  std::vector<PairMemory> memory_;
-  Lists now_, before_;
-  std::optional<History> inherited_;  // not adopted yet
-  std::vector<Left> left_;
-  History kept_;
   // Of the step at hand.
   Kinematics kinematics_;
   PairScene scene_;
   std::vector<PairBook> books_;  // of each block
+  // Of each touching pair, and of the end; none if each of them has one spring.
+  std::vector<Place> places_;
+  std::span<Spring> springs_;
+  std::span<PatchRun> runs_;
 };
 
 template <class Take>
 void PatchTangential::step(int first, int end, int worker, const Take& take) {
   Range& range = ranges_[static_cast<size_t>(worker)];
-  const int count = static_cast<int>(pairs_.touching().size());
+  range.begin(static_cast<size_t>(first), static_cast<size_t>(end));
   for (int i = first; i < end; i += kBlock) {
-    range.step_block(i, std::min(i + kBlock, count), books_[static_cast<size_t>(i / kBlock)]);
+    range.step_block(static_cast<size_t>(i), static_cast<size_t>(std::min(i + kBlock, end)),
+                     books_[static_cast<size_t>(i / kBlock)]);
     take(std::span<const PairLoad>(range.loads));
   }
+  range.finish();
 }
 
 }  // namespace apothem

@@ -20,7 +20,8 @@ PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
 }  // namespace
 
 PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
-                             const PairTable& table, double thickness, int threads)
+                             const PairTable& table, FrictionMemory& memory, double thickness,
+                             int threads)
     : surfaces_(surfaces),
       table_(table),
       thickness_(thickness),
@@ -30,7 +31,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       found_(static_cast<size_t>(threads_.count())),
       loads_(surfaces, threads) {
   if (table.rough()) {
-    tangential_.emplace(surfaces, pairs_, law, table, thickness, threads);
+    tangential_.emplace(surfaces, pairs_, law, table, memory, thickness, threads);
   }
 }
 
@@ -42,7 +43,6 @@ void PolygonKernel::evaluate() {
         std::min(surfaces_.inradius(pair.a), surfaces_.inradius(pair.b)),
         pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
   });
-  if (!tangential_) pairs_.forget_ended();
   summary_ = {.relative = 0};
   for (const Found& found : found_) summary_.include(found.summary);
 }
@@ -79,20 +79,18 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
 }
 
 void PolygonKernel::take(std::span<const BoxPair> pairs) {
-  SlotOrder& order = pairs_.take(pairs);
-  if (tangential_) tangential_->put_in_order(order);
+  pairs_.take(pairs);
   loads_.take(pairs);
 }
 
-double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& /*memory*/) {
   if (!tangential_) return 0;
-  tangential_->begin_step(now, dt, memory);
-  pairs_.forget_ended();
+  tangential_->begin_step(now, dt);
   sum_loads([&](int first, int end, int worker) {
     tangential_->step(first, end, worker,
                       [&](std::span<const PairLoad> loads) { add_block(loads, worker); });
   });
-  tangential_->end_step(memory);
+  tangential_->end_step();
   return 0;  // it books itself what its springs lose
 }
 

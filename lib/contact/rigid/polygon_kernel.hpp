@@ -19,7 +19,7 @@ class PolygonKernel final : public Kernel {
  public:
   /// `thickness` in m. All must outlive this object.
   PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
-                double thickness, int threads);
+                FrictionMemory& memory, double thickness, int threads);
 
   void take(std::span<const BoxPair> pairs) override;
   void evaluate() override;
@@ -28,15 +28,8 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
-  void remember() override {
-    if (tangential_) tangential_->remember();
-  }
-  void undo_slide() override {
-    if (tangential_) tangential_->undo_step();
-  }
-  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {
-    if (tangential_ && tangential_->adopt()) pairs_.forget_ended();
-  }
+  /// What the next slide needs is in the memory.
+  void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
   void add_dashpots(const Kinematics& now, Dashpots& to) override;
   void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
@@ -56,15 +49,7 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] size_t candidates() const override { return pairs_.candidates(); }
   void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(std::vector<ContactRecord>& records) const override;
-  void add_springs(std::vector<Spring>& springs) const override {
-    if (tangential_) tangential_->add_springs(springs);
-  }
-  /// Takes over what the pairs of another simulation remember.
-  void inherit(const PatchTangential::History& pairs) {
-    if (tangential_) tangential_->inherit(pairs);
-  }
   void fields(Archive& archive) override {
-    if (tangential_) archive("tangential", *tangential_);
     archive("onset", onset_);
     if (table_.damped()) archive("pushes", pushes_)("drags", drags_);
   }

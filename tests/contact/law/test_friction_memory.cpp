@@ -11,7 +11,7 @@ using namespace apothem;
 
 namespace {
 
-Spring spring(const SpringKey& key, double force, double stiffness = 2) {
+Spring spring(const ContactKey& key, double force, double stiffness = 2) {
   return {key, force, stiffness, {0, 1}};
 }
 
@@ -69,23 +69,40 @@ TEST_CASE("a pair finds its own springs of the step before, whoever comes and go
   FrictionMemory memory = with(kThreePairs);
   memory.begin_step();
   CHECK(memory.springs().empty());
-  CHECK(memory.before(polygon_kernel, 0, 2).empty());  // new, before all others
-  CHECK(same(memory.before(polygon_kernel, 0, 3), all.first(2)));
-  CHECK(memory.before(polygon_kernel, 1, 1).empty());  // new, in between
-  CHECK(same(memory.before(polygon_kernel, 1, 2), all.subspan(2, 1)));
-  CHECK(memory.before(element_kernel, 1, 2).empty());  // of another law
-  CHECK(same(memory.before(outline_kernel, 1, 2), all.subspan(3, 1)));
-  CHECK(memory.before(outline_kernel, 7, 9).empty());  // new, behind all others
+  ContactWalk<const Spring> walk = memory.before(polygon_kernel);
+  CHECK(walk.find({polygon_kernel, 0, 2, 0}).empty());  // new, before all others
+  CHECK(same(walk.find({polygon_kernel, 0, 3, 0}), all.first(2)));
+  CHECK(walk.find({polygon_kernel, 1, 1, 0}).empty());  // new, in between
+  CHECK(same(walk.find({polygon_kernel, 1, 2, 0}), all.subspan(2, 1)));
+  CHECK(walk.find({polygon_kernel, 7, 9, 0}).empty());  // new, behind all others
+  walk = memory.before(element_kernel);
+  CHECK(walk.find({element_kernel, 1, 2, 0}).empty());  // of another law
+  walk = memory.before(outline_kernel);
+  CHECK(same(walk.find({outline_kernel, 1, 2, 0}), all.subspan(3, 1)));
 
-  // Pairs that are not asked for are passed over.
-  FrictionMemory sparse = with(kThreePairs);
-  sparse.begin_step();
-  CHECK(same(sparse.before(outline_kernel, 1, 2), all.subspan(3, 1)));
+  // Pairs that are not asked for are passed over, and told.
+  std::vector<std::span<const Spring>> passed;
+  const auto note = [&](std::span<const Spring> springs) { passed.push_back(springs); };
+  walk = memory.before(polygon_kernel);
+  CHECK(same(walk.find({polygon_kernel, 1, 2, 0}, note), all.subspan(2, 1)));
+  REQUIRE(passed.size() == 1);
+  CHECK(same(passed[0], all.first(2)));
+  walk = memory.before(polygon_kernel);
+  walk.finish(note);
+  REQUIRE(passed.size() == 3);
+  CHECK(same(passed[1], all.first(2)));
+  CHECK(same(passed[2], all.subspan(2, 1)));
+
+  // Only those of a part of the list.
+  walk = memory.before({polygon_kernel, 0, 4, 0}, {polygon_kernel, 1, 3, 0});
+  CHECK(same(walk.find({polygon_kernel, 1, 2, 0}, note), all.subspan(2, 1)));
+  CHECK(passed.size() == 3);
 
   // Only the step before counts.
-  sparse.end_step(0);
-  sparse.begin_step();
-  CHECK(sparse.before(outline_kernel, 1, 2).empty());
+  memory.end_step(0);
+  memory.begin_step();
+  walk = memory.before(polygon_kernel);
+  CHECK(walk.find({polygon_kernel, 0, 3, 0}).empty());
 }
 
 TEST_CASE("many random pairs inherit by their keys", "[friction_memory][contact]") {
@@ -96,6 +113,7 @@ TEST_CASE("many random pairs inherit by their keys", "[friction_memory][contact]
     memory.begin_step();
     std::vector<Spring> now;
     for (int law = 0; law < kernel_kinds; ++law) {
+      ContactWalk<const Spring> walk = memory.before(law);
       for (int a = 0; a < 6; ++a) {
         for (int b = a + 1; b < 7; ++b) {
           if (random.integer(0, 2) == 0) continue;
@@ -103,7 +121,7 @@ TEST_CASE("many random pairs inherit by their keys", "[friction_memory][contact]
           for (const Spring& s : before) {
             if (s.key.law == law && s.key.a == a && s.key.b == b) expected.push_back(s);
           }
-          REQUIRE(same(memory.before(law, a, b), expected));
+          REQUIRE(same(walk.find({law, a, b, 0}), expected));
           for (int part = 0, n = random.integer(0, 3); part < n; ++part) {
             now.push_back(spring({law, a, b, part}, random.uniform(-1, 1)));
             memory.keep(now.back());
@@ -115,6 +133,45 @@ TEST_CASE("many random pairs inherit by their keys", "[friction_memory][contact]
     REQUIRE(same(memory.springs(), now));
     before = now;
   }
+}
+
+TEST_CASE("records that threads write stand before those that are kept, and a step is taken back",
+          "[friction_memory][contact]") {
+  ContactHistory<Spring> history;
+  const auto step = [&](int count, double force) {
+    history.begin_step();
+    const std::span<Spring> room = history.make_room(static_cast<size_t>(count));
+    REQUIRE(room.size() == static_cast<size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      room[static_cast<size_t>(i)] = spring({polygon_kernel, i, i + 1, 0}, force);
+    }
+    std::vector<Spring> more{spring({element_kernel, 1, 2, 0}, force)};
+    history.keep(more);
+    history.keep(spring({outline_kernel, 1, 2, 0}, force));
+  };
+  const auto check = [](std::span<const Spring> springs, int count, double force) {
+    REQUIRE(springs.size() == static_cast<size_t>(count) + 2);
+    CHECK(std::ranges::is_sorted(springs, {}, &Spring::key));
+    for (const Spring& s : springs) CHECK(s.force == force);
+  };
+  step(7, 1);
+  step(3, 2);
+  check(history.now(), 3, 2);
+  check(history.before(), 7, 1);
+  step(0, 3);
+  check(history.now(), 0, 3);
+  history.undo_step();
+  check(history.now(), 3, 2);
+  step(5, 4);
+  check(history.now(), 5, 4);
+  check(history.before(), 3, 2);
+  JsonWriter writer;
+  history.fields(writer, "history");
+  const nlohmann::json json = writer.json();
+  JsonLoader loader(json);
+  ContactHistory<Spring> loaded;
+  loaded.fields(loader, "history");
+  check(loaded.now(), 5, 4);
 }
 
 TEST_CASE("springs store half their force squared over their stiffness",
@@ -179,7 +236,6 @@ TEST_CASE("what laws say that their springs lose is dissipated, and no balance c
   // Its springs give back what they store.
   memory.begin_step();
   memory.lose(5);
-  REQUIRE(memory.before(outline_kernel, 5, 6).size() == 1);
   memory.keep(spring({outline_kernel, 5, 6, 0}, 6));
   memory.end_step(0);
   CHECK(memory.energy() == 9);
@@ -229,7 +285,8 @@ TEST_CASE("a memory saved and loaded goes on as if nothing had happened",
 
   for (FrictionMemory* m : {&memory, &loaded}) {
     m->begin_step();
-    const std::span<const Spring> before = m->before(polygon_kernel, 0, 3);
+    const std::span<const Spring> before =
+        m->before(polygon_kernel).find({polygon_kernel, 0, 3, 0});
     REQUIRE(before.size() == 2);
     m->keep(before[1]);
     m->end_step(.1);

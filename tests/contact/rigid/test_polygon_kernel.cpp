@@ -4,6 +4,7 @@
 
 #include "geometry/integrals/contact_patches.hpp"
 #include "geometry/integrals/penetration.hpp"
+#include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/execution/parallel.hpp"
 #include "tests/contact/bodies.hpp"
 
@@ -329,7 +330,7 @@ TEST_CASE("what pairs remember follows them through every search",
     Bodies other = random_heap(same, rough_law(law, .3), 8);
     size_t ended = 0, before = 0;
     for (int i = 0; i < 60; ++i) {
-      other.contacts->forget_search();  // slots have a new order in every step
+      other.contacts->forget_search();  // in every step
       step(bodies, .01);
       step(other, .01);
       REQUIRE(bodies.rigid_force == other.rigid_force);
