@@ -305,6 +305,25 @@ vtkNew<vtkUnstructuredGrid> outlines(const Model& model, const State& state,
   return grid;
 }
 
+// A quantity of a contact patch in the frames. Scalars stand in x.
+struct PatchQuantity {
+  const char* name;
+  bool is_vector;
+  Vec2 (*value)(const ContactRecord&);
+};
+constexpr std::array kPatchQuantities{
+    PatchQuantity{
+        "force_on_a", true,
+        [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping + c.tangential; }},
+    PatchQuantity{"normal_force_on_a", true,
+                  [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping; }},
+    PatchQuantity{"damping_force_on_a", true, [](const ContactRecord& c) { return c.damping; }},
+    PatchQuantity{"tangential_force_on_a", true,
+                  [](const ContactRecord& c) { return c.tangential; }},
+    PatchQuantity{"penetration", false,
+                  [](const ContactRecord& c) { return Vec2(c.penetration, 0); }},
+    PatchQuantity{"phi", false, [](const ContactRecord& c) { return Vec2(c.phi, 0); }}};
+
 vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
                                     const std::vector<ContactRecord>& contacts) {
   vtkNew<vtkUnstructuredGrid> grid;
@@ -313,34 +332,28 @@ vtkNew<vtkUnstructuredGrid> patches(const Model& model, double time,
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> a = integers("body_a");
   vtkNew<vtkIntArray> b = integers("body_b");
-  vtkNew<vtkDoubleArray> force = doubles("force_on_a", 3);
-  vtkNew<vtkDoubleArray> normal = doubles("normal_force_on_a", 3);
-  vtkNew<vtkDoubleArray> damping = doubles("damping_force_on_a", 3);
-  vtkNew<vtkDoubleArray> tangential = doubles("tangential_force_on_a", 3);
-  vtkNew<vtkDoubleArray> penetration = doubles("penetration", 1);
-  vtkNew<vtkDoubleArray> phi = doubles("phi", 1);
   for (const ContactRecord& contact : contacts) {
     const Vec2 p = contact.point + model.origin;
     cells->InsertNextCell(1);
     cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
     a->InsertNextValue(contact.a);
     b->InsertNextValue(contact.b);
-    const Vec2 along_normal = contact.normal + contact.damping;
-    for (const auto& [array, value] :
-         {std::pair<vtkDoubleArray*, Vec2>(force, along_normal + contact.tangential),
-          {normal, along_normal},
-          {damping, contact.damping},
-          {tangential, contact.tangential}}) {
-      array->InsertNextTuple3(value.x(), value.y(), 0);
-    }
-    penetration->InsertNextValue(contact.penetration);
-    phi->InsertNextValue(contact.phi);
   }
   grid->SetPoints(points);
   grid->SetCells(VTK_VERTEX, cells);
-  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{a, b, force, normal, damping,
-                                                                  tangential, penetration, phi}) {
-    grid->GetPointData()->AddArray(array);
+  grid->GetPointData()->AddArray(a);
+  grid->GetPointData()->AddArray(b);
+  for (const PatchQuantity& quantity : kPatchQuantities) {
+    vtkNew<vtkDoubleArray> values = doubles(quantity.name, quantity.is_vector ? 3 : 1);
+    for (const ContactRecord& contact : contacts) {
+      const Vec2 value = quantity.value(contact);
+      if (quantity.is_vector) {
+        values->InsertNextTuple3(value.x(), value.y(), 0);
+      } else {
+        values->InsertNextValue(value.x());
+      }
+    }
+    grid->GetPointData()->AddArray(values);
   }
   add_time(grid, time);
   return grid;

@@ -225,9 +225,10 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     const Spring old = before.empty() ? Spring() : before[0];
     const double constant = law.friction.tangential_stiffness * thickness_;
     t.spring_stiffness = constant > 0 ? constant : law.friction.stiffness_ratio * t.stiffness;
-    const double pressed = std::max(0., t.force.norm() + old.push);
+    const double pressed = t.force.norm() + old.push;
     const CoulombSpring<double> spring{
-        t.spring_stiffness, now.restored ? HUGE_VAL : law.friction.coefficient * pressed};
+        t.spring_stiffness,
+        now.restored ? HUGE_VAL : friction_limit(law.friction.coefficient, pressed)};
     const double kept = old.stiffness > 0 ? std::min(1., spring.stiffness / old.stiffness) : 0;
     t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
     memory.keep({key, t.spring, spring.stiffness, tangent, old.push});

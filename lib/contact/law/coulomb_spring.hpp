@@ -6,6 +6,13 @@
 
 namespace apothem {
 
+/// What friction holds where so much presses, N: Coulomb's law (the paper, Eq. 14), for every
+/// surface and for the dashpot beside the spring. Another law of friction begins here.
+template <class Real>
+APOTHEM_INLINE Real friction_limit(const Real& coefficient, const Real& pressed) {
+  return coefficient * select(pressed > Real(0.), pressed, Real(0.));
+}
+
 /// A spring along the tangent of a contact, whose force is never beyond Coulomb's limit.
 template <class Real>
 struct CoulombSpring {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/contact/law/coulomb_spring.hpp"
+
 namespace apothem {
 namespace {
 
@@ -222,7 +224,7 @@ double Dashpots::relax(size_t i, double dt) {
   follow(1, rate[1] + solved.d01 * change[0], -of.across[1].pressed * dt, HUGE_VAL);
   const double pressed = (of.across[0].pressed + of.across[1].pressed) * dt +
                          solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = of.coefficient * std::max(0., pressed), spring = of.spring * dt;
+  const double limit = friction_limit(of.coefficient, pressed), spring = of.spring * dt;
   follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
          limit - spring);
   for (const Entry& e : entries(i)) {

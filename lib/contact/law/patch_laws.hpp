@@ -101,7 +101,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   const Real slip = select(noise, Real(0.), along);
   const Real normal = p.normal_stiffness * p.size + p.push;
   const CoulombSpring<Real> spring{select(p.has_direction, p.tangential_stiffness(), Real(0.)),
-                                   p.coefficient * select(normal > Real(0.), normal, Real(0.))};
+                                   friction_limit(p.coefficient, normal)};
   const Real& k = spring.stiffness;
   // The point at which it acts moves: in the first half of the step it is still where it was.
   const Real power_before = p.friction_before.power(p.rate);

@@ -143,9 +143,9 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
         step.blocks.laws()[static_cast<size_t>(group.law)].law->friction.coefficient;
     double pull = 0;
     if (contact.normal > 0 && coefficient > 0) {
-      const double pressed = std::max(0., contact.pressed + contact.push_before);
-      const CoulombSpring<double> spring{contact.stiffness,
-                                         step.limited ? coefficient * pressed : HUGE_VAL};
+      const double pressed = contact.pressed + contact.push_before;
+      const CoulombSpring<double> spring{
+          contact.stiffness, step.limited ? friction_limit(coefficient, pressed) : HUGE_VAL};
       double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
       if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
       contact.friction = spring.after(contact.force_before, slip * step.dt);

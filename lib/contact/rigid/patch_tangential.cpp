@@ -315,9 +315,9 @@ void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const Boun
     const Vec2 tangent = tangent_of(run.force);
     const Vec2 behind = run.centre + between;
     const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, run.centre) - cross(rate.b, behind);
-    const double force =
-        follow({stiffness, pair.law->friction.coefficient * normal_stiffness * run.force.norm()},
-               before, slip.dot(tangent) * all_.scene_.dt, *pair.book);
+    const double force = follow({stiffness, friction_limit(pair.law->friction.coefficient,
+                                                           normal_stiffness * run.force.norm())},
+                                before, slip.dot(tangent) * all_.scene_.dt, *pair.book);
     const double arm_a = cross(run.centre, tangent), arm_b = cross(behind, tangent);
     *next = {.key = key,
              .force = force,
