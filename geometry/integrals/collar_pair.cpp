@@ -84,7 +84,7 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gx + (lanes[k].cell - 1); }, gx);
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).gy + (lanes[k].cell - 1); }, gy);
     const auto line = [&](int i) APOTHEM_LAMBDA {
-      const auto k = static_cast<size_t>(i + 1);
+      const size_t k = static_cast<size_t>(i) + 1;
       return CellLine{cx[k], cy[k], gx[k], gy[k]};
     };
     const CellShapes cells{of_y([](const PlacedPotential& p, const Lane& lane)
@@ -115,7 +115,7 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
     moments.add(parts.there, parts.s0, parts.v0, parts.s1, parts.v1);
     const auto at = [first](auto& of) APOTHEM_LAMBDA {
       return [&of, first ](int k) APOTHEM_LAMBDA -> auto& {
-        return of[static_cast<size_t>(first + k)];
+        return of[static_cast<size_t>(first) + static_cast<size_t>(k)];
       };
     };
     const EdgeFrame<Pack> edge{px - of_y([](const PlacedPotential& p, const Lane&)

@@ -141,10 +141,10 @@ struct Bodies {
   void slide(double dt) {
     contacts->slide(kinematics(), dt);
     find_forces();
-    if (contacts->damped() && dt > 0) find_dashpots(dt);
+    if (contacts->damped() && dt > 0) add_dashpots(dt);
   }
   /// All inertias are 1.
-  void find_dashpots(double dt) {
+  void add_dashpots(double dt) {
     const auto both = [](std::vector<double> all, const std::vector<double>& of_nodes) {
       all.insert(all.end(), of_nodes.begin(), of_nodes.end());
       return all;
@@ -152,11 +152,11 @@ struct Bodies {
     const std::vector<double> velocity = both(pose_rate, node_velocity);
     const std::vector<double> force = both(rigid_force, node_force), weight;
     const std::vector<double> inverse_mass(velocity.size(), 1);
-    const std::span<const double> found = contacts->find_dashpots(
-        kinematics(), {inverse_mass, velocity, force, force, weight}, dt, false);
-    for (size_t c = 0; c < found.size(); ++c) {
-      (c < rigid_force.size() ? rigid_force[c] : node_force[c - rigid_force.size()]) += found[c];
-    }
+    std::vector<double> whole = force;
+    contacts->add_dashpots(kinematics(), {inverse_mass, velocity, force, force, weight}, dt, false,
+                           whole);
+    std::copy_n(whole.begin(), rigid_force.size(), rigid_force.begin());
+    std::copy(whole.begin() + std::ssize(rigid_force), whole.end(), node_force.begin());
   }
 
   /// On a rigid body; the moment is about its mass centre.
