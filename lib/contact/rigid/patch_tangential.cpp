@@ -151,8 +151,10 @@ void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book
   for (const PairBook& pair : books_) book.add(pair);
 }
 
-// Begins to bring to the cache what a pair needs and is not in the order of the pairs.
+// Begins to bring what a pair needs to the cache.
 void PatchTangential::fetch(const PairInTouch& pair) const {
+  const auto* const integral = reinterpret_cast<const char*>(&pairs_.integral(pair));
+  for (size_t at = 0; at < sizeof(PairIntegral); at += 64) __builtin_prefetch(integral + at);
   surfaces_.fetch_inertia(pair.b);
   __builtin_prefetch(&kinematics_.pose_rate[3 * static_cast<size_t>(pair.b)]);
 }
@@ -179,10 +181,14 @@ void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& 
     return;
   }
   work.book = &book;
-  patches_ = all_.pairs_.patches(touching);
-  runs_ = all_.pairs_.runs(touching);
-  if (touching.split >= 0) keep_runs(key, number);
-  if (patches_.size() == 1 && before_.size() <= 1 && !all_.per_edge_) {
+  bool alone = before_.size() <= 1;
+  if (touching.split >= 0 || !alone) {
+    patches_ = all_.pairs_.patches(touching);
+    runs_ = all_.pairs_.runs(touching);
+    keep_runs(key, number);
+    alone = alone && patches_.size() == 1 && !all_.per_edge_;
+  }
+  if (alone) {
     now_[0].key = key;
     if (!before_.empty()) work.before = before_.data();
     work.begins = before_.empty();
