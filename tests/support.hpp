@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -9,20 +10,34 @@
 #include "geometry/integrals/edge_integral.hpp"
 #include "geometry/polygon/polygon.hpp"
 #include "geometry/potential/potential.hpp"
+#include "tests/this_build.hpp"
 
 namespace apothem::test {
 
-inline const std::string kSource = APOTHEM_SOURCE;    // the project's folder
-inline const std::string kProgram = APOTHEM_PROGRAM;  // the program under test
+inline const std::string kSource = APOTHEM_SOURCE;  // the project's folder
+inline const std::string kProgram = program();      // the program under test
 
-/// Whether the sanitizers are at work, which make everything 20 times slower.
-inline constexpr bool kSanitized = APOTHEM_TEST_DIVISOR > 1;
-
-/// Fewer random cases under the sanitizers, which are 20 times slower.
-inline int scaled(int cases) { return std::max(1, cases / APOTHEM_TEST_DIVISOR); }
+inline const bool kSanitized = is_sanitized();
 
 /// APOTHEM_LONG in the environment asks for the full number of random cases where CI has a share.
 inline bool long_run() { return std::getenv("APOTHEM_LONG") != nullptr; }
+
+/// The number of random cases that a run takes out of `cases`.
+inline int scaled(int cases) {
+  const int divisor = kSanitized ? 50 : long_run() ? 1 : 4;
+  return std::max(1, cases / divisor);
+}
+
+/// APOTHEM_SEED in the environment, a whole number, chooses other random cases: 0 without it.
+inline std::uint64_t chosen_seed() {
+  const char* const text = std::getenv("APOTHEM_SEED");
+  return text ? std::strtoull(text, nullptr, 10) : 0;
+}
+
+/// Random numbers of a test, which are others for every chosen seed.
+struct SeededRandom : samples::Random {
+  explicit SeededRandom(std::uint64_t own) : samples::Random(own + 1'000'003 * chosen_seed()) {}
+};
 
 inline PairResult edge(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
   return edge_method(a, make_potential(a, choice), b, make_potential(b, choice));

@@ -203,7 +203,7 @@ TEST_CASE("bodies that touch when a run starts keep their energy", "[onset]") {
 }
 
 TEST_CASE("rigid polygons of any shape keep their energy in all phases of the step", "[onset]") {
-  samples::Random random(71);
+  test::SeededRandom random(71);
   for (int i = 0; i < test::scaled(20); ++i) {
     const Ring ring = test::random_polygon(random, random.integer(3, 9)).vertices();
     const double spin = random.uniform(-1, 1);
@@ -251,7 +251,7 @@ TEST_CASE("the error of a gas per impact falls by a factor of 20 and more", "[on
     };
     wall(-1, -1, side + 1, 0), wall(-1, side, side + 1, side + 1);
     wall(-1, 0, 0, side), wall(side, 0, side + 1, side);
-    samples::Random random(5);
+    test::SeededRandom random(5);
     for (int i = 0; i < 16; ++i) {
       Ring ring;
       const int n = random.integer(4, 8);

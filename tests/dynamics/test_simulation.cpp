@@ -229,7 +229,7 @@ TEST_CASE("ledgers close with walls, gravity, held and driven bodies", "[dynamic
 
 TEST_CASE("the same bits for any number of threads", "[dynamics][slow]") {
   Model model = falling_model(1e8);
-  samples::Random random(22);
+  test::SeededRandom random(22);
   for (int i = 0; i < 1600; ++i) {  // squares with gaps inside the skin: enough pairs for threads
     const Polygon square({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     model.bodies.push_back(make_body(

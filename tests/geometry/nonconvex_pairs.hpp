@@ -68,7 +68,7 @@ inline double closed_path_work(const Polygon& a, const Polygon& b, const Potenti
   shapes.place(1, 0, 0, 0);
   EdgeWorkspace workspace;
   double worst = 0;
-  Random random(43);
+  test::SeededRandom random(43);
   for (int loop = 0; loop < scaled(20); ++loop) {
     double c[5];
     for (double& x : c) x = random.uniform(0, 1);

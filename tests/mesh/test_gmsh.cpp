@@ -274,7 +274,7 @@ TEST_CASE("bad gmsh files are refused with line and tag", "[mesh]") {
 }
 
 TEST_CASE("no spoilt file does harm", "[mesh]") {
-  samples::Random random(4);
+  test::SeededRandom random(4);
   for (const std::string& text : {mixed(), content(sample("quarter-disc"))}) {
     for (int i = 0; i < scaled(2000); ++i) {
       std::string spoilt = text;

@@ -95,7 +95,7 @@ std::vector<Ring> cells_of(vtkUnstructuredGrid* grid, BodyIndex body) {
 }  // namespace
 
 TEST_CASE("convex parts tile a polygon, and there are few of them", "[convex]") {
-  samples::Random random(1207);
+  test::SeededRandom random(1207);
   for (int i = 0; i < scaled(300); ++i) {
     const Polygon polygon = random_polygon(random, random.integer(4, 40));
     const Cells parts = convex_parts(polygon);

@@ -79,7 +79,7 @@ double dragged(ContactSurface surface, ElementShape shape, const Drag& drag) {
 }  // namespace
 
 TEST_CASE("friction of elements keeps linear and angular momentum", "[element_friction][contact]") {
-  samples::Random random(41);
+  test::SeededRandom random(41);
   for (const ForceDistribution distribution :
        {ForceDistribution::resultant, ForceDistribution::integrated}) {
     for (const ElementShape shape : {ElementShape::triangle, ElementShape::quadrilateral}) {
@@ -109,7 +109,7 @@ TEST_CASE("friction of elements keeps linear and angular momentum", "[element_fr
 }
 
 TEST_CASE("rigid motion of all elements together is no slip", "[element_friction][contact]") {
-  samples::Random random(42);
+  test::SeededRandom random(42);
   for (const ElementShape shape : {ElementShape::triangle, ElementShape::quadrilateral}) {
     for (int i = 0; i < scaled(50); ++i) {
       Heap heap(random, shape, ForceDistribution::resultant, {10, 1});

@@ -101,7 +101,7 @@ Impact impact(const Model& model, double safety) {
 }  // namespace
 
 TEST_CASE("elements in contact keep linear and angular momentum", "[element_kernel][contact]") {
-  samples::Random random(31);
+  test::SeededRandom random(31);
   for (const ForceDistribution distribution :
        {ForceDistribution::resultant, ForceDistribution::integrated}) {
     for (const ElementShape shape : {ElementShape::triangle, ElementShape::quadrilateral}) {

@@ -106,7 +106,7 @@ TEST_CASE("a pair finds its own springs of the step before, whoever comes and go
 }
 
 TEST_CASE("many random pairs inherit by their keys", "[friction_memory][contact]") {
-  samples::Random random(61);
+  test::SeededRandom random(61);
   FrictionMemory memory;
   std::vector<Spring> before;
   for (int step = 0; step < test::scaled(50); ++step) {

@@ -23,7 +23,7 @@ Vec2 normal_on(const Bodies& bodies, BodyIndex body) {
 }  // namespace
 
 TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_friction][contact]") {
-  samples::Random random(31);
+  test::SeededRandom random(31);
   double worst = 0;
   int pairs = 0;
   for (int i = 0; i < scaled(1000); ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_fr
 }
 
 TEST_CASE("rigid motion of the pair as a whole is no slip", "[outline_friction][contact]") {
-  samples::Random random(32);
+  test::SeededRandom random(32);
   for (int i = 0; i < scaled(200); ++i) {
     auto pair = random_pair(random, 8, .6, law_of(1, {10, 1}));
     if (!pair) continue;

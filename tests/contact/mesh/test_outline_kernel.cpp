@@ -45,7 +45,7 @@ std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
 }  // namespace
 
 TEST_CASE("candidates miss no contact while bodies move and deform", "[outline_kernel][contact]") {
-  samples::Random random(21);
+  test::SeededRandom random(21);
   Bodies bodies(law_of(1));
   bodies.add_rigid(about_centre(samples::block(-9, -.5, 9, .5)));
   bodies.add_rigid(about_centre(samples::block(-9, -.5, 9, .5)));
@@ -118,7 +118,7 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
 }
 
 TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact]") {
-  samples::Random random(22);
+  test::SeededRandom random(22);
   double worst = 0;
   int pairs = 0;
   const int wanted = scaled(300);
@@ -170,7 +170,7 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
 }
 
 TEST_CASE("swapping two outlines changes round-off only", "[outline_kernel][contact]") {
-  samples::Random random(23);
+  test::SeededRandom random(23);
   for (int i = 0; i < scaled(300); ++i) {
     const auto pair = random_pair(random, 8, .5);
     if (!pair) continue;

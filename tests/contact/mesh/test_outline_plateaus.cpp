@@ -33,7 +33,7 @@ OutlinePair random_overlap(samples::Random& random) {
 }  // namespace
 
 TEST_CASE("beyond the collar: the energy is that of the depth at all points", "[plateau]") {
-  samples::Random random(31);
+  test::SeededRandom random(31);
   double worst = 0, worst_kernel = 0;
   for (int i = 0; i < scaled(150); ++i) {
     const OutlinePair pair = random_overlap(random);
@@ -55,7 +55,7 @@ TEST_CASE("beyond the collar: the energy is that of the depth at all points", "[
 
 TEST_CASE("beyond the collar: nodal forces are the gradient of the energy, and momenta balance",
           "[plateau]") {
-  samples::Random random(32);
+  test::SeededRandom random(32);
   double worst = 0, worst_balance = 0;
   int deep = 0;
   for (int i = 0; i < scaled(400); ++i) {

@@ -73,7 +73,7 @@ Folded random_folded(samples::Random& random, double& reference) {
 
 TEST_CASE("a folded body: the energy is that of the depth where it lies twice",
           "[self_contact][contact]") {
-  samples::Random random(41);
+  test::SeededRandom random(41);
   double worst = 0;
   int touch = 0;
   for (int i = 0; i < scaled(400); ++i) {
@@ -92,7 +92,7 @@ TEST_CASE("a folded body: the energy is that of the depth where it lies twice",
 TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momenta balance",
           "[self_contact][contact]") {
   using Complex = std::complex<double>;
-  samples::Random random(42);
+  test::SeededRandom random(42);
   double worst = 0, balance = 0;
   int touch = 0, deep = 0;
   for (int i = 0; i < scaled(400); ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("a strip folded flat on itself feels what two strips feel", "[self_con
 }
 
 TEST_CASE("meshes that do not cross themselves feel nothing", "[self_contact][contact]") {
-  samples::Random random(43);
+  test::SeededRandom random(43);
   int bodies = 0;
   const auto check = [&](const Mesh& mesh) {
     Bodies body(self_law(), .05);

@@ -64,7 +64,7 @@ Bodies table_on_floor(const ContactLaw& law, double depth) {
 
 TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
           "[polygon_kernel][contact]") {
-  samples::Random random(71);
+  test::SeededRandom random(71);
   int touching = 0;
   for (int i = 0; i < scaled(300); ++i) {
     const Polygon a = samples::random_convex(random, random.integer(3, 8));
@@ -111,7 +111,7 @@ TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
 
 TEST_CASE("a heap of polygons keeps linear and angular momentum, also where it rubs",
           "[polygon_kernel][contact]") {
-  samples::Random random(72);
+  test::SeededRandom random(72);
   for (const FrictionLaw friction_law : {FrictionLaw::resultant, FrictionLaw::per_edge}) {
     for (const double damping : {0., .3}) {
       double worst = 0;
@@ -141,7 +141,7 @@ TEST_CASE("a heap of polygons keeps linear and angular momentum, also where it r
 
 TEST_CASE("swapping two rigid bodies swaps their forces to the last bit",
           "[polygon_kernel][contact]") {
-  samples::Random random(73);
+  test::SeededRandom random(73);
   int touching = 0;
   for (int i = 0; i < scaled(300); ++i) {
     const auto polygon = [&] {

@@ -133,7 +133,7 @@ void move(Shapes& scene, const RandomMotion& motion, samples::Random& random) {
 
 TEST_CASE("the search misses no touching pair of moving surfaces, large or small",
           "[search][contact]") {
-  samples::Random random(51);
+  test::SeededRandom random(51);
   struct Mix {
     int polygons, meshes;
     bool outlines;

@@ -28,7 +28,7 @@ double area(const std::vector<OverlapPolygon>& polygons) {
 }  // namespace
 
 TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
-  samples::Random random(10);
+  test::SeededRandom random(10);
   double worst = 0;
   double worst_conditioned = 0;  // error x depth / (eps size): flat in depth for a sane method
   int touching = 0;
@@ -59,7 +59,7 @@ TEST_CASE("edge and overlap kernel agree on random convex pairs", "[overlap]") {
 }
 
 TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
-  samples::Random random(12);
+  test::SeededRandom random(12);
   for (const int kind : {0, 1, 2}) {  // distance, capped distance, area
     for (int i = 0; i < test::scaled(1000); ++i) {
       const Polygon a = samples::random_convex(random, kind == 2 ? 3 : random.integer(3, 12));
@@ -88,7 +88,7 @@ TEST_CASE("edge and overlap kernel against the exact oracle", "[overlap]") {
 }
 
 TEST_CASE("the same force far from the origin", "[overlap]") {
-  samples::Random random(13);
+  test::SeededRandom random(13);
   for (int i = 0; i < test::scaled(200); ++i) {
     const Polygon a = samples::random_convex(random, random.integer(3, 8));
     const Polygon b = samples::shifted(samples::random_convex(random, random.integer(3, 8)),
@@ -124,7 +124,7 @@ TEST_CASE("a tip on a long edge", "[overlap]") {
 
 TEST_CASE("degenerate pairs on a lattice", "[overlap]") {
   // Shared vertices and edges, ridges on edges, coincident polygons: all in plenty.
-  samples::Random random(14);
+  test::SeededRandom random(14);
   int pairs = 0;
   while (pairs < test::scaled(2000)) {
     const auto lattice = [&]() -> std::optional<Polygon> {

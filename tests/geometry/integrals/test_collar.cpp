@@ -81,7 +81,7 @@ double gradient_error(const OutlinePair& pair) {
 }  // namespace
 
 TEST_CASE("nodal forces are the gradient of the energy", "[collar]") {
-  samples::Random random(11);
+  test::SeededRandom random(11);
   int pairs = 0;
   double worst = 0;
   const int wanted = scaled(600);
@@ -97,7 +97,7 @@ TEST_CASE("nodal forces are the gradient of the energy", "[collar]") {
 }
 
 TEST_CASE("the energy is that of CGAL's overlap under CGAL's roof", "[collar]") {
-  samples::Random random(12);
+  test::SeededRandom random(12);
   int pairs = 0;
   double worst = 0, worst_force = 0;
   const int wanted = scaled(100);
@@ -126,7 +126,7 @@ TEST_CASE("the energy is that of CGAL's overlap under CGAL's roof", "[collar]") 
 }
 
 TEST_CASE("contact keeps linear and angular momentum", "[collar]") {
-  samples::Random random(13);
+  test::SeededRandom random(13);
   double worst = 0, worst_moment = 0;
   for (int i = 0; i < scaled(2000); ++i) {
     const auto pair = random_pair(random, random.integer(3, 12), random.uniform(.3, 1.2));
@@ -183,7 +183,7 @@ TEST_CASE("flat on flat: the closed form for any splitting of the edges", "[coll
 }
 
 TEST_CASE("a tip dragged over a flat row of edges meets no tangential force", "[collar]") {
-  samples::Random random(14);
+  test::SeededRandom random(14);
   for (const int parts : {1, 8, 31}) {
     double worst = 0;
     for (int i = 0; i <= scaled(400); ++i) {
@@ -228,7 +228,7 @@ TEST_CASE("convex and reflex corners of many angles", "[collar]") {
 }
 
 TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[collar]") {
-  samples::Random random(15);
+  test::SeededRandom random(15);
   double worst = 0, worst_energy = 0;
   int pairs = 0;
   for (int i = 0; i < scaled(2000); ++i) {

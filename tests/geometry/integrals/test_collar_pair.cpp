@@ -62,7 +62,7 @@ bool same(const BoundaryRun& r, const BoundaryRun& s) {
 }  // namespace
 
 TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", "[collar][near]") {
-  samples::Random random(7);
+  test::SeededRandom random(7);
   PatchWorkspace memory;
   for (const Field field : {Field::roof, Field::distance}) {
     const Polygon cross = samples::cross_of_squares();
@@ -102,7 +102,7 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
 
 // A cell that is not to be used, an edge that is deeper than its cell, and too many edges.
 TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
-  samples::Random random(8);
+  test::SeededRandom random(8);
   const Polygon cross = samples::cross_of_squares();
   const Potential potential =
       translated(make_potential(cross, PotentialChoice{}), area_moments(cross).centroid);

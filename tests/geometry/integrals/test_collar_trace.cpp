@@ -70,7 +70,7 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
 }
 
 TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
-  samples::Random random(17);
+  test::SeededRandom random(17);
   EdgeWorkspace workspace;
   int shallow = 0;
   const int pairs = test::scaled(test::long_run() ? 4000 : 1000);
@@ -157,7 +157,7 @@ TEST_CASE("cells at vertices that are almost straight are not used", "[collar]")
 // With other numbers of its vertices a cell is another lane of another pack.
 TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
   const std::vector<Vec2> ring = samples::cross_of_squares().vertices();
-  samples::Random random(18);
+  test::SeededRandom random(18);
   const Potential other = make_potential(samples::cross_of_squares());
   for (const Field field : {Field::roof, Field::distance}) {
     for (int k = 0; k < test::scaled(test::long_run() ? 100 : 40); ++k) {

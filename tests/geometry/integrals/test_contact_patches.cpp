@@ -147,7 +147,7 @@ TEST_CASE("a block in the corner of an L", "[patches]") {
 }
 
 TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches]") {
-  samples::Random random(71);
+  test::SeededRandom random(71);
   const auto shape = [&]() -> Polygon {
     const double turn = random.uniform(0, 6);
     switch (random.integer(0, 7)) {
@@ -226,7 +226,7 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
 }
 
 TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[patches]") {
-  samples::Random random(72);
+  test::SeededRandom random(72);
   for (int i = 0; i < (test::long_run() ? 2000 : test::scaled(400)); ++i) {
     const Polygon a = samples::random_convex(random, random.integer(3, 12));
     const Polygon b = samples::random_convex(random, random.integer(3, 12));
@@ -327,7 +327,7 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
 
 TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[patches]") {
   const std::vector<test::HardShape> pool = test::shapes(60);
-  samples::Random random(73);
+  test::SeededRandom random(73);
   int patches = 0;
   for (int i = 0; i < test::scaled(5000); ++i) {
     const test::HardShape& a = pool[random.integer(0, 59)];
@@ -464,7 +464,7 @@ TEST_CASE("a polygon inside the other is one patch", "[patches]") {
 }
 
 TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][near]") {
-  samples::Random random(91);
+  test::SeededRandom random(91);
   int apart = 0, touching = 0, skipped = 0;
   const int pairs = test::long_run() ? 20'000 : test::scaled(1000);
   for (int i = 0; i < pairs; ++i) {

@@ -98,7 +98,7 @@ TEST_CASE("closed forms", "[edge]") {
 }
 
 TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
-  samples::Random random(4);
+  test::SeededRandom random(4);
   const double h = 1e-4;
   for (const int kind : {0, 1, 2}) {  // distance, capped distance, area
     for (int i = 0; i < test::scaled(300); ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("force and moments are minus the gradient of the energy", "[edge]") {
 }
 
 TEST_CASE("work along closed paths", "[edge]") {
-  samples::Random random(5);
+  test::SeededRandom random(5);
   const Polygon t = test::quad_q();
   const Vec2 centre = samples::world_centroid(t);
   for (const auto& [steps, limit] :
@@ -170,7 +170,7 @@ TEST_CASE("work along closed paths", "[edge]") {
 }
 
 TEST_CASE("swapping the bodies negates the force to the last bit", "[edge]") {
-  samples::Random random(6);
+  test::SeededRandom random(6);
   for (int i = 0; i < test::scaled(20000); ++i) {
     const Polygon a = samples::random_convex(random, random.integer(3, 12));
     const Polygon b = samples::shifted(samples::random_convex(random, random.integer(3, 12)),
@@ -186,7 +186,7 @@ TEST_CASE("swapping the bodies negates the force to the last bit", "[edge]") {
 }
 
 TEST_CASE("representable shifts change no bit", "[edge]") {
-  samples::Random random(7);
+  test::SeededRandom random(7);
   // Coordinates on a grid of 2^-20, so that shifts up to 2^30 are exact.
   const auto on_grid = [&](const Polygon& p) {
     std::vector<Vec2> ring = p.vertices();
@@ -208,7 +208,7 @@ TEST_CASE("representable shifts change no bit", "[edge]") {
 }
 
 TEST_CASE("the contact stiffness stays below its bound", "[edge]") {
-  samples::Random random(8);
+  test::SeededRandom random(8);
   const double h = 1e-6;
   double closest = 0;
   for (int i = 0; i < test::scaled(5000); ++i) {

@@ -99,7 +99,7 @@ TEST_CASE("two vertices that are one unit in the last place apart", "[near-degen
 }
 
 TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near-degenerate]") {
-  samples::Random random(90);
+  test::SeededRandom random(90);
   int touching = 0, refused = 0;
   const int pairs = std::max(cases(60), 6);
   for (int i = 0; i < pairs; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("almost degenerate pairs: edge and overlap against the oracle", "[near
 }
 
 TEST_CASE("needless vertices do not change the distance field", "[near-degenerate]") {
-  samples::Random random(92);
+  test::SeededRandom random(92);
   constexpr double kMost = 1e-11;
   for (int i = 0; i < cases(600); ++i) {
     const auto [a, b] = samples::near_degenerate_pair(random, kMost);
@@ -149,7 +149,7 @@ TEST_CASE("needless vertices do not change the distance field", "[near-degenerat
 }
 
 TEST_CASE("needless vertices do not change the largest inscribed circle", "[near-degenerate]") {
-  samples::Random random(93);
+  test::SeededRandom random(93);
   constexpr double kMost = 1e-11;
   for (int i = 0; i < cases(600); ++i) {
     const auto [plain, polygon] = samples::near_degenerate(random, kMost);

@@ -114,7 +114,7 @@ TEST_CASE("in a narrow notch the distance counts, not the height of the roof", "
 }
 
 TEST_CASE("penetrations agree with many points on the exact overlap", "[penetration]") {
-  samples::Random random(1203);
+  test::SeededRandom random(1203);
   int touching = 0;
   for (int i = 0; i < scaled(300); ++i) {
     const Polygon a = random.integer(0, 1) ? random_polygon(random, random.integer(4, 12))
@@ -136,7 +136,7 @@ TEST_CASE("penetrations agree with many points on the exact overlap", "[penetrat
 }
 
 TEST_CASE("what the potential measures bounds the penetration from both sides", "[penetration]") {
-  samples::Random random(1204);
+  test::SeededRandom random(1204);
   using Field = PotentialChoice::Field;
   double closest = 0;  // to the upper bound, where that is above the lower one
   for (int i = 0; i < scaled(200); ++i) {
@@ -165,7 +165,7 @@ TEST_CASE("what the potential measures bounds the penetration from both sides", 
 }
 
 TEST_CASE("the largest distance along a segment is found wherever it is", "[penetration]") {
-  samples::Random random(1205);
+  test::SeededRandom random(1205);
   for (int i = 0; i < scaled(200); ++i) {
     BoundaryDistance boundary;
     for (int k = random.integer(1, 12); k > 0; --k) {

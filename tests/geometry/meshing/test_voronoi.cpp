@@ -260,7 +260,7 @@ TEST_CASE("every point of the region lies in exactly one cell", "[voronoi]") {
     for (const auto& cell : voronoi.mesh.cells) rings.push_back(cell_ring(voronoi.mesh, cell));
     const Ring local = region.local_vertices();
     const Box box = bounding_box(Polygon(local));
-    samples::Random random(5);
+    test::SeededRandom random(5);
     int inside = 0;
     for (int i = 0; i < test::scaled(500); ++i) {
       const Vec2 p(random.uniform(box.x0, box.x1), random.uniform(box.y0, box.y1));

@@ -85,7 +85,7 @@ TEST_CASE("own lengths without a shared edge", "[own-length]") {
 }
 
 TEST_CASE("own lengths of edges that are shared at any angle", "[own-length]") {
-  samples::Random random(91);
+  test::SeededRandom random(91);
   for (int i = 0; i < test::scaled(200); ++i) {
     // The polygons have vertices in common, and no other point of their boundaries.
     const double turn = random.uniform(0, 6);

@@ -57,7 +57,7 @@ TEST_CASE("simplicity is decided exactly", "[polygon]") {
 }
 
 TEST_CASE("orientation obeys its laws on nearly collinear points", "[predicates]") {
-  samples::Random random(1);
+  test::SeededRandom random(1);
   int zero = 0;
   for (int i = 0; i < test::scaled(20000); ++i) {
     const Vec2 a(random.uniform(-1, 1), random.uniform(-1, 1));

@@ -112,7 +112,7 @@ std::vector<PotentialChoice> all_references() {
 }  // namespace
 
 TEST_CASE("both fields of a convex polygon are one, to the last bit", "[distance-field]") {
-  samples::Random random(60);
+  test::SeededRandom random(60);
   for (int i = 0; i < test::scaled(200); ++i) {
     const Polygon a = samples::random_convex(random, random.integer(3, 8));
     const Polygon b =
@@ -147,7 +147,7 @@ TEST_CASE("reference lengths of the distance field", "[distance-field]") {
 }
 
 TEST_CASE("the distance field at points", "[distance-field]") {
-  samples::Random random(61);
+  test::SeededRandom random(61);
   double worst = 0;
   for (int i = 0; i < test::scaled(300); ++i) {
     const Polygon polygon = samples::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
@@ -168,7 +168,7 @@ TEST_CASE("the distance field at points", "[distance-field]") {
 }
 
 TEST_CASE("the distance field along segments against quadrature", "[distance-field]") {
-  samples::Random random(62);
+  test::SeededRandom random(62);
   for (const PotentialChoice& choice : all_references()) {
     for (int i = 0; i < test::scaled(20); ++i) {
       const Polygon polygon = samples::posed(non_convex(random), {0, 0}, random.uniform(0, 6));
@@ -191,7 +191,7 @@ TEST_CASE("the distance field along segments against quadrature", "[distance-fie
 }
 
 TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distance-field]") {
-  samples::Random random(63);
+  test::SeededRandom random(63);
   int touching = 0;
   for (const PotentialChoice& choice : all_references()) {
     for (const double offset : {0.0, 1e6, 1e9}) {
@@ -213,7 +213,7 @@ TEST_CASE("distance field: edge and overlap kernel against the oracle", "[distan
 }
 
 TEST_CASE("energy of the distance field against quadrature over lines", "[distance-field]") {
-  samples::Random random(64);
+  test::SeededRandom random(64);
   for (const PotentialChoice& choice : all_references()) {
     for (int i = 0; i < test::scaled(5); ++i) {
       const Polygon a = samples::posed(non_convex(random), {.4, .3}, random.uniform(0, 6));
@@ -251,7 +251,7 @@ TEST_CASE("energy of the distance field against quadrature over lines", "[distan
 }
 
 TEST_CASE("force of the distance field is minus the gradient of the energy", "[distance-field]") {
-  samples::Random random(65);
+  test::SeededRandom random(65);
   const double h = 1e-4;
   for (int i = 0; i < test::scaled(50); ++i) {
     const PotentialChoice choice = all_references()[i % 4];
@@ -279,7 +279,7 @@ TEST_CASE("work of the distance field on closed paths", "[distance-field]") {
 }
 
 TEST_CASE("swapping the bodies of a distance-field pair, to the last bit", "[distance-field]") {
-  samples::Random random(67);
+  test::SeededRandom random(67);
   for (int i = 0; i < test::scaled(100); ++i) {
     const Polygon a = samples::posed(
         non_convex(random), {random.uniform(-1, 1), random.uniform(-1, 1)}, random.uniform(0, 6));
@@ -292,7 +292,7 @@ TEST_CASE("swapping the bodies of a distance-field pair, to the last bit", "[dis
 }
 
 TEST_CASE("shallow crosses: the distance field gives the force of the roof", "[distance-field]") {
-  samples::Random random(68);
+  test::SeededRandom random(68);
   const Vec2 centre = area_moments(test::cross_shape()).centroid;
   const Potential roof =
       translated(make_potential(test::cross_shape(), test::length_choice(.5)), centre);

@@ -186,7 +186,7 @@ TEST_CASE("the largest circle agrees with brute force", "[inscribed_circle][slow
   checked(scaled(comb(12, 8, 1), .1), 1e-3);
   checked(spiral(4, 50, .1, .05));
   checked(star(7, .2));
-  Random random(1);
+  test::SeededRandom random(1);
   for (int i = 0; i < test::scaled(300); ++i) {
     const Polygon polygon = random_simple(random, random.integer(4, 40));
     INFO("polygon " << i);
@@ -195,7 +195,7 @@ TEST_CASE("the largest circle agrees with brute force", "[inscribed_circle][slow
 }
 
 TEST_CASE("the largest circle does not depend on the position", "[inscribed_circle]") {
-  Random random(2);
+  test::SeededRandom random(2);
   std::vector<Polygon> polygons{cross_of_squares(),
                                 l_shape(3),
                                 h_shape(),
@@ -291,7 +291,7 @@ TEST_CASE("every simple ring of a folder has its circle", "[inscribed_circle]") 
 }
 
 TEST_CASE("convex polygons of many edges: the same circle as by clipping", "[inscribed_circle]") {
-  samples::Random random(11);
+  test::SeededRandom random(11);
   for (int i = 0; i < test::scaled(30); ++i) {
     const Polygon polygon = samples::random_convex(random, random.integer(101, 250));
     const InscribedCircle circle = largest_inscribed_circle(polygon);
@@ -341,7 +341,7 @@ TEST_CASE("many vertices on the edges change nothing", "[inscribed]") {
 
 TEST_CASE("big combs, stars and coastlines have the largest circles that brute force finds",
           "[inscribed]") {
-  Random random(21);
+  test::SeededRandom random(21);
   const int n = std::max(300, test::scaled(2000));
   checked(coastline(random, n));
   checked(turned(skyline(random, n), .2));

@@ -67,7 +67,7 @@ TEST_CASE("inscribed circles with known radius", "[potential]") {
 }
 
 TEST_CASE("the inradius is the maximum of the envelope", "[potential]") {
-  samples::Random random(2);
+  test::SeededRandom random(2);
   for (int i = 0; i < test::scaled(2000); ++i) {
     const Polygon polygon = samples::random_convex(random, random.integer(3, 12));
     const InscribedCircle circle = inscribed_circle(polygon);

@@ -65,7 +65,7 @@ void require_same_potential(const Potential& a, const Potential& b) {
 }  // namespace
 
 TEST_CASE("copies of a polygon are recognised, wherever they start", "[similar]") {
-  Random random(17);
+  test::SeededRandom random(17);
   for (const Polygon& shape : uneven_polygons()) {
     SimilarShapes shapes;
     REQUIRE_FALSE(shapes.add(shape));
@@ -128,7 +128,7 @@ TEST_CASE("the first one of several copies is the original", "[similar]") {
 }
 
 TEST_CASE("the skeleton of a copy is the one it would get by itself", "[similar][skeleton]") {
-  Random random(23);
+  test::SeededRandom random(23);
   for (const Polygon& shape : uneven_polygons()) {
     const Skeleton original = straight_skeleton(shape);
     for (int i = 0; i < test::scaled(10); ++i) {
@@ -163,7 +163,7 @@ TEST_CASE("the skeleton of a copy is the one it would get by itself", "[similar]
 TEST_CASE("forces of copies agree with those of polygons that have their own skeletons",
           "[similar]") {
   using Field = PotentialChoice::Field;
-  Random random(31);
+  test::SeededRandom random(31);
   const std::vector<Polygon> shapes = uneven_polygons();
   for (const PotentialChoice& choice :
        {PotentialChoice{},

@@ -54,7 +54,7 @@ TEST_CASE("double-double numbers have 31 digits", "[skeleton]") {
 }
 
 TEST_CASE("big polygons get a skeleton without CGAL", "[skeleton]") {
-  Random random(5);
+  test::SeededRandom random(5);
   const int n = std::max(300, test::scaled(10000));
   traced(random_star_shaped(random, n, .7));
   traced(random_star_shaped(random, n, .99));
@@ -66,7 +66,7 @@ TEST_CASE("big polygons get a skeleton without CGAL", "[skeleton]") {
 // Where many events happen at the same time and place, exact constructions took minutes for 2000
 // vertices and 4 GB for 20 000.
 TEST_CASE("big polygons full of simultaneous events get a skeleton without CGAL", "[skeleton]") {
-  Random random(6);
+  test::SeededRandom random(6);
   const int n = std::max(300, test::scaled(2000));
   for (const double angle : {0., .3}) {
     CHECK(std::abs(traced(turned(samples::comb(n / 4, 9), angle)).roof_height - .5) < 1e-12);
@@ -80,7 +80,7 @@ TEST_CASE("big polygons full of simultaneous events get a skeleton without CGAL"
 }
 
 TEST_CASE("the wavefront finds the skeletons that CGAL finds", "[skeleton]") {
-  Random random(7);
+  test::SeededRandom random(7);
   for (int i = 0; i < test::scaled(200); ++i) {
     const Polygon polygon = scaled(random_star_shaped(random, random.integer(4, 60), .2), .5);
     const Skeleton expected = straight_skeleton(polygon);
@@ -159,7 +159,7 @@ TEST_CASE("a report that throws ends the construction", "[skeleton]") {
 }
 
 TEST_CASE("a ring is simple if no two of its edges meet", "[predicates]") {
-  Random random(11);
+  test::SeededRandom random(11);
   int simple = 0;
   const int cases = test::scaled(3000);
   for (int i = 0; i < cases; ++i) {

@@ -34,7 +34,7 @@ Numbers request(Fault fault, const Numbers& numbers) {
 
 HelperAnswer ask(Fault fault, const Numbers& numbers, double seconds = 1,
                  const std::function<void()>& meanwhile = {}, double patience = kHelperPatience) {
-  return run_helpers(APOTHEM_FAULTY_HELPER, {request(fault, numbers)}, seconds, meanwhile, patience)
+  return run_helpers(test::faulty_helper(), {request(fault, numbers)}, seconds, meanwhile, patience)
       .front();
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("a helper that was kept from its work is asked the same again", "[help
 
 TEST_CASE("several helpers work at the same time, and each fails for itself", "[helper]") {
   const std::vector<HelperAnswer> answers =
-      run_helpers(APOTHEM_FAULTY_HELPER,
+      run_helpers(test::faulty_helper(),
                   {request(Fault::none, Numbers(100001, 2)), request(Fault::crash, {3}),
                    request(Fault::none, {4}), request(Fault::loop, {})},
                   1);
@@ -174,6 +174,6 @@ TEST_CASE("a helper program that cannot be started is an error of the system", "
 }
 
 TEST_CASE("a helper of another version is no source of skeletons", "[helper]") {
-  const Variable variable("APOTHEM_SKELETON_PROGRAM", APOTHEM_FAULTY_HELPER);
+  const Variable variable("APOTHEM_SKELETON_PROGRAM", test::faulty_helper());
   CHECK_THROWS_AS(straight_skeleton(test::cross_shape()), SkeletonFailure);
 }

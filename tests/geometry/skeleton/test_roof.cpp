@@ -62,7 +62,7 @@ TEST_CASE("the roof of a cross is its two bars minus their common square", "[roo
 }
 
 TEST_CASE("non-convex pairs: edge and overlap kernel against the oracle", "[roof]") {
-  Random random(40);
+  test::SeededRandom random(40);
   int touching = 0;
   for (const int kind : {0, 1, 2}) {  // roof, inscribed circle, capped
     for (int i = 0; i < test::scaled(100); ++i) {
@@ -83,7 +83,7 @@ TEST_CASE("non-convex pairs: edge and overlap kernel against the oracle", "[roof
 }
 
 TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
-  Random random(41);
+  test::SeededRandom random(41);
   const double h = 1e-4;
   for (int i = 0; i < test::scaled(50); ++i) {
     const Polygon a = test::any_shape(random);
@@ -108,7 +108,7 @@ TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
 TEST_CASE("work of non-convex contact on closed paths", "[roof]") { test::check_closed_paths({}); }
 
 TEST_CASE("swap and shift of non-convex pairs, to the last bit", "[roof]") {
-  Random random(44);
+  test::SeededRandom random(44);
   for (int i = 0; i < test::scaled(100); ++i) {
     const Polygon a = posed(test::any_shape(random), {random.uniform(-1, 1), random.uniform(-1, 1)},
                             random.uniform(0, 6));

@@ -241,7 +241,7 @@ TEST_CASE("singular area against closed forms", "[singular]") {
 
 TEST_CASE("singular area of a convex polygon: the intersection of shifted half-planes",
           "[singular]") {
-  Random random(7);
+  test::SeededRandom random(7);
   for (int i = 0; i < scaled(300); ++i) {
     const Polygon polygon = samples::random_convex(random, random.integer(3, 40));
     const Skeleton skeleton = straight_skeleton(polygon);
@@ -254,7 +254,7 @@ TEST_CASE("singular area of a convex polygon: the intersection of shifted half-p
 
 TEST_CASE("singular areas of any shape are level, nested, simple and shrink by their perimeter",
           "[singular]") {
-  Random random(8);
+  test::SeededRandom random(8);
   std::vector<Polygon> polygons{Polygon(cross_ring(.7)),    Polygon(l_ring()),
                                 Polygon(star_ring(7, .35)), Polygon(comb_ring(6)),
                                 Polygon(spiral_ring(2)),    Polygon(regular_ring(30))};
@@ -301,7 +301,7 @@ TEST_CASE("singular areas of any shape are level, nested, simple and shrink by t
 
 TEST_CASE("faces cut at a depth tile the polygon, the parts above it the singular area",
           "[singular]") {
-  Random random(9);
+  test::SeededRandom random(9);
   for (int i = 0; i < scaled(200); ++i) {
     const Polygon polygon = random_polygon(random, random.integer(5, 60));
     const Skeleton skeleton = straight_skeleton(polygon);

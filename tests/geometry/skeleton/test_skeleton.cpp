@@ -233,7 +233,7 @@ TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skele
 }
 
 TEST_CASE("convex: the roof is the lower envelope of the edges' lines", "[skeleton]") {
-  Random random(1);
+  test::SeededRandom random(1);
   for (int i = 0; i < test::scaled(300); ++i) {
     const Polygon polygon = random_convex(random, random.integer(3, 40));
     const auto reference = [&](const Vec2& x) { return envelope(polygon, x); };
@@ -245,7 +245,7 @@ TEST_CASE("convex: the roof is the lower envelope of the edges' lines", "[skelet
 }
 
 TEST_CASE("any shape: the roof is that of the motorcycle graph", "[skeleton]") {
-  Random random(2);
+  test::SeededRandom random(2);
   for (int i = 0; i < test::scaled(500); ++i) {
     const Polygon polygon =
         random_star_shaped(random, random.integer(4, 30), random.uniform(.1, 1));
@@ -255,7 +255,7 @@ TEST_CASE("any shape: the roof is that of the motorcycle graph", "[skeleton]") {
 }
 
 TEST_CASE("known shapes: the roof is that of the motorcycle graph at 10 000 points", "[skeleton]") {
-  Random random(3);
+  test::SeededRandom random(3);
   const std::vector<std::pair<std::string, Polygon>> shapes{
       {"cross", cross_of_squares()},
       {"L", l_shape()},
@@ -285,7 +285,7 @@ Polygon equal_arms(int arms, double length) {
 }
 
 TEST_CASE("turned shapes of equal arms always get a skeleton", "[skeleton]") {
-  Random random(4);
+  test::SeededRandom random(4);
   int retried = 0;
   const int cases = test::long_run() ? 20000 : test::scaled(400);
   for (int i = 0; i < cases; ++i) {
@@ -306,7 +306,7 @@ TEST_CASE("turned shapes of equal arms always get a skeleton", "[skeleton]") {
 }
 
 TEST_CASE("the same skeleton, whatever lies about in memory", "[skeleton]") {
-  Random random(44);
+  test::SeededRandom random(44);
   std::vector<std::vector<char>> litter;
   for (int i = 0; i < test::scaled(100); ++i) {
     const Polygon polygon = turned(cross_of_squares(), random.uniform(0, 6));

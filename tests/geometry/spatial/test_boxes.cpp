@@ -8,7 +8,7 @@
 using namespace apothem;
 
 TEST_CASE("the box grid finds what brute force finds", "[boxes]") {
-  samples::Random random(3);
+  test::SeededRandom random(3);
   BoxGrid grid;
   std::vector<BoxPair> found;
   for (int round = 0; round < test::scaled(200); ++round) {
@@ -36,7 +36,7 @@ TEST_CASE("the box grid finds what brute force finds", "[boxes]") {
 }
 
 TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes]") {
-  samples::Random random(4);
+  test::SeededRandom random(4);
   int few = 0;
   for (int round = 0; round < test::scaled(100); ++round) {
     BoxGrid grid;
@@ -77,7 +77,7 @@ TEST_CASE("the box grid follows boxes that move, grow, vanish and come", "[boxes
 }
 
 TEST_CASE("boxes far away and without end are found, and the others as fast", "[boxes]") {
-  samples::Random random(6);
+  test::SeededRandom random(6);
   for (int round = 0; round < test::scaled(100); ++round) {
     std::vector<Box> boxes;
     const int n = random.integer(1, 200);

@@ -71,7 +71,7 @@ TEST_CASE("a tip on a row of elements is as deep as it is in the body, not in an
 
 TEST_CASE("the largest penetration of outlines is that of their patches",
           "[contact][penetration]") {
-  samples::Random random(1206);
+  test::SeededRandom random(1206);
   int found = 0;
   for (int i = 0; i < scaled(200); ++i) {
     const std::optional<OutlinePair> pair = random_pair(random, 7, .4);
