@@ -91,9 +91,9 @@ set(APOTHEM_PUBLIC_HEADERS
   run/run.hpp
   run/start.hpp
   run/stop_watch.hpp
-  scene/error.hpp
   scene/import_report.hpp
   scene/json.hpp
   scene/json_value.hpp
   scene/scene.hpp
-  scene/setting.hpp)
+  scene/setting.hpp
+  text/error.hpp)

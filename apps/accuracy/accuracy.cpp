@@ -11,7 +11,7 @@
 #include "apps/commands.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/gnuplot.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "lib/output/field.hpp"
 #include "lib/output/run_plot.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -14,13 +14,8 @@ namespace {
 // CLI11's own PositiveNumber accepts nan, inf and hexadecimal numbers.
 const CLI::Validator kPositive(
     [](std::string& text) {
-      double x = 0;
-      try {
-        x = parse_decimal(text);
-      } catch (const BadNumber&) {
-        x = 0;
-      }
-      return x > 0 ? std::string() : "must be a positive number, not " + text;
+      return find_decimal(text).value_or(0) > 0 ? std::string()
+                                                : "must be a positive number, not " + text;
     },
     "POSITIVE");
 

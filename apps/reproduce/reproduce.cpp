@@ -16,8 +16,9 @@
 #include "lib/output/files.hpp"
 #include "lib/output/report.hpp"
 #include "lib/player/player.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "version.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

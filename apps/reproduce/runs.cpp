@@ -13,9 +13,10 @@
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/run/hash.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/scene/json.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -19,7 +19,8 @@
 #include "lib/run/hash.hpp"
 #include "lib/run/other_run.hpp"
 #include "lib/run/summary.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

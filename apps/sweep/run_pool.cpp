@@ -17,6 +17,7 @@
 #include "apps/process/child_program.hpp"
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

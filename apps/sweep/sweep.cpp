@@ -13,7 +13,7 @@
 #include "apps/commands.hpp"
 #include "apps/sweep/run_pool.hpp"
 #include "lib/output/files.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/scene/scene.hpp"
 #include "lib/sweep/snakefile.hpp"
 #include "lib/sweep/tables.hpp"
@@ -31,16 +31,13 @@ struct Shard {
 Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
   const size_t slash = text.find('/');
-  try {
-    if (slash == std::string::npos) throw BadNumber("");
-    const Shard shard{static_cast<size_t>(parse_count(text.substr(0, slash))),
-                      static_cast<size_t>(parse_count(text.substr(slash + 1)))};
-    if (shard.index < 1 || shard.index > shard.count) throw BadNumber("");
-    return shard;
-  } catch (const BadNumber&) {
+  const auto index = find_count(text.substr(0, slash));
+  const auto count = find_count(slash == std::string::npos ? "" : text.substr(slash + 1));
+  if (!index || !count || *index < 1 || *index > *count) {
     throw UsageError(
         "--shard", fmt::format("\"{}\" is no part; write I/N with I from 1 to N, like 2/8", text));
   }
+  return {static_cast<size_t>(*index), static_cast<size_t>(*count)};
 }
 
 std::optional<SurvivalChoice> survival_of(const std::string& text) {

@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include "lib/output/files.hpp"
 #include "lib/output/run_folder.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -185,9 +184,8 @@ std::optional<std::string> draw_curves(const CurveFigure& figure, PictureFormat 
     case Plotted::yes:
       break;
   }
-  const char* name = format == PictureFormat::png ? "/picture.png" : "/picture.svg";
-  std::ifstream stream(folder.path() + name, std::ios::binary);
-  return std::string{std::istreambuf_iterator<char>(stream), {}};
+  return read_bytes(folder.path() +
+                    (format == PictureFormat::png ? "/picture.png" : "/picture.svg"));
 }
 
 }  // namespace apothem

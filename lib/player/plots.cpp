@@ -1,10 +1,11 @@
 #include "lib/player/plots.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -72,11 +73,6 @@ class Source {
   Plots& plots_;
   size_t time_ = 0;
 };
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // Ledgers: a choice for each unit, and one for each column of what is unaccounted for.
 void add_ledger(Source source, const std::string& title, Plots& plots) {

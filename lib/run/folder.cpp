@@ -13,6 +13,7 @@
 #include "lib/output/vtu_file.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

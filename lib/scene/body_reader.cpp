@@ -13,6 +13,7 @@
 #include "lib/scene/deformable_reader.hpp"
 #include "lib/scene/output_reader.hpp"
 #include "lib/scene/polygon_value.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 

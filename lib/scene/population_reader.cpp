@@ -5,6 +5,7 @@
 #include "geometry/polygon/convex_parts.hpp"
 #include "lib/scene/output_reader.hpp"
 #include "lib/scene/polygon_value.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 

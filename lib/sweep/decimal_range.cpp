@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "lib/text/file.hpp"
+
 namespace apothem {
 namespace {
 

@@ -9,6 +9,7 @@
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/run/hash.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "lib/output/files.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "lib/sweep/summary_picture.hpp"
 
 namespace apothem {

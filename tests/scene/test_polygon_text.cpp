@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/pair_file.hpp"
 #include "lib/scene/polygon_file.hpp"

@@ -11,6 +11,7 @@
 #include "lib/scene/scene.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
+#include "lib/text/file.hpp"
 
 using namespace apothem;
 using test::Folder;

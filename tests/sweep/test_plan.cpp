@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/sweep/decimal_range.hpp"
 #include "lib/sweep/plan.hpp"
 #include "tests/folder.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "lib/sweep/summary_picture.hpp"
 #include "lib/sweep/tables.hpp"
 #include "tests/folder.hpp"
