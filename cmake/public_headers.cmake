@@ -43,6 +43,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/meshing/delaunay_mesh.hpp
   geometry/meshing/polygon_mesh.hpp
   geometry/meshing/voronoi.hpp
+  geometry/polygon/cyclic.hpp
   geometry/polygon/line_crossings.hpp
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp

@@ -312,22 +312,6 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
   return contact_patches(a, b, offset, workspace, runs, patches, all);
 }
 
-PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
-                         const Potential& potential_b) {
-  const PlacedPair placed(a, potential_a, b, potential_b);
-  PatchWorkspace workspace;
-  PatchResult result;
-  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
-                  result.patches);
-  for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
-  for (BoundaryRun& run : result.runs) {
-    placed.about_centroids(run);
-    run.start -= placed.centroid_a;
-    run.end -= placed.centroid_a;
-  }
-  return result;
-}
-
 void shared_length(std::span<const RunPlace> before, int patches_before,
                    std::span<const RunPlace> now, int patches_now, std::vector<double>& table) {
   table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);

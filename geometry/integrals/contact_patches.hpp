@@ -73,18 +73,6 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
                              PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
                              std::vector<PairIntegral>& patches);
 
-/// The runs and contact patches of two polygons.
-struct PatchResult {
-  std::vector<BoundaryRun> runs;      ///< runs, ordered by their edges, those of a first
-  std::vector<PairIntegral> patches;  ///< patches, ordered by their first run
-};
-
-/// Splits two polygons at their given positions into contact patches. As with edge_method, moments
-/// are about the polygons' centroids and positions are relative to the centroid of a. For single
-/// evaluations and not for the step loop, as it allocates.
-PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
-                         const Potential& potential_b);
-
 /// Computes how much boundary the patches of a pair share with those of an earlier step. Entry
 /// i * patches_now + j of the table is the length of boundary of both polygons, in m, that lies in
 /// the earlier patch i and in the present patch j. A run of length zero that lies in another run

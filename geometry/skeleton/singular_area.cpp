@@ -6,6 +6,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/ring_moments.hpp"
+
 namespace apothem {
 namespace {
 
@@ -16,14 +19,6 @@ constexpr double kNoise = 0x1p-48;
 constexpr double kSamePlace = 1e-9;  // level ridges shorter than this times the depth are points
 constexpr double kSameDirection = 1e-9;  // sine of the angle below which two ridges are in line
 
-double ring_area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t i = 2; i < ring.size(); ++i) {
-    twice += cross(ring[i - 1] - ring[0], ring[i] - ring[0]);
-  }
-  return twice / 2;
-}
-
 // The nodes above the depth, and the points where the arcs cross it.
 class Level {
  public:
@@ -31,7 +26,7 @@ class Level {
       : skeleton_(skeleton), nodes_(skeleton.nodes), sides_(skeleton.nodes.size()) {
     if (!(depth > 0)) throw std::invalid_argument("the depth of a singular area is not positive");
     Box box;
-    for (const Skeleton::Node& node : nodes_) box.include(node.point.x(), node.point.y());
+    for (const Skeleton::Node& node : nodes_) box.include(node.point);
     const double noise = kNoise * box.extent();
     for (size_t i = 0; i < nodes_.size(); ++i) {
       double& height = nodes_[i].height;
@@ -75,7 +70,7 @@ class Level {
     const std::vector<int>& face = skeleton_.faces[f];
     for (size_t i = 0; i < face.size(); ++i) {
       const int a = face[i];
-      const int b = face[i + 1 == face.size() ? 0 : i + 1];
+      const int b = after(face, i);
       node(a);
       if (above(a) == above(b)) continue;
       above(b) ? up(cut(a, b)) : down(cut(a, b));

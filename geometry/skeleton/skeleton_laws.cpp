@@ -105,7 +105,7 @@ class Laws {
     for (int f = 0; f < size_; ++f) {
       const std::vector<int>& face = skeleton_.faces[f];
       for (size_t i = 0; i < face.size(); ++i, ++passed) {
-        const auto found = left_of_.find({face[i], face[i + 1 == face.size() ? 0 : i + 1]});
+        const auto found = left_of_.find({face[i], after(face, i)});
         if (found == left_of_.end() || found->second != f) fail("a side of a face is not its arc");
       }
     }
@@ -178,7 +178,7 @@ class Laws {
     std::vector<double> along(n + 1);
     std::vector<double> bends(n);
     for (size_t i = 0; i <= n; ++i) along[i] = lines_[f].along(point(face[i % n]));
-    for (size_t i = 0; i < n; ++i) bends[i] = bend(f, face[i], face[(i + 1) % n]);
+    for (size_t i = 0; i < n; ++i) bends[i] = bend(f, face[i], after(face, i));
     const auto right = std::max_element(along.begin() + 1, along.end());
     const auto left = std::min_element(right, along.end());
     double error = 0;
@@ -194,7 +194,7 @@ class Laws {
     const std::vector<size_t> order = sorted(along, n);
     for (size_t i = 0; i < n; ++i) {
       const Vec2& p = point(face[i]);
-      const Vec2 side = point(face[(i + 1) % n]) - p;
+      const Vec2 side = point(after(face, i)) - p;
       const double length = side.norm();
       const double low = std::min(along[i], along[i + 1]) + slack;
       const double high = std::max(along[i], along[i + 1]) - slack;

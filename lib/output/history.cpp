@@ -146,6 +146,22 @@ const std::vector<double>* HistoryTable::column(const std::string& name) const {
   return nullptr;
 }
 
+ColumnName::ColumnName(const std::string& column) : quantity(column) {
+  const size_t point = column.rfind('.');
+  if (point == std::string::npos) return;
+  owner = column.substr(0, point);
+  quantity = column.substr(point + 1);
+}
+
+std::set<std::string> HistoryTable::regions() const {
+  std::set<std::string> regions;
+  for (const std::string& column : names) {
+    const ColumnName name(column);
+    if (name.quantity == "count") regions.insert(name.owner);
+  }
+  return regions;
+}
+
 HistoryTable read_history(const std::string& file) {
   const std::string refusal = refusal_of_input(file);
   if (!refusal.empty()) throw std::runtime_error(file + ": " + refusal);
@@ -164,7 +180,8 @@ HistoryTable read_history(const std::string& file) {
   for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
     const std::vector<std::string> cells = csv_cells(line, file, number);
     for (size_t i = 0; i < table.columns.size(); ++i) {
-      const auto value = cells.size() == table.columns.size() ? find_decimal(cells[i]) : std::nullopt;
+      const auto value =
+          cells.size() == table.columns.size() ? find_decimal(cells[i]) : std::nullopt;
       if (!value) {
         throw std::runtime_error(
             fmt::format("{}:{}: is not a row of {} numbers", file, number, table.columns.size()));

@@ -18,16 +18,6 @@ constexpr size_t kMostCurves = 12;  // of a panel: more cannot be told apart
 constexpr double kNoChange = 1e-9;  // of the largest change of a column of that unit
 constexpr size_t kSolidCurves = 6;  // of curves; further curves are dashed
 
-// A column NAME.quantity of a history, or a column of a ledger, which has no name.
-struct ColumnName {
-  std::string name, quantity;
-  explicit ColumnName(const std::string& column) {
-    const size_t point = column.rfind('.');
-    if (point != std::string::npos) name = column.substr(0, point);
-    quantity = point == std::string::npos ? column : column.substr(point + 1);
-  }
-};
-
 double spread_of(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return *most - *least;
@@ -128,24 +118,14 @@ void add_ledger(const HistoryTable& table, Panels& panels) {
   }
 }
 
-// Names of the regions, which no body has: bodies are not counted.
-std::set<std::string> regions_of(const HistoryTable& table) {
-  std::set<std::string> regions;
-  for (const std::string& column : table.names) {
-    const ColumnName name(column);
-    if (name.quantity == "count") regions.insert(name.name);
-  }
-  return regions;
-}
-
 void add_history(const HistoryTable& table, bool of_regions, const std::string& file,
                  Panels& panels) {
-  const std::set<std::string> regions = regions_of(table);
+  const std::set<std::string> regions = table.regions();
   bool any = false;
   for (size_t i = 1; i < table.names.size(); ++i) {
     const ColumnName name(table.names[i]);
-    if ((regions.count(name.name) > 0) != of_regions) continue;
-    panels.add(i, name.quantity, name.name);
+    if ((regions.count(name.owner) > 0) != of_regions) continue;
+    panels.add(i, name.quantity, name.owner);
     any = true;
   }
   if (any) return;

@@ -12,10 +12,10 @@
 #include <optional>
 #include <string_view>
 
-#include "lib/text/decimal.hpp"
 #include "lib/scene/dxf_text.hpp"
 #include "lib/scene/gdal.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
 #include "lib/text/words.hpp"
 
@@ -79,9 +79,7 @@ void add_geometry(OGRGeometryH geometry, const DrawnShape& like, std::vector<Dra
 Box extent_of(const std::vector<DrawnShape>& shapes) {
   Box box;
   for (const DrawnShape& shape : shapes) {
-    for (const Points& ring : shape.rings) {
-      for (const Vec2& v : ring) box.include(v.x(), v.y());
-    }
+    for (const Points& ring : shape.rings) box.include(box_of(ring));
   }
   return box;
 }

@@ -10,7 +10,7 @@
 
 #include "geometry/packing/block_shapes.hpp"
 #include "geometry/packing/voronoi_blocks.hpp"
-#include "geometry/polygon/ring_area.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/hilbert.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/fem/kinds.hpp"

@@ -8,6 +8,7 @@
 
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
+#include "lib/run/exit_code.hpp"
 #include "lib/run/hash.hpp"
 #include "lib/text/file.hpp"
 
@@ -69,16 +70,16 @@ void add_files(const JsonValue& value, const fs::path& folder,
 RunState state_of_exit(const Json& ending) {
   if (ending.value("signal", 0) != 0) return RunState::crashed;
   switch (ending.value("exit_code", -1)) {
-    case 0:
-    case 1:
+    case exit_code::done:
+    case exit_code::missed:
       return RunState::done;
-    case 2:
+    case exit_code::bad_input:
       return RunState::refused;
-    case 3:
+    case exit_code::unstable:
       return RunState::unstable;
-    case 4:
+    case exit_code::system_failed:
       return RunState::failed;
-    case 130:
+    case exit_code::interrupted:
       return RunState::interrupted;
     default:
       return RunState::crashed;

@@ -82,7 +82,6 @@ TEST_CASE("places, velocities and forces are found by body and by node", "[state
   CHECK(fixed.force(0) == Eigen::Vector3d(200, 201, 202));
   CHECK(fixed.node(1) == Vec2(8 + 1. / 3, 9 + 1. / 3));
   CHECK(fixed.node_velocity(0) == Vec2(106, 107));
-  CHECK(fixed.node_force(2) == Vec2(210, 211));
 
   state.pose(1) << -1, -2, -3;
   state.pose_rate(0)[2] = -4;
