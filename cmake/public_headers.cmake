@@ -44,6 +44,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/meshing/polygon_mesh.hpp
   geometry/meshing/voronoi.hpp
   geometry/polygon/cyclic.hpp
+  geometry/polygon/disjoint_sets.hpp
   geometry/polygon/line_crossings.hpp
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp

@@ -1,9 +1,10 @@
 // A line on standard error that says how far a long work has come.
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
+
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 
@@ -11,8 +12,6 @@ namespace apothem {
 /// own.
 class StatusLine {
  public:
-  using Clock = std::chrono::steady_clock;
-
   /// `wait`: until the first line is due; nothing: as between two lines.
   explicit StatusLine(std::optional<Clock::duration> wait = {});
   ~StatusLine() { clear(); }

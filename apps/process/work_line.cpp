@@ -27,7 +27,7 @@ void WorkLine::report(const Stage& stage) {
     stage_start_ = Clock::now();
   }
   if (!line_.is_due()) return;
-  const double seconds = std::chrono::duration<double>(Clock::now() - stage_start_).count();
+  const double seconds = seconds_since(stage_start_);
   line_.show(fmt::format("{}: {}", work_, describe(stage, seconds)));
 }
 

@@ -31,7 +31,6 @@ class WorkLine {
   void check();
 
  private:
-  using Clock = StatusLine::Clock;
   Finishing signals_;
   std::string work_;
   StatusLine line_;

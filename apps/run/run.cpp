@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +18,7 @@
 #include "lib/run/hash.hpp"
 #include "lib/run/other_run.hpp"
 #include "lib/run/summary.hpp"
+#include "lib/system/clock.hpp"
 #include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
 
@@ -150,10 +150,9 @@ std::string folder_of(const RunOptions& options, const Scene& scene) {
 std::vector<Setting> settings_in(const std::string& folder) {
   StateOrigin origin;
   const std::string final = state_file(folder, StateFile::final);
-  std::error_code error;
   if (has_checkpoint(folder)) {
     use_checkpoint(folder, [&](const std::string& file) { origin = origin_of(file); });
-  } else if (std::filesystem::exists(final, error)) {
+  } else if (file_exists(final)) {
     origin = origin_of(final);
   }
   return origin.settings;
@@ -189,8 +188,7 @@ int report_ended(const RunOptions& options, const std::string& folder) {
   for (const auto& expectation : json["expectations"]) {
     if (options.verify && !expectation.value("met", false)) code = exit_code::missed;
   }
-  std::error_code error;
-  const bool drawn = std::filesystem::exists(folder + "/" + kPicture, error);
+  const bool drawn = file_exists(folder + "/" + kPicture);
   if (options.picture && !drawn && !draw_end(folder, options.quiet || options.json)) {
     return exit_code::system_failed;
   }
@@ -235,15 +233,14 @@ int run_command(const RunOptions& options) {
   settings.stop_if = [&] { return signals.asked(); };
   Run run(std::move(scene), settings);
   const double end = std::min(options.until.value_or(run.scene().time.end), run.scene().time.end);
-  const auto start = StatusLine::Clock::now();
+  const Clock::time_point start = Clock::now();
   StatusLine line;
   if (!options.quiet) {
     run.on_progress([&](const Run& now) {
       if (now.scene().time.statics) {
         print_load_step(now);
       } else if (line.is_due()) {
-        const std::chrono::duration<double> seconds = StatusLine::Clock::now() - start;
-        line.show(progress_of(now, end, seconds.count(), line.on_terminal()));
+        line.show(progress_of(now, end, seconds_since(start), line.on_terminal()));
       }
     });
   }

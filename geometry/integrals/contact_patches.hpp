@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/integrals/edge_trace.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 
 namespace apothem {
 
@@ -50,7 +51,7 @@ struct PatchWorkspace {
   std::vector<edge_detail::EdgeSums<double>> halves;  ///< integrals per run
   std::vector<edge_detail::Half> of_a, of_b;  ///< integrals per patch, on edges of a and of b
   std::vector<int> crossed;                   ///< per end: crossed edge of the other polygon or -1
-  std::vector<int> parent;                    ///< per run: union-find forest of the patches
+  DisjointSets sets;                          ///< of runs: the patches
   std::vector<char> joined;                   ///< per end: whether it has been joined to another
   std::vector<Bridge> bridges;                ///< candidates for joining loose ends
   std::vector<edge_detail::Extent> extents;   ///< extents per patch

@@ -10,7 +10,10 @@ namespace apothem {
 /// The numbers from 0 to `count` - 1, each at first in a set of its own.
 class DisjointSets {
  public:
-  explicit DisjointSets(size_t count) : parent_(count) {
+  explicit DisjointSets(size_t count = 0) { reset(count); }
+  /// Begins anew in the same memory.
+  void reset(size_t count) {
+    parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), 0);
   }
   /// The number that stands for the set of i.

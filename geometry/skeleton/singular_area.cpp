@@ -3,10 +3,10 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/polygon/ring_moments.hpp"
 
 namespace apothem {
@@ -135,24 +135,24 @@ void add_polygons(const Level& level, SingularArea& result) {
 class Crest {
  public:
   explicit Crest(const Level& level, double depth)
-      : level_(level), group_(level.skeleton().nodes.size()) {
-    std::iota(group_.begin(), group_.end(), 0);
+      : level_(level), groups_(level.skeleton().nodes.size()) {
     for (const Skeleton::Arc& arc : level.skeleton().arcs) {
       if (arc.right >= 0 && length(arc) <= kSamePlace * depth) unite(arc.start, arc.end);
     }
     for (const Skeleton::Arc& arc : level.skeleton().arcs) {
-      if (arc.right < 0 || !is_level(arc) || root(arc.start) == root(arc.end)) continue;
-      ridges_.push_back({root(arc.start), root(arc.end)});
+      if (arc.right < 0 || !is_level(arc) || groups_.find(arc.start) == groups_.find(arc.end))
+        continue;
+      ridges_.push_back({groups_.find(arc.start), groups_.find(arc.end)});
     }
   }
 
   void add_to(SingularArea& result) {
-    std::vector<bool> isolated(group_.size(), false);
-    const int count = static_cast<int>(group_.size());
-    for (int i = 0; i < count; ++i) isolated[root(i)] = level_.side(root(i)) == 0;
+    std::vector<bool> isolated(level_.nodes().size(), false);
+    const int count = static_cast<int>(level_.nodes().size());
+    for (int i = 0; i < count; ++i) isolated[groups_.find(i)] = level_.side(groups_.find(i)) == 0;
     for (const Skeleton::Arc& arc : level_.skeleton().arcs) {
-      if (level_.above(arc.start)) isolated[root(arc.end)] = false;
-      if (level_.above(arc.end)) isolated[root(arc.start)] = false;
+      if (level_.above(arc.start)) isolated[groups_.find(arc.end)] = false;
+      if (level_.above(arc.end)) isolated[groups_.find(arc.start)] = false;
     }
     for (const Ridge& ridge : ridges_) isolated[ridge[0]] = isolated[ridge[1]] = false;
     for (int i = 0; i < count; ++i) {
@@ -165,17 +165,13 @@ class Crest {
  private:
   using Ridge = std::array<int, 2>;
 
-  int root(int i) {
-    while (group_[i] != i) i = group_[i] = group_[group_[i]];
-    return i;
-  }
   // Joins two groups of nodes that are at the same place. Where many short edges meet at a maximum,
   // as in a regular polygon with many vertices, round-off separates nodes that should be one. A
   // node at the depth, if there is one, represents its group.
   void unite(int i, int j) {
-    i = root(i), j = root(j);
+    i = groups_.find(i), j = groups_.find(j);
     if (level_.side(j) != 0) std::swap(i, j);
-    group_[i] = j;
+    groups_.join(i, j);
   }
   [[nodiscard]] const Vec2& point(int node) const { return level_.nodes()[node].point; }
   [[nodiscard]] bool is_level(const Skeleton::Arc& arc) const {
@@ -217,7 +213,7 @@ class Crest {
   }
 
   const Level& level_;
-  std::vector<int> group_;  // union-find forest of the nodes that are at the same place
+  DisjointSets groups_;  // of nodes that are at the same place
   std::vector<Ridge> ridges_;
 };
 

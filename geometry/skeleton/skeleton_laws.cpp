@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
 #include "geometry/skeleton/skeleton.hpp"
 
@@ -112,20 +113,12 @@ class Laws {
     if (passed != left_of_.size()) fail("an arc is not a side of its faces");
   }
 
-  // Root of node i in a union-find forest.
-  static int root(std::vector<int>& parent, int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-
   void check_tree() {
-    std::vector<int> parent(skeleton_.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets joined(skeleton_.nodes.size());
     for (size_t a = static_cast<size_t>(size_); a < skeleton_.arcs.size(); ++a) {
-      const int start = root(parent, skeleton_.arcs[a].start);
-      const int end = root(parent, skeleton_.arcs[a].end);
-      if (start == end) fail("the inner arcs contain a cycle");
-      parent[start] = end;
+      if (!joined.join(skeleton_.arcs[a].start, skeleton_.arcs[a].end)) {
+        fail("the inner arcs contain a cycle");
+      }
     }
     if (skeleton_.arcs.size() - static_cast<size_t>(size_) + 1 != skeleton_.nodes.size()) {
       fail("the inner arcs do not reach every node");
@@ -228,8 +221,7 @@ class Laws {
   // by short arcs count as one.
   void check_valleys() {
     const double shortest = 1000 * tolerance_;
-    std::vector<int> parent(skeleton_.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets joined(skeleton_.nodes.size());
     for (const Skeleton::Arc& arc : skeleton_.arcs) {
       if ((point(arc.end) - point(arc.start)).norm() < shortest) {
         parent[root(parent, arc.start)] = root(parent, arc.end);

@@ -170,6 +170,12 @@ double JsonReader::positive(const JsonValue& value, const std::string& unit) con
   return x;
 }
 
+double JsonReader::not_negative(const JsonValue& value, const std::string& unit) const {
+  const double x = number(value, unit);
+  if (x < 0) fail(value, "must not be negative");
+  return x;
+}
+
 int JsonReader::count(const JsonValue& value) const {
   const double x = number(value, "");
   if (!(x >= 0 && x <= 1e9) || x != std::floor(x)) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "geometry/polygon/point.hpp"
-#include "lib/text/error.hpp"
 #include "lib/scene/json_value.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 
@@ -29,6 +29,7 @@ class JsonReader {
 
   double number(const JsonValue& value, const std::string& unit) const;
   double positive(const JsonValue& value, const std::string& unit) const;
+  double not_negative(const JsonValue& value, const std::string& unit) const;
   /// A whole number, 0 or more.
   int count(const JsonValue& value) const;
   const std::string& string(const JsonValue& value) const;

@@ -50,6 +50,14 @@ std::string read_text(const std::string& file, size_t limit) {
   return text;
 }
 
+std::string find_text(const std::string& file) {
+  try {
+    return read_text(file);
+  } catch (const SceneError&) {
+    return {};
+  }
+}
+
 std::string read_bytes(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};

@@ -25,6 +25,9 @@ std::ifstream open_text(const std::string& file);
 /// UTF-16.
 void strip_byte_order_mark(std::string& text, const std::string& file);
 
+/// The same, or an empty text where read_text() would throw.
+std::string find_text(const std::string& file);
+
 /// The bytes of a file that this program or a child of it has written. Empty if it cannot be read.
 std::string read_bytes(const std::string& file);
 
