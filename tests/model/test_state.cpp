@@ -38,6 +38,20 @@ void load(const nlohmann::json& json, State& state) {
 
 }  // namespace
 
+TEST_CASE("whole numbers in a list come back from an archive, also from one that held doubles",
+          "[state]") {
+  std::vector<int> numbers{3, 0, -7};
+  JsonWriter writer;
+  writer("numbers", numbers);
+  std::vector<int> read;
+  const nlohmann::json json = writer.json();
+  JsonLoader(json)("numbers", read);
+  CHECK(read == numbers);
+  const nlohmann::json doubles{{"numbers", {3.0, 0.0, -7.0}}};
+  JsonLoader(doubles)("numbers", read);
+  CHECK(read == numbers);
+}
+
 TEST_CASE("rigid bodies have three entries each, and after them nodes have two", "[state]") {
   const Layout layout{2, 3};
   CHECK(layout.rigid(0) == 0);
