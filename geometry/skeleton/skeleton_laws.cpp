@@ -224,14 +224,14 @@ class Laws {
     DisjointSets joined(skeleton_.nodes.size());
     for (const Skeleton::Arc& arc : skeleton_.arcs) {
       if ((point(arc.end) - point(arc.start)).norm() < shortest) {
-        parent[root(parent, arc.start)] = root(parent, arc.end);
+        joined.join(arc.start, arc.end);
       }
     }
-    std::vector<bool> fed(parent.size());
-    for (int v = 0; v < size_; ++v) fed[root(parent, v)] = true;
-    for (const Valley& valley : valleys(0)) fed[root(parent, valley.upper)] = true;
+    std::vector<bool> fed(skeleton_.nodes.size());
+    for (int v = 0; v < size_; ++v) fed[joined.find(v)] = true;
+    for (const Valley& valley : valleys(0)) fed[joined.find(valley.upper)] = true;
     for (const Valley& valley : valleys(1e-6)) {
-      if (valley.length > shortest && !fed[root(parent, valley.lower)]) {
+      if (valley.length > shortest && !fed[joined.find(valley.lower)]) {
         fail("a valley of the roof starts inside");
       }
     }

@@ -11,6 +11,7 @@
 #include "lib/output/vtu_file.hpp"
 #include "lib/system/input_file.hpp"
 #include "lib/text/csv.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {

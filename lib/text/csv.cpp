@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lib/text/error.hpp"
 #include "lib/text/file.hpp"
 #include "lib/text/words.hpp"
 
