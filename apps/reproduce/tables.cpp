@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "lib/text/decimal.hpp"
 #include "lib/sweep/statistics.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/words.hpp"
 
 namespace apothem {

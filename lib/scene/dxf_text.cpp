@@ -10,9 +10,9 @@
 #include <set>
 #include <string_view>
 
-#include "lib/text/decimal.hpp"
 #include "lib/scene/dxf_names.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
 #include "lib/text/words.hpp"
 

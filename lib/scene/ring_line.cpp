@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "geometry/polygon/polygon.hpp"
-#include "lib/text/decimal.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/ring_text.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/file.hpp"
 
 namespace apothem {

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "lib/text/decimal.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/words.hpp"
 
 namespace apothem {
@@ -136,7 +136,8 @@ class Reader {
   }
 
   RingText polygon() {
-    if (upper_case(in_.now()) == "EMPTY") fail("the polygon is EMPTY; give it three vertices or more");
+    if (upper_case(in_.now()) == "EMPTY")
+      fail("the polygon is EMPTY; give it three vertices or more");
     expect('(', "(( in front of the first vertex");
     expect('(', "(( in front of the first vertex");
     RingText result;

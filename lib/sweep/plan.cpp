@@ -9,9 +9,9 @@
 #include <set>
 
 #include "lib/run/hash.hpp"
-#include "lib/text/decimal.hpp"
-#include "lib/text/csv.hpp"
 #include "lib/sweep/decimal_range.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {

@@ -51,7 +51,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"scene", {"system", "execution", "text", "geometry", "mesh", "fem", "contact", "model"}},
     {"output", {"system", "execution", "text", "geometry", "mesh", "model"}},
     {"player", {"text", "geometry", "mesh", "model", "output"}},
-    {"run", {"system", "text", "archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
+    {"run",
+     {"system", "text", "archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
     {"sweep", {"text", "scene", "output", "run"}},
 };
 

@@ -9,9 +9,9 @@
 
 #include "lib/mesh/locate.hpp"
 #include "lib/scene/scene.hpp"
+#include "lib/text/file.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
-#include "lib/text/file.hpp"
 
 using namespace apothem;
 using test::Folder;

@@ -54,8 +54,8 @@ TEST_CASE("distance of a point from a ring", "[rings]") {
 
 TEST_CASE("the part of a ring above a line", "[rings]") {
   std::vector<Vec2> cuts;
-  const std::vector<Vec2> part =
-      part_above(kSquare, [](const Vec2& p) { return p.x() - 2; }, &cuts);
+  const std::vector<Vec2> part = part_above(
+      kSquare, [](const Vec2& p) { return p.x() - 2; }, &cuts);
   CHECK(ring_area(part) == 2);
   CHECK(cuts == std::vector<Vec2>{{2, 1}, {2, 3}});
   CHECK(part_above(kSquare, [](const Vec2& p) { return p.x() - 9; }).empty());
