@@ -259,7 +259,7 @@ const JsonValue* JsonObject::optional(std::string key) {
 const JsonValue& JsonObject::required(const std::string& key, const std::string& meaning) {
   if (const JsonValue* found = optional(key)) return *found;
   // The likeliest reason is that the key is misspelt.
-  if (const std::string* close = nearest(key, value_.keys());
+  if (const std::string* close = nearest_word(key, value_.keys());
       close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
     reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));
   }

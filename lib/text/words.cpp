@@ -24,20 +24,6 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The candidate that `word` was most likely meant to be, or nullptr if none is similar.
-const std::string* nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string* best = nullptr;
-  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
-      best = &candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
-}
-
 template <class Change>
 std::string changed(std::string_view text, const Change& change) {
   std::string result(text);
@@ -59,6 +45,19 @@ std::string_view trimmed(std::string_view text, std::string_view blanks) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
+const std::string* nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string* best = nullptr;
+  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = &candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string result = fmt::format("\"{}\"", word);
   // A word that begins another one is that one cut short, however much of it is missing.
@@ -68,7 +67,7 @@ std::string suggest(std::string_view word, const std::vector<std::string>& candi
       });
   if (longer != candidates.end()) {
     result += fmt::format("; did you mean \"{}\"?", *longer);
-  } else if (const std::string* best = nearest(word, candidates)) {
+  } else if (const std::string* best = nearest_word(word, candidates)) {
     result += fmt::format("; did you mean \"{}\"?", *best);
   }
   return result;
