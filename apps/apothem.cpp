@@ -23,8 +23,8 @@
 #include "lib/dynamics/unstable.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/run_folder.hpp"
-#include "lib/scene/error.hpp"
 #include "lib/system/standard_files.hpp"
+#include "lib/text/error.hpp"
 
 namespace {
 

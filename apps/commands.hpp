@@ -1,5 +1,5 @@
 // Private header: the sub-commands of the program with their options. Each function returns an exit
-// code below and throws where its command fails; main() in apothem.cpp turns exceptions into exit
+// code and throws where its command fails; main() in apothem.cpp turns exceptions into exit
 // codes.
 #pragma once
 
@@ -9,22 +9,10 @@
 #include <vector>
 
 #include "geometry/meshing/voronoi.hpp"
+#include "lib/run/exit_code.hpp"
 #include "lib/scene/setting.hpp"
 
 namespace apothem {
-
-/// The exit codes of the program, which its users may rely on.
-namespace exit_code {
-inline constexpr int done = 0;  ///< everything succeeded
-/// An expectation of a scene, or an expected value of a file of pairs, was not met; or runs of a
-/// study have failed.
-inline constexpr int missed = 1;
-inline constexpr int bad_input = 2;  ///< the command line or an input file is wrong
-inline constexpr int unstable = 3;   ///< unstable, or outside the range of the method
-/// The operating system failed: disk full, no permission, out of memory.
-inline constexpr int system_failed = 4;
-inline constexpr int interrupted = 130;  ///< stopped by a signal; 128 + SIGINT
-}  // namespace exit_code
 
 /// The error for a command line that asks for something impossible.
 class UsageError : public std::runtime_error {

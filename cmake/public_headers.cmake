@@ -43,6 +43,8 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/meshing/delaunay_mesh.hpp
   geometry/meshing/polygon_mesh.hpp
   geometry/meshing/voronoi.hpp
+  geometry/polygon/cyclic.hpp
+  geometry/polygon/disjoint_sets.hpp
   geometry/polygon/line_crossings.hpp
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp
@@ -91,9 +93,9 @@ set(APOTHEM_PUBLIC_HEADERS
   run/run.hpp
   run/start.hpp
   run/stop_watch.hpp
-  scene/error.hpp
   scene/import_report.hpp
   scene/json.hpp
   scene/json_value.hpp
   scene/scene.hpp
-  scene/setting.hpp)
+  scene/setting.hpp
+  text/error.hpp)

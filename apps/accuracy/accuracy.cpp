@@ -11,7 +11,8 @@
 #include "apps/commands.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/gnuplot.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {
@@ -97,13 +98,6 @@ struct Row {
   Worst of_length, scaled;
 };
 
-std::string csv(const std::string& field) {
-  if (field.find_first_of(",\"\n") == std::string::npos) return field;
-  std::string quoted = "\"";
-  for (const char c : field) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 class Accuracy {
  public:
   explicit Accuracy(const AccuracyOptions& options) : options_(options) {}
@@ -172,7 +166,7 @@ class Accuracy {
       }
       if (!status.empty() && status != "no reference") ++row.failures;
       pairs_ +=
-          fmt::format("{},{},{},{},{},{},{},{}\n", csv(name), csv(c.name), method,
+          fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(name), csv_cell(c.name), method,
                       status.empty() ? "ok" : status, e.of_weight, e.of_length, e.scaled, e.moment);
     }
     row.median = row.worst = std::nan("");
@@ -220,7 +214,7 @@ class Accuracy {
         "least_ratio [time of edge],largest_ratio [time of edge]\n";
     for (const Row& r : rows_) {
       table +=
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv(r.case_name), r.method,
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(r.case_name), r.method,
                       r.pairs, r.refused, r.failures, r.time.least, r.median, r.worst,
                       r.of_length.value, r.scaled.value, r.time.most, r.ratio.least, r.ratio.most);
     }

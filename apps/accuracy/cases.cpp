@@ -9,7 +9,7 @@
 #include "apps/cases/samples.hpp"
 #include "geometry/exact/overlap.hpp"
 #include "geometry/skeleton/skeleton.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {

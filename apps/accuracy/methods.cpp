@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -13,15 +12,10 @@
 #include "geometry/exact/exact_integral.hpp"
 #include "geometry/exact/overlap.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // The edge-integral kernel as the step loop calls it: shapes are placed and memory is allocated.
 class EdgeKernel {

@@ -1,21 +1,14 @@
 #include "apps/benchmark/bench.hpp"
+#include "lib/system/clock.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 
 namespace apothem {
 namespace {
 
 double now(ClockKind clock) {
-  if (clock == ClockKind::wall) {
-    const auto since = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double>(since).count();
-  }
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  return clock == ClockKind::wall ? seconds_since({}) : processor_time();
 }
 
 struct Sample {

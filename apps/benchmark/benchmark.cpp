@@ -2,7 +2,6 @@
 // by side.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "apps/benchmark/compare.hpp"
 #include "apps/benchmark/report.hpp"
 #include "apps/commands.hpp"
+#include "apps/process/status_line.hpp"
 #include "lib/output/files.hpp"
 
 namespace apothem {
@@ -57,29 +57,6 @@ int list_cases(const std::vector<BenchmarkCase>& cases, bool json) {
   return exit_code::done;
 }
 
-// The case that is being timed, on standard error: redrawn on a terminal, a line for each case
-// elsewhere.
-class CaseLine {
- public:
-  explicit CaseLine(size_t cases) : cases_(cases), terminal_(isatty(STDERR_FILENO) != 0) {}
-  CaseLine(const CaseLine&) = delete;
-  CaseLine& operator=(const CaseLine&) = delete;
-  ~CaseLine() { clear(); }
-
-  void show(const std::string& name) {
-    clear();
-    fmt::print(stderr, "{} of {}: {}{}", ++shown_, cases_, name, terminal_ ? "" : "\n");
-    std::fflush(stderr);
-  }
-  void clear() const {
-    if (terminal_ && shown_ > 0) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  size_t cases_, shown_ = 0;
-  bool terminal_;
-};
-
 void say_plotted(Plotted plotted, const std::string& folder, const std::string& table, bool quiet) {
   if (plotted == Plotted::failed) {
     throw std::runtime_error(folder + "/picture.gnuplot: gnuplot failed, see its message");
@@ -119,9 +96,9 @@ int measure(const std::vector<BenchmarkCase>& cases, const BenchmarkOptions& opt
     fmt::print("{}", table_heading());
   }
   {
-    CaseLine line(cases.size());
+    StatusLine line;
     for (const BenchmarkCase& c : cases) {
-      line.show(c.name);
+      line.show(fmt::format("{} of {}: {}", results.cases.size() + 1, cases.size(), c.name));
       results.cases.push_back({c, time_case(c, timing)});
       line.clear();
       if (!options.json) fmt::print("{}", table_row(results.cases.back(), results.limits));
@@ -161,9 +138,9 @@ int compare(std::vector<BenchmarkCase> cases, const BenchmarkOptions& options) {
   nlohmann::ordered_json json{{"cases", nlohmann::ordered_json::array()}};
   if (!options.json) fmt::print("{}", compared_heading());
   {
-    CaseLine line(cases.size());
+    StatusLine line;
     for (const BenchmarkCase& c : cases) {
-      line.show(c.name);
+      line.show(fmt::format("{} of {}: {}", compared.size() + 1, cases.size(), c.name));
       compared.push_back(compare_case(c, options));
       const ComparedCase& last = compared.back();
       line.clear();

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/process/child_program.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 
 namespace apothem {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "version.hpp"
 
 namespace apothem {

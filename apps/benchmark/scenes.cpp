@@ -4,7 +4,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "apps/benchmark/piles.hpp"
 #include "apps/cases/samples.hpp"
 #include "lib/dynamics/simulation.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
@@ -200,9 +200,9 @@ Work two_threads(const std::function<Model()>& make, bool per_element = false) {
   };
   const auto both = std::shared_ptr<Both>(new Both{.one = {make, 1}, .two = {make, 2}});
   const auto timed_step = [](SteppedScene& scene, double& seconds) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Clock::time_point begin = Clock::now();
     scene.step();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds += seconds_since(begin);
   };
   return {.once =
               [=] {

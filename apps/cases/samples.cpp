@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem::samples {
 namespace {
 
@@ -175,7 +177,7 @@ Polygon coastline(Random& random, int n) {
     for (size_t i = 0; i < ring.size(); ++i) {
       bent.push_back(ring[i]);
       if (i >= bends) continue;
-      const Vec2 side = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+      const Vec2 side = after(ring, i) - ring[i];
       const double height = random.uniform(-.15, .15);
       bent.push_back(ring[i] + side / 2 + height * Vec2(-side.y(), side.x()));
     }

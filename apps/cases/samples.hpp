@@ -4,28 +4,20 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 
 #include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem::samples {
 
-/// Random numbers with the same sequence on every platform, which the distributions of the standard
-/// library do not guarantee.
-class Random {
+/// Random numbers for samples.
+class Random : public RandomNumbers {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  /// Uniform in [a, b).
-  double uniform(double a, double b) {
-    return a + (b - a) * std::ldexp(static_cast<double>(engine_() >> 11), -53);
-  }
+  using RandomNumbers::RandomNumbers;
   /// Uniform in {a, ..., b}.
   int integer(int a, int b) {
-    return a + static_cast<int>(engine_() % static_cast<std::uint64_t>(b - a + 1));
+    return a + static_cast<int>(generator_() % static_cast<std::uint64_t>(b - a + 1));
   }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 /// Rectangle with edges parallel to the axes.

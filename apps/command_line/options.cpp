@@ -5,7 +5,7 @@
 
 #include "lib/output/field.hpp"
 #include "lib/output/run_plot.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -14,13 +14,8 @@ namespace {
 // CLI11's own PositiveNumber accepts nan, inf and hexadecimal numbers.
 const CLI::Validator kPositive(
     [](std::string& text) {
-      double x = 0;
-      try {
-        x = parse_decimal(text);
-      } catch (const BadNumber&) {
-        x = 0;
-      }
-      return x > 0 ? std::string() : "must be a positive number, not " + text;
+      return find_decimal(text).value_or(0) > 0 ? std::string()
+                                                : "must be a positive number, not " + text;
     },
     "POSITIVE");
 
@@ -46,8 +41,8 @@ const CLI::Validator kDecimal(
     },
     "");
 
-void add_threads(CLI::App* sub, int& threads) {
-  sub->add_option("--threads", threads, "Threads of the run")
+void add_threads(CLI::App* sub, int& threads, const char* about = "Threads of the run") {
+  sub->add_option("--threads", threads, about)
       ->transform(kWhole)
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -306,6 +301,7 @@ void add_accuracy(CLI::App& app, AccuracyOptions& o) {
       ->capture_default_str();
   sub->add_option("--repeat", o.repetitions, "Measure times so often, and print their range")
       ->type_name("N")
+      ->transform(kWhole)
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   sub->add_option("--write-cases", o.write_cases,
@@ -325,10 +321,7 @@ void add_benchmark(CLI::App& app, BenchmarkOptions& o) {
       ->transform(kWhole)
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--threads", o.threads, "Threads of scenes and elements")
-      ->transform(kWhole)
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_threads(sub, o.threads, "Threads of scenes and elements");
   sub->add_flag("--quick", o.quick, "Take a tenth of the time for each repetition");
   sub->add_option("--compare", o.compare,
                   "Run this build of the program alternately, and print ratios of times")

@@ -9,6 +9,7 @@
 
 #include "apps/command_line/option_text.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

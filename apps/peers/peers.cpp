@@ -7,6 +7,8 @@
 #include <boost/geometry/geometries/polygon.hpp>
 #include <stdexcept>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 namespace {
 
@@ -25,7 +27,7 @@ Ring sutherland_hodgman(Ring subject, const Ring& window) {
   Ring clipped;
   for (size_t e = 0; e < window.size() && !subject.empty(); ++e) {
     const Vec2& p = window[e];
-    const Vec2& q = window[e + 1 == window.size() ? 0 : e + 1];
+    const Vec2& q = after(window, e);
     clipped.clear();
     Vec2 last = subject.back();
     double last_side = side(p, q, last);
@@ -87,8 +89,8 @@ class GreinerHormann {
     std::vector<std::vector<int>> on_a(a_.size()), on_b(b_.size());
     for (size_t i = 0; i < a_.size(); ++i) {
       for (size_t j = 0; j < b_.size(); ++j) {
-        const Vec2 &p = a_[i], &q = a_[i + 1 == a_.size() ? 0 : i + 1];
-        const Vec2 &r = b_[j], &s = b_[j + 1 == b_.size() ? 0 : j + 1];
+        const Vec2 &p = a_[i], &q = after(a_, i);
+        const Vec2 &r = b_[j], &s = after(b_, j);
         const double pr = side(r, s, p), qr = side(r, s, q);
         const double rp = side(p, q, r), sp = side(p, q, s);
         if ((pr > 0) == (qr > 0) || (rp > 0) == (sp > 0)) continue;
@@ -116,7 +118,7 @@ class GreinerHormann {
       order.insert(order.end(), on[i].begin(), on[i].end());
     }
     for (size_t k = 0; k < order.size(); ++k) {
-      const int next = order[k + 1 == order.size() ? 0 : k + 1];
+      const int next = after(order, k);
       nodes_[order[k]].next = next;
       nodes_[next].previous = order[k];
     }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 
 #include "apps/picture/extent.hpp"
@@ -12,6 +10,7 @@
 #include "apps/process/work_line.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/run_picture.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -85,11 +84,11 @@ void write_movie(const ViewOptions& options) {
   words.push_back(partial);
   const ProgramResult made = ffmpeg(words);
   line.check();
-  std::ifstream stream(partial, std::ios::binary);
-  if (made.start_error != 0 || made.code != 0 || !stream) {
+  const std::string movie = read_bytes(partial);
+  if (made.start_error != 0 || made.code != 0 || movie.empty()) {
     throw std::runtime_error("ffmpeg has failed: " + made.err);
   }
-  write_file(options.movie, std::string{std::istreambuf_iterator<char>(stream), {}});
+  write_file(options.movie, movie);
 }
 
 }  // namespace apothem

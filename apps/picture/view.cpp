@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "apps/picture/movie.hpp"
 #include "lib/output/files.hpp"
 #include "lib/player/player.hpp"
-#include "lib/system/input_file.hpp"
+#include "lib/text/file.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -18,12 +17,9 @@ namespace fs = std::filesystem;
 
 // The name of the scene, as far as the run has got to say it; otherwise that of the folder.
 std::string name_of(const std::string& folder) {
-  if (!refusal_of_input(folder + "/run.json").empty()) return folder_title(folder);
-  std::ifstream stream(folder + "/run.json");
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
-  const auto name = json.is_object() ? json.find("name") : json.end();
-  if (json.is_object() && name != json.end() && name->is_string()) return *name;
-  return folder_title(folder);
+  const auto json = nlohmann::json::parse(find_text(folder + "/run.json"), nullptr, false);
+  const auto name = json.find("name");
+  return name != json.end() && name->is_string() ? name->get<std::string>() : folder_title(folder);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
@@ -12,6 +11,7 @@
 #include "lib/scene/pair_file.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/scene/ring_line.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
@@ -45,9 +45,9 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
   const double deepest = penetration(a, b);
   Json list = Json::array();
   for (const std::string& method : methods) {
-    const auto start = std::chrono::steady_clock::now();
+    const Clock::time_point start = Clock::now();
     const PairResult result = evaluate_pair(method, a, b, choice);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const double seconds = seconds_since(start);
     const PairIntegral& pair = result.integral;
     const Vec2 point = world_loading_point(pair, a);
     list.push_back({{"method", method},
@@ -62,7 +62,7 @@ Json results(const Polygon& a, const Polygon& b, const ContactOptions& options) 
                     {"weight", k * pair.weight},
                     {"penetration", deepest},
                     {"largest_phi", pair.largest_phi},
-                    {"seconds", seconds.count()}});
+                    {"seconds", seconds}});
   }
   return list;
 }

@@ -4,7 +4,7 @@
 
 #include "apps/commands.hpp"
 #include "lib/contact/law/law.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 

@@ -10,9 +10,9 @@
 #include "lib/mesh/measure.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/frames.hpp"
-#include "lib/scene/error.hpp"
 #include "lib/scene/mesh_file.hpp"
 #include "lib/scene/polygon_file.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {

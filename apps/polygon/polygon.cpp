@@ -11,9 +11,9 @@
 #include "lib/output/files.hpp"
 #include "lib/output/picture.hpp"
 #include "lib/output/polygon_vtk.hpp"
-#include "lib/scene/error.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/scene/ring_line.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,7 @@
 #include "apps/process/work_line.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <utility>
 
 namespace apothem {
@@ -20,33 +18,17 @@ std::string describe(const Stage& stage, double seconds) {
 }  // namespace
 
 WorkLine::WorkLine(std::string work)
-    : work_(std::move(work)),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      stage_start_(Clock::now()),
-      next_(stage_start_ + std::chrono::seconds(1)) {}
-
-WorkLine::~WorkLine() {
-  if (drawn_ && terminal_) {
-    std::fputs("\r\033[K", stderr);
-    std::fflush(stderr);
-  }
-}
+    : work_(std::move(work)), line_(std::chrono::seconds(1)), stage_start_(Clock::now()) {}
 
 void WorkLine::report(const Stage& stage) {
   check();
-  const Clock::time_point now = Clock::now();
   if (stage.name != stage_) {
     stage_ = stage.name;
-    stage_start_ = now;
+    stage_start_ = Clock::now();
   }
-  if (now < next_) return;
-  next_ = now + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000));
-  drawn_ = true;
-  const double seconds = std::chrono::duration<double>(now - stage_start_).count();
-  const std::string text = fmt::format("{}: {}", work_, describe(stage, seconds));
-  const std::string line = terminal_ ? "\r\033[K" + text : text + "\n";
-  std::fputs(line.c_str(), stderr);
-  std::fflush(stderr);
+  if (!line_.is_due()) return;
+  const double seconds = seconds_since(stage_start_);
+  line_.show(fmt::format("{}: {}", work_, describe(stage, seconds)));
 }
 
 void WorkLine::check() {

@@ -2,11 +2,11 @@
 // and an end by Ctrl-C.
 #pragma once
 
-#include <chrono>
 #include <exception>
 #include <string>
 
 #include "apps/process/signals.hpp"
+#include "apps/process/status_line.hpp"
 #include "geometry/polygon/progress.hpp"
 
 namespace apothem {
@@ -24,9 +24,6 @@ class WorkLine {
  public:
   /// `work` says in a few words what is computed.
   explicit WorkLine(std::string work);
-  WorkLine(const WorkLine&) = delete;
-  WorkLine& operator=(const WorkLine&) = delete;
-  ~WorkLine();
 
   /// Shows a report. Throws Interrupted after a signal.
   void report(const Stage& stage);
@@ -34,14 +31,11 @@ class WorkLine {
   void check();
 
  private:
-  using Clock = std::chrono::steady_clock;
   Finishing signals_;
   std::string work_;
-  bool terminal_;
-  bool drawn_ = false;
+  StatusLine line_;
   std::string stage_;
   Clock::time_point stage_start_;
-  Clock::time_point next_;  // when the next line is due
 };
 
 }  // namespace apothem

@@ -4,7 +4,7 @@
 #include "geometry/skeleton/skeleton.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/output/files.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/error.hpp"
 #include "version.hpp"
 
 namespace apothem::python {

@@ -9,6 +9,8 @@
 
 #include "apps/reproduce/text.hpp"
 #include "lib/output/history.hpp"
+#include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

@@ -16,7 +16,8 @@
 #include "lib/output/files.hpp"
 #include "lib/output/report.hpp"
 #include "lib/player/player.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/words.hpp"
 #include "version.hpp"
 
 namespace apothem {
@@ -75,18 +76,10 @@ std::optional<Basis> basis_of(const nlohmann::json& expectation) {
 
 // The label and the column of the history, such as "energy error (largest size of total_error)".
 std::string in_words(const nlohmann::json& expectation) {
-  static const std::map<std::string, const char*> takes{{"first", "first"},
-                                                        {"last", "last"},
-                                                        {"min", "smallest"},
-                                                        {"max", "largest"},
-                                                        {"max_abs", "largest size of"},
-                                                        {"mean", "mean"},
-                                                        {"increase", "increase of"},
-                                                        {"decrease", "decrease of"},
-                                                        {"slope", "slope of"}};
+  const auto take = std::ranges::find(kTakes, expectation.at("take").get<std::string>());
   const std::string label = expectation.at("label");
   const std::string column =
-      fmt::format("{} {}", takes.at(expectation.at("take").get<std::string>()),
+      fmt::format("{} {}", kTakesInWords.at(static_cast<size_t>(take - kTakes.begin())),
                   expectation.at("quantity").get<std::string>());
   return label.empty() ? column : fmt::format("{} ({})", label, column);
 }

@@ -13,9 +13,11 @@
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/run/hash.hpp"
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/json.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/system/clock.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -24,16 +26,11 @@ namespace fs = std::filesystem;
 
 constexpr double kUsualSeconds = 2;  // of a scene about which nothing is known
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 // Weights for the time left; a scene that is not listed is taken to be quick.
 std::map<std::string, double> usual_seconds(const std::string& data) {
   std::map<std::string, double> seconds;
   const std::string file = data + "/figures/seconds.csv";
-  if (!exists(file)) return seconds;
+  if (!file_exists(file)) return seconds;
   for (const CsvRow& row : read_csv(file)) {
     if (row.cells.size() != 2 || row.cells[0] == "scene") continue;
     try {
@@ -55,11 +52,6 @@ void write_record(const std::string& folder, const std::string& key, bool ended,
   const nlohmann::ordered_json record{
       {"key", key}, {"ended", ended}, {"seconds", std::round(100 * seconds) / 100}};
   write_file(record_in(folder), record.dump(2) + "\n");
-}
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 int interrupted() {
@@ -84,8 +76,7 @@ FigureRuns::Planned FigureRuns::look(const std::string& name, const std::string&
   planned.key = text_hash(key + program_);
   const auto usual = usual_.find(name);
   planned.seconds = usual == usual_.end() ? kUsualSeconds : usual->second;
-  if (!exists(record_in(folder))) return planned;
-  const auto record = nlohmann::json::parse(read_text(record_in(folder)), nullptr, false);
+  const auto record = nlohmann::json::parse(find_text(record_in(folder)), nullptr, false);
   if (!record.is_object() || record.value("key", "") != planned.key) return planned;
   planned.begun = true;
   planned.ended = record.value("ended", false);
@@ -123,7 +114,7 @@ void FigureRuns::plan(const std::vector<std::string>& scenes) {
     const std::string folder = folder_ + "/" + scene;
     const Scene read = read_scene(data_ + "/scenes/" + scene + ".json");
     Planned& planned = planned_[scene] = look(scene, folder, scene_hash(read));
-    planned.ended = planned.ended && exists(folder + "/run.json");
+    planned.ended = planned.ended && file_exists(folder + "/run.json");
   }
 }
 

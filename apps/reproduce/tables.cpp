@@ -6,8 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/sweep/statistics.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

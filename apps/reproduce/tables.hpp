@@ -9,7 +9,7 @@
 
 #include "lib/output/report.hpp"
 #include "lib/scene/json.hpp"
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 
 namespace apothem {
 

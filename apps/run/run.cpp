@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/process/status_line.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/run_picture.hpp"
@@ -19,53 +18,25 @@
 #include "lib/run/hash.hpp"
 #include "lib/run/other_run.hpp"
 #include "lib/run/summary.hpp"
-#include "lib/scene/decimal.hpp"
+#include "lib/system/clock.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
 
-// One line on a terminal, redrawn; a plain line every few seconds elsewhere.
-class ProgressLine {
- public:
-  explicit ProgressLine(double end)
-      : terminal_(isatty(STDERR_FILENO) != 0), end_(end), start_(Clock::now()), last_(start_) {}
-
-  void update(const Run& run) {
-    const Clock::time_point now = Clock::now();
-    if (now - last_ <
-        (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) {
-      return;
-    }
-    last_ = now;
-    const double time = run.state().time;
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    const double share = std::min(time / end_, 1.0);
-    const std::string text = fmt::format(
-        "t = {:.4g} of {:.4g} s ({:3.0f} %), {:.3g} steps/s, {} contacts, {:.0f} s left", time,
-        end_, 100 * share, static_cast<double>(run.simulation().own_steps()) / seconds,
-        run.simulation().counts().touching_now, share > 0 ? seconds * (1 - share) / share : 0);
-    if (!terminal_) {
-      fmt::print(stderr, "{}\n", text);
-      return;
-    }
-    constexpr int kWidth = 24;
-    const int full = static_cast<int>(kWidth * share);
-    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}", "", full, "", kWidth - full, text);
-    std::fflush(stderr);
-    drawn_ = true;
-  }
-
-  void clear() const {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool terminal_;
-  bool drawn_ = false;
-  double end_;
-  Clock::time_point start_, last_;
-};
+// How far a run has come; with a bar on a terminal.
+std::string progress_of(const Run& run, double end, double seconds, bool bar) {
+  const double time = run.state().time;
+  const double share = std::min(time / end, 1.0);
+  const std::string text = fmt::format(
+      "t = {:.4g} of {:.4g} s ({:3.0f} %), {:.3g} steps/s, {} contacts, {:.0f} s left", time, end,
+      100 * share, static_cast<double>(run.simulation().own_steps()) / seconds,
+      run.simulation().counts().touching_now, share > 0 ? seconds * (1 - share) / share : 0);
+  constexpr int kWidth = 24;
+  const int full = static_cast<int>(kWidth * share);
+  return bar ? fmt::format("[{:#<{}}{:.<{}}] {}", "", full, "", kWidth - full, text) : text;
+}
 
 void print_load_step(const Run& run) {
   const LoadStep& step = run.load_steps().back();
@@ -179,10 +150,9 @@ std::string folder_of(const RunOptions& options, const Scene& scene) {
 std::vector<Setting> settings_in(const std::string& folder) {
   StateOrigin origin;
   const std::string final = state_file(folder, StateFile::final);
-  std::error_code error;
   if (has_checkpoint(folder)) {
     use_checkpoint(folder, [&](const std::string& file) { origin = origin_of(file); });
-  } else if (std::filesystem::exists(final, error)) {
+  } else if (file_exists(final)) {
     origin = origin_of(final);
   }
   return origin.settings;
@@ -218,8 +188,7 @@ int report_ended(const RunOptions& options, const std::string& folder) {
   for (const auto& expectation : json["expectations"]) {
     if (options.verify && !expectation.value("met", false)) code = exit_code::missed;
   }
-  std::error_code error;
-  const bool drawn = std::filesystem::exists(folder + "/" + kPicture, error);
+  const bool drawn = file_exists(folder + "/" + kPicture);
   if (options.picture && !drawn && !draw_end(folder, options.quiet || options.json)) {
     return exit_code::system_failed;
   }
@@ -263,13 +232,15 @@ int run_command(const RunOptions& options) {
   Finishing signals;  // Ctrl-C asks the run to finish its step
   settings.stop_if = [&] { return signals.asked(); };
   Run run(std::move(scene), settings);
-  ProgressLine line(std::min(options.until.value_or(run.scene().time.end), run.scene().time.end));
+  const double end = std::min(options.until.value_or(run.scene().time.end), run.scene().time.end);
+  const Clock::time_point start = Clock::now();
+  StatusLine line;
   if (!options.quiet) {
     run.on_progress([&](const Run& now) {
       if (now.scene().time.statics) {
         print_load_step(now);
-      } else {
-        line.update(now);
+      } else if (line.is_due()) {
+        line.show(progress_of(now, end, seconds_since(start), line.on_terminal()));
       }
     });
   }

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <sstream>
@@ -17,6 +16,8 @@
 #include "apps/process/child_program.hpp"
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
+#include "lib/system/clock.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -71,7 +72,7 @@ RunPool::RunPool(const Study& study, int jobs, bool retry_failed)
 
 bool RunPool::work(const std::vector<const PlannedRun*>& runs,
                    const std::function<void(const Progress&)>& report) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Clock::time_point begin = Clock::now();
   progress_.total = runs.size();
   size_t next = 0;
   while (true) {
@@ -84,8 +85,7 @@ bool RunPool::work(const std::vector<const PlannedRun*>& runs,
     }
     collect();
     progress_.running = children_.size();
-    progress_.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    progress_.seconds = seconds_since(begin);
     report(progress_);
   }
   return !interrupted_;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,12 +10,13 @@
 #include <thread>
 
 #include "apps/commands.hpp"
+#include "apps/process/status_line.hpp"
 #include "apps/sweep/run_pool.hpp"
 #include "lib/output/files.hpp"
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/scene.hpp"
 #include "lib/sweep/snakefile.hpp"
 #include "lib/sweep/tables.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -31,16 +31,13 @@ struct Shard {
 Shard shard_of(const std::string& text) {
   if (text.empty()) return {};
   const size_t slash = text.find('/');
-  try {
-    if (slash == std::string::npos) throw BadNumber("");
-    const Shard shard{static_cast<size_t>(parse_count(text.substr(0, slash))),
-                      static_cast<size_t>(parse_count(text.substr(slash + 1)))};
-    if (shard.index < 1 || shard.index > shard.count) throw BadNumber("");
-    return shard;
-  } catch (const BadNumber&) {
+  const auto index = find_count(text.substr(0, slash));
+  const auto count = find_count(slash == std::string::npos ? "" : text.substr(slash + 1));
+  if (!index || !count || *index < 1 || *index > *count) {
     throw UsageError(
         "--shard", fmt::format("\"{}\" is no part; write I/N with I from 1 to N, like 2/8", text));
   }
+  return {static_cast<size_t>(*index), static_cast<size_t>(*count)};
 }
 
 std::optional<SurvivalChoice> survival_of(const std::string& text) {
@@ -101,35 +98,17 @@ std::vector<const PlannedRun*> runs_of(const Plan& plan, const Shard& shard) {
   return runs;
 }
 
-// One line on a terminal, redrawn; a plain line every few seconds elsewhere.
-class StudyLine {
- public:
-  explicit StudyLine(size_t before) : before_(before), terminal_(isatty(STDERR_FILENO) != 0) {}
-
-  void update(const RunPool::Progress& p) {
-    const double pause = terminal_ ? 0.2 : 5;
-    if (p.seconds < last_ + pause) return;
-    last_ = p.seconds;
-    const size_t ended = p.ended + p.skipped, total = before_ + p.total;
-    std::string text = fmt::format("{} of {} runs, {} running", before_ + ended, total, p.running);
-    if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
-    if (p.ended > 0) {
-      text += fmt::format(", {:.0f} s left", p.seconds / static_cast<double>(p.ended) *
-                                                 static_cast<double>(p.total - ended));
-    }
-    fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", text, terminal_ ? "" : "\n");
-    std::fflush(stderr);
-    drawn_ = true;
+// `before`: the runs that were done before.
+std::string progress_in_words(const RunPool::Progress& p, size_t before) {
+  const size_t ended = p.ended + p.skipped, total = before + p.total;
+  std::string text = fmt::format("{} of {} runs, {} running", before + ended, total, p.running);
+  if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
+  if (p.ended > 0) {
+    text += fmt::format(", {:.0f} s left", p.seconds / static_cast<double>(p.ended) *
+                                               static_cast<double>(p.total - ended));
   }
-  void clear() const {
-    if (drawn_ && terminal_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  size_t before_;
-  bool terminal_, drawn_ = false;
-  double last_ = 0;
-};
+  return text;
+}
 
 int list_runs(const Study& study, const std::vector<const PlannedRun*>& runs) {
   for (const PlannedRun* run : runs) {
@@ -214,9 +193,10 @@ class Sweep {
   int execute(const std::vector<const PlannedRun*>& runs) {
     const std::vector<const PlannedRun*> left = left_to_do(runs);
     RunPool pool(study_, jobs_of(options_), options_.retry_failed);
-    StudyLine line(runs.size() - left.size());
+    StatusLine line;
     const bool whole = pool.work(left, [&](const RunPool::Progress& progress) {
-      if (!options_.quiet) line.update(progress);
+      if (options_.quiet || !line.is_due()) return;
+      line.show(progress_in_words(progress, runs.size() - left.size()));
     });
     line.clear();
     std::map<RunState, size_t> counts;

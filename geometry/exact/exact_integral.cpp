@@ -4,6 +4,7 @@
 #include <boost/multiprecision/eigen.hpp>
 
 #include "geometry/exact/exact_overlap.hpp"
+#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {
@@ -86,7 +87,7 @@ Envelope<Wide> envelope(const Polygon& polygon, const Potential& potential, cons
   // have the length 3 / altitude = 3 length / (2 area).
   Envelope<Wide> phi{{}, false, centroid};
   for (size_t i = 0; i < v.size(); ++i) {
-    const WideVec d = v[i + 1 == v.size() ? 0 : i + 1] - v[i];
+    const WideVec d = after(v, i) - v[i];
     const Wide length = distance ? sqrt(Wide(d.squaredNorm())) : Wide(2 * area / 3);
     const WideVec gradient(-d.y() / length, d.x() / length);
     phi.lines.push_back({gradient, -gradient.dot(v[i])});

@@ -9,6 +9,7 @@
 
 #include "geometry/exact/overlap.hpp"
 #include "geometry/integrals/distance_volume.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/potential/lower_envelope.hpp"
 
 namespace apothem::overlap_detail {
@@ -187,7 +188,7 @@ PairResult integrate(const std::vector<Region<Real>>& overlap, const Envelope<Re
     const std::vector<Vec<Real>>& v = region.vertices;
     for (size_t i = 0; i < v.size(); ++i) {
       const Vec<Real>& p = v[i];
-      const Vec<Real> d = v[i + 1 == v.size() ? 0 : i + 1] - p;
+      const Vec<Real> d = after(v, i) - p;
       const Vec<Real> normal(d.y(), -d.x());
       const Real length = sqrt(d.squaredNorm());
       // The potential of a polygon vanishes on its own edges.

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "geometry/exact/exact_overlap.hpp"
+#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {
@@ -50,9 +51,7 @@ class Owner {
     const CGAL::Bbox_2 p_box = p.bbox();
     const CGAL::Bbox_2 q_box = q.bbox();
     for (int i = 0; i < polygon_.size(); ++i) {
-      Box box;
-      box.include(polygon_[i].x(), polygon_[i].y());
-      box.include(polygon_.after(i).x(), polygon_.after(i).y());
+      const Box box = box_of(polygon_[i], polygon_.after(i));
       if (meets(box, p_box) && meets(box, q_box) && perhaps_on_line(i, p) &&
           perhaps_on_line(i, q)) {
         candidates_.push_back(i);
@@ -76,9 +75,7 @@ class Owner {
            point.ymin() <= box.y1;
   }
   [[nodiscard]] const Exact::Point_2& start(int i) const { return exact_[i]; }
-  [[nodiscard]] const Exact::Point_2& end(int i) const {
-    return exact_[i + 1 == polygon_.size() ? 0 : i + 1];
-  }
+  [[nodiscard]] const Exact::Point_2& end(int i) const { return exact_[next(i, polygon_.size())]; }
   [[nodiscard]] bool perhaps_on_line(int i, const Exact::Point_2& p) const {
     const CGAL::Protect_FPU_rounding<> upward;
     return CGAL::possibly(Exact::Approximate_kernel().orientation_2_object()(
@@ -110,10 +107,9 @@ std::vector<ExactRegion> exact_overlap(const Polygon& a, const Polygon& b) {
   Owner of_b(b, exact_b);
   for (CGAL::Polygon_2<Exact>& outline : intersection(exact_a, exact_b)) {
     std::vector<OverlapEdge> edges;
-    const size_t n = outline.size();
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i < outline.size(); ++i) {
       const Exact::Point_2& p = outline[i];
-      const Exact::Point_2& q = outline[i + 1 == n ? 0 : i + 1];
+      const Exact::Point_2& q = after(outline, i);
       of_a.find_candidates(p, q);
       of_b.find_candidates(p, q);
       // Every edge of the overlap lies on an input edge, so a single candidate needs no proof.
@@ -250,21 +246,6 @@ PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const 
   return integrate(regions, envelope(a, potential_a, origin), envelope(b, potential_b, origin),
                    false)
       .integral;
-}
-
-std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
-                                        const Polygon& b, const Potential& potential_b) {
-  std::vector<PairResult> patches;
-  for (ExactRegion& region : exact_overlap(a, b)) {
-    const Exact::Point_2& corner = region.outline[0];
-    const Vec2 origin(CGAL::to_double(corner.x()), CGAL::to_double(corner.y()));
-    std::vector<ExactRegion> alone;
-    alone.push_back(std::move(region));
-    patches.push_back(integrate(rounded<double>(std::move(alone), origin),
-                                envelope(a, potential_a, origin),
-                                envelope(b, potential_b, origin)));
-  }
-  return patches;
 }
 
 }  // namespace apothem

@@ -45,8 +45,4 @@ PairIntegral overlap_integral(const std::vector<OverlapPolygon>& overlap, const 
                               const Polygon& a, const Potential& potential_a, const Polygon& b,
                               const Potential& potential_b);
 
-/// overlap_method with exact constructions for each component of the overlap separately.
-std::vector<PairResult> overlap_patches(const Polygon& a, const Potential& potential_a,
-                                        const Polygon& b, const Potential& potential_b);
-
 }  // namespace apothem

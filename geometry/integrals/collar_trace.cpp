@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/integrals/edge_trace.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/dispatch.hpp"
 
 namespace apothem {
@@ -129,8 +130,8 @@ bool CollarTrace::add_cell(int cell) {
 
 // The same for the cells on both sides of one in which an edge has ended.
 bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
-  const bool before = add_cell(cell == 0 ? y.size - 1 : cell - 1);
-  const bool after = add_cell(cell + 1 == y.size ? 0 : cell + 1);
+  const bool before = add_cell(previous(cell, y.size));
+  const bool after = add_cell(next(cell, y.size));
   return before || after;
 }
 
@@ -193,8 +194,7 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
     piece.cell = c;
     piece.arc = false;
     if (piece.end0 <= kEdge && piece.end1 <= kEdge) continue;
-    const Found found =
-        check_borders(y, piece, c == 0 ? y.size - 1 : c - 1, c + 1 == y.size ? 0 : c + 1);
+    const Found found = check_borders(y, piece, previous(c, y.size), next(c, y.size));
     if (found != Found::all) return found;
   }
   return Found::all;
@@ -283,14 +283,14 @@ CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
   for (const Window& window : windows_) {
     for (int k = 0; k < kPack; ++k) {
       if ((window.cells >> k & 1) == 0) continue;
-      const int c = window.first + k, next = c + 1 == y.size ? 0 : c + 1;
+      const int c = window.first + k, d = next(c, y.size);
       if (c != last && sector_at(y, c)) {
         if (const Found found = trace_sector(y, c); found != Found::all) return found;
       }
-      if (!(next == 0 && begins_at_zero) && sector_at(y, next)) {
-        if (const Found found = trace_sector(y, next); found != Found::all) return found;
+      if (!(d == 0 && begins_at_zero) && sector_at(y, d)) {
+        if (const Found found = trace_sector(y, d); found != Found::all) return found;
       }
-      last = next;
+      last = d;
     }
   }
   return Found::all;
@@ -325,7 +325,7 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
   };
   if (!cut(vertex - 1, 1, true, kBorderBefore)) return Found::all;
   if (!cut(vertex, -1, false, kBorderAfter)) return Found::all;
-  const int before = vertex == 0 ? y.size - 1 : vertex - 1;
+  const int before = previous(vertex, y.size);
   const double depth = std::min(y.cells->depth[before], y.cells->depth[vertex]);
   const double slope = y.distance->slope;
   const double rx = y.x[vertex] - edge.px, ry = y.y[vertex] - edge.py;

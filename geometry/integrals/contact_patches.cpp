@@ -49,9 +49,8 @@ class Splitter {
     const auto grow = [](auto& list, size_t least) {
       if (list.size() < least) list.resize(2 * least);
     };
-    grow(work_.parent, runs_.size());
     grow(work_.joined, 2 * runs_.size());
-    for (int r = 0; r < size(); ++r) work_.parent[r] = r;
+    work_.sets.reset(runs_.size());
     std::fill_n(work_.joined.begin(), 2 * size(), char{0});
     loose_ = 2 * size();
     join_at_vertices(0, of_a_, a_.size);
@@ -64,7 +63,7 @@ class Splitter {
   int number() {
     int count = 0;
     for (int r = 0; r < size(); ++r) {
-      const int first = root(r);
+      const int first = work_.sets.find(r);
       runs_[r].patch = first == r ? count++ : runs_[first].patch;
     }
     return count;
@@ -108,20 +107,14 @@ class Splitter {
                      half.largest});
   }
 
-  int root(int run) {
-    std::vector<int>& parent = work_.parent;
-    while (parent[run] != run) run = parent[run] = parent[parent[run]];
-    return run;
-  }
-
   // Joins two ends. The smaller root becomes the root of the union, because it is the first run of
   // the patch.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
     loose_ -= 2;
-    const int first = root(end / 2);
-    const int second = root(other / 2);
-    work_.parent[std::max(first, second)] = std::min(first, second);
+    const auto [first, second] =
+        std::minmax({work_.sets.find(end / 2), work_.sets.find(other / 2)});
+    work_.sets.join(second, first);
   }
 
   // Joins runs that follow each other at a vertex. The runs first to last - 1 belong to one polygon
@@ -310,22 +303,6 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
                              std::vector<PairIntegral>& patches) {
   NearEdges all;
   return contact_patches(a, b, offset, workspace, runs, patches, all);
-}
-
-PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
-                         const Potential& potential_b) {
-  const PlacedPair placed(a, potential_a, b, potential_b);
-  PatchWorkspace workspace;
-  PatchResult result;
-  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
-                  result.patches);
-  for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
-  for (BoundaryRun& run : result.runs) {
-    placed.about_centroids(run);
-    run.start -= placed.centroid_a;
-    run.end -= placed.centroid_a;
-  }
-  return result;
 }
 
 void shared_length(std::span<const RunPlace> before, int patches_before,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geometry/integrals/edge_trace.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 
 namespace apothem {
 
@@ -50,7 +51,7 @@ struct PatchWorkspace {
   std::vector<edge_detail::EdgeSums<double>> halves;  ///< integrals per run
   std::vector<edge_detail::Half> of_a, of_b;  ///< integrals per patch, on edges of a and of b
   std::vector<int> crossed;                   ///< per end: crossed edge of the other polygon or -1
-  std::vector<int> parent;                    ///< per run: union-find forest of the patches
+  DisjointSets sets;                          ///< of runs: the patches
   std::vector<char> joined;                   ///< per end: whether it has been joined to another
   std::vector<Bridge> bridges;                ///< candidates for joining loose ends
   std::vector<edge_detail::Extent> extents;   ///< extents per patch
@@ -72,18 +73,6 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                              PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
                              std::vector<PairIntegral>& patches);
-
-/// The runs and contact patches of two polygons.
-struct PatchResult {
-  std::vector<BoundaryRun> runs;      ///< runs, ordered by their edges, those of a first
-  std::vector<PairIntegral> patches;  ///< patches, ordered by their first run
-};
-
-/// Splits two polygons at their given positions into contact patches. As with edge_method, moments
-/// are about the polygons' centroids and positions are relative to the centroid of a. For single
-/// evaluations and not for the step loop, as it allocates.
-PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const Polygon& b,
-                         const Potential& potential_b);
 
 /// Computes how much boundary the patches of a pair share with those of an earlier step. Entry
 /// i * patches_now + j of the table is the length of boundary of both polygons, in m, that lies in

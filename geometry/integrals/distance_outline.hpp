@@ -17,6 +17,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/distance_field.hpp"
 
@@ -87,8 +88,8 @@ class DistanceOutline {
   }
 
   [[nodiscard]] int size() const { return n_; }
-  [[nodiscard]] int after(int i) const { return i + 1 == n_ ? 0 : i + 1; }
-  [[nodiscard]] int before(int i) const { return i == 0 ? n_ - 1 : i - 1; }
+  [[nodiscard]] int after(int i) const { return next(i, n_); }
+  [[nodiscard]] int before(int i) const { return previous(i, n_); }
   [[nodiscard]] const Point& vertex(int i) const { return vertex_[i]; }
   /// The inward unit normal of edge i.
   [[nodiscard]] const Point& normal(int i) const { return normal_[i]; }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "geometry/integrals/distance_outline.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/potential/piecewise_minimum.hpp"
 #include "geometry/potential/quadratic.hpp"
 #include "lib/execution/elementary.hpp"
@@ -123,7 +124,7 @@ class DistanceVolume {
     Sums sums;
     for (size_t k = 0; k < ring_.size(); ++k) {
       const Point p = ring_[k] - start;
-      const Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - start;
+      const Point q = after(ring_, k) - start;
       under_segment(dot(t, p), dot(n, p), dot(t, q), dot(n, q), length, sums);
     }
     return sums.low_size <= sums.high_size ? sums.low : sums.high;
@@ -199,7 +200,7 @@ class DistanceVolume {
     bool inside = false;  // whether the ring has a vertex inside the cell or enters it sideways
     for (size_t k = 0; k < ring_.size(); ++k) {
       Point p = ring_[k] - corner;
-      Point q = ring_[k + 1 == ring_.size() ? 0 : k + 1] - corner;
+      Point q = after(ring_, k) - corner;
       if (!clip(p, q, cross(right, p), cross(right, q))) continue;
       if (!clip(p, q, cross(p, left), cross(q, left))) continue;
       p = in_frame(p), q = in_frame(q);

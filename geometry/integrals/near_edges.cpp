@@ -46,8 +46,7 @@ void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, doub
               {},
               e,
               std::numeric_limits<double>::infinity()};
-    s.box.include(s.from.x(), s.from.y());
-    s.box.include(s.to.x(), s.to.y());
+    s.box = box_of(s.from, s.to);
     const double d2 = distance2(s.box, other);
     if (d2 > margin2) {
       rest2 = std::min(rest2, d2);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/integrals/placement.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -121,7 +122,7 @@ double depth_ratio(const Potential& potential) {
   const int n = potential.size();
   for (int e = 0; e < n; ++e) {
     const Vec2& from = potential.vertices[e];
-    const Vec2 along = potential.vertices[e + 1 == n ? 0 : e + 1] - from;
+    const Vec2 along = potential.vertices[next(e, n)] - from;
     const double length = along.norm();
     for (const int node : potential.roof->faces[e]) {
       if (node < n) continue;  // on the boundary

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/integrals/penetration.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -117,7 +118,7 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
   Vec2 before = vertices[0] - vertices[n - 1];
   for (int k = 0; k < n; ++k) {
     const Vec2& v = vertices[k];
-    const Vec2 along = vertices[k + 1 == n ? 0 : k + 1] - v;
+    const Vec2 along = vertices[next(k, n)] - v;
     const double scale = inverse[k] / along.norm();
     vx[k] = v.x();
     vy[k] = v.y();
@@ -125,7 +126,7 @@ bool PlacedShapes::deform(int i, double x, double y, std::span<const Vec2> verti
     gy[k] = scale * along.x();
     convex = convex && cross(before, along) > 0;
     before = along;
-    box.include(v.x(), v.y());
+    box.include(v);
     mean += v / n;
   }
   shape.top = by_edge(mean, vertices[0], vertices[1]);

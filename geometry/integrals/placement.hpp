@@ -81,9 +81,7 @@ struct PlacedPair {
 
   static Vec2 common_origin(const Polygon& a, const Polygon& b) {
     Box box = bounding_box(a);
-    const Box box_b = bounding_box(b);
-    box.include(box_b.x0, box_b.y0);
-    box.include(box_b.x1, box_b.y1);
+    box.include(bounding_box(b));
     return local_origin(box);
   }
 };

@@ -8,7 +8,10 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 
 namespace apothem {
 namespace {
@@ -22,7 +25,7 @@ std::optional<Ring> united(const Ring& a, const Ring& b) {
   for (const Ring* ring : {&a, &b}) {
     for (size_t i = 0; i < ring->size(); ++i) {
       const int u = (*ring)[i];
-      const int v = (*ring)[i + 1 == ring->size() ? 0 : i + 1];
+      const int v = after(*ring, i);
       if (edges.erase({v, u}) == 0) edges.insert({u, v});
     }
   }
@@ -41,19 +44,18 @@ std::optional<Ring> united(const Ring& a, const Ring& b) {
 // Does the work of join_pieces.
 class PieceJoiner {
  public:
-  explicit PieceJoiner(Pieces& pieces) : pieces_(pieces), group_(pieces.list.size()) {
-    std::iota(group_.begin(), group_.end(), 0);
-    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
+  explicit PieceJoiner(Pieces& pieces) : pieces_(pieces), sets_(pieces.list.size()) {
+    for (int i = 0; i < static_cast<int>(pieces.list.size()); ++i) {
       const Ring& ring = pieces_.list[i].ring;
       for (size_t k = 0; k < ring.size(); ++k) {
-        piece_left_of_[{ring[k], ring[k + 1 == ring.size() ? 0 : k + 1]}] = i;
+        piece_left_of_[{ring[k], after(ring, k)}] = i;
       }
     }
   }
 
   bool run() {
     std::vector<int> alone;
-    for (int i = 0; i < static_cast<int>(group_.size()); ++i) {
+    for (int i = 0; i < static_cast<int>(pieces_.list.size()); ++i) {
       if (!pieces_.list[i].owned) alone.push_back(i);
     }
     // A piece that cannot be joined yet may become able to once others have been joined.
@@ -64,20 +66,15 @@ class PieceJoiner {
   }
 
  private:
-  int group(int i) const {
-    while (group_[i] != i) i = group_[i];
-    return i;
-  }
-
   bool join(int i) {
     Ring& ring = pieces_.list[i].ring;
     std::map<int, double> common;  // from the neighbour to the common length
     for (size_t k = 0; k < ring.size(); ++k) {
       const int u = ring[k];
-      const int v = ring[k + 1 == ring.size() ? 0 : k + 1];
+      const int v = after(ring, k);
       const auto other = piece_left_of_.find({v, u});
       if (other == piece_left_of_.end()) continue;
-      const int j = group(other->second);
+      const int j = sets_.find(other->second);
       if (!pieces_.list[j].owned) continue;
       common[j] += (pieces_.nodes[u] - pieces_.nodes[v]).norm();
     }
@@ -91,14 +88,14 @@ class PieceJoiner {
       if (!both) continue;
       pieces_.list[j].ring = std::move(*both);
       ring.clear();
-      group_[i] = j;
+      sets_.join(i, j);
       return true;
     }
     return false;
   }
 
   Pieces& pieces_;
-  std::vector<int> group_;  // per piece: the piece that it has been joined to, or itself
+  DisjointSets sets_;  // of pieces: the number is that of the piece that the others have joined
   std::map<std::pair<int, int>, int> piece_left_of_;
 };
 
@@ -129,17 +126,6 @@ void put_in_order(Pieces& pieces, int outline_size) {
     return std::tie(a.site, a.ring) < std::tie(b.site, b.ring);
   });
   pieces = std::move(sorted);
-}
-
-RingMoments ring_moments(const std::vector<Vec2>& ring, const Vec2& origin) {
-  RingMoments m;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 p = ring[i] - origin;
-    const Vec2 q = ring[i + 1 == ring.size() ? 0 : i + 1] - origin;
-    m.area += cross(p, q) / 2;
-    m.first += cross(p, q) * (p + q) / 6;
-  }
-  return m;
 }
 
 void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites) {

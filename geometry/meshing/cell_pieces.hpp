@@ -35,13 +35,6 @@ struct Pieces {
 /// their ring.
 void put_in_order(Pieces& pieces, int outline_size);
 
-/// Area of a ring and its first moment of area about a given origin.
-struct RingMoments {
-  double area = 0;
-  Vec2 first = Vec2::Zero();
-};
-RingMoments ring_moments(const std::vector<Vec2>& ring, const Vec2& origin);
-
 /// Marks one piece of each site as owned: the one that contains the site, or the largest one if no
 /// piece contains it because of rounding.
 void mark_owned(Pieces& pieces, const std::vector<Vec2>& sites);

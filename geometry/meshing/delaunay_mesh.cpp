@@ -9,7 +9,9 @@
 
 #include <list>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "geometry/spatial/hilbert.hpp"
 
@@ -45,9 +47,7 @@ constexpr double kThinnest = 1e-9;   // smallest distance of edges over the size
 
 // Distance of a point from a segment.
 double distance(const Vec2& p, const std::array<Vec2, 2>& segment) {
-  const Vec2 way = segment[1] - segment[0];
-  const double share = std::clamp((p - segment[0]).dot(way) / way.squaredNorm(), 0., 1.);
-  return (segment[0] + share * way - p).norm();
+  return std::sqrt(nearest_on_segment(p - segment[0], segment[1] - segment[0]).distance2);
 }
 
 // Distance of two segments that do not cross.
@@ -68,9 +68,7 @@ void require_room(const Polygon& outline, const std::vector<Polygon>& holes) {
   const auto add = [&](const Polygon& ring, int number) {
     for (int i = 0; i < ring.size(); ++i) {
       edges.push_back({{ring[i], ring.after(i)}, number, i});
-      Box box;
-      for (const Vec2& p : edges.back().ends) box.include(p.x(), p.y());
-      boxes.push_back(box.grown(thinnest / 2));
+      boxes.push_back(box_of(edges.back().ends).grown(thinnest / 2));
     }
   };
   add(outline, -1);
@@ -142,7 +140,7 @@ class Mesh2 {
     const int first = static_cast<int>(points_.size());
     for (int i = 0; i < ring.size(); ++i) {
       points_.emplace_back(ring[i] - origin_);
-      edges_.push_back({first + i, first + (i + 1 == ring.size() ? 0 : i + 1)});
+      edges_.push_back({first + i, first + next(i, ring.size())});
     }
   }
 

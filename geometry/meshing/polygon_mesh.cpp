@@ -5,6 +5,8 @@
 #include <queue>
 #include <tuple>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 namespace {
 
@@ -60,7 +62,7 @@ class Collapse {
   template <class Visit>
   void for_edges(int c, const Visit& visit) const {
     const std::vector<int>& cell = mesh_.cells[c];
-    for (size_t i = 0; i < cell.size(); ++i) visit(cell[i], cell[i + 1 == cell.size() ? 0 : i + 1]);
+    for (size_t i = 0; i < cell.size(); ++i) visit(cell[i], after(cell, i));
   }
 
   void push_short_edges(int c) {
@@ -201,7 +203,7 @@ std::vector<int> tiling_boundary(const PolygonMesh& mesh) {
       throw InvalidPolygon(name + ": " + error.what(), error.vertex());
     }
     for (size_t i = 0; i < cell.size(); ++i) {
-      const std::pair edge(cell[i], cell[i + 1 == cell.size() ? 0 : i + 1]);
+      const std::pair edge(cell[i], after(cell, i));
       const auto [other, is_new] = cell_left_of.try_emplace(edge, c);
       if (!is_new) {
         throw InvalidPolygon(

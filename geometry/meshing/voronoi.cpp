@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <set>
 
 #include "geometry/meshing/cell_pieces.hpp"
 #include "geometry/meshing/voronoi_cells.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/random_numbers.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/polygon/triangulation.hpp"
 #include "geometry/spatial/boxes.hpp"
 
@@ -36,11 +38,7 @@ std::vector<int> edges_near_cells(const VoronoiDiagram& diagram, int sites, cons
   std::vector<Box> boxes;
   boxes.reserve(sites + region.size());
   for (int i = 0; i < sites; ++i) boxes.push_back(diagram.box_of(i));
-  for (int k = 0; k < region.size(); ++k) {
-    Box& box = boxes.emplace_back();
-    box.include(region[k].x(), region[k].y());
-    box.include(region.after(k).x(), region.after(k).y());
-  }
+  for (int k = 0; k < region.size(); ++k) boxes.push_back(box_of(region[k], region.after(k)));
   std::vector<BoxPair> pairs;
   BoxGrid().find_pairs(boxes, pairs);
   std::vector<int> near(sites, kNone);
@@ -65,7 +63,7 @@ std::vector<Vec2> left_part(const std::vector<Vec2>& ring, const Vec2& p, const 
   std::vector<Vec2> part;
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2& a = ring[i];
-    const Vec2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
+    const Vec2& b = after(ring, i);
     const double at_a = cross(q - p, a - p);
     const double at_b = cross(q - p, b - p);
     if (at_a >= 0) part.push_back(a);
@@ -81,7 +79,7 @@ Vec2 walk(const Vec2& site, const Vec2& target, const std::vector<Vec2>& ring) {
   double exit = 2;  // part of the way up to the ring, 2 if it is not in the way; half is moved
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2 p = ring[i] - site;
-    const Vec2 edge = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+    const Vec2 edge = after(ring, i) - ring[i];
     const double slope = cross(way, edge);
     const double along = cross(p, way) / slope;
     const double t = cross(p, edge) / slope;
@@ -137,8 +135,8 @@ std::vector<Vec2> random_sites(const Polygon& region, int count, std::uint64_t s
     sum += std::abs(cross(local[j] - local[i], local[k] - local[i]));
     area_up_to.push_back(sum);
   }
-  std::mt19937_64 engine(seed);
-  const auto uniform = [&] { return std::ldexp(engine() >> 11, -53); };
+  RandomNumbers random(seed);
+  const auto uniform = [&] { return random.uniform(0, 1); };
   std::vector<Vec2> sites;
   std::set<std::pair<double, double>> taken;
   for (int failures = 0; static_cast<int>(sites.size()) < count;) {

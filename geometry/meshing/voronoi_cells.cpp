@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "geometry/meshing/polygon_mesh.hpp"
+#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {
@@ -127,7 +128,7 @@ class Cutter {
     std::vector<Traits::Curve_2> curves;
     curves.reserve(n + diagram_.edges.size());
     for (int k = 0; k < n; ++k) {
-      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[k + 1 == n ? 0 : k + 1]), k);
+      curves.emplace_back(Segments::Curve_2(outline_[k], outline_[next(k, n)]), k);
     }
     std::vector<std::optional<Exact::Point_2>> centres(diagram_.centres.size());
     const auto centre = [&](int c) -> const Exact::Point_2& {
@@ -230,7 +231,7 @@ class Cutter {
       const int k = outline_edge(edge);
       if (k < 0) continue;
       freedom = k;
-      for (const int i : {k, k + 1 == region_.size() ? 0 : k + 1}) {
+      for (const int i : {k, next(k, region_.size())}) {
         if (vertex->point() == outline_[i]) {
           vertex->set_data(i);
           return i;
@@ -257,9 +258,7 @@ VoronoiDiagram::~VoronoiDiagram() = default;
 
 Box VoronoiDiagram::box_of(int site) const {
   Box box;
-  for (const int c : parts_->cells[site]) {
-    box.include(parts_->centres[c].x(), parts_->centres[c].y());
-  }
+  for (const int c : parts_->cells[site]) box.include(parts_->centres[c]);
   return box;
 }
 

@@ -58,8 +58,7 @@ Arrangement put_on_lattice(PackingSpace& space, const std::vector<Block>& blocks
   std::vector<Box> boxes;
   double width = 0, height = 0;
   for (const Block& block : blocks) {
-    Box box;
-    for (const Vec2& v : ring_of(block, Vec2::Zero())) box.include(v.x(), v.y());
+    const Box box = box_of(ring_of(block, Vec2::Zero()));
     boxes.push_back(box);
     width = std::max(width, box.x1 - box.x0);
     height = std::max(height, box.y1 - box.y0);

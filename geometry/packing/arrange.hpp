@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/packing/packing_space.hpp"
-#include "geometry/packing/random.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem {
 

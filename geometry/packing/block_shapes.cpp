@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/polygon.hpp"
 #include "lib/execution/elementary.hpp"
 
@@ -16,9 +17,8 @@ constexpr double kFarthest = .72;  // likewise
 constexpr int kDraws = 1000;
 
 bool angles_between(const std::vector<Vec2>& ring, double smallest, double largest) {
-  const size_t n = ring.size();
-  for (size_t i = 0; i < n; ++i) {
-    const Vec2 to_next = ring[(i + 1) % n] - ring[i], to_last = ring[(i + n - 1) % n] - ring[i];
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 to_next = after(ring, i) - ring[i], to_last = before(ring, i) - ring[i];
     const double angle = arc_tangent(cross(to_next, to_last), to_next.dot(to_last));
     if (!(angle >= smallest && angle <= largest)) return false;
   }

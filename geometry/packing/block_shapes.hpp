@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "geometry/packing/random.hpp"
 #include "geometry/polygon/point.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
@@ -13,17 +14,6 @@ namespace {
 
 constexpr double kLeastClearance = 1e-9;  // of the size of a block
 constexpr double kMostCells = 4e6;
-
-Box box_of(std::span<const Vec2> ring) {
-  Box box;
-  for (const Vec2& v : ring) box.include(v.x(), v.y());
-  return box;
-}
-
-Box box_between(const Vec2& a, const Vec2& b) {
-  return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.x(), b.x()),
-          std::max(a.y(), b.y())};
-}
 
 double square_distance(const Vec2& point, const Vec2& a, const Vec2& b) {
   return nearest_on_segment(point - a, b - a).distance2;
@@ -46,25 +36,17 @@ bool borders_nearer(std::span<const Vec2> a, const Box& box_a, std::span<const V
   const Box reach = box_a.grown(distance);
   for (size_t j = 0; j < b.size(); ++j) {
     const Vec2& from = b[j];
-    const Vec2& to = b[j + 1 == b.size() ? 0 : j + 1];
-    const Box edge = box_between(from, to);
+    const Vec2& to = after(b, j);
+    const Box edge = box_of(from, to);
     if (apart(edge, reach)) continue;
     const Box near = edge.grown(distance);
     for (size_t i = 0; i < a.size(); ++i) {
       const Vec2& p = a[i];
-      const Vec2& q = a[i + 1 == a.size() ? 0 : i + 1];
-      if (!apart(near, box_between(p, q)) && nearer(p, q, from, to, distance)) return true;
+      const Vec2& q = after(a, i);
+      if (!apart(near, box_of(p, q)) && nearer(p, q, from, to, distance)) return true;
     }
   }
   return false;
-}
-
-bool is_convex(std::span<const Vec2> ring) {
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2& b = ring[(i + 1) % ring.size()];
-    if (orientation(ring[i], b, ring[(i + 2) % ring.size()]) < 0) return false;
-  }
-  return true;
 }
 
 enum class Between { nothing, line, strip };
@@ -75,7 +57,7 @@ Between edge_between(std::span<const Vec2> convex, std::span<const Vec2> other, 
   Between found = Between::nothing;
   for (size_t i = 0; i < convex.size(); ++i) {
     const Vec2& p = convex[i];
-    const Vec2 edge = convex[i + 1 == convex.size() ? 0 : i + 1] - p;
+    const Vec2 edge = after(convex, i) - p;
     double least = std::numeric_limits<double>::infinity();
     for (const Vec2& v : other) {
       least = std::min(least, cross(Vec2(v - p), edge));
@@ -143,7 +125,7 @@ void PackingSpace::add(std::span<const Vec2> ring) {
   points_.insert(points_.end(), ring.begin(), ring.end());
   first_.push_back(points_.size());
   boxes_.push_back(box_of(ring));
-  convex_.push_back(static_cast<char>(is_convex(ring)));
+  convex_.push_back(smallest_turn(ring) >= 0);
   in_the_way_.push_back(-1);
   seen_.push_back(0);
   enter(static_cast<int>(boxes_.size()) - 1);
@@ -202,7 +184,7 @@ bool PackingSpace::is_clear(std::span<const Vec2> ring, int except) const {
   const Box box = box_of(ring);
   const Box reach = box.grown(clearance_);
   const int own = except < 0 ? -1 : fixed_ + except;
-  const bool convex = own < 0 ? is_convex(ring) : convex_[own] != 0;
+  const bool convex = own < 0 ? smallest_turn(ring) >= 0 : convex_[own] != 0;
   // What was in the way of a block is likely to be there again.
   if (own >= 0 && in_the_way_[own] >= 0) {
     const int last = in_the_way_[own];

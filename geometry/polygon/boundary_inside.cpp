@@ -34,10 +34,7 @@ class Line {
 
   // Length of the segment pq inside.
   double inside(const Vec2& p, const Vec2& q) {
-    Box box;
-    box.include(p.x(), p.y());
-    box.include(q.x(), q.y());
-    if (apart(box, box_)) return 0;
+    if (apart(box_of(p, q), box_)) return 0;
     crossings_.clear();
     const Vec2 direction = (q - p).normalized();
     const Place from = at(direction, p, 0);

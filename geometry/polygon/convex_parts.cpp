@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/triangulation.hpp"
 
@@ -16,21 +17,21 @@ using Ring = std::vector<int>;
 // Joins parts across diagonals as long as they stay convex (Hertel and Mehlhorn).
 class Joiner {
  public:
-  explicit Joiner(const Polygon& polygon) : polygon_(polygon) {
-    for (const Triangle& t : triangulate(polygon)) {
+  Joiner(const Polygon& polygon, const std::vector<Triangle>& triangles)
+      : polygon_(polygon), sets_(triangles.size()) {
+    for (const Triangle& t : triangles) {
       const auto part = static_cast<int>(parts_.size());
       for (int k = 0; k < 3; ++k) part_at_[{t[k], t[(k + 1) % 3]}] = part;
       parts_.emplace_back(t.begin(), t.end());
     }
-    into_.resize(parts_.size());
-    std::iota(into_.begin(), into_.end(), 0);
   }
 
   std::vector<Ring> join() {
     for (const auto& [edge, part] : part_at_) {
       const auto [i, j] = edge;
       const auto across = part_at_.find({j, i});
-      if (i < j && across != part_at_.end()) join(i, j, root(part), root(across->second));
+      if (i < j && across != part_at_.end())
+        join(i, j, sets_.find(part), sets_.find(across->second));
     }
     std::vector<Ring> left;
     for (Ring& ring : parts_) {
@@ -40,11 +41,6 @@ class Joiner {
   }
 
  private:
-  int root(int part) {
-    while (into_[part] != part) part = into_[part] = into_[into_[part]];
-    return part;
-  }
-
   // Part p has the edge from i to j, part q the one from j to i.
   void join(int i, int j, int p, int q) {
     Ring& of_p = parts_[p];
@@ -58,19 +54,19 @@ class Joiner {
     if (!convex(of_q[of_q.size() - 2], j, of_p[1])) return;
     of_p.insert(of_p.end(), of_q.begin() + 1, of_q.end() - 1);
     of_q.clear();
-    into_[q] = p;
+    sets_.join(q, p);
   }
 
   const Polygon& polygon_;
   std::vector<Ring> parts_;
-  std::vector<int> into_;                       // the part that has taken this one
+  DisjointSets sets_;                           // of triangles, each with the number of its part
   std::map<std::pair<int, int>, int> part_at_;  // triangle on the left of each edge
 };
 
 }  // namespace
 
 std::vector<Ring> convex_parts(const Polygon& polygon) {
-  if (!polygon.is_convex()) return Joiner(polygon).join();
+  if (!polygon.is_convex()) return Joiner(polygon, triangulate(polygon)).join();
   Ring whole(static_cast<size_t>(polygon.size()));
   std::iota(whole.begin(), whole.end(), 0);
   return {whole};

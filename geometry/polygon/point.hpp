@@ -34,6 +34,12 @@ struct Box {
     x0 = std::min(x0, x), y0 = std::min(y0, y);
     x1 = std::max(x1, x), y1 = std::max(y1, y);
   }
+  void include(const Vec2& p) { include(p.x(), p.y()); }
+  /// Extends the box so that it contains the other one.
+  void include(const Box& other) {
+    x0 = std::min(x0, other.x0), y0 = std::min(y0, other.y0);
+    x1 = std::max(x1, other.x1), y1 = std::max(y1, other.y1);
+  }
   /// The box with every side moved outwards by `margin`.
   [[nodiscard]] Box grown(double margin) const {
     return {x0 - margin, y0 - margin, x1 + margin, y1 + margin};
@@ -41,6 +47,19 @@ struct Box {
   /// The longer of the two side lengths.
   [[nodiscard]] double extent() const { return std::max(x1 - x0, y1 - y0); }
 };
+
+/// The smallest box that contains a list of points, or a segment between two of them.
+template <class Points>
+Box box_of(const Points& points) {
+  Box box;
+  for (const Vec2& p : points) box.include(p);
+  return box;
+}
+inline Box box_of(const Vec2& a, const Vec2& b) {
+  Box box;
+  box.include(a), box.include(b);
+  return box;
+}
 
 /// True if the boxes have no point in common. Comparisons with NaN are false, so a box with a NaN
 /// never counts as apart from another one.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 
 namespace apothem {
@@ -27,7 +28,7 @@ void require_usable_coordinates(const std::vector<Vec2>& ring) {
     if (!(ring[i].cwiseAbs().maxCoeff() < kLargest)) {
       throw InvalidPolygon(name(i) + " has a coordinate beyond 1e60", i);
     }
-    box.include(ring[i].x(), ring[i].y());
+    box.include(ring[i]);
   }
   if (box.extent() < kSmallestSize)
     throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
@@ -60,9 +61,9 @@ void require_distinct_vertices(const std::vector<Vec2>& ring) {
 void require_no_spike(const std::vector<Vec2>& ring) {
   const int n = static_cast<int>(ring.size());
   for (int i = 0; i < n; ++i) {
-    const Vec2& a = ring[(i + n - 1) % n];
+    const Vec2& a = ring[previous(i, n)];
     const Vec2& b = ring[i];
-    const Vec2& c = ring[(i + 1) % n];
+    const Vec2& c = ring[next(i, n)];
     if (orientation(a, b, c) != 0) continue;
     // The three points are collinear. The boundary goes straight on if b lies between a and c;
     // otherwise it turns back on itself. Coordinates are compared because that is exact, which the
@@ -83,12 +84,7 @@ void require_simple(const std::vector<Vec2>& ring) {
   // boxes overlap.
   const int n = static_cast<int>(ring.size());
   std::vector<Box> boxes(n);
-  for (int i = 0; i < n; ++i) {
-    const Vec2& p = ring[i];
-    const Vec2& q = ring[(i + 1) % n];
-    boxes[i].include(p.x(), p.y());
-    boxes[i].include(q.x(), q.y());
-  }
+  for (int i = 0; i < n; ++i) boxes[i] = box_of(ring[i], ring[next(i, n)]);
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
@@ -99,8 +95,8 @@ void require_simple(const std::vector<Vec2>& ring) {
       const int j = order[l];
       // Neighbours share their common vertex. That they share nothing else is what
       // require_no_spike has tested.
-      if (apart(boxes[i], boxes[j]) || (i + 1) % n == j || (j + 1) % n == i) continue;
-      if (segments_meet(ring[i], ring[(i + 1) % n], ring[j], ring[(j + 1) % n])) {
+      if (apart(boxes[i], boxes[j]) || next(i, n) == j || next(j, n) == i) continue;
+      if (segments_meet(ring[i], ring[next(i, n)], ring[j], ring[next(j, n)])) {
         throw InvalidPolygon("edge " + std::to_string(std::min(i, j)) + " and edge " +
                                  std::to_string(std::max(i, j)) +
                                  " cross or touch (edge i starts at vertex i)",
@@ -119,7 +115,7 @@ bool is_clockwise(const std::vector<Vec2>& ring) {
     if (std::pair(ring[i].y(), ring[i].x()) < std::pair(ring[lowest].y(), ring[lowest].x()))
       lowest = i;
   }
-  return orientation(ring[(lowest + n - 1) % n], ring[lowest], ring[(lowest + 1) % n]) < 0;
+  return orientation(ring[previous(lowest, n)], ring[lowest], ring[next(lowest, n)]) < 0;
 }
 
 }  // namespace
@@ -135,7 +131,7 @@ Polygon::Polygon(std::vector<Vec2> ring) : vertices_(std::move(ring)) {
 
 std::optional<int> Polygon::first_reflex_vertex() const {
   for (int i = 0; i < size(); ++i) {
-    if (orientation(vertices_[i == 0 ? size() - 1 : i - 1], vertices_[i], after(i)) < 0) return i;
+    if (orientation(vertices_[previous(i, size())], vertices_[i], after(i)) < 0) return i;
   }
   return std::nullopt;
 }
@@ -162,16 +158,12 @@ AreaMoments area_moments(const Polygon& polygon) {
   double polar = 0;
   for (size_t i = 0; i < v.size(); ++i) {
     const Vec2 p = v[i] - centroid;
-    const Vec2 q = v[i + 1 == v.size() ? 0 : i + 1] - centroid;
+    const Vec2 q = after(v, i) - centroid;
     polar += cross(p, q) * (p.squaredNorm() + p.dot(q) + q.squaredNorm());
   }
   return {twice_area / 2, centroid, polar / 12};
 }
 
-Box bounding_box(const Polygon& polygon) {
-  Box box;
-  for (const Vec2& v : polygon.vertices()) box.include(v.x(), v.y());
-  return box;
-}
+Box bounding_box(const Polygon& polygon) { return box_of(polygon.vertices()); }
 
 }  // namespace apothem

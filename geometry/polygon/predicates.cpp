@@ -3,6 +3,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2_algorithms.h>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 namespace {
 
@@ -20,6 +22,14 @@ bool between(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   return static_cast<int>(CGAL::orientation(cgal(a), cgal(b), cgal(c)));
+}
+
+int smallest_turn(std::span<const Vec2> ring) {
+  int smallest = 1;
+  for (size_t i = 0; i < ring.size() && smallest >= 0; ++i) {
+    smallest = std::min(smallest, orientation(before(ring, i), ring[i], after(ring, i)));
+  }
+  return smallest;
 }
 
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
@@ -46,7 +56,7 @@ bool strictly_inside(std::span<const Vec2> ring, const Vec2& p) {
   bool inside = false;
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2& a = ring[i];
-    const Vec2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
+    const Vec2& b = after(ring, i);
     if (std::max(a.y(), b.y()) < p.y() || std::min(a.y(), b.y()) > p.y()) continue;
     const int side = orientation(a, b, p);
     if (side == 0 && between(a, b, p)) return false;

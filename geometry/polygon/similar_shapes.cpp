@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 
 namespace apothem {
@@ -39,7 +40,7 @@ SimilarShapes::Shape SimilarShapes::shape_of(const Polygon& polygon) {
   for (const Vec2& v : shape.arms) shape.mean += v / n;
   double squares = 0;
   for (size_t i = 0; i < shape.arms.size(); ++i) {
-    shape.perimeter += (shape.arms[i] - shape.arms[i == 0 ? shape.arms.size() - 1 : i - 1]).norm();
+    shape.perimeter += (shape.arms[i] - before(shape.arms, i)).norm();
   }
   for (Vec2& v : shape.arms) {
     v -= shape.mean;
@@ -87,7 +88,7 @@ std::optional<Similarity> SimilarShapes::similarity(const Shape& from, const Sha
       for (int i = first; same < n; ++same, --left) {
         const double length = scale * from.arms[i].norm();
         if (!(std::abs(to.arms[same].norm() - length) <= 2 * tolerance)) break;
-        i = mirrored ? (i == 0 ? n : i) - 1 : (i + 1 == n ? 0 : i + 1);
+        i = mirrored ? (i == 0 ? n : i) - 1 : next(i, n);
       }
       --left;
       if (same < n) continue;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/polygon.hpp"
 
 namespace apothem {
@@ -41,7 +42,7 @@ struct Similarity {
   /// the image of the end of an edge is the start of its image.
   [[nodiscard]] int edge(int of_original) const {
     if (!mirrored) return vertex(of_original);
-    return vertex(of_original + 1 == vertices ? 0 : of_original + 1);
+    return vertex(next(of_original, vertices));
   }
 };
 

@@ -5,6 +5,8 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 
 std::vector<Triangle> triangulate(const Polygon& polygon) {
@@ -24,7 +26,7 @@ std::vector<Triangle> triangulate(const Polygon& polygon) {
     vertices.back()->info() = i;
   }
   for (int i = 0; i < polygon.size(); ++i) {
-    triangulation.insert_constraint(vertices[i], vertices[i + 1 == polygon.size() ? 0 : i + 1]);
+    triangulation.insert_constraint(vertices[i], vertices[next(i, polygon.size())]);
   }
 
   // A face lies outside if it can be reached from the infinite face without crossing an edge of the

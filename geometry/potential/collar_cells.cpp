@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 
@@ -25,13 +26,13 @@ CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights)
   // phi is limited to 1, and no cell is used beyond that.
   for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
   for (int e = 0; e < n; ++e) {
-    const int before = e == 0 ? n - 1 : e - 1;
+    const int before = previous(e, n);
     const Vec2 in = polygon[e] - polygon[before], out = polygon.after(e) - polygon[e];
     const double turn = cross(in, out) / (in.norm() * out.norm());
     cells.side[e] = turn < 0 ? -1 : 1;
     if (!(std::abs(turn) > kLeastTurn)) cells.depth[before] = cells.depth[e] = 0;
     if (!(out.norm() > shortest)) {
-      cells.depth[before] = cells.depth[e] = cells.depth[e + 1 == n ? 0 : e + 1] = 0;
+      cells.depth[before] = cells.depth[e] = cells.depth[next(e, n)] = 0;
     }
   }
   cells.side[n] = cells.side[0];
@@ -72,10 +73,7 @@ CollarCells collar_cells(const Polygon& polygon, double slope) {
   std::vector<Box> boxes(heights.size());
   for (int e = 0; e < n; ++e) {
     heights[e] = std::min(1 / slope, kHighest * (polygon.after(e) - polygon[e]).norm());
-    Box box;
-    box.include(polygon[e].x(), polygon[e].y());
-    box.include(polygon.after(e).x(), polygon.after(e).y());
-    boxes[e] = box.grown(2 * heights[e]);
+    boxes[e] = box_of(polygon[e], polygon.after(e)).grown(2 * heights[e]);
   }
   std::vector<BoxPair> near;
   BoxGrid().find_pairs(boxes, near);

@@ -1,5 +1,7 @@
 #include "geometry/potential/distance_field.hpp"
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 
 DistanceField make_distance_field(const Polygon& polygon, double reference) {
@@ -8,10 +10,10 @@ DistanceField make_distance_field(const Polygon& polygon, double reference) {
   constexpr double kClearlyConvex = 0.125;
   DistanceField field{1 / reference, {}};
   for (int i = 0; i < polygon.size(); ++i) {
-    const Vec2 before = polygon[i] - polygon[i == 0 ? polygon.size() - 1 : i - 1];
-    const Vec2 after = polygon.after(i) - polygon[i];
-    const double turn = cross(Vec2(before.normalized()), Vec2(after.normalized()));
-    const bool convex = turn > 0 && (turn > kClearlyConvex || before.dot(after) < 0);
+    const Vec2 in = polygon[i] - polygon[previous(i, polygon.size())];
+    const Vec2 out = polygon.after(i) - polygon[i];
+    const double turn = cross(Vec2(in.normalized()), Vec2(out.normalized()));
+    const bool convex = turn > 0 && (turn > kClearlyConvex || in.dot(out) < 0);
     if (!convex) field.corners.push_back(i);
   }
   return field;

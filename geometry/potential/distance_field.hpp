@@ -15,6 +15,7 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/line_crossings.hpp"
 #include "geometry/polygon/polygon.hpp"
 #include "geometry/polygon/segment_moments.hpp"
@@ -112,7 +113,7 @@ class DistanceTrace {
     lines_.place(0, field.size);
     crossings_.clear();
     for (int a = 0; a < field.size; ++a) {
-      const int b = a + 1 == field.size ? 0 : a + 1;
+      const int b = next(a, field.size);
       lines_.cross(a, b, [&](const Real& s, const Real&) { crossings_.push_back({s, a}); });
     }
     std::sort(crossings_.begin(), crossings_.end(),
@@ -214,7 +215,7 @@ class DistanceTrace {
     const Real h0 = a + b * s0;
     const Real h1 = a + b * s1;
     if ((h0 >= bound_ && h1 >= bound_) || (h0 <= -bound_ && h1 <= -bound_)) return;
-    const int j = i + 1 == field.size ? 0 : i + 1;
+    const int j = next(i, field.size);
     // Along the edge, at right angles to the gradient to the last bit. The difference of the ends
     // would not do: if they are a few units in the last place apart, its direction is round-off.
     const Real& tx = field.gy[i];

@@ -29,6 +29,7 @@
 #include <numeric>
 #include <random>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/triangulation.hpp"
 #include "geometry/potential/edge_distance.hpp"
@@ -102,7 +103,7 @@ class Search {
     vertices_ = polygon.local_vertices();
     for (Vec2& v : vertices_) v /= unit;
     for (size_t i = 0; i < vertices_.size(); ++i) {
-      const Vec2& end = vertices_[i + 1 == vertices_.size() ? 0 : i + 1];
+      const Vec2& end = after(vertices_, i);
       // Two vertices that are equal in local coordinates have no edge between them.
       if (vertices_[i] != end) edges_.emplace_back(vertices_[i], end);
     }
@@ -187,8 +188,7 @@ class Search {
 
   // Queues two triangles that cover the bounding box.
   void cover_box() {
-    Box box;
-    for (const Vec2& v : vertices_) box.include(v.x(), v.y());
+    const Box box = box_of(vertices_);
     const Vec2 a(box.x0, box.y0), b(box.x1, box.y0), c(box.x1, box.y1), d(box.x0, box.y1);
     queue_.push_back({{a, b, c}, HUGE_VAL});
     queue_.push_back({{a, c, d}, HUGE_VAL});

@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem::lower_envelope {
 
 /// A point or a vector of the plane.
@@ -111,7 +113,7 @@ template <class Real>
 std::vector<Vec<Real>> inside(std::vector<Vec<Real>> part, const std::vector<Vec<Real>>& convex) {
   for (size_t i = 0; i < convex.size() && !part.empty(); ++i) {
     const Vec<Real>& p = convex[i];
-    const Vec<Real> e = convex[i + 1 == convex.size() ? 0 : i + 1] - p;
+    const Vec<Real> e = after(convex, i) - p;
     const Vec<Real> normal(-e.y(), e.x());
     part = clip<Real>(part, {normal, -normal.dot(p)}, true);
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "geometry/potential/lower_envelope.hpp"
 #include "lib/execution/elementary.hpp"
@@ -46,7 +47,7 @@ double top_of_needle(const Polygon& polygon, const Potential& potential) {
     ring.push_back(v.cast<Fine>() - polygon.origin().cast<Fine>());
   std::vector<lower_envelope::Line<Fine>> lines;
   for (size_t i = 0; i < ring.size(); ++i) {
-    const FineVec d = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
+    const FineVec d = after(ring, i) - ring[i];
     const FineVec g =
         FineVec(-d.y(), d.x()) * (potential.gradients[i].cast<Fine>().norm() / d.norm());
     lines.push_back({g, -g.dot(ring[i])});

@@ -19,11 +19,10 @@
 #include <system_error>
 
 #include "geometry/skeleton/helper_side.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int kFailed = 1;  // exit code of helper_side.cpp where the work has failed
 constexpr std::chrono::milliseconds kLook{100};  // between two calls of `meanwhile`
@@ -136,7 +135,7 @@ class Child {
     clockid_t clock{};
     timespec used{};
     if (clock_getcpuclockid(id_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
-    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+    return in_seconds(used);
   }
   int wait() {
     int status = 0;

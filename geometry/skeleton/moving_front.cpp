@@ -1,7 +1,7 @@
 #include "geometry/skeleton/moving_front.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 
 #include <cmath>
-#include <random>
 
 namespace apothem {
 namespace {
@@ -52,11 +52,10 @@ std::vector<FineVec> moved_vertices(const Polygon& polygon, const std::vector<Tr
     }
     for (const int v : t) steps[v] = std::min(steps[v], kSafe * area / longest);
   }
-  std::mt19937_64 engine(seed);
-  const auto random = [&] { return std::ldexp(static_cast<double>(engine() >> 11), -52) - 1; };
+  RandomNumbers random(seed);
   for (size_t i = 0; i < points.size(); ++i) {
-    const double x = random();
-    const double y = random();
+    const double x = random.uniform(-1, 1);
+    const double y = random.uniform(-1, 1);
     points[i] = points[i] + Real(steps[i]) * FineVec{x, y};
   }
   return points;

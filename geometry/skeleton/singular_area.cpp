@@ -3,8 +3,11 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <stdexcept>
+
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 
 namespace apothem {
 namespace {
@@ -16,14 +19,6 @@ constexpr double kNoise = 0x1p-48;
 constexpr double kSamePlace = 1e-9;  // level ridges shorter than this times the depth are points
 constexpr double kSameDirection = 1e-9;  // sine of the angle below which two ridges are in line
 
-double ring_area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t i = 2; i < ring.size(); ++i) {
-    twice += cross(ring[i - 1] - ring[0], ring[i] - ring[0]);
-  }
-  return twice / 2;
-}
-
 // The nodes above the depth, and the points where the arcs cross it.
 class Level {
  public:
@@ -31,7 +26,7 @@ class Level {
       : skeleton_(skeleton), nodes_(skeleton.nodes), sides_(skeleton.nodes.size()) {
     if (!(depth > 0)) throw std::invalid_argument("the depth of a singular area is not positive");
     Box box;
-    for (const Skeleton::Node& node : nodes_) box.include(node.point.x(), node.point.y());
+    for (const Skeleton::Node& node : nodes_) box.include(node.point);
     const double noise = kNoise * box.extent();
     for (size_t i = 0; i < nodes_.size(); ++i) {
       double& height = nodes_[i].height;
@@ -75,7 +70,7 @@ class Level {
     const std::vector<int>& face = skeleton_.faces[f];
     for (size_t i = 0; i < face.size(); ++i) {
       const int a = face[i];
-      const int b = face[i + 1 == face.size() ? 0 : i + 1];
+      const int b = after(face, i);
       node(a);
       if (above(a) == above(b)) continue;
       above(b) ? up(cut(a, b)) : down(cut(a, b));
@@ -140,24 +135,24 @@ void add_polygons(const Level& level, SingularArea& result) {
 class Crest {
  public:
   explicit Crest(const Level& level, double depth)
-      : level_(level), group_(level.skeleton().nodes.size()) {
-    std::iota(group_.begin(), group_.end(), 0);
+      : level_(level), groups_(level.skeleton().nodes.size()) {
     for (const Skeleton::Arc& arc : level.skeleton().arcs) {
       if (arc.right >= 0 && length(arc) <= kSamePlace * depth) unite(arc.start, arc.end);
     }
     for (const Skeleton::Arc& arc : level.skeleton().arcs) {
-      if (arc.right < 0 || !is_level(arc) || root(arc.start) == root(arc.end)) continue;
-      ridges_.push_back({root(arc.start), root(arc.end)});
+      if (arc.right < 0 || !is_level(arc) || groups_.find(arc.start) == groups_.find(arc.end))
+        continue;
+      ridges_.push_back({groups_.find(arc.start), groups_.find(arc.end)});
     }
   }
 
   void add_to(SingularArea& result) {
-    std::vector<bool> isolated(group_.size(), false);
-    const int count = static_cast<int>(group_.size());
-    for (int i = 0; i < count; ++i) isolated[root(i)] = level_.side(root(i)) == 0;
+    std::vector<bool> isolated(level_.nodes().size(), false);
+    const int count = static_cast<int>(level_.nodes().size());
+    for (int i = 0; i < count; ++i) isolated[groups_.find(i)] = level_.side(groups_.find(i)) == 0;
     for (const Skeleton::Arc& arc : level_.skeleton().arcs) {
-      if (level_.above(arc.start)) isolated[root(arc.end)] = false;
-      if (level_.above(arc.end)) isolated[root(arc.start)] = false;
+      if (level_.above(arc.start)) isolated[groups_.find(arc.end)] = false;
+      if (level_.above(arc.end)) isolated[groups_.find(arc.start)] = false;
     }
     for (const Ridge& ridge : ridges_) isolated[ridge[0]] = isolated[ridge[1]] = false;
     for (int i = 0; i < count; ++i) {
@@ -170,17 +165,13 @@ class Crest {
  private:
   using Ridge = std::array<int, 2>;
 
-  int root(int i) {
-    while (group_[i] != i) i = group_[i] = group_[group_[i]];
-    return i;
-  }
   // Joins two groups of nodes that are at the same place. Where many short edges meet at a maximum,
   // as in a regular polygon with many vertices, round-off separates nodes that should be one. A
   // node at the depth, if there is one, represents its group.
   void unite(int i, int j) {
-    i = root(i), j = root(j);
+    i = groups_.find(i), j = groups_.find(j);
     if (level_.side(j) != 0) std::swap(i, j);
-    group_[i] = j;
+    groups_.join(i, j);
   }
   [[nodiscard]] const Vec2& point(int node) const { return level_.nodes()[node].point; }
   [[nodiscard]] bool is_level(const Skeleton::Arc& arc) const {
@@ -222,7 +213,7 @@ class Crest {
   }
 
   const Level& level_;
-  std::vector<int> group_;  // union-find forest of the nodes that are at the same place
+  DisjointSets groups_;  // of nodes that are at the same place
   std::vector<Ridge> ridges_;
 };
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 #include "geometry/skeleton/convex_skeleton.hpp"
 #include "geometry/skeleton/polish.hpp"
 #include "geometry/skeleton/skeleton_search.hpp"
@@ -82,13 +83,12 @@ constexpr Attempt kAttempts[] = {{0, false},     {1e-13, false}, {1e-12, false},
 constexpr Attempt kManySides = {1e-11, false};
 
 Ring jittered(Ring ring, double amplitude, unsigned seed) {
-  std::mt19937_64 engine(seed);
-  const auto random = [&] { return std::ldexp(static_cast<double>(engine() >> 11), -52) - 1; };
+  RandomNumbers numbers(seed);
+  const auto random = [&] { return numbers.uniform(-1, 1); };
   const Ring original = ring;
-  const size_t n = ring.size();
-  for (size_t i = 0; i < n; ++i) {
-    const double nearest = std::min((original[i] - original[(i + n - 1) % n]).norm(),
-                                    (original[i] - original[(i + 1) % n]).norm());
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const double nearest = std::min((original[i] - before(original, i)).norm(),
+                                    (original[i] - after(original, i)).norm());
     const double step = std::min(amplitude, nearest / 1000);
     ring[i] += step * Vec2(random(), random());
   }

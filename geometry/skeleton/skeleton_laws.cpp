@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/skeleton/edge_lines.hpp"
 #include "geometry/skeleton/skeleton.hpp"
 
@@ -105,27 +106,19 @@ class Laws {
     for (int f = 0; f < size_; ++f) {
       const std::vector<int>& face = skeleton_.faces[f];
       for (size_t i = 0; i < face.size(); ++i, ++passed) {
-        const auto found = left_of_.find({face[i], face[i + 1 == face.size() ? 0 : i + 1]});
+        const auto found = left_of_.find({face[i], after(face, i)});
         if (found == left_of_.end() || found->second != f) fail("a side of a face is not its arc");
       }
     }
     if (passed != left_of_.size()) fail("an arc is not a side of its faces");
   }
 
-  // Root of node i in a union-find forest.
-  static int root(std::vector<int>& parent, int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-
   void check_tree() {
-    std::vector<int> parent(skeleton_.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets joined(skeleton_.nodes.size());
     for (size_t a = static_cast<size_t>(size_); a < skeleton_.arcs.size(); ++a) {
-      const int start = root(parent, skeleton_.arcs[a].start);
-      const int end = root(parent, skeleton_.arcs[a].end);
-      if (start == end) fail("the inner arcs contain a cycle");
-      parent[start] = end;
+      if (!joined.join(skeleton_.arcs[a].start, skeleton_.arcs[a].end)) {
+        fail("the inner arcs contain a cycle");
+      }
     }
     if (skeleton_.arcs.size() - static_cast<size_t>(size_) + 1 != skeleton_.nodes.size()) {
       fail("the inner arcs do not reach every node");
@@ -178,7 +171,7 @@ class Laws {
     std::vector<double> along(n + 1);
     std::vector<double> bends(n);
     for (size_t i = 0; i <= n; ++i) along[i] = lines_[f].along(point(face[i % n]));
-    for (size_t i = 0; i < n; ++i) bends[i] = bend(f, face[i], face[(i + 1) % n]);
+    for (size_t i = 0; i < n; ++i) bends[i] = bend(f, face[i], after(face, i));
     const auto right = std::max_element(along.begin() + 1, along.end());
     const auto left = std::min_element(right, along.end());
     double error = 0;
@@ -194,7 +187,7 @@ class Laws {
     const std::vector<size_t> order = sorted(along, n);
     for (size_t i = 0; i < n; ++i) {
       const Vec2& p = point(face[i]);
-      const Vec2 side = point(face[(i + 1) % n]) - p;
+      const Vec2 side = point(after(face, i)) - p;
       const double length = side.norm();
       const double low = std::min(along[i], along[i + 1]) + slack;
       const double high = std::max(along[i], along[i + 1]) - slack;
@@ -228,18 +221,17 @@ class Laws {
   // by short arcs count as one.
   void check_valleys() {
     const double shortest = 1000 * tolerance_;
-    std::vector<int> parent(skeleton_.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets joined(skeleton_.nodes.size());
     for (const Skeleton::Arc& arc : skeleton_.arcs) {
       if ((point(arc.end) - point(arc.start)).norm() < shortest) {
-        parent[root(parent, arc.start)] = root(parent, arc.end);
+        joined.join(arc.start, arc.end);
       }
     }
-    std::vector<bool> fed(parent.size());
-    for (int v = 0; v < size_; ++v) fed[root(parent, v)] = true;
-    for (const Valley& valley : valleys(0)) fed[root(parent, valley.upper)] = true;
+    std::vector<bool> fed(skeleton_.nodes.size());
+    for (int v = 0; v < size_; ++v) fed[joined.find(v)] = true;
+    for (const Valley& valley : valleys(0)) fed[joined.find(valley.upper)] = true;
     for (const Valley& valley : valleys(1e-6)) {
-      if (valley.length > shortest && !fed[root(parent, valley.lower)]) {
+      if (valley.length > shortest && !fed[joined.find(valley.lower)]) {
         fail("a valley of the roof starts inside");
       }
     }

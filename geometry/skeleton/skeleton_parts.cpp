@@ -14,7 +14,7 @@ void set_arcs(Skeleton& skeleton) {
   for (int f = 0; f < n; ++f) {
     const std::vector<int>& face = skeleton.faces[f];
     for (size_t i = 0; i < face.size(); ++i) {
-      face_of[{face[i], face[i + 1 == face.size() ? 0 : i + 1]}] = f;
+      face_of[{face[i], after(face, i)}] = f;
     }
   }
   for (int e = 0; e < n; ++e) skeleton.arcs.push_back({e, next(e, n), e, -1});

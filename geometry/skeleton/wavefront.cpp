@@ -42,7 +42,7 @@ class Wavefront {
       nodes_.push_back({polygon[e], 0});
     }
     for (int v = 0; v < size_; ++v) {
-      front_.add_vertex(points[v], 0, v == 0 ? size_ - 1 : v - 1, v, v);
+      front_.add_vertex(points[v], 0, previous(v, size_), v, v);
     }
     connect(corners);
     for (int t = 0; t < size_ - 2 && sound_; ++t) {

@@ -29,8 +29,7 @@ std::uint64_t place(std::uint32_t x, std::uint32_t y) {
 }  // namespace
 
 std::vector<int> hilbert_order(const std::vector<Vec2>& points) {
-  Box box;
-  for (const Vec2& p : points) box.include(p.x(), p.y());
+  const Box box = box_of(points);
   const double extent = box.extent();
   const double squares = std::ldexp(1., kLevels);
   const auto square = [&](double distance) {

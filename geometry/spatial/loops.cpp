@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "lib/execution/elementary.hpp"
 
@@ -12,11 +14,7 @@ namespace apothem {
 double distance(const Loops& loops, const Vec2& point) {
   double least = HUGE_VAL;
   for (const std::vector<Vec2>& ring : loops.rings) {
-    for (size_t i = 0; i < ring.size(); ++i) {
-      const Vec2 edge = ring[(i + 1) % ring.size()] - ring[i];
-      const double along = std::clamp((point - ring[i]).dot(edge) / edge.squaredNorm(), 0., 1.);
-      least = std::min(least, (ring[i] + along * edge - point).norm());
-    }
+    least = std::min(least, distance_to_ring(ring, point));
   }
   return least;
 }
@@ -24,7 +22,7 @@ double distance(const Loops& loops, const Vec2& point) {
 std::optional<Vec2> deep_vertex(const Loops& a, const Loops& b, double reach) {
   for (const std::vector<Vec2>& ring : a.rings) {
     for (const Vec2& p : ring) {
-      if (apart({p.x(), p.y(), p.x(), p.y()}, b.box)) continue;
+      if (apart(box_of(p, p), b.box)) continue;
       bool inside = false;
       for (const std::vector<Vec2>& other : b.rings) inside ^= strictly_inside(other, p);
       if (inside && distance(b, p) > reach) return p;
@@ -62,7 +60,7 @@ double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double mo
     const std::vector<Vec2>& ring = rings[r];
     double turned = 0;
     for (size_t i = 0; i < ring.size(); ++i) {
-      const Vec2 edge = ring[(i + 1) % ring.size()] - ring[i];
+      const Vec2 edge = after(ring, i) - ring[i];
       if (i > 0) {
         const Vec2& last = edges.back().edge;
         turned += arc_tangent(cross(last, edge), last.dot(edge));
@@ -78,8 +76,8 @@ double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double mo
     const Vec2 inwards = most * Vec2(-e.edge.y(), e.edge.x()).normalized();
     Box box;
     for (const Vec2& p : {e.start, Vec2(e.start + e.edge)}) {
-      box.include(p.x(), p.y());
-      box.include(p.x() + inwards.x(), p.y() + inwards.y());
+      box.include(p);
+      box.include(p + inwards);
     }
     boxes.push_back(box);
   }

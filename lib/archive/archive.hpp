@@ -41,6 +41,10 @@ class Archive {
       text(name, value);
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
       numbers(name, value);
+    } else if constexpr (std::is_same_v<T, std::vector<int>>) {
+      std::vector<double> list(value.begin(), value.end());  // of which each is exact
+      numbers(name, list);
+      value.assign(list.begin(), list.end());
     } else if constexpr (std::is_same_v<T, Vec2>) {
       std::vector<double> pair{value.x(), value.y()};
       sized(name, pair);
@@ -54,7 +58,7 @@ class Archive {
   }
 
   template <class T>
-  Archive& operator()(const char* name, std::vector<T>& list) requires(!std::is_same_v<T, double>) {
+  Archive& operator()(const char* name, std::vector<T>& list) requires(std::is_class_v<T>) {
     list.resize(enter_list(name, list.size()));
     for (T& value : list) {
       enter_item();

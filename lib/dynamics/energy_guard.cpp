@@ -27,15 +27,11 @@ double round_off(const Model& model) {
   Box scene;
   double weight = 0;
   for (const RigidBody& body : model.bodies) {
-    scene.include(body.position.x(), body.position.y());
-    for (const Vec2& v : body.potential.vertices) {
-      scene.include(body.position.x() + v.x(), body.position.y() + v.y());
-    }
+    scene.include(body.position);
+    for (const Vec2& v : body.potential.vertices) scene.include(body.position + v);
     if (body.motion == Motion::free) weight += body.mass * model.strongest_gravity();
   }
-  for (const DeformableBody& body : model.deformables) {
-    for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
-  }
+  for (const DeformableBody& body : model.deformables) scene.include(box_of(body.mesh.nodes));
   if (!(scene.extent() > 0)) return 0;
   const double shift = 1e-12 * scene.extent();
   return weight * shift + model.stiffness() * shift * shift;

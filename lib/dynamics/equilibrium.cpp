@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/execution/elementary.hpp"
@@ -66,15 +67,15 @@ Equilibrium::Equilibrium(const Model& model, const DegreesOfFreedom& dofs, const
   Box scene;
   for (const DeformableBody& body : model.deformables) {
     shortest_ = std::min(shortest_, mesh_quality(body.mesh).shortest_edge);
-    for (const Vec2& x : body.mesh.nodes) scene.include(x.x(), x.y());
+    scene.include(box_of(body.mesh.nodes));
   }
   for (const RigidBody& body : model.bodies) {
     double radius = 0, longest = 0;
     const std::vector<Vec2>& vertices = body.potential.vertices;
     for (size_t i = 0; i < vertices.size(); ++i) {
       radius = std::max(radius, vertices[i].norm());
-      longest = std::max(longest, (vertices[(i + 1) % vertices.size()] - vertices[i]).norm());
-      scene.include(body.position.x() + vertices[i].x(), body.position.y() + vertices[i].y());
+      longest = std::max(longest, (after(vertices, i) - vertices[i]).norm());
+      scene.include(body.position + vertices[i]);
     }
     radius_.push_back(radius);
     least_.push_back(kLeast * kMass * 2 * model.stiffness() * body.potential.steepest * longest);

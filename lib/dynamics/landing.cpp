@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/contact/law/stiffness.hpp"
 
 namespace apothem {
@@ -24,8 +25,8 @@ bool straight(const Vec2& a, const Vec2& b, const Vec2& c) {
 std::vector<Vec2> bends(const std::vector<Vec2>& v) {
   std::vector<Vec2> ring;
   for (size_t i = 0; i < v.size(); ++i) {
-    const Vec2& last = v[(i + v.size() - 1) % v.size()];
-    if (!straight(last, v[i], v[(i + 1) % v.size()])) ring.push_back(v[i]);
+    const Vec2& last = before(v, i);
+    if (!straight(last, v[i], after(v, i))) ring.push_back(v[i]);
   }
   return ring.size() < 3 ? v : ring;
 }
@@ -66,7 +67,7 @@ class Cap {
   Cap(const std::vector<Vec2>& ring, const Vec2& from, const Vec2& to) {
     const Vec2 along = (to - from).normalized();
     for (size_t i = 0; i < ring.size(); ++i) {
-      const Vec2 p = ring[i] - from, q = ring[(i + 1) % ring.size()] - from;
+      const Vec2 p = ring[i] - from, q = after(ring, i) - from;
       depths_.push_back(cross(along, p));
       Edge edge{cross(along, p), cross(along, q), along.dot(p), along.dot(q)};
       if (edge.depth_p > edge.depth_q) edge = {edge.depth_q, edge.depth_p, edge.q, edge.p};
@@ -124,7 +125,7 @@ class Cap {
   [[nodiscard]] int pieces(double depth) const {
     int count = 0;
     for (size_t i = 0; i < depths_.size(); ++i) {
-      const double last = depths_[(i + depths_.size() - 1) % depths_.size()];
+      const double last = before(depths_, i);
       count += depths_[i] <= depth && last > depth ? 1 : 0;
     }
     return std::max(count, 1);
@@ -174,14 +175,14 @@ std::vector<Landing> landings(const RigidBody& body, double compliant_energy) {
   for (const Vec2& v : ring) extent = std::max(extent, v.norm());
   std::vector<Landing> all;
   for (size_t i = 0; i < hull.size(); ++i) {
-    const Cap cap(ring, hull[i], hull[(i + 1) % hull.size()]);
+    const Cap cap(ring, hull[i], after(hull, i));
     const double depth = std::min(cap.depth_of(compliant_energy, extent), body.inradius);
     all.push_back(cap.landing(depth, inverse_mass));
   }
   // Edges in notches, which meet the corners of a partner.
   for (size_t i = 0; hull.size() < ring.size() && i < ring.size(); ++i) {
     const Vec2& p = ring[i];
-    const Vec2& q = ring[(i + 1) % ring.size()];
+    const Vec2& q = after(ring, i);
     const double length = (q - p).norm();
     const Vec2 along = (q - p) / length;
     const double arm = along.dot((p + q) / 2);
@@ -193,9 +194,7 @@ std::vector<Landing> landings(const RigidBody& body, double compliant_energy) {
 std::vector<double> fastest_speeds(const Model& model) {
   Box scene;
   for (const RigidBody& body : model.bodies) {
-    for (const Vec2& v : body.potential.vertices) {
-      scene.include(body.position.x() + v.x(), body.position.y() + v.y());
-    }
+    for (const Vec2& v : body.potential.vertices) scene.include(body.position + v);
   }
   std::vector<double> speeds;
   for (const RigidBody& body : model.bodies) {

@@ -64,15 +64,13 @@ Box Population::box_of(const State& state, BodyIndex body) const {
   if (body < rigid) {
     const auto x = state.pose(body);
     for (const Vec2& v : model_.bodies[body].potential.vertices) {
-      const Vec2 p = Vec2(x.head<2>()) + turned(v, x[2]);
-      box.include(p.x(), p.y());
+      box.include(Vec2(x.head<2>()) + turned(v, x[2]));
     }
     return box;
   }
   const DeformableBody& of = model_.deformables[body - rigid];
   for (int i = 0; i < static_cast<int>(of.mesh.nodes.size()); ++i) {
-    const Vec2 p = of.mesh.nodes[i] + state.node(of.first_node + i);
-    box.include(p.x(), p.y());
+    box.include(of.mesh.nodes[i] + state.node(of.first_node + i));
   }
   return box;
 }
@@ -101,8 +99,7 @@ bool Population::has_room(const State& state, const std::vector<BodyIndex>& batc
   Box all;
   for (const BodyIndex b : batch) {
     boxes.push_back(box_of(state, b));
-    all.include(boxes.back().x0, boxes.back().y0);
-    all.include(boxes.back().x1, boxes.back().y1);
+    all.include(boxes.back());
   }
   for (BodyIndex b = 0; b < static_cast<BodyIndex>(state.absent.size()); ++b) {
     if (state.is_absent(b)) continue;

@@ -32,10 +32,7 @@ bool any_beyond(std::span<const double> numbers, double limit) {
 
 // True if a line from p to q has a point in the box.
 bool crosses(const Box& box, const Vec2& p, const Vec2& q) {
-  Box line;
-  line.include(p.x(), p.y());
-  line.include(q.x(), q.y());
-  if (apart(box, line)) return false;
+  if (apart(box, box_of(p, q))) return false;
   const Vec2 half((box.x1 - box.x0) / 2, (box.y1 - box.y0) / 2);
   const Vec2 centre(box.x0 + half.x(), box.y0 + half.y()), along = q - p;
   return !(std::abs(cross(along, Vec2(centre - p))) >
@@ -104,8 +101,7 @@ Vec2 StrideWatch::velocity(const Step& step, BodyIndex body) const {
 Box StrideWatch::way(const Step& step, BodyIndex body, const Vec2& frame) const {
   const auto both = [&](Box& box, const Vec2& before, const Vec2& rate) {
     const Vec2 after = before + step.dt * (rate - frame);
-    box.include(before.x(), before.y());
-    box.include(after.x(), after.y());
+    box.include(box_of(before, after));
   };
   Box all;
   if (is_rigid(body)) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/dispatch.hpp"
 #include "lib/fem/mass.hpp"
 
@@ -174,7 +175,7 @@ void FiniteElements::add_masses(int index, const ElementSet& set) {
     const std::vector<Vec2> x = places(mesh, e);
     const std::vector<double> areas = corner_areas(x);
     for (size_t i = 0; i < areas.size(); ++i) {
-      shortest_edge_ = std::min(shortest_edge_, (x[i] - x[i > 0 ? i - 1 : x.size() - 1]).norm());
+      shortest_edge_ = std::min(shortest_edge_, (x[i] - before(x, i)).norm());
       mass_[set.first_node + mesh.element(e)[i]] += of_element.density * set.thickness * areas[i];
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/fem/quad4.hpp"
 
@@ -37,7 +38,7 @@ std::vector<double> corner_areas(std::span<const Vec2> x) {
   double area = 0, size = 0;
   Vec2 moment = Vec2::Zero();
   for (int i = 0; i < n; ++i) {
-    const int j = i + 1 < n ? i + 1 : 0;
+    const int j = next(i, n);
     const Vec2 p = x[i] - mean, q = x[j] - mean;
     const double triangle = cross(p, q) / 2;
     area += triangle;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/fem/quad4.hpp"
 
 namespace apothem {
@@ -66,7 +67,7 @@ Functionals of_linear_stresses(std::span<const Vec2> x, const Vec2& centroid, co
   // INT N_i (s n) ds over the two edges at each corner.
   Functionals work = Functionals::Zero(4, 2 * n);
   for (int i = 0; i < n; ++i) {
-    const int j = i + 1 < n ? i + 1 : 0;
+    const int j = next(i, n);
     const Vec2 p = x[i] - centroid, q = x[j] - centroid;
     for (const Vec2& middle : {Vec2(p / 2), Vec2(q / 2), Vec2((p + q) / 2)}) {
       const std::array<Stress, 4> s = linear_stresses(middle);
@@ -109,7 +110,7 @@ void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double t
   double area = 0;
   Vec2 centroid = Vec2::Zero();  // relative to the mean of the corners, until the division below
   for (int i = 0; i < n; ++i) {
-    const Vec2 p = x[i] - mean, q = x[i + 1 < n ? i + 1 : 0] - mean;
+    const Vec2 p = x[i] - mean, q = x[next(i, n)] - mean;
     area += cross(p, q) / 2;
     centroid += cross(p, q) / 6 * (p + q);
   }
@@ -123,7 +124,7 @@ void PolygonElement::prepare(std::span<const Vec2> x, const Elastic& e, double t
   out[kLanes] = kappa;
   for (int i = 0; i < n; ++i) {
     double* corner = out + static_cast<ptrdiff_t>(2 + kPerCorner * i) * kLanes;
-    const Vec2 across = x[i + 1 < n ? i + 1 : 0] - x[i > 0 ? i - 1 : n - 1];
+    const Vec2 across = x[next(i, n)] - x[previous(i, n)];
     const Vec2 place = x[i] - mean;
     const double values[] = {across.y() / (2 * area), -across.x() / (2 * area), place.x(),
                              place.y()};

@@ -1,8 +1,8 @@
 #include "lib/fem/spectrum.hpp"
+#include "geometry/polygon/random_numbers.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace apothem {
@@ -38,11 +38,9 @@ double largest_eigenvalue(FiniteElements& elements, std::span<const double> u,
     return (minus - plus).cwiseProduct(root) / (2 * scale);
   };
 
-  std::mt19937_64 random(1);
+  RandomNumbers random(1);
   Vector q(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    q[i] = root[i] > 0 ? static_cast<double>(random() >> 11) * 0x1p-53 - 0.5 : 0;
-  }
+  for (Eigen::Index i = 0; i < n; ++i) q[i] = root[i] > 0 ? random.uniform(-.5, .5) : 0;
   if (q.norm() == 0) return 0;
   q.normalize();
   Vector before = Vector::Zero(n);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "geometry/integrals/penetration.hpp"
+#include "geometry/polygon/disjoint_sets.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 #include "lib/mesh/invalid_mesh.hpp"
 #include "lib/mesh/measure.hpp"
@@ -12,20 +12,10 @@
 namespace apothem {
 
 int component_count(const Mesh& mesh, const std::vector<MeshEdge>& edges) {
-  std::vector<int> parent(mesh.element_count());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int e) {
-    while (parent[e] != e) e = parent[e] = parent[parent[e]];
-    return e;
-  };
+  DisjointSets sets(static_cast<size_t>(mesh.element_count()));
   int count = mesh.element_count();
   for (const MeshEdge& edge : edges) {
-    if (edge.on_boundary()) continue;
-    const int a = root(edge.left);
-    const int b = root(edge.right);
-    if (a == b) continue;
-    parent[std::max(a, b)] = std::min(a, b);
-    --count;
+    if (!edge.on_boundary() && sets.join(edge.left, edge.right)) --count;
   }
   return count;
 }

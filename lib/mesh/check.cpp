@@ -85,7 +85,7 @@ class Check {
     }
     if (!convex) general_element(e);
     Box box;
-    for (const int c : corners) box.include(mesh_.nodes[c].x(), mesh_.nodes[c].y());
+    for (const int c : corners) box.include(mesh_.nodes[c]);
     const double diagonal = hypotenuse(box.x1 - box.x0, box.y1 - box.y0);
     if (!(element_area(mesh_, e) >= kFlat * diagonal * diagonal)) {
       throw InvalidMesh::at_element(e, "is degenerate: its area is below 1e-12 of its diameter^2");
@@ -180,11 +180,8 @@ class Check {
       if (!edge.on_boundary()) continue;
       const Vec2& a = mesh_.nodes[edge.nodes[0]];
       const Vec2& b = mesh_.nodes[edge.nodes[1]];
-      Box box;
-      box.include(a.x(), a.y());
-      box.include(b.x(), b.y());
       rim.push_back(edge);
-      boxes.push_back(box.grown(kOnEdge * (b - a).norm()));
+      boxes.push_back(box_of(a, b).grown(kOnEdge * (b - a).norm()));
     }
     std::vector<BoxPair> pairs;
     BoxGrid().find_pairs(boxes, pairs);

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/mesh/mesh.hpp"
 
 namespace apothem {
@@ -29,11 +30,5 @@ std::vector<MeshEdge> boundary_edges(const Mesh& mesh);
 /// The edge between the nodes `a` and `b`, or null if there is none. `edges` must be in the order
 /// of mesh_edges.
 const MeshEdge* find_edge(const std::vector<MeshEdge>& edges, int a, int b);
-
-/// Entry i + 1 of an element or another cyclic list: the first one follows the last.
-template <class Ring>
-auto after(const Ring& ring, size_t i) {
-  return ring[i + 1 == ring.size() ? 0 : i + 1];
-}
 
 }  // namespace apothem

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "lib/mesh/gmsh.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -44,17 +45,20 @@ class Rows {
     skip_blanks();
     return result;
   }
-  template <class Number>
-  Number number(const char* what) {
+  double number(const char* what) {
+    const std::string_view text = word(what);
+    const std::optional<double> value = find_decimal(text);
+    if (!value) refuse(text, what);
+    return *value;
+  }
+  template <class Number = Tag>
+  Number integer(const char* what) {
     const std::string_view text = word(what);
     Number value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      fail("\"" + std::string(text) + "\" is not " + what);
-    }
+    if (error != std::errc() || end != text.data() + text.size()) refuse(text, what);
     return value;
   }
-  Tag integer(const char* what) { return number<Tag>(what); }
   Tag count(const char* what) {
     const Tag n = integer(what);
     if (n < 0) fail(std::to_string(n) + " is not " + what);
@@ -65,6 +69,9 @@ class Rows {
   }
 
  private:
+  [[noreturn]] void refuse(std::string_view text, const char* what) const {
+    fail("\"" + std::string(text) + "\" is not " + what);
+  }
   void skip_blanks() { row_.remove_prefix(std::min(row_.find_first_not_of(" \t\r"), row_.size())); }
 
   std::string_view text_, row_;
@@ -173,7 +180,7 @@ class GmshReader {
     rows_.require_next("the number of names");
     for (Tag n = rows_.count("the number of names"); n > 0; --n) {
       rows_.require_next("a physical name");
-      const int dimension = rows_.number<int>("a dimension");
+      const int dimension = rows_.integer<int>("a dimension");
       const Tag tag = rows_.integer("a tag");
       std::string_view text = rows_.rest();
       text = text.substr(0, text.find_last_not_of(" \t\r") + 1);
@@ -206,7 +213,7 @@ class GmshReader {
 
   // Behind its box, which is a place for a point.
   void groups_of_entity(int dimension, Tag tag) {
-    for (int k = dimension == 0 ? 3 : 6; k > 0; --k) rows_.number<double>("a coordinate");
+    for (int k = dimension == 0 ? 3 : 6; k > 0; --k) rows_.number("a coordinate");
     std::vector<Tag>& physical = physical_of_[{dimension, tag}];
     for (Tag k = rows_.count("the number of physical groups"); k > 0; --k) {
       physical.push_back(std::abs(rows_.integer("the tag of a physical group")));
@@ -227,7 +234,7 @@ class GmshReader {
       for (Tag n = counts[dimension]; n > 0; --n) {
         rows_.require_next("a part of an entity");
         const Tag tag = rows_.integer("the tag of an entity");
-        const bool is_part = rows_.number<int>("the dimension of an entity") == dimension;
+        const bool is_part = rows_.integer<int>("the dimension of an entity") == dimension;
         rows_.integer("the tag of the whole entity");
         for (Tag k = rows_.count("the number of partitions"); k > 0; --k) {
           rows_.integer("the tag of a partition");
@@ -256,7 +263,7 @@ class GmshReader {
     rows_.require_next("the number of blocks of nodes");
     for (Tag blocks = rows_.count("the number of blocks"); blocks > 0; --blocks) {
       rows_.require_next("a block of nodes");
-      const int dimension = rows_.number<int>("a dimension");
+      const int dimension = rows_.integer<int>("a dimension");
       rows_.integer("the tag of an entity");
       const bool parametric = rows_.integer("0 or 1") != 0;
       const Tag count = rows_.count("the number of nodes");
@@ -283,8 +290,8 @@ class GmshReader {
   }
 
   void place(GmshFile::Node& node) {
-    for (int k = 0; k < 2; ++k) node.place[k] = rows_.number<double>("a coordinate in m");
-    node.z = rows_.number<double>("a coordinate in m");
+    for (int k = 0; k < 2; ++k) node.place[k] = rows_.number("a coordinate in m");
+    node.z = rows_.number("a coordinate in m");
   }
 
   void element_list() {
@@ -292,7 +299,7 @@ class GmshReader {
     for (Tag n = rows_.count("the number of elements"); n > 0; --n) {
       rows_.require_next("an element");
       const Tag tag = rows_.integer("the tag of an element");
-      const int type = rows_.number<int>("the type of an element");
+      const int type = rows_.integer<int>("the type of an element");
       const Tag tags = rows_.count("the number of tags");
       std::vector<Tag> physical;
       for (Tag k = 0; k < tags; ++k) {
@@ -307,9 +314,9 @@ class GmshReader {
     rows_.require_next("the number of blocks of elements");
     for (Tag blocks = rows_.count("the number of blocks"); blocks > 0; --blocks) {
       rows_.require_next("a block of elements");
-      const int dimension = rows_.number<int>("a dimension");
+      const int dimension = rows_.integer<int>("a dimension");
       const Tag entity = rows_.integer("the tag of an entity");
-      const int type = rows_.number<int>("the type of an element");
+      const int type = rows_.integer<int>("the type of an element");
       const std::vector<Tag>& physical = physical_of_[{dimension, entity}];
       for (Tag n = rows_.count("the number of elements"); n > 0; --n) {
         rows_.require_next("an element");

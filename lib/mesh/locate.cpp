@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "lib/mesh/edges.hpp"
 #include "lib/mesh/measure.hpp"
 
@@ -53,9 +55,9 @@ void mean_value(std::span<const Vec2> ring, std::span<double> weights) {
   std::fill(weights.begin(), weights.end(), 0.);
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
-    const size_t next = i + 1 == n ? 0 : i + 1;
+    const size_t j = i + 1 == n ? 0 : i + 1;
     const Vec2& p = ring[i];
-    const Vec2& q = ring[next];
+    const Vec2& q = ring[j];
     const double p_length = p.norm();
     const double q_length = q.norm();
     const double sine = cross(p, q);
@@ -64,14 +66,14 @@ void mean_value(std::span<const Vec2> ring, std::span<double> weights) {
     if (on_corner || (sine == 0 && cosine < 0)) {  // at the corner, or on the edge
       std::fill(weights.begin(), weights.end(), 0.);
       weights[i] = on_corner ? 1 : q_length / (p_length + q_length);
-      if (!on_corner) weights[next] = p_length / (p_length + q_length);
+      if (!on_corner) weights[j] = p_length / (p_length + q_length);
       return;
     }
     // Tangent of half the angle between corner i and the next one.
     const double lengths = p_length * q_length;
     const double half_tangent = cosine > 0 ? sine / (lengths + cosine) : (lengths - cosine) / sine;
     weights[i] += half_tangent / p_length;
-    weights[next] += half_tangent / q_length;
+    weights[j] += half_tangent / q_length;
   }
   for (const double w : weights) sum += w;
   for (double& w : weights) w /= sum;
@@ -83,32 +85,13 @@ std::vector<Vec2> ring_about(const Mesh& mesh, int element, const Vec2& p) {
   return ring;
 }
 
-bool is_convex(std::span<const Vec2> ring) {
-  const size_t n = ring.size();
-  for (size_t i = 0; i < n; ++i) {
-    if (orientation(ring[i], ring[(i + 1) % n], ring[(i + 2) % n]) <= 0) return false;
-  }
-  return true;
-}
-
-// Distance of the origin from the boundary.
-double distance_to_boundary(const std::vector<Vec2>& ring) {
-  double least = HUGE_VAL;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 edge = after(ring, i) - ring[i];
-    const double share = std::clamp(-ring[i].dot(edge) / edge.squaredNorm(), 0., 1.);
-    least = std::min(least, (ring[i] + share * edge).norm());
-  }
-  return least;
-}
-
 }  // namespace
 
 void interpolation_weights(std::span<const Vec2> ring, std::span<double> weights) {
   if (ring.size() == 3) {
     const std::array<double, 3> w = barycentric(ring[0], ring[1], ring[2]);
     std::copy(w.begin(), w.end(), weights.begin());
-  } else if (ring.size() == 4 && is_convex(ring)) {
+  } else if (ring.size() == 4 && smallest_turn(ring) > 0) {
     const auto [u, v] = inverse_bilinear(ring[0], ring[1], ring[2], ring[3]);
     weights[0] = (1 - u) * (1 - v);
     weights[1] = u * (1 - v);
@@ -132,12 +115,12 @@ std::optional<MeshPoint> find_point(const Mesh& mesh, const Vec2& p) {
   double least = HUGE_VAL;
   for (int e = 0; e < mesh.element_count() && least > 0; ++e) {
     Box box;
-    for (const int c : mesh.element(e)) box.include(mesh.nodes[c].x(), mesh.nodes[c].y());
+    for (const int c : mesh.element(e)) box.include(mesh.nodes[c]);
     if (apart(box.grown(reach), {p.x(), p.y(), p.x(), p.y()})) continue;
     std::vector<Vec2> ring;
     for (const int c : mesh.element(e)) ring.push_back(mesh.nodes[c]);
     const double distance =
-        strictly_inside(ring, p) ? 0 : distance_to_boundary(ring_about(mesh, e, p));
+        strictly_inside(ring, p) ? 0 : distance_to_ring(ring_about(mesh, e, p), Vec2::Zero());
     if (distance >= least || distance > reach) continue;
     least = distance;
     nearest = e;

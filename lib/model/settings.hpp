@@ -55,6 +55,10 @@ inline constexpr const char* kStoppedOutside = "outside";
 /// Ways to reduce a column to one number, by the names in scenes; in the order of Reduction::Take.
 inline constexpr std::array kTakes{"first", "last",     "min",      "max",  "max_abs",
                                    "mean",  "increase", "decrease", "slope"};
+/// The same in words, before the name of the column.
+inline constexpr std::array kTakesInWords{"first",           "last", "smallest",    "largest",
+                                          "largest size of", "mean", "increase of", "decrease of",
+                                          "slope of"};
 
 /// A column of a history, reduced to one number.
 struct Reduction {

@@ -82,14 +82,13 @@ struct State {
     return ConstTriple(&v[layout.rigid(i)]);
   }
   [[nodiscard]] ConstTriple force(RigidIndex i) const { return ConstTriple(&f[layout.rigid(i)]); }
-  /// Displacement of a node, its velocity, and the force on it.
+  /// Displacement of a node, and its velocity.
   [[nodiscard]] Pair node(NodeIndex i) { return Pair(&x[layout.node(i)]); }
   [[nodiscard]] ConstPair node(NodeIndex i) const { return ConstPair(&x[layout.node(i)]); }
   [[nodiscard]] ConstPair node_velocity(NodeIndex i) const { return ConstPair(&v[layout.node(i)]); }
   [[nodiscard]] bool is_absent(BodyIndex body) const {
     return !absent.empty() && absent[static_cast<size_t>(body)] != 0;
   }
-  [[nodiscard]] ConstPair node_force(NodeIndex i) const { return ConstPair(&f[layout.node(i)]); }
 
   /// As contact sees it, with these velocities.
   [[nodiscard]] Kinematics kinematics(std::span<const double> velocity) const {

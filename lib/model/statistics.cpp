@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/polygon/ring_area.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "lib/mesh/measure.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/model/rotation.hpp"

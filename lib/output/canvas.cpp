@@ -79,6 +79,16 @@ struct Canvas::Surface {
   cairo_t* cairo;
 };
 
+std::vector<Vec2> circle_ring(const Vec2& centre, double radius) {
+  constexpr int kCorners = 180;
+  std::vector<Vec2> ring;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * M_PI * i / kCorners;
+    ring.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return ring;
+}
+
 Canvas::Canvas(PictureFormat format, double width, double height)
     : surface_(std::make_unique<Surface>()) {
   Surface& s = *surface_;

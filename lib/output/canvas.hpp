@@ -32,6 +32,9 @@ Colour viridis(double share);
 /// repeat, lighter.
 Colour okabe_ito(size_t index);
 
+/// A circle of the data as a ring of corners, which is drawn as an ellipse if axes are stretched.
+std::vector<Vec2> circle_ring(const Vec2& centre, double radius);
+
 /// How a line is drawn.
 struct Pen {
   Colour colour = {0, 0, 0};

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "geometry/polygon/convex_parts.hpp"
+#include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
 namespace {
@@ -13,10 +14,9 @@ namespace {
 constexpr double kStraight = -1e-9;  // sine of the largest turn to the right
 
 bool is_convex(std::span<const Vec2> ring) {
-  const size_t n = ring.size();
-  Vec2 in = ring[0] - ring[n - 1];
-  for (size_t i = 0; i < n; ++i) {
-    const Vec2 out = ring[i + 1 == n ? 0 : i + 1] - ring[i];
+  Vec2 in = ring.front() - ring.back();
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 out = after(ring, i) - ring[i];
     if (cross(in, out) < kStraight * in.norm() * out.norm()) return false;
     in = out;
   }
@@ -52,7 +52,7 @@ std::vector<int> joined(const std::vector<std::vector<int>>& cells) {
   for (const std::vector<int>& cell : cells) {
     for (size_t i = 0; i < cell.size(); ++i) {
       const int from = cell[i];
-      const int to = cell[i + 1 == cell.size() ? 0 : i + 1];
+      const int to = after(cell, i);
       if (edges.erase({to, from}) == 0) edges.emplace(from, to);
     }
   }

@@ -32,9 +32,7 @@ struct Spread {
 
 bool is_visible(const Field& field, int element, const Box& window) {
   Box box;
-  for (const int node : field.mesh.element(element)) {
-    box.include(field.mesh.nodes[node].x(), field.mesh.nodes[node].y());
-  }
+  for (const int node : field.mesh.element(element)) box.include(field.mesh.nodes[node]);
   return !apart(box, window);
 }
 
@@ -55,10 +53,8 @@ Spread spread(const Field& field, const Box& window) {
 Box box_around(const std::vector<ShownField>& fields) {
   Box box;
   for (const ShownField& shown : fields) {
-    for (const Vec2& p : shown.field.mesh.nodes) box.include(p.x(), p.y());
-    for (const Rose& rose : shown.roses) {
-      for (const Vec2& p : rose.line) box.include(p.x(), p.y());
-    }
+    box.include(box_of(shown.field.mesh.nodes));
+    for (const Rose& rose : shown.roses) box.include(box_of(rose.line));
   }
   return box.grown(kMarginOfBodies * std::min(box.x1 - box.x0, box.y1 - box.y0));
 }

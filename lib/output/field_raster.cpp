@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/mesh/edges.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/mesh/locate.hpp"
 
 namespace apothem {
@@ -29,8 +29,7 @@ class Raster {
   /// same bits in both. `crossings` is working memory.
   template <class F>
   void each_pixel(const std::vector<Vec2>& ring, std::vector<double>& crossings, const F& f) const {
-    Box box;
-    for (const Vec2& p : ring) box.include(p.x(), p.y());
+    const Box box = box_of(ring);
     const double per_row = (window_.y1 - window_.y0) / height_;
     const auto row_of = [&](double y) {
       return static_cast<int>(std::clamp((window_.y1 - y) / per_row, -1., height_ + 1.));

@@ -22,6 +22,9 @@ class SystemFailure : public std::runtime_error {
   SystemFailure(const std::string& file, const std::string& reason);
 };
 
+/// Whether there is something of that name, as far as this process can see.
+bool file_exists(const std::string& file);
+
 /// Creates a folder and its parents, unless they exist. Throws SystemFailure.
 void create_folder(const std::string& folder);
 

@@ -53,8 +53,7 @@ RoseCounts rose_of(const Region& region, const std::vector<ContactRecord>& conta
 
 vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents& frame) {
   vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> chain = integers("chain"), a = integers("body_a"), b = integers("body_b");
   vtkNew<vtkDoubleArray> normal = doubles("normal_force", 1);
@@ -95,8 +94,7 @@ vtkNew<vtkUnstructuredGrid> force_chains(const Model& model, const FrameContents
 
 vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame) {
   vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  vtkNew<vtkPoints> points = double_points();
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIntArray> of_region = integers("region");
   vtkNew<vtkDoubleArray> frequency = doubles("frequency", 1);
@@ -104,9 +102,7 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
   for (size_t r = 0; r < model.regions.size(); ++r) {
     const Region& region = model.regions[r];
     Box box;
-    for (const std::vector<Vec2>& part : region.parts) {
-      for (const Vec2& v : part) box.include(v.x(), v.y());
-    }
+    for (const std::vector<Vec2>& part : region.parts) box.include(box_of(part));
     const Vec2 middle = Vec2((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2) + model.origin;
     const double unit = std::sqrt(region.area) / 4;
     const RoseCounts rose = rose_of(region, frame.contacts);

@@ -7,17 +7,16 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string_view>
+
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
 
 // Gnuplot does not tell that the disk was full.
 bool is_complete(const std::filesystem::path& picture, bool svg) {
-  std::ifstream stream(picture, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(stream), {}};
+  std::string content = read_bytes(picture);
   while (svg && !content.empty() && content.back() == '\n') content.pop_back();
   constexpr std::string_view kEndOfPng("IEND\xae\x42\x60\x82", 8);
   return content.ends_with(svg ? "</svg>" : kEndOfPng);

@@ -3,14 +3,14 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
 #include "lib/model/columns.hpp"
 #include "lib/system/input_file.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -57,7 +57,9 @@ Pressed pressed(const std::vector<SurfaceRecord>& surfaces, int body) {
 template <class Columns>
 std::string header(const Columns& columns) {
   std::string row = "time [s]";
-  for (const auto& column : columns) row += fmt::format(",{} [{}]", column.name, column.unit);
+  for (const auto& column : columns) {
+    row += ',' + csv_cell(fmt::format("{} [{}]", column.name, column.unit));
+  }
   return row + '\n';
 }
 
@@ -144,6 +146,22 @@ const std::vector<double>* HistoryTable::column(const std::string& name) const {
   return nullptr;
 }
 
+ColumnName::ColumnName(const std::string& column) : quantity(column) {
+  const size_t point = column.rfind('.');
+  if (point == std::string::npos) return;
+  owner = column.substr(0, point);
+  quantity = column.substr(point + 1);
+}
+
+std::set<std::string> HistoryTable::regions() const {
+  std::set<std::string> regions;
+  for (const std::string& column : names) {
+    const ColumnName name(column);
+    if (name.quantity == "count") regions.insert(name.owner);
+  }
+  return regions;
+}
+
 HistoryTable read_history(const std::string& file) {
   const std::string refusal = refusal_of_input(file);
   if (!refusal.empty()) throw std::runtime_error(file + ": " + refusal);
@@ -151,8 +169,7 @@ HistoryTable read_history(const std::string& file) {
   std::string line;
   if (!std::getline(stream, line)) throw std::runtime_error(file + ": cannot be read");
   HistoryTable table;
-  std::istringstream head(line);
-  for (std::string cell; std::getline(head, cell, ',');) {
+  for (const std::string& cell : csv_cells(line, file, 1)) {
     const size_t unit = cell.find(" [");
     table.names.push_back(cell.substr(0, unit));
     table.units.push_back(
@@ -161,18 +178,15 @@ HistoryTable read_history(const std::string& file) {
   table.columns.resize(table.names.size());
   if (table.names.empty()) throw std::runtime_error(file + ": has no names of columns");
   for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
-    const char* at = line.data();
-    const char* const end = at + line.size();
-    for (std::vector<double>& column : table.columns) {
-      double value = 0;
-      const auto [next, error] = std::from_chars(at, end, value);
-      const bool last = &column == &table.columns.back();
-      if (error != std::errc() || (last ? next != end : next == end || *next != ',')) {
+    const std::vector<std::string> cells = csv_cells(line, file, number);
+    for (size_t i = 0; i < table.columns.size(); ++i) {
+      const auto value =
+          cells.size() == table.columns.size() ? find_decimal(cells[i]) : std::nullopt;
+      if (!value) {
         throw std::runtime_error(
             fmt::format("{}:{}: is not a row of {} numbers", file, number, table.columns.size()));
       }
-      column.push_back(value);
-      at = next + 1;
+      table.columns[i].push_back(*value);
     }
   }
   return table;

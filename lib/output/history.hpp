@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,12 @@ class HistoryWriter {
   Table history_, energy_, momentum_;
 };
 
+/// A column OWNER.quantity of a history, or a column of a ledger, which has no owner.
+struct ColumnName {
+  std::string owner, quantity;
+  explicit ColumnName(const std::string& column);
+};
+
 /// A history file that has been read.
 struct HistoryTable {
   std::vector<std::string> names;            ///< column names, without units
@@ -67,6 +74,8 @@ struct HistoryTable {
   std::vector<std::string> units = {};       ///< one per name; empty where the header has none
   /// The column with that name, or null if there is none.
   [[nodiscard]] const std::vector<double>* column(const std::string& name) const;
+  /// The names of the regions, which no body has: bodies are not counted.
+  [[nodiscard]] std::set<std::string> regions() const;
 };
 
 /// Reads a history file. A last row that is still being written, and so has no line break, is left

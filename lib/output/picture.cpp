@@ -45,12 +45,6 @@ struct View {
   }
 };
 
-Box box_of(const Ring& ring) {
-  Box box;
-  for (const Vec2& p : ring) box.include(p.x(), p.y());
-  return box;
-}
-
 double slenderness(const Box& box) {
   return std::min(box.x1 - box.x0, box.y1 - box.y0) / box.extent();
 }
@@ -160,13 +154,8 @@ class Drawing {
   }
 
   void draw_circles() {
-    constexpr int kCorners = 180;
     for (const Vec2& centre : picture_.circle.centres) {
-      Ring ring;
-      for (int i = 0; i < kCorners; ++i) {
-        const double angle = 2 * M_PI * i / kCorners;
-        ring.push_back(centre + picture_.circle.radius * Vec2(std::cos(angle), std::sin(angle)));
-      }
+      const Ring ring = circle_ring(centre, picture_.circle.radius);
       canvas_.stroke(place(ring), true, kHalo);
       canvas_.stroke(place(ring), true, kCircle);
     }

@@ -14,12 +14,6 @@
 namespace apothem {
 namespace {
 
-vtkNew<vtkPoints> double_points() {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  return points;
-}
-
 std::string faces(const Polygon& polygon, const Skeleton& skeleton, double reference) {
   const CutFaces cut = cut_faces(skeleton, reference);
   vtkNew<vtkUnstructuredGrid> grid;

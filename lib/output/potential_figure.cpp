@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/half_plane.hpp"
 #include "lib/output/axes.hpp"
 #include "lib/output/files.hpp"
 
@@ -30,17 +32,9 @@ Colour band_colour(int band) { return viridis((band + .5) / kBands); }
 // What lies above a level in a part, and the level line in it. In a part that is not convex the
 // edges of the polygon along the level line may cover each other; the area between them is zero.
 Ring above(const PotentialPiece& piece, double level, Ring& line) {
-  Ring part;
   line.clear();
-  for (size_t i = 0; i < piece.ring.size(); ++i) {
-    const Vec2& a = piece.ring[i];
-    const Vec2& b = piece.ring[(i + 1) % piece.ring.size()];
-    const double at_a = piece.phi(a) - level, at_b = piece.phi(b) - level;
-    if (at_a >= 0) part.push_back(a);
-    if ((at_a >= 0) == (at_b >= 0)) continue;
-    part.push_back(a + at_a / (at_a - at_b) * (b - a));
-    line.push_back(part.back());
-  }
+  Ring part = part_above(
+      piece.ring, [&](const Vec2& p) { return piece.phi(p) - level; }, &line);
   const Vec2 along(-piece.gradient.y(), piece.gradient.x());
   std::sort(line.begin(), line.end(),
             [&](const Vec2& p, const Vec2& q) { return along.dot(p) < along.dot(q); });
@@ -48,8 +42,7 @@ Ring above(const PotentialPiece& piece, double level, Ring& line) {
 }
 
 Box window_of(const PotentialMap& map) {
-  Box box;
-  for (const Vec2& p : map.outline) box.include(p.x(), p.y());
+  const Box box = box_of(map.outline);
   const double scale =
       (1 + 2 * kMargin) * std::max((box.x1 - box.x0) / kWide, (box.y1 - box.y0) / kHigh);
   const Vec2 middle((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2);
@@ -76,14 +69,8 @@ void draw_bands(Canvas& canvas, const Axes& axes, const PotentialMap& map) {
 }
 
 void draw_circles(Canvas& canvas, const Axes& axes, const InscribedCircle& circle) {
-  constexpr int kCorners = 180;
   for (const Vec2& centre : circle.centres) {
-    Ring ring;
-    for (int i = 0; i < kCorners; ++i) {
-      const double angle = 2 * M_PI * i / kCorners;
-      ring.push_back(centre + circle.radius * Vec2(std::cos(angle), std::sin(angle)));
-    }
-    canvas.stroke(axes(ring), true, kCircle);
+    canvas.stroke(axes(circle_ring(centre, circle.radius)), true, kCircle);
   }
 }
 

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/half_plane.hpp"
+#include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_moments.hpp"
+#include "geometry/polygon/segment.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
 
 namespace apothem {
@@ -13,40 +18,19 @@ constexpr double kNear = 1e-9;  // distance to a part, over the size, at which a
 
 using Ring = std::vector<Vec2>;
 
-double area_of(const Ring& ring) {
-  double twice = 0;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    twice += cross(ring[i] - ring[0], ring[(i + 1) % ring.size()] - ring[0]);
-  }
-  return twice / 2;
-}
-
-// The part of a convex ring where the linear function g . (x - p) - h . (x - q) is not positive.
-Ring below(const Ring& ring, const PotentialPiece& one, const PotentialPiece& other) {
-  Ring part;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2& a = ring[i];
-    const Vec2& b = ring[(i + 1) % ring.size()];
-    const double at_a = one.phi(a) - other.phi(a), at_b = one.phi(b) - other.phi(b);
-    if (at_a <= 0) part.push_back(a);
-    if ((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0)) {
-      part.push_back(a + at_a / (at_a - at_b) * (b - a));
-    }
-  }
-  return part;
-}
-
 // The lower envelope of linear functions over a convex polygon, divided among them.
 std::vector<PotentialPiece> envelope(const Ring& ring, const std::vector<PotentialPiece>& lines) {
   std::vector<PotentialPiece> pieces;
-  const double least = kThin * area_of(ring);
+  const double least = kThin * ring_area(ring);
   for (const PotentialPiece& line : lines) {
     PotentialPiece piece = line;
     piece.ring = ring;
     for (const PotentialPiece& other : lines) {
-      if (&other != &line) piece.ring = below(piece.ring, line, other);
+      if (&other == &line) continue;
+      piece.ring =
+          part_above(piece.ring, [&](const Vec2& p) { return other.phi(p) - line.phi(p); });
     }
-    if (piece.ring.size() > 2 && area_of(piece.ring) > least) pieces.push_back(std::move(piece));
+    if (piece.ring.size() > 2 && ring_area(piece.ring) > least) pieces.push_back(std::move(piece));
   }
   return pieces;
 }
@@ -87,7 +71,7 @@ std::vector<PotentialPiece> pieces_of(const Potential& potential, const Polygon&
 
 // The linear functions n A_i/A of a polygon's edges.
 std::vector<PotentialPiece> area_shares(const Polygon& polygon) {
-  const double area = area_of(polygon.vertices());
+  const double area = ring_area(polygon.vertices());
   std::vector<PotentialPiece> lines;
   for (int i = 0; i < polygon.size(); ++i) {
     const Vec2 d = polygon.after(i) - polygon[i];
@@ -132,26 +116,8 @@ void require_convex(const Polygon& polygon) {
 
 // How far a point lies outside of a convex part, m; for others at least a sign.
 double outside_by(const PotentialPiece& piece, const Vec2& x) {
-  double far = HUGE_VAL;
-  bool inside = false;
-  for (size_t i = 0; i < piece.ring.size(); ++i) {
-    const Vec2& a = piece.ring[i];
-    const Vec2& b = piece.ring[(i + 1) % piece.ring.size()];
-    const Vec2 d = b - a;
-    const double t = std::clamp((x - a).dot(d) / d.squaredNorm(), 0., 1.);
-    far = std::min(far, (x - a - t * d).norm());
-    if ((a.y() > x.y()) != (b.y() > x.y()) &&
-        x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) {
-      inside = !inside;
-    }
-  }
-  return inside ? -far : far;
-}
-
-double size_of(const PotentialMap& map) {
-  Box box;
-  for (const Vec2& p : map.outline) box.include(p.x(), p.y());
-  return box.extent();
+  const double far = distance_to_ring(piece.ring, x);
+  return strictly_inside(piece.ring, x) ? -far : far;
 }
 
 }  // namespace
@@ -213,7 +179,7 @@ double largest_phi(const PotentialMap& map) {
 
 double largest_jump(const PotentialMap& map) {
   // phi is linear in every part, so the largest difference is at a vertex.
-  const double near = kNear * size_of(map);
+  const double near = kNear * box_of(map.outline).extent();
   double largest = 0;
   for (const PotentialPiece& piece : map.pieces) {
     for (const Vec2& p : piece.ring) {

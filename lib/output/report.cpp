@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "lib/output/files.hpp"
 #include "lib/output/html.hpp"
 #include "lib/output/report_numbers.hpp"
 #include "lib/output/report_style.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -86,11 +85,9 @@ std::string summary(const std::vector<ReportFigure>& figures, bool left_out) {
 }
 
 std::string picture(const std::string& file, const std::string& title) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   return fmt::format(
       "<div class=\"picture\"><img src=\"data:image/png;base64,{}\" alt=\"{}\"></div>\n",
-      base64(bytes), escaped(title));
+      base64(read_bytes(file)), escaped(title));
 }
 
 std::string paragraph(const char* heading, const std::string& text) {

@@ -6,12 +6,12 @@
 #include <boost/locale/encoding_utf.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "lib/output/convex_cells.hpp"
 #include "lib/output/vtu_file.hpp"
 #include "lib/system/input_file.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 namespace {
@@ -46,18 +46,6 @@ void read_body(const CellArrays& arrays, size_t c, FrameBody& body) {
   const VtuArray& mean = arrays.mean_stress;
   body.mean_stress = {mean(c, 0), mean(c, 1), mean(c, 2), 0, 0};
   body.motion = static_cast<Motion>(std::lround(arrays.motion(c)));
-}
-
-// Of the quotes at `at`; goes behind the closing one.
-std::string unquoted(const std::string& text, size_t& at) {
-  std::string result;
-  for (++at; at < text.size(); ++at) {
-    if (text[at] == '"' && text.compare(at, 2, "\"\"") != 0) break;
-    if (text[at] == '"') ++at;
-    result += text[at];
-  }
-  ++at;
-  return result;
 }
 
 void name_bodies(const FrameNames& names, Frame& frame) {
@@ -101,29 +89,27 @@ bool all_rigid(const Frame& frame) {
 }
 
 FrameNames read_names(const std::string& file) {
-  std::ifstream in;
-  if (refusal_of_input(file).empty()) in.open(file, std::ios::binary);
-  if (!in.is_open()) {
+  if (!refusal_of_input(file).empty()) {
     throw ResultsError(file +
                        ": there is no such file, which has the names of the bodies; these are no "
                        "results of a run, or those of an older version of the program");
   }
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const auto damaged = [&] {
-    return ResultsError(file + ": is no table of names, or a damaged one");
-  };
-  const std::string head = "kind,number,name\n";
-  if (!text.starts_with(head)) throw damaged();
-  FrameNames names;
-  for (size_t at = head.size(); at < text.size();) {
-    const size_t comma = text.find(',', at), quote = text.find('"', at);
-    if (comma == std::string::npos || quote == std::string::npos || comma > quote) throw damaged();
-    const std::string kind = text.substr(at, comma - at);
-    at = quote;
-    (kind == "material" ? names.materials : names.bodies).push_back(unquoted(text, at));
-    names.rigid_bodies += kind == "rigid_body";
-    if (at >= text.size() || text[at++] != '\n') throw damaged();
+  std::vector<CsvRow> rows;
+  try {
+    rows = read_csv(file);
+  } catch (const SceneError&) {
+    rows.clear();
   }
+  bool sound = !rows.empty() && rows[0].cells == std::vector<std::string>{"kind", "number", "name"};
+  FrameNames names;
+  for (size_t i = 1; sound && i < rows.size(); ++i) {
+    sound = rows[i].cells.size() == 3;
+    if (!sound) break;
+    const std::string &kind = rows[i].cells[0], &name = rows[i].cells[2];
+    (kind == "material" ? names.materials : names.bodies).push_back(name);
+    names.rigid_bodies += kind == "rigid_body";
+  }
+  if (!sound) throw ResultsError(file + ": is no table of names, or a damaged one");
   return names;
 }
 

@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include "lib/output/files.hpp"
 #include "lib/output/run_folder.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -18,16 +17,6 @@ namespace {
 constexpr size_t kMostCurves = 12;  // of a panel: more cannot be told apart
 constexpr double kNoChange = 1e-9;  // of the largest change of a column of that unit
 constexpr size_t kSolidCurves = 6;  // of curves; further curves are dashed
-
-// A column NAME.quantity of a history, or a column of a ledger, which has no name.
-struct ColumnName {
-  std::string name, quantity;
-  explicit ColumnName(const std::string& column) {
-    const size_t point = column.rfind('.');
-    if (point != std::string::npos) name = column.substr(0, point);
-    quantity = point == std::string::npos ? column : column.substr(point + 1);
-  }
-};
 
 double spread_of(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -129,24 +118,14 @@ void add_ledger(const HistoryTable& table, Panels& panels) {
   }
 }
 
-// Names of the regions, which no body has: bodies are not counted.
-std::set<std::string> regions_of(const HistoryTable& table) {
-  std::set<std::string> regions;
-  for (const std::string& column : table.names) {
-    const ColumnName name(column);
-    if (name.quantity == "count") regions.insert(name.name);
-  }
-  return regions;
-}
-
 void add_history(const HistoryTable& table, bool of_regions, const std::string& file,
                  Panels& panels) {
-  const std::set<std::string> regions = regions_of(table);
+  const std::set<std::string> regions = table.regions();
   bool any = false;
   for (size_t i = 1; i < table.names.size(); ++i) {
     const ColumnName name(table.names[i]);
-    if ((regions.count(name.name) > 0) != of_regions) continue;
-    panels.add(i, name.quantity, name.name);
+    if ((regions.count(name.owner) > 0) != of_regions) continue;
+    panels.add(i, name.quantity, name.owner);
     any = true;
   }
   if (any) return;
@@ -185,9 +164,8 @@ std::optional<std::string> draw_curves(const CurveFigure& figure, PictureFormat 
     case Plotted::yes:
       break;
   }
-  const char* name = format == PictureFormat::png ? "/picture.png" : "/picture.svg";
-  std::ifstream stream(folder.path() + name, std::ios::binary);
-  return std::string{std::istreambuf_iterator<char>(stream), {}};
+  return read_bytes(folder.path() +
+                    (format == PictureFormat::png ? "/picture.png" : "/picture.svg"));
 }
 
 }  // namespace apothem

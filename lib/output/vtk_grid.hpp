@@ -8,6 +8,7 @@
 #include <vtkIntArray.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -23,6 +24,13 @@ inline vtkNew<vtkDoubleArray> doubles(const char* name, int components) {
   array->SetName(name);
   array->SetNumberOfComponents(components);
   return array;
+}
+
+/// An empty list of points in double precision.
+inline vtkNew<vtkPoints> double_points() {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  return points;
 }
 
 /// An empty array of integers with that name.

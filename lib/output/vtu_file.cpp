@@ -20,14 +20,13 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 
 #include "lib/output/run_folder.hpp"
 #include "lib/output/vtk_grid.hpp"
 #include "lib/system/input_file.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -84,8 +83,7 @@ void require_known_arrays(const std::string& file) {
   static const std::set<std::string_view> known{"Int8",    "Int16",   "Int32",  "Int64",
                                                 "UInt8",   "UInt16",  "UInt32", "UInt64",
                                                 "Float32", "Float64", "String", "Bit"};
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = read_bytes(file);
   const auto each = [&](std::string_view name, const auto& judge) {
     for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
       const size_t end = std::min(text.find('>', at), text.size());

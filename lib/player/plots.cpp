@@ -1,10 +1,11 @@
 #include "lib/player/plots.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -60,6 +61,7 @@ class Source {
   }
   [[nodiscard]] const std::string& name(size_t column) const { return table_.names[column]; }
   [[nodiscard]] const std::string& unit(size_t column) const { return table_.units[column]; }
+  [[nodiscard]] std::set<std::string> regions() const { return table_.regions(); }
   [[nodiscard]] bool has_values(size_t column) const { return !is_zero(table_.columns[column]); }
   PlotLine line(size_t column, std::string label) {
     const double offset = offset_of(table_.columns[column]);
@@ -72,11 +74,6 @@ class Source {
   Plots& plots_;
   size_t time_ = 0;
 };
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // Ledgers: a choice for each unit, and one for each column of what is unaccounted for.
 void add_ledger(Source source, const std::string& title, Plots& plots) {
@@ -98,19 +95,18 @@ void add_ledger(Source source, const std::string& title, Plots& plots) {
   if (!group.choices.empty()) plots.groups.push_back(std::move(group));
 }
 
-// Columns OWNER.quantity: a choice for each quantity, with a line for each owner.
-void add_histories(Source& source, const std::string& title, const std::set<std::string>& owners,
-                   Plots& plots) {
+// Columns OWNER.quantity, of regions or of all else: a choice for each quantity, with a line for
+// each owner.
+void add_histories(Source& source, const std::string& title, bool of_regions, Plots& plots) {
   PlotGroup group{title, {}};
+  const std::set<std::string> regions = source.regions();
   std::map<std::string, size_t> choice_of;
   for (size_t c = 1; c < source.columns(); ++c) {
-    const std::string& name = source.name(c);
-    const size_t dot = name.rfind('.');
-    if (dot == std::string::npos || !owners.count(name.substr(0, dot))) continue;
-    const std::string quantity = name.substr(dot + 1);
-    const auto [known, added] = choice_of.try_emplace(quantity, group.choices.size());
-    if (added) group.choices.push_back({quantity, source.unit(c), {}});
-    group.choices[known->second].lines.push_back(source.line(c, name.substr(0, dot)));
+    const ColumnName name(source.name(c));
+    if (name.owner.empty() || (regions.count(name.owner) > 0) != of_regions) continue;
+    const auto [known, added] = choice_of.try_emplace(name.quantity, group.choices.size());
+    if (added) group.choices.push_back({name.quantity, source.unit(c), {}});
+    group.choices[known->second].lines.push_back(source.line(c, name.owner));
   }
   if (!group.choices.empty()) plots.groups.push_back(std::move(group));
 }
@@ -121,19 +117,8 @@ Plots read_plots(const RunFolder& run) {
   Plots plots;
   add_ledger(Source(run, "energy.csv", plots), "Energy", plots);
   Source history(run, "history.csv", plots);
-  // Regions have quantities that nothing else has.
-  const std::string mark = std::string(".") + "solid_fraction";
-  std::set<std::string> regions, others;
-  for (size_t c = 1; c < history.columns(); ++c) {
-    const std::string& name = history.name(c);
-    if (name.ends_with(mark)) regions.insert(name.substr(0, name.size() - mark.size()));
-  }
-  for (size_t c = 1; c < history.columns(); ++c) {
-    const std::string owner = history.name(c).substr(0, history.name(c).rfind('.'));
-    if (!regions.count(owner)) others.insert(owner);
-  }
-  add_histories(history, "Regions", regions, plots);
-  add_histories(history, "Tracked bodies and points", others, plots);
+  add_histories(history, "Regions", true, plots);
+  add_histories(history, "Tracked bodies and points", false, plots);
   add_ledger(Source(run, "momentum.csv", plots), "Momentum", plots);
   return plots;
 }

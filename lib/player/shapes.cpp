@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon/cyclic.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "lib/mesh/edges.hpp"
 #include "lib/model/rotation.hpp"
 #include "lib/output/convex_cells.hpp"
@@ -81,15 +83,8 @@ std::vector<Vec2> ring_of(const Frame& frame, int element) {
 }
 
 RingMeasure measure(const std::vector<Vec2>& ring) {
-  RingMeasure result;
-  for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
-    const double twice = a.x() * b.y() - a.y() * b.x();
-    result.area += twice / 2;
-    result.centroid += twice / 6 * (a + b);
-  }
-  result.centroid = ring[0] + (result.area != 0 ? Vec2(result.centroid / result.area) : Vec2(0, 0));
-  return result;
+  const RingMoments m = ring_moments(ring, ring[0]);
+  return {ring[0] + (m.area != 0 ? Vec2(m.first / m.area) : Vec2(0, 0)), m.area};
 }
 
 std::vector<FramePart> parts_of(const Frame& frame) {

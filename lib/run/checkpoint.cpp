@@ -42,11 +42,10 @@ struct SavedScene {
 // Calls load(archive) for the file of a state.
 template <class Load>
 void with_state(const std::string& name, const Load& load) {
-  std::error_code error_code;
-  if (!std::filesystem::exists(name, error_code)) {
+  if (!file_exists(name)) {
     const std::string folder = std::filesystem::path(name).parent_path().string();
     const bool ended = name == state_file(folder, StateFile::checkpoint) &&
-                       std::filesystem::exists(state_file(folder, StateFile::final), error_code);
+                       file_exists(state_file(folder, StateFile::final));
     throw SceneError(name, 0, "",
                      ended ? "the run has ended, so there is no checkpoint to resume from; give "
                              "--overwrite in place of --resume to run it anew"
@@ -79,9 +78,8 @@ std::string state_file(const std::string& folder, StateFile kind) {
 }
 
 bool has_checkpoint(const std::string& folder) {
-  std::error_code error;
-  return std::filesystem::exists(state_file(folder, StateFile::checkpoint), error) ||
-         std::filesystem::exists(state_file(folder, StateFile::previous), error);
+  return file_exists(state_file(folder, StateFile::checkpoint)) ||
+         file_exists(state_file(folder, StateFile::previous));
 }
 
 // At no time is there none: the last one gets a second name until the next one takes its place.
@@ -89,8 +87,8 @@ void keep_checkpoint(const std::string& folder) {
   namespace fs = std::filesystem;
   const std::string last = state_file(folder, StateFile::checkpoint);
   const std::string previous = state_file(folder, StateFile::previous);
+  if (!file_exists(last)) return;
   std::error_code error;
-  if (!fs::exists(last, error)) return;
   fs::remove(previous, error);
   fs::create_hard_link(last, previous, error);
   if (error) fs::rename(last, previous, error);  // a file system without second names
@@ -134,8 +132,7 @@ std::string use_checkpoint(const std::string& folder,
     use(last);
     return {};
   } catch (const SceneError& first) {
-    std::error_code error;
-    if (!std::filesystem::exists(previous, error)) throw;
+    if (!file_exists(previous)) throw;
     try {
       use(previous);
     } catch (const SceneError&) {

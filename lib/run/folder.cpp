@@ -13,6 +13,7 @@
 #include "lib/output/vtu_file.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -146,10 +147,8 @@ void add_strings(const JsonValue& value, std::set<std::string>& strings) {
 
 std::string status_in(const std::string& folder) {
   try {
-    const auto json = nlohmann::json::parse(read_text(folder + "/run.json"), nullptr, false);
+    const auto json = nlohmann::json::parse(find_text(folder + "/run.json"), nullptr, false);
     return json.is_object() ? json.value("status", "") : "";
-  } catch (const SceneError&) {
-    return "";
   } catch (const nlohmann::json::exception&) {
     return "";
   }

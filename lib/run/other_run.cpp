@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
+#include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
 #include "lib/run/json_archive.hpp"
 #include "lib/run/sealed_file.hpp"
@@ -32,10 +32,9 @@ FrictionMemory memory_in(const nlohmann::json& simulation) {
 
 OtherRun::OtherRun(const std::string& folder, std::optional<double> time) {
   beginning_.folder = folder;
-  std::error_code error;
   std::string file = state_file(folder, StateFile::final);
-  if (!std::filesystem::exists(file, error)) file = state_file(folder, StateFile::checkpoint);
-  if (!std::filesystem::exists(file, error)) {
+  if (!file_exists(file)) file = state_file(folder, StateFile::checkpoint);
+  if (!file_exists(file)) {
     throw SceneError(folder, 0, "",
                      "holds no state of a run, neither final.json nor checkpoint.json; give the "
                      "folder of a run that is done or was stopped");

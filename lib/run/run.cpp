@@ -15,22 +15,12 @@
 #include "lib/run/summary.hpp"
 #include "lib/run/warnings.hpp"
 #include "lib/scene/plausibility.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
 
 constexpr std::int64_t kLookEvery = 64;  // steps between looks at the clock
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Of all threads of this process.
-double processor_time() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include "lib/output/files.hpp"
 #include "lib/run/json_archive.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "lib/archive/archive.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 

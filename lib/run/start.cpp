@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "lib/dynamics/unstable.hpp"
+#include "lib/system/clock.hpp"
 
 namespace apothem {
 namespace {
@@ -87,7 +87,6 @@ std::vector<std::string> describe_forecast(const Simulation& simulation) {
 }
 
 Trial try_steps(const Scene& scene, int threads, double seconds) {
-  using Clock = std::chrono::steady_clock;
   const std::unique_ptr<Simulation> simulation = make_simulation(scene, threads);
   Trial trial;
   const Clock::time_point start = Clock::now();
@@ -95,7 +94,7 @@ Trial try_steps(const Scene& scene, int threads, double seconds) {
     while (trial.seconds < seconds && simulation->state().time < scene.time.end) {
       simulation->step();
       ++trial.steps;
-      trial.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      trial.seconds = seconds_since(start);
     }
   } catch (const Unstable& error) {
     trial.message = error.what();

@@ -36,9 +36,8 @@ bool StopWatch::holds(const StopRule& rule, Watched& watched, const State& state
   const Crowd crowd = crowd_in(model_, state, node_mass, rule.region);
   const auto count = static_cast<int>(crowd.members.size());
   if (rule.no_exit_for) {
-    const std::vector<double> members(crowd.members.begin(), crowd.members.end());
-    if (!std::ranges::includes(members, watched.members)) watched.last_exit = state.time;
-    watched.members = members;
+    if (!std::ranges::includes(crowd.members, watched.members)) watched.last_exit = state.time;
+    watched.members = crowd.members;
     if (state.time - watched.last_exit < *rule.no_exit_for) return false;
   }
   if (rule.count_below && count >= *rule.count_below) return false;

@@ -28,9 +28,9 @@ class StopWatch {
  private:
   /// What is remembered of a rule.
   struct Watched {
-    double since = -1;            ///< s, all its conditions hold since then; below 0: they do not
-    double last_exit = 0;         ///< s, when a body was last seen to have left the region
-    std::vector<double> members;  ///< bodies in the region at the last look
+    double since = -1;         ///< s, all its conditions hold since then; below 0: they do not
+    double last_exit = 0;      ///< s, when a body was last seen to have left the region
+    std::vector<int> members;  ///< bodies in the region at the last look
     void fields(Archive& archive) {
       archive("since", since)("last_exit", last_exit)("members", members);
     }

@@ -13,6 +13,7 @@
 #include "lib/scene/deformable_reader.hpp"
 #include "lib/scene/output_reader.hpp"
 #include "lib/scene/polygon_value.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 
@@ -39,11 +40,7 @@ void BodyReader::add(const std::vector<JsonValue>& bodies) {
 // where the scene lies.
 void BodyReader::read() {
   Box box;
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    const Box own = extent(*values_[i], shapes_[i]);
-    box.include(own.x0, own.y0);
-    box.include(own.x1, own.y1);
-  }
+  for (size_t i = 0; i < shapes_.size(); ++i) box.include(extent(*values_[i], shapes_[i]));
   model_.origin = local_origin(box);
   const Potentials potentials = find_potentials();
   model_.bodies.reserve(shapes_.size());
@@ -133,12 +130,8 @@ BodyReader::Shape BodyReader::read_shape(const JsonValue& value) {
 
 // A box around the place where the body starts, in world coordinates.
 Box BodyReader::extent(const JsonValue& value, const Shape& shape) const {
-  Box box;
-  if (const auto* polygon = std::get_if<Polygon>(&shape)) {
-    box = bounding_box(*polygon);
-  } else {
-    for (const Vec2& x : std::get<MeshSpec>(shape).mesh.nodes) box.include(x.x(), x.y());
-  }
+  const auto* polygon = std::get_if<Polygon>(&shape);
+  Box box = polygon ? bounding_box(*polygon) : box_of(std::get<MeshSpec>(shape).mesh.nodes);
   if (const JsonValue* v = value.find("position")) {
     const Vec2 p = in_.vec2(*v, "m");
     box = Box{p.x(), p.y(), p.x(), p.y()}.grown(box.extent());

@@ -6,6 +6,7 @@
 
 #include "lib/fem/mass.hpp"
 #include "lib/mesh/locate.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -13,20 +12,17 @@
 #include <optional>
 #include <string_view>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/dxf_text.hpp"
 #include "lib/scene/gdal.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
 
 using Points = std::vector<Vec2>;
-
-std::string in_lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 Points points_of(OGRGeometryH curve) {
   Points points;
@@ -83,9 +79,7 @@ void add_geometry(OGRGeometryH geometry, const DrawnShape& like, std::vector<Dra
 Box extent_of(const std::vector<DrawnShape>& shapes) {
   Box box;
   for (const DrawnShape& shape : shapes) {
-    for (const Points& ring : shape.rings) {
-      for (const Vec2& v : ring) box.include(v.x(), v.y());
-    }
+    for (const Points& ring : shape.rings) box.include(box_of(ring));
   }
   return box;
 }
@@ -167,7 +161,7 @@ class Attributes {
   [[nodiscard]] std::optional<std::string> find(std::string_view name) const {
     for (int i = 0; i < gdal().OGR_F_GetFieldCount(feature_); ++i) {
       const char* own = gdal().OGR_Fld_GetNameRef(gdal().OGR_F_GetFieldDefnRef(feature_, i));
-      if (in_lower_case(own) == name) return gdal().OGR_F_GetFieldAsString(feature_, i);
+      if (lower_case(own) == name) return gdal().OGR_F_GetFieldAsString(feature_, i);
     }
     return {};
   }
@@ -394,7 +388,7 @@ Drawing read_drawing(const std::string& file) {
                                             {".csv", "CSV"},
                                             {".wkt", nullptr},
                                             {".txt", nullptr}}};
-  const std::string ending = in_lower_case(std::filesystem::path(file).extension().string());
+  const std::string ending = lower_case(std::filesystem::path(file).extension().string());
   const auto format = std::find_if(kFormats.begin(), kFormats.end(),
                                    [&](const Format& f) { return ending == f.ending; });
   if (format == kFormats.end()) {

@@ -9,13 +9,14 @@
 
 #include "lib/scene/json.hpp"
 #include "lib/scene/text_encoding.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
 
 // The code page of a header, by the name that iconv has for it.
 std::string encoding_of(const std::string& page) {
-  std::string name = folded(page);
+  std::string name = upper_case(page);
   const auto behind = [&](std::string_view start) { return name.substr(start.size()); };
   if (name == "ANSI_1361") return "JOHAB";
   if (name.starts_with("ANSI_")) return "CP" + behind("ANSI_");
@@ -71,12 +72,6 @@ std::optional<Escape> escape_at(std::string_view text) {
 }
 
 }  // namespace
-
-std::string folded(std::string_view name) {
-  std::string result(name);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
-}
 
 std::string unescaped(std::string_view text) {
   std::string result;

@@ -6,9 +6,6 @@
 
 namespace apothem {
 
-/// A name in upper case: names of DXF files are the same in upper and lower case.
-std::string folded(std::string_view name);
-
 /// A name without escapes: \U+hhhh stands for a unit of UTF-16, \M+Nhhhh for a character of the
 /// East Asian code page N. What is no character stays as it is.
 std::string unescaped(std::string_view text);

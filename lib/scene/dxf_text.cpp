@@ -10,9 +10,11 @@
 #include <set>
 #include <string_view>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/dxf_names.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -27,20 +29,10 @@ struct Tag {
 };
 using Tags = std::vector<Tag>;
 
-std::string_view trimmed(std::string_view text) {
-  const size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 int whole_number(std::string_view text, int otherwise) {
-  try {
-    const bool negative = !text.empty() && text[0] == '-';
-    const int size = parse_count(negative ? text.substr(1) : text);
-    return negative ? -size : size;
-  } catch (const BadNumber&) {
-    return otherwise;
-  }
+  const bool negative = text.starts_with('-');
+  const std::optional<int> size = find_count(negative ? text.substr(1) : text);
+  return size ? (negative ? -*size : *size) : otherwise;
 }
 
 // ---------------------------------------------------------------------------- lines of the file
@@ -204,12 +196,13 @@ class Preparation {
         table = find(range, 2).value_or("");
       } else if (section == "TABLES" && table == "LAYER" && type == "LAYER") {
         const std::string name = unescaped(find(range, 2).value_or("0"));
-        if (!layers_.try_emplace(folded(name), name).second) continue;
+        // Names of DXF files are the same in upper and lower case.
+        if (!layers_.try_emplace(upper_case(name), name).second) continue;
         result_.layers.push_back(name);
         table_.push_back({name, find_number(range, 70, 0), find_number(range, 62, 7)});
       } else if (section == "BLOCKS" && type == "BLOCK") {
         const std::string name = unescaped(find(range, 2).value_or(""));
-        blocks_.try_emplace(folded(name), Block{name, find_number(range, 70, 0)});
+        blocks_.try_emplace(upper_case(name), Block{name, find_number(range, 70, 0)});
       }
     }
     if (sections_.count("ENTITIES") == 0) {
@@ -256,7 +249,7 @@ class Preparation {
       const std::string_view type = value(i);
       if (type == "BLOCK" || type == "ENDBLK") {
         const std::string block = unescaped(find({i + 1, end}, 2).value_or(""));
-        if (type == "BLOCK") in_paper_space = folded(block).starts_with("*PAPER_SPACE");
+        if (type == "BLOCK") in_paper_space = upper_case(block).starts_with("*PAPER_SPACE");
         if (!in_paper_space) copy(i, end, {2, 10, 20, 30, 70});
         i = end;
       } else {
@@ -280,8 +273,8 @@ class Preparation {
       return tag.code < 10 ? unescaped(tag.value) : std::string(trimmed(tag.value));
     }
     const std::string name = unescaped(trimmed(tag.value));
-    if (tag.code == 8) return layers_.try_emplace(folded(name), name).first->second;
-    const auto block = blocks_.find(folded(name));
+    if (tag.code == 8) return layers_.try_emplace(upper_case(name), name).first->second;
+    const auto block = blocks_.find(upper_case(name));
     return block != blocks_.end() ? block->second.name : name;
   }
 
@@ -389,7 +382,7 @@ class Preparation {
     if (type == "SPLINE") return fault_of_spline(own);
     if (type == "INSERT") {
       const std::string name = unescaped(find(own, 2).value_or(""));
-      const auto block = blocks_.find(folded(name));
+      const auto block = blocks_.find(upper_case(name));
       if (block == blocks_.end()) {
         return fmt::format(
             "inserts the block \"{}\", which the drawing does not hold; add it, or "

@@ -10,7 +10,7 @@
 
 #include "geometry/packing/block_shapes.hpp"
 #include "geometry/packing/voronoi_blocks.hpp"
-#include "geometry/polygon/ring_area.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/hilbert.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/fem/kinds.hpp"
@@ -69,7 +69,7 @@ class Fill {
     if (const JsonValue* v = object.optional("arrangement")) {
       arranged_ = static_cast<Arranged>(in_.choice(*v, {"random", "lattice", "dense", "voronoi"}));
     }
-    if (const JsonValue* v = object.optional("gap")) gap_ = not_negative(*v, "m");
+    if (const JsonValue* v = object.optional("gap")) gap_ = in_.not_negative(*v, "m");
     const JsonValue* seed = object.optional("seed");
     RandomNumbers random(seed ? static_cast<std::uint64_t>(in_.count(*seed)) : 1);
     velocity_ = object.optional("velocity");
@@ -108,12 +108,6 @@ class Fill {
   }
 
  private:
-  [[nodiscard]] double not_negative(const JsonValue& value, const std::string& unit) const {
-    const double x = in_.number(value, unit);
-    if (x < 0) in_.fail(value, "must not be negative");
-    return x;
-  }
-
   // [from, to], or one number for both.
   [[nodiscard]] std::array<double, 2> range(const JsonValue& value, double least, double most,
                                             const std::string& unit) const {
@@ -154,7 +148,7 @@ class Fill {
     const JsonValue& times = object.required("times", "how often, the first time included");
     filled.batches = in_.count(times);
     if (filled.batches < 1) in_.fail(times, "must be 1 or more");
-    if (const JsonValue* v = object.optional("every")) filled.every = not_negative(*v, "s");
+    if (const JsonValue* v = object.optional("every")) filled.every = in_.not_negative(*v, "s");
     object.finish();
     if (arranged_ == Arranged::voronoi) {
       in_.fail(*value, "has no meaning for Voronoi cells, which fill the region; leave it out");

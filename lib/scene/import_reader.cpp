@@ -12,6 +12,7 @@
 #include "lib/scene/outlines.hpp"
 #include "lib/scene/polygon_value.hpp"
 #include "lib/scene/value_maker.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

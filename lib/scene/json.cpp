@@ -4,15 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <system_error>
 
 #include "lib/scene/ring_text.hpp"
-#include "lib/system/input_file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -122,35 +119,6 @@ class Builder {
   JsonValue::Keys last_keys_;  // of the object that has been closed last
 };
 
-// The Levenshtein distance.
-size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (const char c : a) {
-    size_t diagonal = row[0]++;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t substitute = diagonal + (c == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substitute, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
-// The candidate that `word` was most likely meant to be, or nullptr if none is similar.
-const std::string* nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string* best = nullptr;
-  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
-      best = &candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
-}
-
 const char* type_name(JsonValue::Type type) {
   switch (type) {
     case JsonValue::Type::null:
@@ -187,60 +155,6 @@ JsonValue parse_json(const std::string& text, const std::string& file) {
   return std::move(builder.root);
 }
 
-std::ifstream open_text(const std::string& file) {
-  const std::string refusal = refusal_of_input(file, kLargestText);
-  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw SceneError(file, 0, "",
-                     fmt::format("cannot be opened: {}; check the name",
-                                 std::generic_category().message(errno)));
-  }
-  return stream;
-}
-
-void strip_byte_order_mark(std::string& text, const std::string& file) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    throw SceneError(file, 0, "", "is UTF-16 text; save it as UTF-8");
-  }
-}
-
-std::string read_text(const std::string& file, size_t limit) {
-  const std::string refusal = refusal_of_input(file, limit);
-  if (!refusal.empty()) throw SceneError(file, 0, "", refusal);
-  std::ifstream stream = open_text(file);
-  limit = input_limit(limit);
-  std::string text;
-  std::vector<char> block(1 << 16);
-  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())),
-         stream.gcount() > 0) {
-    text.append(block.data(), static_cast<size_t>(stream.gcount()));
-    if (text.size() > limit) {
-      throw SceneError(file, 0, "", too_large(limit));
-    }
-  }
-  if (stream.bad()) throw SceneError(file, 0, "", "cannot be read");
-  strip_byte_order_mark(text, file);
-  return text;
-}
-
-std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string result = fmt::format("\"{}\"", word);
-  // A word that begins another one is that one cut short, however much of it is missing.
-  const auto longer =
-      std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
-        return word.size() >= 3 && candidate.starts_with(word);
-      });
-  if (longer != candidates.end()) {
-    result += fmt::format("; did you mean \"{}\"?", *longer);
-  } else if (const std::string* best = nearest(word, candidates)) {
-    result += fmt::format("; did you mean \"{}\"?", *best);
-  }
-  return result;
-}
-
 double JsonReader::number(const JsonValue& value, const std::string& unit) const {
   if (value.type() != JsonValue::Type::number) {
     fail(value, fmt::format("must be a number{}, not {}", unit.empty() ? "" : " in " + unit,
@@ -253,6 +167,12 @@ double JsonReader::positive(const JsonValue& value, const std::string& unit) con
   const double x = number(value, unit);
   const std::string in = unit.empty() ? "" : " (in " + unit + ")";
   if (!(x > 0)) fail(value, fmt::format("must be positive{}, not {}", in, x));
+  return x;
+}
+
+double JsonReader::not_negative(const JsonValue& value, const std::string& unit) const {
+  const double x = number(value, unit);
+  if (x < 0) fail(value, "must not be negative");
   return x;
 }
 
@@ -339,7 +259,7 @@ const JsonValue* JsonObject::optional(std::string key) {
 const JsonValue& JsonObject::required(const std::string& key, const std::string& meaning) {
   if (const JsonValue* found = optional(key)) return *found;
   // The likeliest reason is that the key is misspelt.
-  if (const std::string* close = nearest(key, value_.keys());
+  if (const std::string* close = nearest_word(key, value_.keys());
       close && std::find(known_.begin(), known_.end(), *close) == known_.end()) {
     reader_.fail(*value_.find(*close), "unknown key " + suggest(*close, {key}));
   }

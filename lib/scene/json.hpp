@@ -4,37 +4,17 @@
 #pragma once
 
 #include <cstddef>
-#include <fstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "geometry/polygon/point.hpp"
-#include "lib/scene/error.hpp"
 #include "lib/scene/json_value.hpp"
+#include "lib/text/error.hpp"
 
 namespace apothem {
 
 /// Parses JSON in which // and /* */ comments are allowed. Throws SceneError.
 JsonValue parse_json(const std::string& text, const std::string& file);
-
-/// Bytes of the largest files that are read: as text, and as JSON, whose values take up to forty
-/// times as much memory.
-inline constexpr size_t kLargestText = size_t{1} << 30, kLargestJson = size_t{1} << 27;
-
-/// The contents of a file, without a byte order mark. Throws SceneError if it cannot be read or is
-/// larger than `limit` (bytes).
-std::string read_text(const std::string& file, size_t limit = kLargestText);
-
-/// Opens a file to read it as text. Throws SceneError if it is a directory or cannot be opened.
-std::ifstream open_text(const std::string& file);
-
-/// Takes the byte order mark of UTF-8 from the start of a text. Throws SceneError if the text is
-/// UTF-16.
-void strip_byte_order_mark(std::string& text, const std::string& file);
-
-/// `word` in quotes, followed by "did you mean ...?" if a candidate looks like it.
-std::string suggest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// Reads the values of one file. Every getter throws SceneError at the value's place if the value
 /// is not what it must be. `unit` is named in the message.
@@ -49,6 +29,7 @@ class JsonReader {
 
   double number(const JsonValue& value, const std::string& unit) const;
   double positive(const JsonValue& value, const std::string& unit) const;
+  double not_negative(const JsonValue& value, const std::string& unit) const;
   /// A whole number, 0 or more.
   int count(const JsonValue& value) const;
   const std::string& string(const JsonValue& value) const;

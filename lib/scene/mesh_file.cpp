@@ -2,6 +2,7 @@
 
 #include "lib/mesh/gmsh.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 

@@ -6,7 +6,9 @@
 #include <iterator>
 
 #include "geometry/exact/overlap.hpp"
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "lib/scene/faces.hpp"
 
@@ -21,13 +23,6 @@ constexpr double kTolerance = 1e-6;  // of the extent
 
 std::string shown_place(const std::string& place, const std::string& layer) {
   return layer.empty() ? place : fmt::format("{} on layer \"{}\"", place, layer);
-}
-
-// Of a ring that may be too thin for a polygon.
-double area(const std::vector<Vec2>& ring) {
-  double twice = 0;
-  for (size_t i = 0; i < ring.size(); ++i) twice += cross(ring[i], ring[(i + 1) % ring.size()]);
-  return twice / 2;
 }
 
 template <class Shape>
@@ -45,10 +40,8 @@ class OutlineMaker {
       if (is_left_out(shape)) continue;
       shapes_.push_back(shape);
       for (auto& ring : shapes_.back().rings) {
-        for (Vec2& v : ring) {
-          v = rules.scale * v + rules.offset;
-          box.include(v.x(), v.y());
-        }
+        for (Vec2& v : ring) v = rules.scale * v + rules.offset;
+        box.include(box_of(ring));
       }
     }
     tolerance_ = rules.tolerance.value_or(kTolerance * std::max(0.0, box.extent()));
@@ -180,7 +173,7 @@ class OutlineMaker {
       if (outlines_[pair.first].rings.size() + outlines_[pair.second].rings.size() > 2) continue;
       double shared = 0;
       for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
-        shared += area(part.vertices);
+        shared += ring_area(part.vertices);
       }
       const double areas[]{area_moments(a).area, area_moments(b).area};
       const double smaller = std::min(areas[0], areas[1]), larger = std::max(areas[0], areas[1]);

@@ -7,6 +7,7 @@
 
 #include "lib/mesh/locate.hpp"
 #include "lib/model/state.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {

@@ -7,6 +7,7 @@
 #include "geometry/polygon/polygon.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/ring_line.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -145,14 +145,10 @@ class Inspection {
       name = body;
     };
     for (const RigidBody& body : scene_.model.bodies) {
-      Box box;
-      for (const Vec2& v : body.potential.vertices) box.include(v.x(), v.y());
-      if (body.can_move()) compare(box, body.name);
+      if (body.can_move()) compare(box_of(body.potential.vertices), body.name);
     }
     for (const DeformableBody& body : scene_.model.deformables) {
-      Box box;
-      for (const Vec2& v : body.mesh.nodes) box.include(v.x(), v.y());
-      compare(box, body.name);
+      compare(box_of(body.mesh.nodes), body.name);
     }
     if (!std::isfinite(smallest) || smallest < kLargest) return;
     const JsonValue* bodies = scene_.document.find("bodies");

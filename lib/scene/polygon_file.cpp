@@ -5,6 +5,7 @@
 #include "lib/scene/geojson.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/wkt.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

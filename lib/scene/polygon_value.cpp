@@ -6,6 +6,7 @@
 
 #include "lib/scene/drawing_unit.hpp"
 #include "lib/scene/polygon_file.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -5,6 +5,7 @@
 #include "geometry/polygon/convex_parts.hpp"
 #include "lib/scene/output_reader.hpp"
 #include "lib/scene/polygon_value.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 
@@ -70,12 +71,6 @@ std::vector<StopRule> PopulationReader::stops(const JsonValue& value) {
   return rules;
 }
 
-double PopulationReader::not_negative(const JsonValue& value, const std::string& unit) const {
-  const double x = in_.number(value, unit);
-  if (x < 0) in_.fail(value, "must not be negative");
-  return x;
-}
-
 StopRule PopulationReader::stop(const JsonValue& value) const {
   JsonObject object(in_, value);
   StopRule rule;
@@ -110,8 +105,8 @@ StopRule PopulationReader::stop(const JsonValue& value) const {
     if (conditions > 0) in_.fail(*v, "stands alone; make two entries");
     ++conditions;
   }
-  if (const JsonValue* v = object.optional("for")) rule.hold = not_negative(*v, "s");
-  if (const JsonValue* v = object.optional("after")) rule.after = not_negative(*v, "s");
+  if (const JsonValue* v = object.optional("for")) rule.hold = in_.not_negative(*v, "s");
+  if (const JsonValue* v = object.optional("after")) rule.after = in_.not_negative(*v, "s");
   object.finish();
   if (conditions == 0) {
     in_.fail(value,

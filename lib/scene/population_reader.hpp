@@ -24,7 +24,6 @@ class PopulationReader {
 
  private:
   [[nodiscard]] StopRule stop(const JsonValue& value) const;
-  [[nodiscard]] double not_negative(const JsonValue& value, const std::string& unit) const;
 
   const JsonReader& in_;
   Model& model_;

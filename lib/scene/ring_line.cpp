@@ -6,23 +6,12 @@
 #include <sstream>
 
 #include "geometry/polygon/polygon.hpp"
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/ring_text.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
-namespace {
-
-bool is_count(const std::string& word) {
-  try {
-    parse_count(word);
-    return true;
-  } catch (const BadNumber&) {
-    return false;
-  }
-}
-
-}  // namespace
 
 void for_each_line(const std::string& file, const char* form,
                    const std::function<void(const BatchLine&)>& evaluate) {
@@ -41,7 +30,7 @@ void for_each_line(std::istream& text, const std::string& file, const char* form
     if (!(words >> line.name) || line.name == "#") continue;
     any = true;
     std::string count;
-    line.has_count = words >> count && is_count(count);
+    line.has_count = words >> count && find_count(count);
     evaluate(line);
   }
   if (!any) throw SceneError(file, 0, "", std::string("is empty; write on each line ") + form);

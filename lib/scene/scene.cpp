@@ -14,6 +14,7 @@
 #include "lib/scene/population_reader.hpp"
 #include "lib/scene/time_reader.hpp"
 #include "lib/scene/value_maker.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {

@@ -4,7 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -13,11 +14,8 @@ using Json = nlohmann::json;
 
 // Numbers that JSON does not know, like .1 or +2, are numbers as elsewhere on the command line.
 Json json_of_word(const std::string& word) {
-  try {
-    return parse_decimal(word);
-  } catch (const BadNumber&) {
-    return word;
-  }
+  const std::optional<double> number = find_decimal(word);
+  return number ? Json(*number) : Json(word);
 }
 
 // The part of a path up to its next dot. Keys and names may hold dots themselves: of those that the
@@ -70,13 +68,12 @@ class Path {
         return array.item(i);
       }
     }
-    try {
-      const auto index = static_cast<size_t>(parse_count(part));
-      if (index < size) return array.item(index);
-    } catch (const BadNumber&) {
+    const std::optional<int> index = find_count(part);
+    if (!index) {
       fail(array,
            (names.empty() ? "has no item " : "has no item of the name ") + suggest(part, names));
     }
+    if (static_cast<size_t>(*index) < size) return array.item(static_cast<size_t>(*index));
     fail(array, fmt::format("has no item {}: it has {}, counted from 0", part, size));
   }
 

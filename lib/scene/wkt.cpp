@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <vector>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/json.hpp"
+#include "lib/text/decimal.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -47,12 +47,6 @@ class Pieces {
   int line_ = 1;
 };
 
-std::string upper(std::string_view word) {
-  std::string result(word);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
-}
-
 constexpr std::array kOtherShapes{"POINT",           "LINESTRING",         "MULTIPOINT",
                                   "MULTILINESTRING", "GEOMETRYCOLLECTION", "CURVEPOLYGON",
                                   "MULTISURFACE",    "POLYHEDRALSURFACE",  "TIN",
@@ -79,7 +73,7 @@ class Reader {
       ring_ = polygon();
     }
     if (in_.now() == ";") in_.next();
-    if (in_.is_word() && upper(in_.now()).find("POLYGON") != std::string::npos) {
+    if (in_.is_word() && upper_case(in_.now()).find("POLYGON") != std::string::npos) {
       fail(std::string("holds more than one polygon; ") + kOnePolygon);
     }
     if (!in_.now().empty()) fail(fmt::format("text behind the polygon: \"{}\"", in_.now()));
@@ -98,7 +92,7 @@ class Reader {
   }
 
   void skip_coordinate_system() {
-    if (!upper(in_.now()).starts_with("SRID=")) return;
+    if (!upper_case(in_.now()).starts_with("SRID=")) return;
     try {
       parse_count(in_.now().substr(5));
     } catch (const BadNumber& error) {
@@ -110,7 +104,7 @@ class Reader {
 
   // The kind of shape, in capitals. A letter for Z or M may be attached to it.
   std::string read_shape() {
-    std::string shape = upper(in_.now());
+    std::string shape = upper_case(in_.now());
     const bool known = shape.starts_with("POLYGON") || shape.starts_with("MULTIPOLYGON");
     for (const char* suffix : {"ZM", "Z", "M"}) {
       if (known && shape.ends_with(suffix)) refuse_dimension();
@@ -132,7 +126,7 @@ class Reader {
   }
 
   void read_dimension() {
-    const std::string word = upper(in_.now());
+    const std::string word = upper_case(in_.now());
     if (word == "Z" || word == "M" || word == "ZM") refuse_dimension();
     if (word == "EMPTY") fail("the polygon is EMPTY; give it three vertices or more");
   }
@@ -142,7 +136,8 @@ class Reader {
   }
 
   RingText polygon() {
-    if (upper(in_.now()) == "EMPTY") fail("the polygon is EMPTY; give it three vertices or more");
+    if (upper_case(in_.now()) == "EMPTY")
+      fail("the polygon is EMPTY; give it three vertices or more");
     expect('(', "(( in front of the first vertex");
     expect('(', "(( in front of the first vertex");
     RingText result;

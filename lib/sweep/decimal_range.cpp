@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -26,19 +26,17 @@ struct Decimal {
 
 Decimal parse_digits(std::string_view word) {
   parse_decimal(word);  // throws unless it is a number
+  const size_t end_of_digits = std::min(word.find_first_of("eE"), word.size());
+  std::string digits(word.substr(0, end_of_digits));
   Decimal result;
-  std::string digits;
-  bool fraction = false;
-  size_t i = 0;
-  for (; i < word.size() && word[i] != 'e' && word[i] != 'E'; ++i) {
-    if (word[i] == '.') {
-      fraction = true;
-    } else if (word[i] != '+') {
-      digits += word[i];
-      if (fraction) --result.exponent;
-    }
+  if (end_of_digits < word.size()) {
+    result.exponent = std::atoi(std::string(word.substr(end_of_digits + 1)).c_str());
   }
-  if (i < word.size()) result.exponent += std::atoi(std::string(word.substr(i + 1)).c_str());
+  if (const size_t point = digits.find('.'); point != std::string::npos) {
+    result.exponent -= static_cast<int>(digits.size() - point - 1);
+    digits.erase(point, 1);
+  }
+  if (digits[0] == '+') digits.erase(0, 1);
   const auto [end, error] =
       std::from_chars(digits.data(), digits.data() + digits.size(), result.digits);
   if (error != std::errc()) refuse_digits(word);

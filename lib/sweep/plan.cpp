@@ -9,9 +9,9 @@
 #include <set>
 
 #include "lib/run/hash.hpp"
-#include "lib/scene/decimal.hpp"
-#include "lib/sweep/csv.hpp"
 #include "lib/sweep/decimal_range.hpp"
+#include "lib/text/csv.hpp"
+#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -38,19 +38,10 @@ std::vector<std::string> list_items(const std::string& text) {
   return items;
 }
 
-bool is_number(std::string_view word) {
-  try {
-    parse_decimal(word);
-    return true;
-  } catch (const BadNumber&) {
-    return false;
-  }
-}
-
 // The values of FROM..TO[:STEP]; nothing if the item is not one. A name like ../wall.msh is none.
 std::optional<std::vector<std::string>> range_values(const std::string& item) {
   const size_t dots = item.find("..");
-  if (dots == std::string::npos || !is_number(item.substr(0, dots))) return {};
+  if (dots == std::string::npos || !find_decimal(item.substr(0, dots))) return {};
   const std::string rest = item.substr(dots + 2);
   const size_t colon = rest.find(':');
   std::optional<std::string> step;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "lib/output/files.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -74,8 +76,7 @@ RunRecord read_record(const Study& study, const PlannedRun& run) {
   record.message = study.message_of(run);
   // A run that was refused or has crashed has written nothing.
   const std::string file = study.folder_of(run) + "/run.json";
-  std::error_code error;
-  if (record.state != RunState::done && !std::filesystem::exists(file, error)) return record;
+  if (record.state != RunState::done && !file_exists(file)) return record;
   try {
     parse_record(read_text(file), record);
   } catch (const std::runtime_error& unreadable) {

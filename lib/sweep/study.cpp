@@ -8,7 +8,9 @@
 
 #include "lib/output/files.hpp"
 #include "lib/run/checkpoint.hpp"
+#include "lib/run/exit_code.hpp"
 #include "lib/run/hash.hpp"
+#include "lib/text/file.hpp"
 
 namespace apothem {
 namespace {
@@ -18,25 +20,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kNote = "/sweep.json";
 
-bool there(const std::string& file) {
-  std::error_code error;
-  return fs::exists(file, error);
-}
-
 void take_away(const std::string& file) {
   std::error_code error;
   fs::remove(file, error);
   if (error) throw SystemFailure(file, error.value());
 }
 
-// The content of a JSON file; null if it is absent or damaged.
+// The content of a JSON file; no object if it is absent or damaged.
 Json json_of(const std::string& file) {
-  if (!there(file)) return nullptr;
-  try {
-    return Json::parse(read_text(file), nullptr, /*allow_exceptions=*/false);
-  } catch (const SceneError&) {
-    return nullptr;
-  }
+  return Json::parse(find_text(file), nullptr, /*allow_exceptions=*/false);
 }
 
 // All strings in a JSON value.
@@ -68,16 +60,16 @@ void add_files(const JsonValue& value, const fs::path& folder,
 RunState state_of_exit(const Json& ending) {
   if (ending.value("signal", 0) != 0) return RunState::crashed;
   switch (ending.value("exit_code", -1)) {
-    case 0:
-    case 1:
+    case exit_code::done:
+    case exit_code::missed:
       return RunState::done;
-    case 2:
+    case exit_code::bad_input:
       return RunState::refused;
-    case 3:
+    case exit_code::unstable:
       return RunState::unstable;
-    case 4:
+    case exit_code::system_failed:
       return RunState::failed;
-    case 130:
+    case exit_code::interrupted:
       return RunState::interrupted;
     default:
       return RunState::crashed;
@@ -226,7 +218,7 @@ RunState Study::state_of(const PlannedRun& run) const {
   const std::string folder = folder_of(run);
   const Json note = json_of(folder + kNote);
   if (!note.is_object()) {
-    const bool results = there(folder + "/run.json") || has_checkpoint(folder);
+    const bool results = file_exists(folder + "/run.json") || has_checkpoint(folder);
     return results ? RunState::changed : RunState::missing;
   }
   if (note.value("identity", "") != identity_of(run)) return RunState::changed;

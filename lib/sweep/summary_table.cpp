@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "lib/text/words.hpp"
+
 namespace apothem {
 namespace {
 

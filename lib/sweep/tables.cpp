@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "lib/output/files.hpp"
-#include "lib/sweep/csv.hpp"
 #include "lib/sweep/summary_picture.hpp"
+#include "lib/text/csv.hpp"
 
 namespace apothem {
 namespace {

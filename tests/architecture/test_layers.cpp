@@ -40,18 +40,20 @@ std::vector<Include> includes(const std::string& folder) {
 const std::map<std::string, std::set<std::string>> kMayInclude{
     {"system", {}},
     {"execution", {}},
+    {"text", {"system"}},
     {"geometry", {"system", "execution"}},
     {"archive", {"geometry"}},
-    {"mesh", {"execution", "geometry"}},
+    {"mesh", {"execution", "text", "geometry"}},
     {"fem", {"execution", "geometry", "mesh"}},
     {"contact", {"execution", "archive", "geometry", "mesh"}},
     {"model", {"execution", "archive", "geometry", "mesh", "fem", "contact"}},
     {"dynamics", {"execution", "archive", "geometry", "mesh", "fem", "contact", "model"}},
-    {"scene", {"system", "execution", "geometry", "mesh", "fem", "contact", "model"}},
-    {"output", {"system", "execution", "geometry", "mesh", "model"}},
-    {"player", {"geometry", "mesh", "model", "output"}},
-    {"run", {"system", "archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
-    {"sweep", {"scene", "output", "run"}},
+    {"scene", {"system", "execution", "text", "geometry", "mesh", "fem", "contact", "model"}},
+    {"output", {"system", "execution", "text", "geometry", "mesh", "model"}},
+    {"player", {"text", "geometry", "mesh", "model", "output"}},
+    {"run",
+     {"system", "text", "archive", "geometry", "mesh", "model", "dynamics", "scene", "output"}},
+    {"sweep", {"text", "scene", "output", "run"}},
 };
 
 // Rooms within geometry.

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/cases/random_impacts.hpp"
 #include "apps/cases/samples.hpp"
 #include "lib/dynamics/simulation.hpp"
+#include "tests/dynamics/random_impacts.hpp"
 #include "tests/support.hpp"
 
 using namespace apothem;

@@ -228,7 +228,7 @@ TEST_CASE("bad gmsh files are refused with line and tag", "[mesh]") {
       {"12 2 0 0", "12 2 0 0 0", "\"0\" is left over", 17},
       {"12 2 0 0", "11 2 0 0", "two nodes with the tag 11", 17},
       {"12 2 0 0", "12 2 0 1", "node with the tag 12 has z = 1", 17},
-      {"12 2 0 0", "12 nan 0 0", "node 2 is not finite (node 2: tag 12)", 17},
+      {"12 2 0 0", "12 nan 0 0", "\"nan\" is not a coordinate in m", 17},
       {"7 2 2 0 2 13 23 22", "7 2 2 0 2 13 23 24", "has the node 24, which is not in $Nodes", 33},
       {"7 2 2 0 2 13 23 22", "7 2 2 0 2 13 23", "the line ends before the tag of a node", 33},
       {"7 2 2 0 2 13 23 22", "7 9 2 0 2 13 23 22 1 2 3",

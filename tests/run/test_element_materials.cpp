@@ -8,7 +8,7 @@
 
 #include "lib/mesh/rectangle_mesh.hpp"
 #include "lib/run/hash.hpp"
-#include "lib/scene/error.hpp"
+#include "lib/text/error.hpp"
 #include "tests/run/scenes.hpp"
 #include "tests/vtk_reader.hpp"
 

@@ -5,11 +5,11 @@
 #include <limits>
 #include <sstream>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/pair_file.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/scene/ring_line.hpp"
+#include "lib/text/decimal.hpp"
 #include "tests/folder.hpp"
 
 using namespace apothem;

@@ -9,6 +9,7 @@
 
 #include "lib/mesh/locate.hpp"
 #include "lib/scene/scene.hpp"
+#include "lib/text/file.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "lib/scene/decimal.hpp"
 #include "lib/sweep/decimal_range.hpp"
 #include "lib/sweep/plan.hpp"
+#include "lib/text/decimal.hpp"
 #include "tests/folder.hpp"
 
 using namespace apothem;

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "lib/sweep/csv.hpp"
 #include "lib/sweep/summary_picture.hpp"
 #include "lib/sweep/tables.hpp"
+#include "lib/text/csv.hpp"
 #include "tests/folder.hpp"
 
 using namespace apothem;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "tests/program.hpp"
 
 using namespace apothem;

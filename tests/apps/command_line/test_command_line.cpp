@@ -76,6 +76,7 @@ TEST_CASE("a number on the command line is decimal", "[program]") {
   CHECK(has(run({"run", scene, "--until", "0x1p-8"}, folder).err, "must be a positive number"));
   CHECK(has(run({"polygon", scene, "--reference", "0x1"}, folder).err, "positive length"));
   CHECK(has(run({"run", scene, "--threads", "0x2"}, folder).err, "must be a whole number"));
+  CHECK(has(run({"accuracy", "--repeat", "0x2"}, folder).err, "must be a whole number"));
   const std::string region = folder.write("region.json", "[[0,0],[1,0],[1,1],[0,1]]");
   const Result ten = run({"mesh", region, "--voronoi", "010"}, folder);
   CHECK(ten.code == 0);

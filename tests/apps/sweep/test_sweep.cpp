@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 #include "tests/program.hpp"
 
 using namespace apothem;

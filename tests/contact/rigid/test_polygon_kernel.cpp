@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "geometry/integrals/contact_patches.hpp"
 #include "geometry/integrals/penetration.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/execution/parallel.hpp"
 #include "tests/contact/bodies.hpp"
+#include "tests/geometry/patches.hpp"
 
 using namespace apothem;
 using namespace apothem::test;

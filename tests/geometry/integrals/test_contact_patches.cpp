@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <set>
 
-#include "geometry/exact/overlap.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
 #include "tests/fuzz/hard_pairs.hpp"
 #include "tests/fuzz/pair_check.hpp"
+#include "tests/geometry/patches.hpp"
 #include "tests/shapes.hpp"
 #include "tests/support.hpp"
 
@@ -20,8 +20,8 @@ PatchWorkspace& workspace() {
   return memory;
 }
 
-PatchResult split(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
-  return edge_patches(a, make_potential(a, choice), b, make_potential(b, choice));
+test::PatchResult split(const Polygon& a, const Polygon& b, const PotentialChoice& choice = {}) {
+  return test::edge_patches(a, make_potential(a, choice), b, make_potential(b, choice));
 }
 
 struct Sum {
@@ -45,7 +45,8 @@ struct Sum {
 
 // Every run in exactly one patch, every patch the sum of its runs, and all together the pair.
 // Returns the largest difference in units of round-off: eps (size/r) own length, and size.
-double worst_sum(const PatchResult& split, const PairIntegral& pair, double size, double steepest) {
+double worst_sum(const test::PatchResult& split, const PairIntegral& pair, double size,
+                 double steepest) {
   const double length = pair.own_length_a + pair.own_length_b;
   const double unit = 0x1p-52 * size * steepest * (length + size) * std::max(size, 1.0);
   double worst = 0;
@@ -98,7 +99,7 @@ TEST_CASE("a cross in a notch touches left and right", "[patches]") {
   for (Vec2& v : ring) v += Vec2(.5, 1);
   const Polygon cross(ring);
   for (const auto field : {PotentialChoice::Field::roof, PotentialChoice::Field::distance}) {
-    const PatchResult s = split(cross, notch(), {.field = field});
+    const test::PatchResult s = split(cross, notch(), {.field = field});
     REQUIRE(s.patches.size() == 2);
     // Flat on flat: both potentials rise with slope 1/r from the sides in contact.
     const PairIntegral& p = s.patches[0];
@@ -123,7 +124,7 @@ TEST_CASE("a comb in a comb", "[patches]") {
   std::vector<Vec2> ring;
   for (const Vec2& v : test::comb_ring(8)) ring.emplace_back(15 - v.x() + 1.05, 5 - v.y());
   const Polygon other(ring);  // upside down; its teeth are .05 into those on one side
-  const PatchResult s = split(comb, other);
+  const test::PatchResult s = split(comb, other);
   CHECK(s.patches.size() == overlap_polygons(comb, other, Vec2::Zero()).size());
   CHECK(s.patches.size() == 7);
   for (const PairIntegral& p : s.patches) CHECK(p.breadth == Approx(1).epsilon(.1));
@@ -136,7 +137,7 @@ TEST_CASE("a block in the corner of an L", "[patches]") {
   const Polygon block({{x, x}, {2.5, x}, {2.5, 2.5}, {x, 2.5}});
   CHECK(split(block, l).patches.size() == 1);
   const Polygon bevelled({{x + .2, x}, {2.5, x}, {2.5, 2.5}, {x, 2.5}, {x, x + .2}});
-  const PatchResult s = split(bevelled, l);
+  const test::PatchResult s = split(bevelled, l);
   REQUIRE(s.patches.size() == 2);
   const double scale = s.patches[0].force.norm();
   for (const PairIntegral& p : s.patches) {
@@ -185,8 +186,9 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
     const Polygon moved = samples::shifted(b, {random.uniform(-3, 3), random.uniform(-3, 3)});
     const Potential potential_a = make_potential(a, choice);
     const Potential potential_b = make_potential(moved, choice);
-    const std::vector<PairResult> exact = overlap_patches(a, potential_a, moved, potential_b);
-    const PatchResult s = edge_patches(a, potential_a, moved, potential_b);
+    const std::vector<PairIntegral> exact =
+        test::overlap_patches(a, potential_a, moved, potential_b);
+    const test::PatchResult s = test::edge_patches(a, potential_a, moved, potential_b);
     REQUIRE(s.patches.size() == exact.size());
     if (exact.empty()) continue;
     ++touching;
@@ -198,11 +200,11 @@ TEST_CASE("as many patches as components, each with Eq. 8 on its own", "[patches
     std::set<size_t> taken;
     for (const PairIntegral& p : s.patches) {
       const auto nearest = std::min_element(
-          exact.begin(), exact.end(), [&](const PairResult& x, const PairResult& y) {
-            return (x.integral.centre - p.centre).norm() < (y.integral.centre - p.centre).norm();
+          exact.begin(), exact.end(), [&](const PairIntegral& x, const PairIntegral& y) {
+            return (x.centre - p.centre).norm() < (y.centre - p.centre).norm();
           });
       REQUIRE(taken.insert(nearest - exact.begin()).second);
-      const PairIntegral& x = nearest->integral;
+      const PairIntegral& x = *nearest;
       // Relative to the whole pair: the digits that a shallow patch cannot have are lost in the
       // coordinates.
       worst = std::max({worst, (p.force - x.force).norm() / pair.weight,
@@ -239,7 +241,7 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     const Vec2 offset(random.uniform(-3, 3), random.uniform(-3, 3));
     EdgeWorkspace memory;
     const PairIntegral whole = pair_integral(pair.view(0), pair.view(1), offset, memory);
-    PatchResult s;
+    test::PatchResult s;
     contact_patches(pair.view(0), pair.view(1), offset, workspace(), s.runs, s.patches);
     REQUIRE(s.patches.size() == (whole.touching() ? 1 : 0));
     if (!whole.touching()) {
@@ -278,7 +280,7 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
                       std::sin(turn) * from.x() + std::cos(turn) * from.y());
     const PairIntegral pair =
         pair_integral(placed.view(0), placed.view(1), offset, workspace().edge);
-    PatchResult s;
+    test::PatchResult s;
     contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches);
     REQUIRE(pair.touching() == !s.patches.empty());
     if (!pair.touching()) continue;
@@ -293,9 +295,9 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
       const Vec2 centre = samples::world_centroid(moved);
       for (Vec2& v : ring) v += Vec2(shift + cross(spin, Vec2(v - centre)));
       int count = 0;
-      for (const PairResult& x :
-           overlap_patches(a.polygon, a.potential, Polygon(ring), b.potential)) {
-        count += x.integral.weight > kWorthTheName;
+      for (const PairIntegral& x :
+           test::overlap_patches(a.polygon, a.potential, Polygon(ring), b.potential)) {
+        count += x.weight > kWorthTheName;
       }
       return count;
     };
@@ -334,8 +336,8 @@ TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[
     const test::HardShape& b = pool[random.integer(0, 59)];
     const Polygon moved =
         samples::shifted(b.polygon, {random.uniform(-1, 1), random.uniform(-1, 1)});
-    const PatchResult ab = edge_patches(a.polygon, a.potential, moved, b.potential);
-    const PatchResult ba = edge_patches(moved, b.potential, a.polygon, a.potential);
+    const test::PatchResult ab = test::edge_patches(a.polygon, a.potential, moved, b.potential);
+    const test::PatchResult ba = test::edge_patches(moved, b.potential, a.polygon, a.potential);
     REQUIRE(ab.patches.size() == ba.patches.size());
     REQUIRE(ab.runs.size() == ba.runs.size());
     for (const PairIntegral& p : ab.patches) {
@@ -373,7 +375,7 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
     placed.add(fixed);
     placed.place(1, 0, 0, 0);
     constexpr int kSteps = 1000;
-    PatchResult last, now;
+    test::PatchResult last, now;
     std::vector<double> table;
     int kept = 0, changes = 0, most = 0;
     for (int step = 0; step <= kSteps; ++step) {
@@ -442,7 +444,7 @@ TEST_CASE("patches of coordinates that are not finite", "[patches]") {
   placed.add(potential);
   placed.place(0, 0, 0, 0);
   placed.place(1, 0, 0, std::nan(""));
-  PatchResult s;
+  test::PatchResult s;
   contact_patches(placed.view(0), placed.view(1), {.1, .1}, workspace(), s.runs, s.patches);
   REQUIRE(s.patches.size() == 1);
   CHECK(s.patches[0].touching());
@@ -457,7 +459,7 @@ TEST_CASE("patches of coordinates that are not finite", "[patches]") {
 TEST_CASE("a polygon inside the other is one patch", "[patches]") {
   std::vector<Vec2> ring = test::turned(test::cross_ring(1), .3);
   for (Vec2& v : ring) v *= .2;
-  const PatchResult inside = split(Polygon(ring), Polygon(test::cross_ring(3)));
+  const test::PatchResult inside = split(Polygon(ring), Polygon(test::cross_ring(3)));
   REQUIRE(inside.patches.size() == 1);
   CHECK(inside.runs.size() == 12);
   for (const BoundaryRun& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
@@ -502,7 +504,7 @@ TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][ne
     skipped += near.of_a != NearEdges::kAll && near.of_b != NearEdges::kAll;
     REQUIRE(!(near.none() && whole.touching()));
     if (!whole.touching()) continue;
-    PatchResult s;
+    test::PatchResult s;
     const auto same = [&](const PairIntegral& p) {
       REQUIRE(p.force == whole.force);
       REQUIRE(p.moment_a == whole.moment_a);

@@ -1,7 +1,7 @@
 // Pairs with almost straight and almost coincident vertices and with repeated structure, next to
 // reflex vertices: all methods against each other, and against the same pairs without them.
 // APOTHEM_LONG=1 in the environment runs ten times as many.
-#include "apps/cases/near_degenerate.hpp"
+#include "tests/geometry/integrals/near_degenerate.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

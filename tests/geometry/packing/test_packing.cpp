@@ -6,7 +6,7 @@
 #include "geometry/packing/block_shapes.hpp"
 #include "geometry/packing/voronoi_blocks.hpp"
 #include "geometry/polygon/predicates.hpp"
-#include "geometry/polygon/ring_area.hpp"
+#include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "tests/support.hpp"
 

@@ -1,12 +1,12 @@
-#include "lib/scene/decimal.hpp"
+#include "lib/text/decimal.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
@@ -17,20 +17,11 @@ std::string quoted(std::string_view word) {
   return fmt::format("\"{}{}\"", word.substr(0, kShown), word.size() > kShown ? "..." : "");
 }
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> names) {
-  if (!word.empty() && (word[0] == '+' || word[0] == '-')) word.remove_prefix(1);
-  return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-    return std::equal(word.begin(), word.end(), name.begin(), name.end(), [](char a, char b) {
-      return std::tolower(static_cast<unsigned char>(a)) == b;
-    });
-  });
-}
-
 [[noreturn]] void refuse(std::string_view word) {
-  if (is_one_of(word, {"nan", "inf", "infinity"})) {
-    throw BadNumber(quoted(word) + " is not finite");
-  }
-  throw BadNumber(quoted(word) + " is not a decimal number");
+  std::string name = lower_case(word);
+  if (name.starts_with('+') || name.starts_with('-')) name.erase(0, 1);
+  const bool infinite = name == "nan" || name == "inf" || name == "infinity";
+  throw BadNumber(quoted(word) + (infinite ? " is not finite" : " is not a decimal number"));
 }
 
 }  // namespace
@@ -62,6 +53,22 @@ int parse_count(std::string_view word) {
     throw BadNumber(quoted(word) + " is not a whole number");
   }
   return value;
+}
+
+std::optional<double> find_decimal(std::string_view word) {
+  try {
+    return parse_decimal(word);
+  } catch (const BadNumber&) {
+    return {};
+  }
+}
+
+std::optional<int> find_count(std::string_view word) {
+  try {
+    return parse_count(word);
+  } catch (const BadNumber&) {
+    return {};
+  }
 }
 
 }  // namespace apothem

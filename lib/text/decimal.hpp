@@ -1,7 +1,8 @@
-// Numbers in text that is not JSON: lines of batch files, WKT, arguments of the command line. All
-// of them are read here, so that a word is a number everywhere or nowhere.
+// Numbers in text that is not JSON: tables, meshes, lines of batch files, WKT, arguments of the
+// command line. All of them are read here, so that a word is a number everywhere or nowhere.
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -21,5 +22,9 @@ double parse_decimal(std::string_view word);
 
 /// The whole number, 0 or more, that a whole word holds. Throws BadNumber.
 int parse_count(std::string_view word);
+
+/// The number that parse_decimal() or parse_count() would return, or nothing where it would throw.
+std::optional<double> find_decimal(std::string_view word);
+std::optional<int> find_count(std::string_view word);
 
 }  // namespace apothem

@@ -1,5 +1,5 @@
-// RandomNumbers numbers that are the same on every platform: the standard fixes the generator, but
-// not its distributions.
+// Random numbers that are the same on every platform: the standard fixes the generator, but not its
+// distributions.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ class RandomNumbers {
     }
   }
 
- private:
+ protected:
   std::mt19937_64 generator_;
 };
 

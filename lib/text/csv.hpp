@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace apothem {
@@ -15,6 +16,9 @@ struct CsvRow {
 /// The rows of a file; lines without text are left out, and so are blanks around cells without
 /// quotes. Throws SceneError.
 std::vector<CsvRow> read_csv(const std::string& file);
+
+/// The cells of the line `number` of a file, likewise.
+std::vector<std::string> csv_cells(std::string_view line, const std::string& file, int number);
 
 /// A cell as it stands in a file.
 std::string csv_cell(const std::string& text);

@@ -1,21 +1,41 @@
-#include "apps/cases/random_impacts.hpp"
+// Random impacts of two bodies. The same seed gives the same impact on every platform.
+#pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "apps/cases/samples.hpp"
 #include "lib/dynamics/simulation.hpp"
+#include "lib/model/model.hpp"
+#include "lib/model/settings.hpp"
 
 namespace apothem::samples {
-namespace {
 
-double log_uniform(Random& random, double a, double b) {
+/// What may happen in a random impact.
+struct ImpactKind {
+  bool fixed_partner = true;  ///< sometimes the second body cannot move
+  bool friction = true;       ///< sometimes
+  double damping = 0;         ///< largest ratio of normal and tangential dashpots; 0: none
+  double least_damping = 0;   ///< smallest ratio
+};
+
+struct RandomImpact {
+  Model model;
+  double time = 0;      ///< s, that it takes at most until the bodies are apart for good
+  std::string summary;  ///< what it is, in words
+};
+
+namespace detail {
+
+inline double log_uniform(Random& random, double a, double b) {
   return std::exp(random.uniform(std::log(a), std::log(b)));
 }
 
-Polygon random_shape(Random& random, std::string& name) {
+inline Polygon random_shape(Random& random, std::string& name) {
   switch (random.integer(0, 8)) {
     case 0:
       name = "quad";
@@ -58,13 +78,14 @@ Polygon random_shape(Random& random, std::string& name) {
 }
 
 // How far `a` can move along `direction` until it meets `b`; HUGE_VAL if it passes.
-double way_to(const std::vector<Vec2>& a, const std::vector<Vec2>& b, const Vec2& direction) {
+inline double way_to(const std::vector<Vec2>& a, const std::vector<Vec2>& b,
+                     const Vec2& direction) {
   double way = HUGE_VAL;
   const auto rays = [&](const std::vector<Vec2>& from, const std::vector<Vec2>& to, const Vec2& d) {
     for (const Vec2& p : from) {
       for (size_t i = 0; i < to.size(); ++i) {
         const Vec2& u = to[i];
-        const Vec2 e = to[(i + 1) % to.size()] - u;
+        const Vec2 e = after(to, i) - u;
         const double det = cross(d, e);
         if (det == 0) continue;
         const double t = cross(Vec2(u - p), e) / det, s = cross(Vec2(u - p), d) / det;
@@ -77,14 +98,14 @@ double way_to(const std::vector<Vec2>& a, const std::vector<Vec2>& b, const Vec2
   return way;
 }
 
-double extent(const Polygon& p) {
+inline double extent(const Polygon& p) {
   double r = 0;
   for (const Vec2& v : p.vertices()) r = std::max(r, v.norm());
   return r;
 }
 
 // The direction out of the body across a random edge of its convex hull.
-double hull_normal(Random& random, const Polygon& p) {
+inline double hull_normal(Random& random, const Polygon& p) {
   // A random direction, then the edge whose both ends are the farthest in some direction near it.
   const double angle = random.uniform(-M_PI, M_PI);
   double best = HUGE_VAL, normal = angle;
@@ -105,9 +126,12 @@ double hull_normal(Random& random, const Polygon& p) {
   return normal;
 }
 
-}  // namespace
+}  // namespace detail
 
-RandomImpact random_impact(std::uint64_t seed, const ImpactKind& kind) {
+/// Two rigid bodies, convex or not, of 3 to 100 corners and a mass ratio of 1e-3 to 1e3, a little
+/// before they touch: flat, tilted by up to half a radian, or anyhow.
+inline RandomImpact random_impact(std::uint64_t seed, const ImpactKind& kind = {}) {
+  using namespace detail;
   Random random(seed * 7919 + 17);
   RandomImpact impact;
   Model& model = impact.model;
@@ -195,11 +219,24 @@ RandomImpact random_impact(std::uint64_t seed, const ImpactKind& kind) {
   return impact;
 }
 
-double start_step(const RandomImpact& impact, const TimeSettings& time) {
+/// What an impact has left of the energy.
+struct ImpactResult {
+  double error = 0;          ///< total error after the separation, of the kinetic energy before
+  double kept = 0;           ///< kinetic energy after it, of that before
+  std::int64_t steps = 0;    ///< of which bodies touch
+  std::int64_t changes = 0;  ///< of the step
+  bool touched = false;
+  std::string unstable;  ///< why the run has ended, if it has
+};
+
+/// The step that is chosen at the start, s.
+inline double start_step(const RandomImpact& impact, const TimeSettings& time) {
   return Simulation(impact.model, time, 1, 1).step_size();
 }
 
-ImpactResult run_impact(const RandomImpact& impact, const TimeSettings& time) {
+/// Runs until the bodies have been apart for some time. Energies are those of the velocities
+/// relative to the common centre of mass where both bodies can move.
+inline ImpactResult run_impact(const RandomImpact& impact, const TimeSettings& time) {
   ImpactResult result;
   const Model& model = impact.model;
   TimeSettings settings = time;

@@ -1,31 +1,21 @@
-#include "lib/sweep/csv.hpp"
+#include "lib/text/csv.hpp"
 
-#include "lib/scene/json.hpp"
+#include <algorithm>
+
+#include "lib/text/error.hpp"
+#include "lib/text/file.hpp"
+#include "lib/text/words.hpp"
 
 namespace apothem {
 namespace {
 
-std::string without_blanks(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos
-             ? ""
-             : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 class CsvParser {
  public:
-  CsvParser(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+  CsvParser(std::string_view text, const std::string& file, int line)
+      : text_(text), file_(file), line_(line) {}
 
-  std::vector<CsvRow> parse() {
-    std::vector<CsvRow> rows;
-    while (at_ < text_.size()) {
-      CsvRow row = read_row();
-      if (row.cells.size() > 1 || !row.cells.front().empty()) rows.push_back(std::move(row));
-    }
-    return rows;
-  }
+  [[nodiscard]] bool at_end() const { return at_ == text_.size(); }
 
- private:
   CsvRow read_row() {
     CsvRow row{line_, {}};
     while (true) {
@@ -38,6 +28,7 @@ class CsvParser {
     return row;
   }
 
+ private:
   // Stops at a comma, at the end of a line or at the end of the file.
   std::string read_cell() {
     const size_t start = text_.find_first_not_of(" \t", at_);
@@ -46,7 +37,7 @@ class CsvParser {
       return read_quoted();
     }
     const size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
-    std::string cell = without_blanks(text_.substr(at_, end - at_));
+    std::string cell(trimmed(text_.substr(at_, end - at_)));
     at_ = end;
     return cell;
   }
@@ -65,7 +56,7 @@ class CsvParser {
     if (at_ == text_.size()) fail(start, "the quotes of this cell do not end");
     ++at_;
     const size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
-    if (!without_blanks(text_.substr(at_, end - at_)).empty()) {
+    if (!trimmed(text_.substr(at_, end - at_)).empty()) {
       fail(line_, "text follows the quotes of a cell; quotes within quotes are doubled: \"\"");
     }
     at_ = end;
@@ -76,21 +67,31 @@ class CsvParser {
     throw SceneError(file_, line, "", what);
   }
 
-  const std::string& text_;
+  std::string_view text_;
   const std::string& file_;
   size_t at_ = 0;
-  int line_ = 1;
+  int line_;
 };
 
 }  // namespace
 
 std::vector<CsvRow> read_csv(const std::string& file) {
   const std::string text = read_text(file, kLargestJson);
-  return CsvParser(text, file).parse();
+  CsvParser parser(text, file, 1);
+  std::vector<CsvRow> rows;
+  while (!parser.at_end()) {
+    CsvRow row = parser.read_row();
+    if (row.cells.size() > 1 || !row.cells.front().empty()) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<std::string> csv_cells(std::string_view line, const std::string& file, int number) {
+  return CsvParser(line, file, number).read_row().cells;
 }
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\r\n") == std::string::npos && trimmed(text) == text) return text;
   std::string cell = "\"";
   for (const char c : text) {
     if (c == '"') cell += c;

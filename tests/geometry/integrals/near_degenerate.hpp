@@ -1,20 +1,56 @@
-#include "apps/cases/near_degenerate.hpp"
+// Polygons in which decisions about sides and directions are hard. They have almost straight
+// vertices, vertices that almost coincide, and structure that repeats (steps, teeth and notches of
+// one size), all of it next to reflex vertices, in many sizes and turns.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 
+#include "apps/cases/samples.hpp"
+
 namespace apothem::samples {
-namespace {
+
+/// Steps of the same width and height, with the corner below them at the origin.
+inline Polygon stairs(int steps, double width, double height) {
+  std::vector<Vec2> ring{{0, 0}, {steps * width, 0}};
+  for (int i = steps; i > 0; --i) {
+    const double y = (steps - i + 1) * height;
+    ring.emplace_back(i * width, y);
+    ring.emplace_back((i - 1) * width, y);
+  }
+  return Polygon(ring);
+}
+
+/// Bar of height 1 with notches of width 1 at equal distances, rectangular or with the shape of
+/// wedges.
+inline Polygon notched_bar(int notches, double depth, bool wedges) {
+  std::vector<Vec2> ring{{0, 0}, {3.0 * notches, 0}, {3.0 * notches, 1}};
+  for (int i = notches - 1; i >= 0; --i) {
+    const double x = 3.0 * i + 1;
+    ring.emplace_back(x + 1, 1);
+    if (wedges) {
+      ring.emplace_back(x + .5, 1 - depth);
+    } else {
+      ring.emplace_back(x + 1, 1 - depth);
+      ring.emplace_back(x, 1 - depth);
+    }
+    ring.emplace_back(x, 1);
+  }
+  ring.emplace_back(0, 1);
+  return Polygon(ring);
+}
+
+namespace detail {
 
 using Ring = std::vector<Vec2>;
 
 // 10^-u with u uniform between `low` and `high`.
-double power(Random& random, double low, double high) {
+inline double power(Random& random, double low, double high) {
   return std::pow(10, -random.uniform(low, high));
 }
 
 // Half of them have vertices on a lattice, where many distances and directions are equal.
-Ring outline(Random& random) {
+inline Ring outline(Random& random) {
   switch (random.integer(0, 8)) {
     case 0:
       return cross_of_squares(.5 * random.integer(1, 4)).vertices();
@@ -47,14 +83,8 @@ Ring outline(Random& random) {
   }
 }
 
-double size_of(const Ring& ring) {
-  Box box;
-  for (const Vec2& v : ring) box.include(v.x(), v.y());
-  return box.extent();
-}
-
 // Where on an edge, from 0 to 1: near an end, at equal distances, or anywhere.
-std::vector<double> places(Random& random) {
+inline std::vector<double> places(Random& random) {
   const int count = random.integer(1, 4);
   std::vector<double> shares;
   for (int k = 0; k < count; ++k) {
@@ -77,7 +107,7 @@ std::vector<double> places(Random& random) {
 }
 
 // By how much a vertex is off the straight line: not at all, by round-off, or by more.
-double offset(Random& random, double most) {
+inline double offset(Random& random, double most) {
   const int kind = random.integer(0, 3);
   if (kind == 0) return 0;
   const double least = -std::log10(most);
@@ -86,7 +116,7 @@ double offset(Random& random, double most) {
 }
 
 // The nearest point in one of eight directions.
-Vec2 one_unit_off(Random& random, const Vec2& p) {
+inline Vec2 one_unit_off(Random& random, const Vec2& p) {
   const int direction = random.integer(0, 7);
   const auto step = [](double x, int sign) {
     return sign == 0 ? x : std::nextafter(x, sign * HUGE_VAL);
@@ -95,14 +125,14 @@ Vec2 one_unit_off(Random& random, const Vec2& p) {
   return {step(p.x(), k / 3 - 1), step(p.y(), k % 3 - 1)};
 }
 
-Ring with_needless_vertices(Random& random, const Ring& ring, double most) {
-  const double size = size_of(ring);
+inline Ring with_needless_vertices(Random& random, const Ring& ring, double most) {
+  const double size = box_of(ring).extent();
   const double least = -std::log10(most);
   const double share = random.uniform(0, .8);
   Ring result;
   for (size_t i = 0; i < ring.size(); ++i) {
     const Vec2& p = ring[i];
-    const Vec2 edge = ring[i + 1 == ring.size() ? 0 : i + 1] - p;
+    const Vec2 edge = after(ring, i) - p;
     const Vec2 normal = Vec2(-edge.y(), edge.x()).normalized();
     result.push_back(p);
     if (random.uniform(0, 1) < share / 2) {  // one or two that almost coincide with p
@@ -128,7 +158,7 @@ Ring with_needless_vertices(Random& random, const Ring& ring, double most) {
 }
 
 // Turned, scaled and shifted in one of several ways each.
-Ring posed(Random& random, Ring ring) {
+inline Ring posed(Random& random, Ring ring) {
   const double turn = random.integer(0, 1) == 0   ? 0
                       : random.integer(0, 1) == 0 ? random.integer(1, 7) * M_PI / 4
                                                   : random.uniform(0, 6.3);
@@ -145,53 +175,43 @@ Ring posed(Random& random, Ring ring) {
   return ring;
 }
 
+}  // namespace detail
+
+/// A polygon, and the same with vertices that it does not need.
+struct NearDegenerate {
+  Polygon plain;    ///< without the needless vertices
+  Polygon polygon;  ///< with them
+};
+
+namespace detail {
+
 // Scales a polygon and brings `from`, one of its points after scaling, to `to`.
-NearDegenerate moved(const NearDegenerate& shape, double scale, const Vec2& from, const Vec2& to) {
+inline NearDegenerate moved(const NearDegenerate& shape, double scale, const Vec2& from,
+                            const Vec2& to) {
   const auto move = [&](const Vec2& v) -> Vec2 { return scale * v - from + to; };
   return {mapped(shape.plain, move), mapped(shape.polygon, move)};
 }
 
-}  // namespace
+}  // namespace detail
 
-Polygon stairs(int steps, double width, double height) {
-  Ring ring{{0, 0}, {steps * width, 0}};
-  for (int i = steps; i > 0; --i) {
-    const double y = (steps - i + 1) * height;
-    ring.emplace_back(i * width, y);
-    ring.emplace_back((i - 1) * width, y);
-  }
-  return Polygon(ring);
-}
-
-Polygon notched_bar(int notches, double depth, bool wedges) {
-  Ring ring{{0, 0}, {3.0 * notches, 0}, {3.0 * notches, 1}};
-  for (int i = notches - 1; i >= 0; --i) {
-    const double x = 3.0 * i + 1;
-    ring.emplace_back(x + 1, 1);
-    if (wedges) {
-      ring.emplace_back(x + .5, 1 - depth);
-    } else {
-      ring.emplace_back(x + 1, 1 - depth);
-      ring.emplace_back(x, 1 - depth);
-    }
-    ring.emplace_back(x, 1);
-  }
-  ring.emplace_back(0, 1);
-  return Polygon(ring);
-}
-
-NearDegenerate near_degenerate(Random& random, double most) {
+/// A random outline, turned, scaled and shifted. No point of the boundary of `polygon` is farther
+/// from that of `plain` than about `most` times the size, m/m.
+inline NearDegenerate near_degenerate(Random& random, double most) {
   while (true) {
-    const Ring plain = posed(random, outline(random));
+    const detail::Ring plain = detail::posed(random, detail::outline(random));
     try {
-      return {Polygon(plain), Polygon(with_needless_vertices(random, plain, most))};
+      return {Polygon(plain), Polygon(detail::with_needless_vertices(random, plain, most))};
     } catch (const InvalidPolygon&) {
       // The needless vertices have made the outline cross itself: try the next one.
     }
   }
 }
 
-NearDegeneratePair near_degenerate_pair(Random& random, double most) {
+/// Two of them, or one in a large square, or one on itself, with an exact or random contact.
+struct NearDegeneratePair {
+  NearDegenerate a, b;
+};
+inline NearDegeneratePair near_degenerate_pair(Random& random, double most) {
   while (true) {
     const NearDegenerate a = near_degenerate(random, most);
     const Box box = bounding_box(a.plain);
@@ -215,7 +235,7 @@ NearDegeneratePair near_degenerate_pair(Random& random, double most) {
       to.y() = (box.y0 + box.y1) / 2 + .3 * size * random.uniform(-1, 1);
     }
     try {
-      return {a, moved(b, scale, from, to)};
+      return {a, detail::moved(b, scale, from, to)};
     } catch (const InvalidPolygon&) {
       // Two of its vertices have become one: try the next pair.
     }
