@@ -70,22 +70,24 @@ class EndSnapper {
     for (Box& box : boxes) {
       box = {box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach};
     }
-    for (const Line& line : lines_) {
-      if (line.empty()) {
-        boxes.resize(boxes.size() + 2);
-        continue;
-      }
-      for (const Vec2& v : {line.front(), line.back()}) {
-        boxes.push_back({v.x(), v.y(), v.x(), v.y()});
-      }
-    }
     std::vector<BoxPair> pairs;
     BoxGrid().find_pairs(boxes, pairs);
     near_.resize(2 * lines_.size());
-    for (const auto& [a, b] : pairs) {
-      const auto segment = static_cast<size_t>(a), other = static_cast<size_t>(b);
-      if (segment < segments_.size() && other >= segments_.size()) {
-        near_[other - segments_.size()].push_back(segment);
+    const auto add = [&](size_t of, size_t other) {
+      const size_t line = segments_[of].line, from = segments_[of].from;
+      const auto look = [&](size_t end, const Vec2& v) {
+        if (!apart({v.x(), v.y(), v.x(), v.y()}, boxes[other])) near_[end].push_back(other);
+      };
+      if (from == 0) look(2 * line, lines_[line].front());
+      if (from + 2 >= lines_[line].size()) look(2 * line + 1, lines_[line].back());
+    };
+    auto pair = pairs.begin();
+    for (size_t i = 0; i < segments_.size(); ++i) {
+      add(i, i);
+      for (; pair != pairs.end() && pair->first == static_cast<std::int32_t>(i); ++pair) {
+        const auto other = static_cast<size_t>(pair->second);
+        add(i, other);
+        add(other, i);
       }
     }
   }
@@ -163,6 +165,7 @@ std::vector<Face> faces_between(std::vector<Line> lines, double tolerance) {
     throw std::runtime_error(
         "lines are polygonized by GEOS, which this build of GDAL lacks; draw closed outlines");
   }
+  if (lines.empty()) return {};
   lines = snap_ends(std::move(lines), tolerance);
   const QuietGdal quiet;
   const Geometry all(gdal().OGR_G_CreateGeometry(wkbMultiLineString));
@@ -171,8 +174,9 @@ std::vector<Face> faces_between(std::vector<Line> lines, double tolerance) {
     for (const Vec2& v : line) gdal().OGR_G_AddPoint_2D(part.get(), v.x(), v.y());
     gdal().OGR_G_AddGeometry(all.get(), part.get());
   }
-  // The union with themselves divides the lines where they cross.
-  const Geometry divided(gdal().OGR_G_Union(all.get(), all.get()));
+  // A union divides all lines where they cross. One of them suffices as its other side: with all
+  // of them there it takes twice as long.
+  const Geometry divided(gdal().OGR_G_Union(all.get(), gdal().OGR_G_GetGeometryRef(all.get(), 0)));
   const Geometry polygons(gdal().OGR_G_Polygonize(divided.get()));
   std::vector<Face> faces;
   for (int i = 0; polygons.get() && i < gdal().OGR_G_GetGeometryCount(polygons.get()); ++i) {
