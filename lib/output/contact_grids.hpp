@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "lib/contact/law/contact.hpp"
 #include "lib/model/model.hpp"
+#include "lib/model/statistics.hpp"
 #include "lib/output/vtk_grid.hpp"
 
 namespace apothem {

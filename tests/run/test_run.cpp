@@ -198,8 +198,8 @@ TEST_CASE("histories and frames tell how many bodies each one touches", "[run]")
       { "name": "lower", "material": "rock", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] },
       { "name": "upper", "material": "rock", "polygon": [[0, 0.9999999], [1, 0.9999999], [1, 2], [0, 2]] },
       { "name": "away", "material": "rock", "polygon": [[5, 1], [6, 1], [6, 2], [5, 2]] },
-      { "name": "soft", "material": "rock", "polygon": [[2, 0], [3, 0], [3, 1], [2, 1]],
-        "mesh": { "size": 0.5 } } ],
+      { "name": "soft", "material": "rock",
+        "mesh": { "rectangle": { "size": [1, 1], "cells": [2, 2], "origin": [2, 0] }, "element": "Q4" } } ],
     "time": { "end": 1e-4 }, "output": { "frames": 1, "history": { "interval": 1e-5 } } })");
   Run run(scene, {.folder = folder / "out"});
   REQUIRE(run.run() == Run::Status::done);
