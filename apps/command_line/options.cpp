@@ -85,8 +85,8 @@ void add_run(CLI::App& app, RunOptions& o) {
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names;
-  names.reserve(std::size(kFieldQuantities));
-  for (const FieldQuantity& quantity : kFieldQuantities) names.emplace_back(quantity.name);
+  names.reserve(field_quantities().size());
+  for (const FieldQuantity& quantity : field_quantities()) names.emplace_back(quantity.name);
   return names;
 }
 

@@ -9,7 +9,7 @@
 #include "lib/mesh/fill_mesh.hpp"
 #include "lib/mesh/measure.hpp"
 #include "lib/output/files.hpp"
-#include "lib/output/frames.hpp"
+#include "lib/output/polygon_vtk.hpp"
 #include "lib/scene/mesh_file.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/text/error.hpp"

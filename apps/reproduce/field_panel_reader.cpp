@@ -20,10 +20,10 @@ void FigureReader::field_panel(const JsonValue& value) {
   FieldPanel& panel = figure_.shown_fields.panels.emplace_back();
   figure_.field_sources.emplace_back();
   std::vector<std::string> names;
-  names.reserve(std::size(kFieldQuantities));
-  for (const FieldQuantity& q : kFieldQuantities) names.emplace_back(q.name);
+  names.reserve(field_quantities().size());
+  for (const FieldQuantity& q : field_quantities()) names.emplace_back(q.name);
   const JsonValue& quantity = object.required("field", "a quantity");
-  panel.quantity = &kFieldQuantities[in_.choice(quantity, names)];
+  panel.quantity = &field_quantities()[in_.choice(quantity, names)];
   panel.unit = panel.quantity->unit;
   if (const JsonValue* v = object.optional("title")) panel.title = in_.string(*v);
   const JsonValue* scale = object.optional("scale");

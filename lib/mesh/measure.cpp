@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lib/execution/elementary.hpp"
 #include "lib/mesh/edges.hpp"
 
 namespace apothem {
@@ -62,7 +63,7 @@ MeshQuality mesh_quality(const Mesh& mesh) {
     Vec2 in = mesh.nodes[corners.front()] - mesh.nodes[corners.back()];
     for (size_t i = 0; i < corners.size(); ++i) {
       const Vec2 out = mesh.nodes[after(corners, i)] - mesh.nodes[corners[i]];
-      const double turn = std::atan2(cross(in, out), in.dot(out));
+      const double turn = arc_tangent(cross(in, out), in.dot(out));
       const double angle = std::numbers::pi - turn;
       q.smallest_angle = std::min(q.smallest_angle, angle);
       q.largest_angle = std::max(q.largest_angle, angle);
@@ -105,7 +106,7 @@ MeanMotion mean_motion(const Mesh& mesh, std::span<const double> displacement,
     angular += m * cross(now, Vec2(at(velocity, i) - mean.velocity));
     inertia += m * now.squaredNorm();
   }
-  mean.angle = std::atan2(turned, straight);
+  mean.angle = arc_tangent(turned, straight);
   mean.spin = angular / inertia;
   return mean;
 }

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "lib/mesh/measure.hpp"
-#include "lib/model/statistics.hpp"
 
 namespace apothem {
 namespace {
@@ -43,13 +42,14 @@ BodyMotion motion_of(const Model& model, const State& state, BodyIndex body,
     const auto x = state.pose(body), v = state.pose_rate(body), f = state.force(body);
     motion.place = x.head<2>();
     motion.angle = x[2];
+    motion.rotation = x[2] - model.bodies[body].angle;
     motion.velocity = v.head<2>();
     motion.spin = v[2];
     motion.contact.fx = f[0], motion.contact.fy = f[1];
   } else {
     const MeanMotion mean =
         mean_motion_of(model, state, body - state.layout.rigid_bodies, node_mass);
-    motion = {mean.place, mean.angle, mean.velocity, mean.spin, contact};
+    motion = {mean.place, mean.angle, mean.angle, mean.velocity, mean.spin, contact};
   }
   motion.place += model.origin;
   return motion;
@@ -60,10 +60,15 @@ std::vector<HistoryColumn> history_columns(const Model& model, const OutputSetti
   const auto add = [&](const std::string& name, const auto& kinds) {
     for (const auto& c : kinds) result.push_back({name + "." + c.name, c.unit});
   };
-  for (const RigidIndex i : settings.track) add(model.bodies[i].name, kBodyQuantities);
-  for (const DeformableIndex i : settings.track_deformables) {
-    add(model.deformables[i].name, kBodyQuantities);
-  }
+  const auto add_body = [&](const std::string& name) {
+    for (const BodyQuantity& q : kBodyQuantities) {
+      if (q.in_histories()) {
+        result.push_back({name + "." + q.name, q.unit, q.kind == BodyQuantity::Kind::count});
+      }
+    }
+  };
+  for (const RigidIndex i : settings.track) add_body(model.bodies[i].name);
+  for (const DeformableIndex i : settings.track_deformables) add_body(model.deformables[i].name);
   for (const DeformableIndex i : settings.track_surfaces)
     add(model.deformables[i].name, kSurfaceColumns);
   for (const TrackedPoint& point : settings.points) add(point.name, kPointColumns);

@@ -1,14 +1,16 @@
-// What is recorded: the columns of the histories, and the quantities of bodies for histories and
-// frames, each of which stands here once.
+// The quantities of bodies, which histories, frames and pictures show, and the columns of
+// histories. Those of regions are in statistics.hpp.
 #pragma once
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lib/model/model.hpp"
 #include "lib/model/settings.hpp"
 #include "lib/model/state.hpp"
+#include "lib/model/statistics.hpp"
 
 namespace apothem {
 
@@ -17,6 +19,7 @@ namespace apothem {
 struct BodyMotion {
   Vec2 place = Vec2::Zero();     ///< of the mass centre, world coordinates, m
   double angle = 0;              ///< rad
+  double rotation = 0;           ///< since the start, rad
   Vec2 velocity = Vec2::Zero();  ///< m/s
   double spin = 0;               ///< rad/s
   BodyForce contact;
@@ -31,24 +34,86 @@ BodyMotion motion_of(const Model& model, const State& state, BodyIndex body,
 /// no body turns by half a turn more or less than its spin says between two looks.
 void note_turns(const Model& model, const std::vector<double>& node_mass, State& state);
 
-/// A quantity of a body. A new one is a line here: it becomes a column NAME.quantity of
-/// history.csv, and with `in_frames` an array of the cells in the frames.
+/// What is known of a body at a moment.
+struct ObservedBody {
+  BodyMotion motion;
+  BodyStatistics statistics;
+};
+
+/// A number, which stands first, the components x and y of a vector, or xx, yy and xy of a tensor.
+using Components = std::array<double, 3>;
+
+/// A quantity of a body. A new one is a line here.
 struct BodyQuantity {
+  enum class Kind { number, count, vector, tensor };
+  enum class Shown { in_histories, in_frames, in_both };
+
   const char* name;
   const char* unit;
-  bool in_frames;
-  double (*value)(const BodyMotion&);
+  Kind kind;
+  Shown shown;
+  Components (*value)(const ObservedBody&);
+  /// Description in words and symbol, for pictures and the player, which show the numbers and
+  /// counts of frames that have these.
+  const char* meaning = nullptr;
+  const char* symbol = nullptr;
+
+  /// It is a column NAME.quantity of history.csv, as a number or a count only.
+  [[nodiscard]] constexpr bool in_histories() const { return shown != Shown::in_frames; }
+  /// It is an array of the cells in frames.
+  [[nodiscard]] constexpr bool in_frames() const { return shown != Shown::in_histories; }
+  [[nodiscard]] constexpr int components() const {
+    return kind == Kind::number || kind == Kind::count ? 1 : 3;
+  }
+  [[nodiscard]] constexpr bool in_pictures() const { return in_frames() && meaning; }
 };
+namespace body_quantities {
+using enum BodyQuantity::Kind;
+using enum BodyQuantity::Shown;
+using Body = ObservedBody;
 inline constexpr std::array kBodyQuantities{
-    BodyQuantity{"x", "m", false, [](const BodyMotion& b) { return b.place.x(); }},
-    BodyQuantity{"y", "m", false, [](const BodyMotion& b) { return b.place.y(); }},
-    BodyQuantity{"angle", "rad", false, [](const BodyMotion& b) { return b.angle; }},
-    BodyQuantity{"vx", "m/s", false, [](const BodyMotion& b) { return b.velocity.x(); }},
-    BodyQuantity{"vy", "m/s", false, [](const BodyMotion& b) { return b.velocity.y(); }},
-    BodyQuantity{"spin", "rad/s", false, [](const BodyMotion& b) { return b.spin; }},
-    BodyQuantity{"fx", "N", false, [](const BodyMotion& b) { return b.contact.fx; }},
-    BodyQuantity{"fy", "N", false, [](const BodyMotion& b) { return b.contact.fy; }},
-    BodyQuantity{"friction", "N", true, [](const BodyMotion& b) { return b.contact.friction; }}};
+    BodyQuantity{"x", "m", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.place.x()}; }},
+    BodyQuantity{"y", "m", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.place.y()}; }},
+    BodyQuantity{"angle", "rad", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.angle}; }},
+    BodyQuantity{"rotation", "rad", number, in_frames,
+                 [](const Body& b) { return Components{b.motion.rotation}; },
+                 "rotation since the start", "θ"},
+    BodyQuantity{"vx", "m/s", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.velocity.x()}; }},
+    BodyQuantity{"vy", "m/s", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.velocity.y()}; }},
+    BodyQuantity{"spin", "rad/s", number, in_both,
+                 [](const Body& b) { return Components{b.motion.spin}; }, "angular velocity", "ω"},
+    BodyQuantity{"fx", "N", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.contact.fx}; }},
+    BodyQuantity{"fy", "N", number, in_histories,
+                 [](const Body& b) { return Components{b.motion.contact.fy}; }},
+    BodyQuantity{"contact_force", "N", vector, in_frames,
+                 [](const Body& b) {
+                   return Components{b.motion.contact.fx, b.motion.contact.fy};
+                 }},
+    BodyQuantity{"coordination", "1", count, in_both,
+                 [](const Body& b) { return Components{1. * b.statistics.coordination}; },
+                 "number of bodies in contact with a body", "Z"},
+    BodyQuantity{"mean_stress", "Pa", tensor, in_frames,
+                 [](const Body& b) {
+                   const CauchyStress& s = b.statistics.stress;
+                   return Components{s.xx, s.yy, s.xy};
+                 }},
+    BodyQuantity{"friction", "N", number, in_both,
+                 [](const Body& b) { return Components{b.motion.contact.friction}; }}};
+}  // namespace body_quantities
+using body_quantities::kBodyQuantities;
+
+/// The place of the quantity of that name in kBodyQuantities.
+consteval size_t body_quantity(std::string_view name) {
+  size_t place = 0;
+  while (kBodyQuantities[place].name != name) ++place;
+  return place;
+}
 
 /// A column of a history file: name and unit.
 struct Column {

@@ -5,7 +5,6 @@
 
 #include "geometry/polygon/ring_moments.hpp"
 #include "lib/mesh/measure.hpp"
-#include "lib/model/columns.hpp"
 #include "lib/model/rotation.hpp"
 
 namespace apothem {

@@ -32,7 +32,7 @@ FieldSample node_sample(const Frame& frame, int node) {
 FieldSample element_sample(const Frame& frame, int element) {
   FieldSample sample;
   sample.body = &frame.body_of(element);
-  sample.stress = sample.body->meshed ? frame.stress[element] : sample.body->mean_stress;
+  sample.stress = sample.body->meshed ? frame.stress[element] : sample.body->mean_stress();
   sample.material = frame.material[element];
   return sample;
 }
@@ -49,10 +49,59 @@ void add(FieldSample& sum, const Frame& frame, int element, double weight) {
   }
 }
 
+std::vector<FieldQuantity> all_quantities() {
+  std::vector<FieldQuantity> all{
+      FieldQuantity{"speed", "speed", "|v|", "m/s", FieldKind::node,
+                    [](const FieldSample& s) { return s.velocity.norm(); }},
+      FieldQuantity{"vx", "velocity along x", "vx", "m/s", FieldKind::node,
+                    [](const FieldSample& s) { return s.velocity.x(); }},
+      FieldQuantity{"vy", "velocity along y", "vy", "m/s", FieldKind::node,
+                    [](const FieldSample& s) { return s.velocity.y(); }},
+      FieldQuantity{"u", "displacement", "|u|", "m", FieldKind::node,
+                    [](const FieldSample& s) { return s.displacement.norm(); }},
+      FieldQuantity{"ux", "displacement along x", "ux", "m", FieldKind::node,
+                    [](const FieldSample& s) { return s.displacement.x(); }},
+      FieldQuantity{"uy", "displacement along y", "uy", "m", FieldKind::node,
+                    [](const FieldSample& s) { return s.displacement.y(); }}};
+  for (size_t i = 0; i < kBodyQuantities.size(); ++i) {
+    const BodyQuantity& q = kBodyQuantities[i];
+    if (!q.in_pictures()) continue;
+    const char* const unit = q.kind == BodyQuantity::Kind::count ? "" : q.unit;
+    all.push_back({q.name, q.meaning, q.symbol, unit, FieldKind::body,
+                   [i](const FieldSample& s) { return s.body->values[i][0]; }});
+  }
+  const std::vector<FieldQuantity> others{
+      FieldQuantity{"material", "material", "", "", FieldKind::category,
+                    [](const FieldSample& s) { return 1. * s.material; }},
+      FieldQuantity{"pressure", "pressure, −(σ₁ + σ₂)/2", "p", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return -(s.stress.xx + s.stress.yy) / 2; }},
+      FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
+      FieldQuantity{"s2", "minor principal stress", "σ₂", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return principal_stresses(s.stress)[1]; }},
+      FieldQuantity{"sxx", "stress xx", "σxx", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return s.stress.xx; }},
+      FieldQuantity{"syy", "stress yy", "σyy", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return s.stress.yy; }},
+      FieldQuantity{"sxy", "stress xy", "σxy", "Pa", FieldKind::stress,
+                    [](const FieldSample& s) { return s.stress.xy; }},
+      FieldQuantity{"szz", "stress zz", "σzz", "Pa", FieldKind::stress_of_elements,
+                    [](const FieldSample& s) { return s.stress.zz; }},
+      FieldQuantity{"von_mises", "von Mises stress", "σᵥ", "Pa", FieldKind::stress_of_elements,
+                    [](const FieldSample& s) { return von_mises(s.stress); }}};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
 }  // namespace
 
+const std::vector<FieldQuantity>& field_quantities() {
+  static const std::vector<FieldQuantity> all = all_quantities();
+  return all;
+}
+
 const FieldQuantity* field_quantity(const std::string& name) {
-  for (const FieldQuantity& quantity : kFieldQuantities) {
+  for (const FieldQuantity& quantity : field_quantities()) {
     if (quantity.name == name) return &quantity;
   }
   return nullptr;
@@ -73,8 +122,10 @@ Field field_of(const Frame& frame, const FieldQuantity& quantity) {
   if (quantity.kind == FieldKind::category) field.names = frame.material_names;
   const bool rigid_only = all_rigid(frame);
   for (int e = 0; e < frame.mesh.element_count(); ++e) {
-    field.blank.push_back(!has_value(frame.body_of(e), quantity.kind, rigid_only));
-    if (!field.nodal) field.values.push_back(quantity.value(element_sample(frame, e)));
+    const double value = field.nodal ? 0 : quantity.value(element_sample(frame, e));
+    field.blank.push_back(!has_value(frame.body_of(e), quantity.kind, rigid_only) ||
+                          std::isnan(value));
+    if (!field.nodal) field.values.push_back(value);
   }
   for (size_t i = 0; field.nodal && i < frame.position.size(); ++i) {
     field.values.push_back(quantity.value(node_sample(frame, static_cast<int>(i))));

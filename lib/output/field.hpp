@@ -1,7 +1,7 @@
 // Fields over the plane, one value per cell or per node, from a frame of a run or from a table.
 #pragma once
 
-#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,46 +29,10 @@ struct FieldQuantity {
   const char* symbol;   ///< symbol in pictures
   const char* unit;     ///< empty for a plain number
   FieldKind kind;
-  double (*value)(const FieldSample&);
+  std::function<double(const FieldSample&)> value;
 };
-/// All quantities.
-inline constexpr std::array kFieldQuantities{
-    FieldQuantity{"speed", "speed", "|v|", "m/s", FieldKind::node,
-                  [](const FieldSample& s) { return s.velocity.norm(); }},
-    FieldQuantity{"vx", "velocity along x", "vx", "m/s", FieldKind::node,
-                  [](const FieldSample& s) { return s.velocity.x(); }},
-    FieldQuantity{"vy", "velocity along y", "vy", "m/s", FieldKind::node,
-                  [](const FieldSample& s) { return s.velocity.y(); }},
-    FieldQuantity{"u", "displacement", "|u|", "m", FieldKind::node,
-                  [](const FieldSample& s) { return s.displacement.norm(); }},
-    FieldQuantity{"ux", "displacement along x", "ux", "m", FieldKind::node,
-                  [](const FieldSample& s) { return s.displacement.x(); }},
-    FieldQuantity{"uy", "displacement along y", "uy", "m", FieldKind::node,
-                  [](const FieldSample& s) { return s.displacement.y(); }},
-    FieldQuantity{"rotation", "rotation since the start", "θ", "rad", FieldKind::body,
-                  [](const FieldSample& s) { return s.body->rotation; }},
-    FieldQuantity{"spin", "angular velocity", "ω", "rad/s", FieldKind::body,
-                  [](const FieldSample& s) { return s.body->spin; }},
-    FieldQuantity{"coordination", "number of bodies in contact with a body", "Z", "",
-                  FieldKind::body, [](const FieldSample& s) { return 1. * s.body->coordination; }},
-    FieldQuantity{"material", "material", "", "", FieldKind::category,
-                  [](const FieldSample& s) { return 1. * s.material; }},
-    FieldQuantity{"pressure", "pressure, −(σ₁ + σ₂)/2", "p", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return -(s.stress.xx + s.stress.yy) / 2; }},
-    FieldQuantity{"s1", "major principal stress", "σ₁", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return principal_stresses(s.stress)[0]; }},
-    FieldQuantity{"s2", "minor principal stress", "σ₂", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return principal_stresses(s.stress)[1]; }},
-    FieldQuantity{"sxx", "stress xx", "σxx", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return s.stress.xx; }},
-    FieldQuantity{"syy", "stress yy", "σyy", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return s.stress.yy; }},
-    FieldQuantity{"sxy", "stress xy", "σxy", "Pa", FieldKind::stress,
-                  [](const FieldSample& s) { return s.stress.xy; }},
-    FieldQuantity{"szz", "stress zz", "σzz", "Pa", FieldKind::stress_of_elements,
-                  [](const FieldSample& s) { return s.stress.zz; }},
-    FieldQuantity{"von_mises", "von Mises stress", "σᵥ", "Pa", FieldKind::stress_of_elements,
-                  [](const FieldSample& s) { return von_mises(s.stress); }}};
+/// All quantities: those of nodes, those of kBodyQuantities that pictures show, and the others.
+const std::vector<FieldQuantity>& field_quantities();
 
 /// The quantity of that name, or null.
 const FieldQuantity* field_quantity(const std::string& name);

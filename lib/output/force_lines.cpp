@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "lib/execution/elementary.hpp"
 #include "lib/model/columns.hpp"
 
 namespace apothem {
@@ -25,7 +26,7 @@ struct RoseCounts {
   void add(const Vec2& normal) {
     const double size = normal.norm();
     for (const Vec2& n : {normal, Vec2(-normal)}) {
-      const double turns = std::atan2(n.y(), n.x()) / (2 * M_PI) + 1;
+      const double turns = arc_tangent(n.y(), n.x()) / (2 * M_PI) + 1;
       const auto sector = static_cast<size_t>(turns * kSectors) % kSectors;
       count[sector] += 1;
       force[sector] += size;
@@ -109,10 +110,9 @@ vtkNew<vtkUnstructuredGrid> roses(const Model& model, const FrameContents& frame
     const vtkIdType first = points->GetNumberOfPoints();
     for (size_t s = 0; s < kSectors; ++s) {
       for (const size_t end : {s, s + 1}) {
-        const double angle = 2 * M_PI * static_cast<double>(end) / kSectors;
+        const auto [sine, cosine] = sine_cosine(2 * M_PI * static_cast<double>(end) / kSectors);
         const double radius = unit * rose.frequency(s);
-        points->InsertNextPoint(middle.x() + radius * std::cos(angle),
-                                middle.y() + radius * std::sin(angle), 0);
+        points->InsertNextPoint(middle.x() + radius * cosine, middle.y() + radius * sine, 0);
         frequency->InsertNextValue(rose.frequency(s));
         force->InsertNextValue(rose.mean_force(s));
       }

@@ -3,7 +3,7 @@
 // patches, chains.pvd for the lines along which they carry force, roses.pvd for the directions of
 // contacts in regions, and surfaces.pvd for the boundaries of bodies that are in contact with
 // meshes. names.csv has the names of what frames number. Bodies that are not there are left out.
-// Also writes a mesh as a .vtu file. VTK, ParaView, PyVista and meshio read all of these files.
+// VTK, ParaView, PyVista and meshio read all of these files.
 //
 // Cells are convex, because many viewers fill a polygon as if it were. A body or an element that is
 // not convex is several cells with the same values, numbered by the cell data `part`.
@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/meshing/polygon_mesh.hpp"
 #include "lib/execution/parallel.hpp"
 #include "lib/mesh/mesh.hpp"
 #include "lib/model/model.hpp"
@@ -33,6 +32,15 @@ struct FrameContents {
   std::vector<BodyForce> forces = {};       ///< contact force on each body, rigid ones first
   std::vector<double> node_mass = {};       ///< kg
   std::vector<BodyStatistics> bodies = {};  ///< of all bodies
+};
+
+/// Cells as lists of their corners, or lines as lists of their points.
+using Cells = std::vector<std::vector<int>>;
+
+/// What frames of bodies have in common, whatever their state.
+struct BodyShapes {
+  std::map<RigidIndex, Cells> cells;  ///< of each rigid body that is not convex, by its corners
+  std::vector<Cells> loops;           ///< around each mesh, by its nodes
 };
 
 /// Writes the time series of a run into a folder of results.
@@ -59,20 +67,17 @@ class FrameWriter {
   std::string folder_;
   const Model& model_;
   Threads threads_;
-  // Of each rigid body that is several cells, as lists of its corners.
-  std::map<RigidIndex, std::vector<std::vector<int>>> cells_;
-  std::vector<std::vector<std::vector<int>>> loops_;  // around each mesh, as lists of its nodes
+  BodyShapes shapes_;
   std::vector<double> times_;
+  std::vector<std::string> lists_;  // the .pvd files without their ends
   FileList* list_;
   std::vector<std::string> fresh_;  // files since the last call of make_last()
 };
 
+/// The names of the .pvd files of all series that frames may have.
+std::vector<std::string> frame_lists();
+
 /// Whether frames have files of this name, relative to the folder of results.
 bool is_frame_file(const std::string& name);
-
-/// Writes a tiling as a .vtu file of convex polygons with shared points, with the cell data `cell`
-/// (index), `part` (of a cell that is not convex) and `area` (of the whole cell, m^2). Throws
-/// SystemFailure.
-void write_mesh(const std::string& file, const PolygonMesh& mesh);
 
 }  // namespace apothem

@@ -84,10 +84,12 @@ void HistoryWriter::add(const State& state, const Energies& e, const Momenta& p,
   std::string& rows = history_.rows;
   fmt::format_to(std::back_inserter(rows), FMT_COMPILE("{}"), state.time);
   const auto add_body = [&](BodyIndex body) {
-    const BodyMotion motion =
-        motion_of(model_, state, body, observed.contact[body], observed.node_mass);
+    const ObservedBody record{
+        motion_of(model_, state, body, observed.contact[body], observed.node_mass),
+        observed.bodies[static_cast<size_t>(body)]};
     for (const BodyQuantity& quantity : kBodyQuantities) {
-      fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), quantity.value(motion));
+      if (!quantity.in_histories()) continue;
+      fmt::format_to(std::back_inserter(rows), FMT_COMPILE(",{}"), quantity.value(record)[0]);
     }
   };
   for (const RigidIndex i : settings_.track) add_body(i);

@@ -17,7 +17,9 @@ namespace apothem {
 
 /// What histories record in addition to the state and the energy and momentum ledgers.
 struct Observed {
-  std::vector<BodyForce> contact = {};    ///< contact force on each body, rigid ones first
+  std::vector<BodyForce> contact = {};  ///< contact force on each body, rigid ones first
+  /// Of each body; needed only if bodies are tracked.
+  std::vector<BodyStatistics> bodies = {};
   std::vector<double> node_mass = {};     ///< lumped mass of each node, kg
   std::vector<CauchyStress> stress = {};  ///< of the element that holds each tracked point, Pa
   /// Boundary pressures; needed only if surfaces are tracked.

@@ -1,5 +1,6 @@
 #include "lib/output/polygon_vtk.hpp"
 
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkPointData.h>
@@ -82,6 +83,34 @@ void write_polygon_vtk(const std::string& folder, const Polygon& polygon, const 
   create_folder(folder);
   write_file(folder + "/faces.vtu", roof);
   write_file(folder + "/singular_area.vtu", area);
+}
+
+void write_mesh(const std::string& file, const PolygonMesh& mesh) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points = double_points();
+  for (const Vec2& p : mesh.points) points->InsertNextPoint(p.x(), p.y(), 0);
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> index = integers("cell");
+  vtkNew<vtkIntArray> part = integers("part");
+  vtkNew<vtkDoubleArray> area = doubles("area", 1);
+  for (size_t i = 0; i < mesh.cells.size(); ++i) {
+    const std::vector<Vec2> ring = cell_ring(mesh, mesh.cells[i]);
+    const double of_cell = area_moments(Polygon(ring)).area;
+    const std::vector<std::vector<int>> parts = convex_cells(ring);
+    for (size_t k = 0; k < parts.size(); ++k) {
+      index->InsertNextValue(static_cast<int>(i));
+      part->InsertNextValue(static_cast<int>(k));
+      area->InsertNextValue(of_cell);
+      cells->InsertNextCell(static_cast<int>(parts[k].size()));
+      for (const int corner : parts[k]) cells->InsertCellPoint(mesh.cells[i][corner]);
+    }
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_POLYGON, cells);
+  grid->GetCellData()->AddArray(index);
+  grid->GetCellData()->AddArray(part);
+  grid->GetCellData()->AddArray(area);
+  write_file(file, xml(grid));
 }
 
 }  // namespace apothem

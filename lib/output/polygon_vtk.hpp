@@ -1,8 +1,9 @@
-// Writes the roof and the singular area of a polygon for ParaView.
+// Writes for ParaView: the roof and the singular area of a polygon; a tiling.
 #pragma once
 
 #include <string>
 
+#include "geometry/meshing/polygon_mesh.hpp"
 #include "geometry/polygon/polygon.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 
@@ -15,5 +16,10 @@ namespace apothem {
 /// `reference` is the reference length r in m. Throws SystemFailure.
 void write_polygon_vtk(const std::string& folder, const Polygon& polygon, const Skeleton& skeleton,
                        const SingularArea& singular, double reference);
+
+/// Writes a tiling as a .vtu file of convex polygons with shared points, with the cell data `cell`
+/// (index), `part` (of a cell that is not convex) and `area` (of the whole cell, m^2). Throws
+/// SystemFailure.
+void write_mesh(const std::string& file, const PolygonMesh& mesh);
 
 }  // namespace apothem

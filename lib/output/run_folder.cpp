@@ -29,23 +29,29 @@ struct CellArrays {
       : body(file.cell_array("body")),
         part(file.cell_array("part")),
         material(file.cell_array("material")),
-        motion(file.cell_array("motion")),
-        rotation(file.cell_array("rotation")),
-        spin(file.cell_array("spin")),
-        coordination(file.cell_array("coordination")),
-        mean_stress(file.cell_array("mean_stress", 3)) {}
-  const VtuArray &body, &part, &material, &motion, &rotation, &spin, &coordination, &mean_stress;
+        motion(file.cell_array("motion")) {
+    for (size_t i = 0; i < kBodyQuantities.size(); ++i) {
+      const BodyQuantity& quantity = kBodyQuantities[i];
+      const bool there = quantity.in_frames() && file.of_cells.contains(quantity.name);
+      if (there) quantities[i] = &file.cell_array(quantity.name, quantity.components());
+    }
+  }
+  const VtuArray &body, &part, &material, &motion;
+  std::array<const VtuArray*, kBodyQuantities.size()> quantities{};  // null: not there
 };
 
 // The values of cell `c` for the body that it belongs to.
 void read_body(const CellArrays& arrays, size_t c, FrameBody& body) {
   body.present = true;
-  body.rotation = arrays.rotation(c);
-  body.spin = arrays.spin(c);
-  body.coordination = static_cast<int>(arrays.coordination(c));
-  const VtuArray& mean = arrays.mean_stress;
-  body.mean_stress = {mean(c, 0), mean(c, 1), mean(c, 2), 0, 0};
   body.motion = static_cast<Motion>(std::lround(arrays.motion(c)));
+  for (size_t i = 0; i < kBodyQuantities.size(); ++i) {
+    if (!kBodyQuantities[i].in_frames()) continue;
+    const VtuArray* const values = arrays.quantities[i];
+    if (!values) body.values[i].fill(std::nan(""));
+    for (int k = 0; values && k < kBodyQuantities[i].components(); ++k) {
+      body.values[i][static_cast<size_t>(k)] = (*values)(c, static_cast<size_t>(k));
+    }
+  }
 }
 
 void name_bodies(const FrameNames& names, Frame& frame) {

@@ -3,15 +3,16 @@
 // only.
 #pragma once
 
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "lib/mesh/mesh.hpp"
+#include "lib/model/columns.hpp"
 #include "lib/model/model.hpp"
 #include "lib/model/state.hpp"
-#include "lib/model/statistics.hpp"
 #include "lib/output/history.hpp"
 
 namespace apothem {
@@ -29,10 +30,16 @@ struct FrameBody {
   bool present = false;  ///< bodies may come and go
   bool meshed = false;   ///< of finite elements; otherwise it is rigid
   Motion motion = Motion::free;
-  double rotation = 0;         ///< since the start of the run, rad
-  double spin = 0;             ///< rad/s
-  int coordination = 0;        ///< number of bodies that it touches
-  CauchyStress mean_stress{};  ///< xx, yy and xy, Pa, see BodyStatistics
+  /// Of kBodyQuantities, in that order. What frames do not have is zero, and NaN if these were
+  /// written before there was such a quantity.
+  std::array<Components, kBodyQuantities.size()> values{};
+
+  [[nodiscard]] double rotation() const { return values[body_quantity("rotation")][0]; }
+  [[nodiscard]] double spin() const { return values[body_quantity("spin")][0]; }
+  [[nodiscard]] CauchyStress mean_stress() const {
+    const auto& [xx, yy, xy] = values[body_quantity("mean_stress")];
+    return {xx, yy, xy, 0, 0};
+  }
 };
 
 /// The bodies in one frame: a mesh in which each rigid body is one element, and each finite element

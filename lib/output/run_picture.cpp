@@ -25,7 +25,7 @@ void deform(Frame& frame, double factor) {
       middle += share * frame.mesh.nodes[i];
       shift += share * frame.displacement[i];
     }
-    const double angle = factor * frame.body_of(e).rotation;
+    const double angle = factor * frame.body_of(e).rotation();
     for (const int i : corners) {
       frame.position[i] =
           middle + factor * shift + turned(Vec2(frame.mesh.nodes[i] - middle), angle);

@@ -11,9 +11,8 @@
 namespace apothem {
 namespace {
 
-// What the player can show, beside the material.
-constexpr std::array kQuantities{"speed", "rotation", "coordination", "pressure",
-                                 "s1",    "s2",       "von_mises"};
+// What the player can show, beside the material and the quantities of bodies.
+constexpr std::array<std::string_view, 5> kQuantities{"speed", "pressure", "s1", "s2", "von_mises"};
 
 // Reads frame after frame.
 class Recorder {
@@ -21,11 +20,12 @@ class Recorder {
   explicit Recorder(const RunFolder& run) : run_(run) {
     out_.times = run.times();
     out_.shapes = read_shapes(run);
-    for (const char* name : kQuantities) {
-      const FieldQuantity* quantity = field_quantity(name);
-      const bool elements_only = quantity->kind == FieldKind::stress_of_elements;
-      if (elements_only && out_.shapes.elements.empty()) continue;
-      out_.quantities.push_back({quantity, quantity->unit});
+    for (const FieldQuantity& quantity : field_quantities()) {
+      const bool shown = quantity.kind == FieldKind::body ||
+                         std::ranges::find(kQuantities, quantity.name) != kQuantities.end();
+      const bool elements_only = quantity.kind == FieldKind::stress_of_elements;
+      if (!shown || (elements_only && out_.shapes.elements.empty())) continue;
+      out_.quantities.push_back({&quantity, quantity.unit});
     }
   }
 
@@ -82,11 +82,11 @@ class Recorder {
     const FrameBody& body = frame.bodies[b];
     const Vec2 centroid = measure(ring_of(frame, e)).centroid;
     out_.place[out_.bodies.size() * k + b] = centroid;
-    out_.rotation[out_.bodies.size() * k + b] = body.rotation;
+    out_.rotation[out_.bodies.size() * k + b] = body.rotation();
     const int node = frame.mesh.element(e)[0];
     const Vec2 arm = centroid - frame.position[node];
-    const Vec2 velocity = frame.velocity[node] + body.spin * Vec2(-arm.y(), arm.x());
-    add_values(k, b, body, velocity, body.mean_stress);
+    const Vec2 velocity = frame.velocity[node] + body.spin() * Vec2(-arm.y(), arm.x());
+    add_values(k, b, body, velocity, body.mean_stress());
   }
 
   void add_meshed(const Frame& frame, size_t k, size_t b) {
@@ -113,7 +113,7 @@ class Recorder {
                  velocity, frame.stress[e]);
     }
     out_.place[out_.bodies.size() * k + b] = whole.centroid / whole.area;
-    add_values(k, b, body, momentum / whole.area, body.mean_stress);
+    add_values(k, b, body, momentum / whole.area, body.mean_stress());
   }
 
   // The values of a body or of an element, whose velocity is that of its middle. A meshed body as a
@@ -127,8 +127,8 @@ class Recorder {
     const bool rigid_only = out_.shapes.elements.empty();
     for (RecordedQuantity& quantity : out_.quantities) {
       if (!has_value(body, quantity.quantity->kind, rigid_only)) continue;
-      quantity.values[out_.items() * k + item] =
-          static_cast<float>(quantity.quantity->value(sample));
+      const auto value = static_cast<float>(quantity.quantity->value(sample));
+      if (!std::isnan(value)) quantity.values[out_.items() * k + item] = value;
     }
   }
 

@@ -29,7 +29,7 @@ void add_rigid(const Frame& frame, int element, Shapes::Body& body) {
   body.area = whole.area;
   body.triangles = triangles_of(ring);
   for (Vec2& p : ring) {
-    p = turned(Vec2(p - whole.centroid), -frame.body_of(element).rotation);
+    p = turned(Vec2(p - whole.centroid), -frame.body_of(element).rotation());
     body.radius = std::max(body.radius, p.norm());
   }
   body.ring = std::move(ring);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -22,13 +22,17 @@ namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
 // The files of every run, besides its frames.
-constexpr std::array kResults{"run.json",        "frames.pvd",
-                              "outlines.pvd",    "contacts.pvd",
-                              "chains.pvd",      "roses.pvd",
-                              "surfaces.pvd",    "history.csv",
-                              "energy.csv",      "momentum.csv",
-                              "names.csv",       "final.json",
-                              "checkpoint.json", "checkpoint.previous.json"};
+const Names& results_of_runs() {
+  static const Names names = [] {
+    Names all{"run.json"};
+    std::ranges::copy(frame_lists(), std::back_inserter(all));
+    std::ranges::copy(kHistoryFiles, std::back_inserter(all));
+    all.insert(all.end(),
+               {"names.csv", "final.json", "checkpoint.json", "checkpoint.previous.json"});
+    return all;
+  }();
+  return names;
+}
 
 // A link counts, even one to nothing.
 bool is_there(const fs::path& path) {
@@ -41,7 +45,7 @@ std::string in(const std::string& folder, const std::string& name) {
 }
 
 Names names_of(const FolderPlan& plan) {
-  Names names(kResults.begin(), kResults.end());
+  Names names = results_of_runs();
   names.insert(names.end(), plan.others.begin(), plan.others.end());
   return names;
 }
@@ -51,12 +55,12 @@ Names names_of(const FolderPlan& plan) {
 std::set<std::string> unlisted_results(const std::string& folder) {
   std::set<std::string> names;
   if (!is_there(in(folder, "frames.pvd")) || !is_there(folder + "/names.csv")) return names;
-  names.insert(kResults.begin(), kResults.end());
+  names.insert(results_of_runs().begin(), results_of_runs().end());
   names.insert("picture.png");
-  for (const char* result : kResults) {
-    if (!std::string_view(result).ends_with(".pvd") || !is_there(in(folder, result))) continue;
+  for (const std::string& list : frame_lists()) {
+    if (!is_there(in(folder, list))) continue;
     try {
-      for (const auto& [time, file] : read_pvd(in(folder, result))) names.insert(file);
+      for (const auto& [time, file] : read_pvd(in(folder, list))) names.insert(file);
     } catch (const ResultsError&) {
       // Files that no list names stay.
     }
@@ -225,8 +229,8 @@ Found look_into(const std::string& folder, const std::string& hash) {
   if (is_there(final) && status == "done") {
     return origin_of(final).scene_hash == hash ? Found::ended : Found::other;
   }
-  const bool results = std::any_of(kResults.begin(), kResults.end(),
-                                   [&](const char* name) { return is_there(in(folder, name)); });
+  const bool results = std::ranges::any_of(
+      results_of_runs(), [&](const std::string& name) { return is_there(in(folder, name)); });
   if (!results) return Found::nothing;
   if (!is_there(folder + "/" + FileList::kName)) return Found::other;
   const FileList list(folder);

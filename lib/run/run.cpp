@@ -368,16 +368,17 @@ void Run::write_row() {
   last_row_ = state().step;
   Simulation& s = *simulation_;
   const Model& model = scene_.model;
+  const OutputSettings& output = scene_.output;
+  std::vector<BodyStatistics> bodies;
   std::vector<RegionSums> regions;
-  if (!model.regions.empty()) {
+  if (!(output.track.empty() && output.track_deformables.empty() && model.regions.empty())) {
     const std::vector<ContactRecord> contacts = s.contacts();
-    regions =
-        region_sums(model, s.state(), s.node_mass(), contacts,
-                    body_statistics(model, s.state(), contacts, s.stresses()), scene_.time.statics);
+    bodies = body_statistics(model, s.state(), contacts, s.stresses());
+    regions = region_sums(model, s.state(), s.node_mass(), contacts, bodies, scene_.time.statics);
   }
   history_->add(s.state(), s.energies_to_record(), s.momenta(),
-                {s.contact_forces(), s.node_mass(), s.stresses(scene_.output.points),
-                 scene_.output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces(),
+                {s.contact_forces(), std::move(bodies), s.node_mass(), s.stresses(output.points),
+                 output.track_surfaces.empty() ? std::vector<SurfaceRecord>{} : s.surfaces(),
                  std::move(regions)});
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 
 #include "geometry/exact/overlap.hpp"
@@ -135,6 +136,11 @@ class OutlineMaker {
     for (const DrawnShape& shape : shapes_) {
       if (shape.kind == DrawnShape::Kind::line) lines.push_back(shape.rings[0]);
     }
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+      const DrawnShape& shape = shapes_[i];
+      if (shape.kind == DrawnShape::Kind::label && !shape.rings[0].empty()) labels_.push_back(i);
+    }
+    first_face_ = static_cast<std::int32_t>(outlines_.size());
     for (auto& rings : faces_between(std::move(lines), tolerance_)) {
       DrawnShape face{};
       face.kind = DrawnShape::Kind::area;
@@ -149,9 +155,15 @@ class OutlineMaker {
 
   void label(DrawnShape& face) const {
     const DrawnShape* found = nullptr;
-    for (const DrawnShape& shape : shapes_) {
-      if (shape.kind != DrawnShape::Kind::label || shape.rings[0].empty()) continue;
-      if (!strictly_inside(cleaned(face.rings[0]), shape.rings[0][0])) continue;
+    Box box;
+    for (const Vec2& v : face.rings[0]) box.include(v.x(), v.y());
+    for (const size_t i : labels_) {
+      const DrawnShape& shape = shapes_[i];
+      const Vec2& place = shape.rings[0][0];
+      if (apart({place.x(), place.y(), place.x(), place.y()}, box) ||
+          !strictly_inside(cleaned(face.rings[0]), place)) {
+        continue;
+      }
       if (found != nullptr) {
         refuse(shape, fmt::format("is a second label of one face, besides {}; take one away",
                                   shown_place(found->place, found->layer)));
@@ -169,6 +181,7 @@ class OutlineMaker {
     std::vector<BoxPair> pairs;
     BoxGrid().find_pairs(boxes, pairs);
     for (const BoxPair& pair : pairs) {
+      if (pair.first >= first_face_) continue;  // faces do not overlap each other
       const Polygon &a = polygons_[pair.first], &b = polygons_[pair.second];
       if (outlines_[pair.first].rings.size() + outlines_[pair.second].rings.size() > 2) continue;
       double shared = 0;
@@ -204,8 +217,10 @@ class OutlineMaker {
   std::vector<DrawnShape> shapes_;  // in m
   double tolerance_ = 0;
   std::vector<Outline> outlines_;
-  std::vector<Polygon> polygons_;   // the outer rings of the outlines
-  std::set<std::int32_t> hatches_;  // outlines that are the hatching of another one
+  std::vector<Polygon> polygons_;        // the outer rings of the outlines
+  std::int32_t first_face_ = INT32_MAX;  // of the outlines that are faces between lines
+  std::vector<size_t> labels_;           // numbers of shapes
+  std::set<std::int32_t> hatches_;       // outlines that are the hatching of another one
 };
 
 }  // namespace

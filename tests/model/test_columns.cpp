@@ -1,7 +1,9 @@
 // The quantities of bodies, and the columns of histories.
 #include "lib/model/columns.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <iterator>
 #include <map>
 
 #include "lib/mesh/rectangle_mesh.hpp"
@@ -41,10 +43,11 @@ std::vector<double> masses(const Model& model) {
   return mass;
 }
 
+// Those that a history has.
 std::map<std::string, double> quantities(const BodyMotion& motion) {
   std::map<std::string, double> values;
   for (const BodyQuantity& quantity : kBodyQuantities) {
-    values[quantity.name] = quantity.value(motion);
+    if (quantity.in_histories()) values[quantity.name] = quantity.value({motion, {6, {}}})[0];
   }
   return values;
 }
@@ -68,7 +71,7 @@ TEST_CASE("every quantity of a rigid body comes from its entries in the state", 
   const std::map<std::string, double> expected{
       {"x", kOriginX + .5}, {"y", kOriginY - .25}, {"angle", .3}, {"vx", 7},
       {"vy", -8},           {"spin", 9},           {"fx", 11},    {"fy", -12},
-      {"friction", 13}};
+      {"friction", 13},     {"coordination", 6}};
   CHECK(found == expected);
 }
 
@@ -106,7 +109,8 @@ TEST_CASE("every quantity of a body with a mesh is that of its nodes together", 
                                                {"spin", spin},
                                                {"fx", 21},
                                                {"fy", -22},
-                                               {"friction", 23}};
+                                               {"friction", 23},
+                                               {"coordination", 6}};
   REQUIRE(found.size() == expected.size());
   for (const auto& [name, value] : expected) {
     INFO(name);
@@ -169,17 +173,33 @@ TEST_CASE("stretching a mesh turns nothing, and a lone node moves the mean by it
   CHECK(moved.velocity.y() == Approx(6 * mass[4] / whole).epsilon(1e-14));
 }
 
+TEST_CASE("a rigid body has turned since the start by what its angle has changed", "[columns]") {
+  Model model = model_of_four();
+  model.bodies[1].angle = .1;
+  State state(Layout{2, model.node_count()});
+  state.pose(1) << 0, 0, .3;
+  CHECK(motion_of(model, state, 1, {}, masses(model)).rotation == .3 - .1);
+}
+
 TEST_CASE("each quantity has a name and a unit of its own", "[columns]") {
   std::map<std::string, int> names;
   for (const BodyQuantity& quantity : kBodyQuantities) {
     ++names[quantity.name];
     CHECK(std::string(quantity.unit).size() > 0);
+    // Histories and pictures show single numbers.
+    if (quantity.in_histories() || quantity.in_pictures()) CHECK(quantity.components() == 1);
+    CHECK((quantity.meaning == nullptr) == (quantity.symbol == nullptr));
   }
   CHECK(names.size() == kBodyQuantities.size());
-  // A body as a whole has one friction force: in frames, it is shown with its cells.
-  for (const BodyQuantity& quantity : kBodyQuantities) {
-    CHECK(quantity.in_frames == (std::string(quantity.name) == "friction"));
-  }
+}
+
+TEST_CASE("vectors and tensors of a body have their components in order", "[columns]") {
+  ObservedBody body;
+  body.motion.contact = {1, 2, 3};
+  body.statistics.stress = {4, 5, 6, 7, 8};
+  const auto value = [&](size_t quantity) { return kBodyQuantities[quantity].value(body); };
+  CHECK(value(body_quantity("contact_force")) == Components{1, 2, 0});
+  CHECK(value(body_quantity("mean_stress")) == Components{4, 5, 6});
 }
 
 TEST_CASE("a history has rigid bodies, meshes, surfaces and points, in this order", "[columns]") {
@@ -191,13 +211,16 @@ TEST_CASE("a history has rigid bodies, meshes, surfaces and points, in this orde
   settings.track_surfaces = {0};
   settings.points = {{"tip", 0, 0, {0}, {1}}};
   const std::vector<HistoryColumn> columns = history_columns(model, settings);
-  const size_t n = kBodyQuantities.size();
+  std::vector<BodyQuantity> shown;
+  std::ranges::copy_if(kBodyQuantities, std::back_inserter(shown), &BodyQuantity::in_histories);
+  const size_t n = shown.size();
   REQUIRE(columns.size() == 3 * n + kSurfaceColumns.size() + kPointColumns.size());
   for (size_t i = 0; i < n; ++i) {
-    CHECK(columns[i].name == std::string("two.") + kBodyQuantities[i].name);
-    CHECK(columns[i].unit == std::string(kBodyQuantities[i].unit));
-    CHECK(columns[n + i].name == std::string("one.") + kBodyQuantities[i].name);
-    CHECK(columns[2 * n + i].name == std::string("hard.") + kBodyQuantities[i].name);
+    CHECK(columns[i].name == std::string("two.") + shown[i].name);
+    CHECK(columns[i].unit == std::string(shown[i].unit));
+    CHECK(columns[i].jumps == (columns[i].name == "two.coordination"));
+    CHECK(columns[n + i].name == std::string("one.") + shown[i].name);
+    CHECK(columns[2 * n + i].name == std::string("hard.") + shown[i].name);
   }
   CHECK(columns[3 * n].name == "soft.pressure");
   CHECK(columns[3 * n + 1].name == "soft.half_width");

@@ -15,6 +15,7 @@
 #include "geometry/polygon/convex_parts.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "lib/output/frames.hpp"
+#include "lib/output/polygon_vtk.hpp"
 #include "lib/output/run_folder.hpp"
 #include "tests/contact/bodies.hpp"
 #include "tests/folder.hpp"

@@ -21,7 +21,7 @@ using namespace apothem::test;
 namespace {
 
 const FieldQuantity& quantity(const std::string& name) {
-  for (const FieldQuantity& q : kFieldQuantities) {
+  for (const FieldQuantity& q : field_quantities()) {
     if (q.name == name) return q;
   }
   throw std::logic_error(name);

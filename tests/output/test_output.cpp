@@ -26,6 +26,7 @@
 #include "lib/output/files.hpp"
 #include "lib/output/frames.hpp"
 #include "lib/output/history.hpp"
+#include "lib/output/polygon_vtk.hpp"
 #include "lib/output/run_folder.hpp"
 #include "tests/folder.hpp"
 #include "tests/support.hpp"
@@ -290,7 +291,8 @@ TEST_CASE("histories read back to the same doubles", "[output]") {
       const Energies e{any(), 0, any(), any(), 0, 0, any(), any()};
       const Momenta p{any(), any(), any(), any(), any(), any()};
       const std::vector<BodyForce> contact{{}, {0, 0, any()}};
-      writer.add(state, e, p, {.contact = contact});
+      writer.add(state, e, p,
+                 {.contact = contact, .bodies = std::vector<BodyStatistics>(contact.size())});
       rows.push_back({state.time, state.pose_rate(1)[0], state.force(1)[1], e.contact,
                       e.total_error, p.angular_error, contact[1].friction});
     }
@@ -372,7 +374,8 @@ TEST_CASE("expectations are judged by what was recorded", "[output]") {
   for (int i = 0; i <= 20; ++i) {  // a parabola with its top between two rows
     state.time = i * .1;
     state.pose(0)[1] = 3 - (state.time - 1.03) * (state.time - 1.03);
-    writer.add(state, {}, {}, {.contact = std::vector<BodyForce>(2)});
+    writer.add(state, {}, {},
+               {.contact = std::vector<BodyForce>(2), .bodies = std::vector<BodyStatistics>(2)});
   }
   writer.flush();
   const double top = 3 + model.origin.y();

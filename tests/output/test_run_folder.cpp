@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "lib/mesh/measure.hpp"
+#include "lib/output/field.hpp"
 #include "tests/folder.hpp"
 #include "tests/output/run_results.hpp"
 #include "tests/support.hpp"
@@ -33,12 +34,14 @@ TEST_CASE("bodies are read back as they were written", "[results]") {
   CHECK(block.present);
   CHECK_FALSE(block.meshed);
   CHECK(block.motion == Motion::free);
-  CHECK(block.rotation == .2);
-  CHECK(block.spin == .1);
-  CHECK(block.coordination == 4);
-  CHECK(block.mean_stress.xx == -3);
-  CHECK(block.mean_stress.yy == -5);
-  CHECK(block.mean_stress.xy == 1);
+  CHECK(block.rotation() == .2);
+  CHECK(block.spin() == .1);
+  CHECK(block.values[body_quantity("contact_force")] == Components{5, 6, 0});
+  CHECK(block.values[body_quantity("coordination")][0] == 4);
+  CHECK(block.values[body_quantity("friction")][0] == 3);
+  CHECK(block.mean_stress().xx == -3);
+  CHECK(block.mean_stress().yy == -5);
+  CHECK(block.mean_stress().xy == 1);
   CHECK(frame.bodies[3].meshed);
 
   // The L is one element again, although it was written as two convex cells.
@@ -72,6 +75,21 @@ TEST_CASE("bodies are read back as they were written", "[results]") {
     CHECK(frame.displacement[at] == u);
     CHECK(frame.position[at] == Vec2(Vec2(beam.nodes[n] + u) + model.origin));
   }
+}
+
+TEST_CASE("a frame from before there was a quantity is read, and has no values of it",
+          "[results]") {
+  const Folder folder;
+  write_results(folder.path(), model_of_results(false), 1);
+  std::string text = content(folder / "frames/bodies_000000.vtu");
+  const std::string name = "Name=\"coordination\"";
+  REQUIRE(text.find(name) != std::string::npos);
+  text.replace(text.find(name), name.size(), "Name=\"other\"");
+  folder.write("frames/bodies_000000.vtu", text);
+  const Frame frame = RunFolder(folder.path()).frame(0);
+  const Field field = field_of(frame, *field_quantity("coordination"));
+  CHECK(field.blank == std::vector<bool>(field.blank.size(), true));
+  CHECK_FALSE(field_of(frame, *field_quantity("spin")).blank.back());
 }
 
 TEST_CASE("chains and roses are read back as they were written", "[results]") {

@@ -252,7 +252,9 @@ TEST_CASE("a page holds the frames of its run", "[player]") {
         }
       }
       const double coordination = page.at("value_coordination", k * items + b);
-      if (b > 0) CHECK(coordination == frame.bodies[b].coordination);
+      if (b > 0) {
+        CHECK(coordination == frame.bodies[b].values[body_quantity("coordination")][0]);
+      }
     }
   }
   CHECK(left);

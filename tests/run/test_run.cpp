@@ -3,9 +3,11 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "lib/dynamics/unstable.hpp"
 #include "lib/output/history.hpp"
+#include "lib/output/run_folder.hpp"
 #include "tests/run/scenes.hpp"
 
 using namespace apothem;
@@ -184,6 +186,34 @@ TEST_CASE("a run with a folder writes its histories, frames and summary", "[run]
   // Results are not replaced, unless that is asked for.
   CHECK_THROWS_WITH(Run(scene, {.folder = folder / "out"}), Catch::Contains("--overwrite"));
   CHECK_NOTHROW(Run(scene, {.folder = folder / "out", .overwrite = true}));
+}
+
+TEST_CASE("histories and frames tell how many bodies each one touches", "[run]") {
+  const Folder folder;
+  const Scene scene = scene_of(folder, R"({ "gravity": [0, -10],
+    "materials": { "rock": { "density": 2000, "young": 1e9, "poisson": 0.2 } },
+    "contact": { "normal_stiffness": 1e9 },
+    "bodies": [
+      { "name": "floor", "material": "rock", "motion": "fixed", "polygon": [[-9, -1], [9, -1], [9, 1e-7], [-9, 1e-7]] },
+      { "name": "lower", "material": "rock", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]] },
+      { "name": "upper", "material": "rock", "polygon": [[0, 0.9999999], [1, 0.9999999], [1, 2], [0, 2]] },
+      { "name": "away", "material": "rock", "polygon": [[5, 1], [6, 1], [6, 2], [5, 2]] },
+      { "name": "soft", "material": "rock",
+        "mesh": { "rectangle": { "size": [1, 1], "cells": [2, 2], "origin": [2, 0] }, "element": "Q4" } } ],
+    "time": { "end": 1e-4 }, "output": { "frames": 1, "history": { "interval": 1e-5 } } })");
+  Run run(scene, {.folder = folder / "out"});
+  REQUIRE(run.run() == Run::Status::done);
+  const HistoryTable history = read_history(folder / "out/history.csv");
+  const Frame frame = read_frame(folder / "out", 0, 0);
+  const std::map<std::string, double> expected{
+      {"lower", 2}, {"upper", 1}, {"away", 0}, {"soft", 1}};
+  for (const auto& [name, count] : expected) {
+    INFO(name);
+    CHECK(history.column(name + ".coordination")->front() == count);
+    const auto body = std::ranges::find(frame.bodies, name, &FrameBody::name);
+    REQUIRE(body != frame.bodies.end());
+    CHECK(body->values[body_quantity("coordination")][0] == count);
+  }
 }
 
 TEST_CASE("a run that becomes unstable says why, and keeps what it has", "[run]") {

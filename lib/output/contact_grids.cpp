@@ -1,0 +1,95 @@
+#include "lib/output/contact_grids.hpp"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <array>
+
+namespace apothem {
+namespace {
+
+// A quantity of a contact patch in the frames. Scalars stand in x.
+struct PatchQuantity {
+  const char* name;
+  bool is_vector;
+  Vec2 (*value)(const ContactRecord&);
+};
+constexpr std::array kPatchQuantities{
+    PatchQuantity{
+        "force_on_a", true,
+        [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping + c.tangential; }},
+    PatchQuantity{"normal_force_on_a", true,
+                  [](const ContactRecord& c) -> Vec2 { return c.normal + c.damping; }},
+    PatchQuantity{"damping_force_on_a", true, [](const ContactRecord& c) { return c.damping; }},
+    PatchQuantity{"tangential_force_on_a", true,
+                  [](const ContactRecord& c) { return c.tangential; }},
+    PatchQuantity{"penetration", false,
+                  [](const ContactRecord& c) { return Vec2(c.penetration, 0); }},
+    PatchQuantity{"phi", false, [](const ContactRecord& c) { return Vec2(c.phi, 0); }}};
+
+}  // namespace
+
+vtkNew<vtkUnstructuredGrid> contact_patches(const Model& model,
+                                            const std::vector<ContactRecord>& contacts) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> a = integers("body_a");
+  vtkNew<vtkIntArray> b = integers("body_b");
+  for (const ContactRecord& contact : contacts) {
+    const Vec2 p = contact.point + model.origin;
+    cells->InsertNextCell(1);
+    cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+    a->InsertNextValue(contact.a);
+    b->InsertNextValue(contact.b);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_VERTEX, cells);
+  grid->GetPointData()->AddArray(a);
+  grid->GetPointData()->AddArray(b);
+  for (const PatchQuantity& quantity : kPatchQuantities) {
+    vtkNew<vtkDoubleArray> values = doubles(quantity.name, quantity.is_vector ? 3 : 1);
+    for (const ContactRecord& contact : contacts) {
+      const Vec2 value = quantity.value(contact);
+      if (quantity.is_vector) {
+        values->InsertNextTuple3(value.x(), value.y(), 0);
+      } else {
+        values->InsertNextValue(value.x());
+      }
+    }
+    grid->GetPointData()->AddArray(values);
+  }
+  return grid;
+}
+
+vtkNew<vtkUnstructuredGrid> contact_surfaces(const Model& model,
+                                             const std::vector<SurfaceRecord>& surfaces) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> body = integers("body");
+  vtkNew<vtkDoubleArray> pressure = doubles("contact_pressure", 1);
+  vtkNew<vtkDoubleArray> traction = doubles("tangential_traction", 1);
+  for (const SurfaceRecord& surface : surfaces) {
+    cells->InsertNextCell(2);
+    for (const Vec2& end : {surface.from, surface.to}) {
+      const Vec2 p = end + model.origin;
+      cells->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), 0));
+    }
+    body->InsertNextValue(surface.body);
+    pressure->InsertNextValue(surface.pressure);
+    traction->InsertNextValue(surface.traction);
+  }
+  grid->SetPoints(points);
+  grid->SetCells(VTK_LINE, cells);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{body, pressure, traction}) {
+    grid->GetCellData()->AddArray(array);
+  }
+  return grid;
+}
+
+}  // namespace apothem
