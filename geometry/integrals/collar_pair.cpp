@@ -23,10 +23,11 @@ bool CollarPair::find(const PlacedPotential& a, const PlacedPotential& b, const 
   return !deep_ && join_parts();
 }
 
-// Lists the pairs of near edges. False if they are many or unknown, if an edge may be so long that
-// PlacedEdge shortens it, or if a cell is not to be used.
+// Lists the pairs of near edges. Returns false if they are too many or unknown, if an edge may be
+// so long that PlacedEdge shortens it, or if a cell must not be used.
 bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const NearEdges& near) {
-  constexpr double kShort = 3.9;  // edge <= 2 radii; shortened beyond 8 of the other's
+  constexpr double kShort =
+      3.9;  // an edge is at most 2 radii long, and is shortened beyond 8 radii of the other polygon
   if (!a.cells || !b.cells || (a.distance == nullptr) != (b.distance == nullptr)) return false;
   if (!(a.radius < kShort * b.radius && b.radius < kShort * a.radius)) return false;
   if (near.margin == 0 || a.size > 64 || b.size > 64) return false;
@@ -72,12 +73,12 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
         [&](int k) APOTHEM_LAMBDA { return lanes[k].of_a ? offset.x() : -offset.x(); });
     const Pack dy = pack_of<kPack>(
         [&](int k) APOTHEM_LAMBDA { return lanes[k].of_a ? offset.y() : -offset.y(); });
-    // The edges: their starts and ends.
+    // The starts and ends of the edges.
     FourOf<Pack> vx, vy;
     read_rows([&](int k) APOTHEM_LAMBDA { return x(k).x + lanes[k].edge; }, vx);
     read_rows([&](int k) APOTHEM_LAMBDA { return x(k).y + lanes[k].edge; }, vy);
     const Pack px = vx[0] + dx, py = vy[0] + dy, end_x = vx[1] + dx, end_y = vy[1] + dy;
-    // The edge before a cell's own, this one and the one after it.
+    // The edge of each cell, and those before and after it.
     FourOf<Pack> cx, cy, gx, gy;
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).x + (lanes[k].cell - 1); }, cx);
     read_rows([&](int k) APOTHEM_LAMBDA { return y(k).y + (lanes[k].cell - 1); }, cy);
@@ -124,7 +125,7 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
                                              APOTHEM_LAMBDA { return p.reference.y(); }),
                                vx[1] - vx[0], vy[1] - vy[0]};
     scatter(edge, at(edge_));
-    // Of those that are parts of a run.
+    // Parts that end at a border are joined to segments later, which needs their moments.
     if (any(parts.there & ((parts.end0 > edge_end) | (parts.end1 > edge_end)))) {
       scatter(moments, at(moments_));
     }
@@ -132,12 +133,12 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
   }
 }
 
-// Puts the parts of each edge together to runs. False if an edge goes on in a cell that is not
-// listed, or in the sector of a vertex.
+// Joins the parts of each edge to segments. Returns false if an edge continues in a cell that is
+// not listed, or in the sector of a vertex.
 bool CollarPair::join_parts() {
   for (Bits rest = there_; rest != 0;) {
     const Lane& lane = lane_[std::countr_zero(rest)];
-    Bits parts = 0;  // of the same edge
+    Bits parts = 0;  // parts of the same edge
     do {
       parts |= rest & -rest;
       rest &= rest - 1;
@@ -155,7 +156,7 @@ bool CollarPair::join_parts_of_edge(Bits parts) {
     add_run(i, i);
     return true;
   }
-  // In the order along the edge.
+  // The parts are sorted along the edge.
   std::array<int, kMost> order;
   int n = 0;
   for (; parts != 0; parts &= parts - 1) {

@@ -1,6 +1,7 @@
-// The runs of two polygons that are not convex and touch with few edges, as most do in a pile. The
-// cells of each polygon's collar (collar_cells.hpp) then give both polygons' runs at once: a pair
-// of an edge of one polygon and a cell of the other one is a lane of a pack.
+// The boundary segments of two polygons that are not convex and touch with few edges, as most do in
+// a pile. The cells of the boundary layer of each polygon (boundary_layer.hpp) then give the
+// segments of both polygons at once: each lane of a pack is a pair of an edge of one polygon and a
+// cell of the other one.
 #pragma once
 
 #include <array>
@@ -14,12 +15,12 @@
 
 namespace apothem {
 
-/// Nothing is allocated.
+/// Finds the segments of a pair of polygons by their boundary layers. Nothing is allocated.
 class CollarPair {
  public:
   /// An edge in the frame of the other polygon.
   using Edge = edge_detail::EdgeFrame<double>;
-  /// A run, as of walk_runs (edge_trace.hpp).
+  /// A segment, as walk_segments finds it (edge_trace.hpp).
   struct Run {
     bool of_a;
     int edge, edge0, edge1;
@@ -28,23 +29,24 @@ class CollarPair {
     const edge_detail::EdgeSums<double>* integrals;
   };
 
-  /// Finds the runs; false if the collars do not tell them, or there are too many edges. The
-  /// arguments are those of pair_integral. The runs have the same bits as those of walk_runs.
-  /// What runs they are if edges coincide up to round-off is told by RunEnds::closed.
+  /// Finds the segments. Returns false if they do not follow from the boundary layers, or if there
+  /// are too many edges. The arguments are those of pair_integral. The segments have the same bits
+  /// as those of walk_segments. Where edges coincide up to round-off, SegmentEnds::closed tells
+  /// whether a segment is missing.
   bool find(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
             const NearEdges& near);
-  /// The runs of a in ascending order, and those of b.
+  /// The segments of a in ascending order, then those of b.
   [[nodiscard]] std::span<const Run> runs() const {
     return {runs_.data(), static_cast<size_t>(count_)};
   }
 
  private:
   static constexpr int kPack = kComparedLanes;
-  static constexpr int kMost = 32;  // lanes
+  static constexpr int kMost = 32;  // largest number of lanes
   using Pack = edge_detail::CellPack;
-  using Bits = std::uint32_t;  // of each lane
+  using Bits = std::uint32_t;  // one bit for each lane
   using Moments = SegmentMoments<double>;
-  // An edge of x and a cell of y; y is the polygon whose phi it is.
+  // An edge of x and a cell of y, where phi is the potential of y.
   struct Lane {
     bool of_a;
     int edge, cell;
@@ -60,12 +62,13 @@ class CollarPair {
   std::array<Lane, kMost> lane_;
   std::array<double, kMost> s0_, s1_;
   std::array<Edge, kMost> edge_;
-  std::array<Moments, kMost> moments_;  // of phi along a part
+  std::array<Moments, kMost> moments_;  // moments of phi along the part of each lane
   std::array<edge_detail::EdgeSums<double>, kMost> integrals_;
-  // Lanes that are listed, that have a part, and how it begins and ends.
+  // Lanes that are listed, that have a part, whose part begins or ends at the cell's own edge, and
+  // whose part begins or ends at a border.
   Bits listed_ = 0, there_ = 0, own0_ = 0, own1_ = 0, border0_ = 0, border1_ = 0;
-  bool deep_ = false;  // whether a part reaches the depth of its cell
-  int count_ = 0;      // runs
+  bool deep_ = false;  // true if a part reaches the depth of its cell
+  int count_ = 0;      // number of segments
   std::array<Run, kMost> runs_;
 };
 

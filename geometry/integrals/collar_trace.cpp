@@ -13,19 +13,19 @@ using namespace edge_detail;
 
 namespace {
 
-// The box of a polygon, so much larger that rounding lets nothing outside reach into it.
+// The box of a polygon, enlarged so that no point outside reaches into it by rounding.
 Box reach_of(const PlacedPotential& p, double dx, double dy) {
   const Box box = box_of(p, {dx, dy});
   return box.grown(kFarAway * box.extent());
 }
 
-// The sides of a box beyond which a point lies: a bit for each of the four.
+// The sides of a box beyond which a point lies, with one bit for each of the four.
 unsigned beyond(const Box& box, double x, double y) {
   return unsigned{x < box.x0} | unsigned{x > box.x1} << 1 | unsigned{y < box.y0} << 2 |
          unsigned{y > box.y1} << 3;
 }
 
-// Calls f(edge) for the edges whose boxes are not apart from another one.
+// Calls f(edge) for the edges whose boxes are not apart from the box `reach`.
 template <class F>
 void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& reach, const F& f) {
   unsigned start = beyond(reach, p.x[0] + dx, p.y[0] + dy);
@@ -53,7 +53,8 @@ void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, doubl
   find_deep(x, y, dx, dy);
 }
 
-// If nothing is known, edges are left out whose boxes are apart from the other polygon's.
+// Lists the edges that may enter y. If nothing is known, edges whose boxes are apart from that of y
+// are left out.
 void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
                              double dy, std::uint64_t near) {
   edges_.clear();
@@ -65,17 +66,18 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
   }
 }
 
-// Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
-// is deeper all along follows one that leaves the collar, or another one like itself. Cells that
-// only such edges reach may be unknown; so what follows a deep edge is deep as well, as long as it
-// begins inside.
+// Finds the remaining edges that are not entirely in the layer. The boundary of x is one line: an
+// edge that is deeper than the layer everywhere follows an edge that leaves the layer, or another
+// such edge. Cells that only such edges reach may be unknown. So an edge that follows one beyond
+// the layer is beyond the layer as well if it begins inside y.
 void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx,
                             double dy) {
   if (edges_.empty()) return;
   const auto begins_inside = [&](const Edge& edge) {
     return encloses(y, Vec2::Zero(), {x.x[edge.index] + dx, x.y[edge.index] + dy});
   };
-  // Where all edges are deeper, none of them follows another one.
+  // If all edges are beyond the layer, no edge that leaves the layer precedes them, and the first
+  // one has to be tested.
   const bool round = static_cast<int>(edges_.size()) == x.size;
   if (round && runs_.empty() && !edges_[0].deep) edges_[0].deep = begins_inside(edges_[0]);
   const Edge* before = nullptr;
@@ -106,14 +108,14 @@ void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& 
   for_each_edge(y, 0, 0, reach_of(x, dx, dy), add);
 }
 
-// The last window that begins with the cell or before it, or null.
+// The last window that begins at the cell or before it, or null.
 CollarTrace::Window* CollarTrace::window_of(int cell) {
   const auto behind = std::upper_bound(windows_.begin(), windows_.end(), cell,
                                        [](int c, const Window& w) { return c < w.first; });
   return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
-// Lists the cell; false if it was listed before.
+// Lists a cell. Returns false if it was listed before.
 bool CollarTrace::add_cell(int cell) {
   Window* const window = window_of(cell);
   if (window && cell < window->first + kPack) {
@@ -127,16 +129,17 @@ bool CollarTrace::add_cell(int cell) {
   return true;
 }
 
-// The same for the cells on both sides of one in which an edge has ended.
+// Lists the cells on both sides of a cell in which an edge has ended. Returns false if both were
+// listed before.
 bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
   const bool before = add_cell(cell == 0 ? y.size - 1 : cell - 1);
   const bool after = add_cell(cell + 1 == y.size ? 0 : cell + 1);
   return before || after;
 }
 
-// Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
+// True if the present edge touches edge c of y up to round-off, whose cell must not be used.
 bool CollarTrace::touches(const PlacedPotential& y, int c) const {
-  constexpr double kNear = 1e-9;  // phi
+  constexpr double kNear = 1e-9;  // round-off of phi
   const auto height = [&](double px, double py) {
     return y.gx[c] * (px - y.x[c]) + y.gy[c] * (py - y.y[c]);
   };
@@ -145,7 +148,7 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   };
   const double a = height(edge_->px, edge_->py), b = height(end_x_, end_y_);
   if (std::min(a, b) > kNear || std::max(a, b) < -kNear) return false;
-  // The part of the edge that is near the line.
+  // The part of the present edge that is near the line of edge c.
   const double s = (kNear - a) / (b - a), t = (-kNear - a) / (b - a);
   const bool level = !(std::abs(b - a) > kNear);
   const double s0 = level ? 0 : std::clamp(std::min(s, t), 0., 1.);
@@ -155,7 +158,7 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
-// The pieces of an edge in the cells of a window.
+// Finds the pieces of the present edge in the cells of a window.
 APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
                                                            const Window& window) {
   const auto line = [&](int i) APOTHEM_LAMBDA {
@@ -202,8 +205,8 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
 
 APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
                                              double dx, double dy) {
-  // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
-  // a border, in a cell that need not be listed, or need not be so deep.
+  // `ended` is the cell in which the edge before has ended, or -1. An edge that does not begin
+  // there begins on a border, in a cell that may be unlisted or too shallow.
   int ended = -1, last = -1;
   bool first_begins = false;
   for (Edge& listed : edges_) {
@@ -243,10 +246,10 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
   return true;
 }
 
-// False if there are more cells than were known.
+// Traces all edges. Returns false if more cells were found, so that the trace must be repeated.
 bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
   runs_.clear();
-  // A cell has one piece, and so has the sector of each of its two vertices.
+  // Each cell has at most one piece, and so has the sector of each of its two vertices.
   if (const size_t most = size_t{3} * kPack * windows_.size(); pieces_.size() < most)
     pieces_.resize(most);
   bool done = true;
@@ -257,7 +260,8 @@ bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, doub
   return done;
 }
 
-// Whether the piece stays in the collar, and the cells next to it are looked at as well.
+// Checks whether a piece stays in the layer and whether the adjacent cells are listed; cells that
+// are not are added.
 CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Piece& piece,
                                               int before, int after) {
   if (piece.end0 == kTop || piece.end1 == kTop) return Found::deep;
@@ -276,9 +280,9 @@ CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Pi
   return found;
 }
 
-// The pieces in the sectors of the vertices of all cells.
+// Finds the pieces of the present edge in the sectors of the vertices of all cells.
 CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
-  int last = -1;  // vertex
+  int last = -1;  // last vertex that was treated
   const bool begins_at_zero = !windows_.empty() && windows_[0].first == 0;
   for (const Window& window : windows_) {
     for (int k = 0; k < kPack; ++k) {
@@ -309,7 +313,8 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
            .arc = true,
            .foot = 0,
            .square = 0};
-  // Behind the end of the edge before the vertex, and before the start of the other one.
+  // The sector lies beyond the end of the edge before the vertex and beyond the start of the edge
+  // after it.
   const auto cut = [&](int e, double sign, bool closed, End by) {
     const auto foot = [&](double px, double py) {
       return sign * (y.gy[e] * (px - y.x[vertex]) - y.gx[e] * (py - y.y[vertex]));
@@ -343,7 +348,7 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
   return check_borders(y, piece, before, vertex);
 }
 
-// Puts the pieces of an edge in order, and together to runs.
+// Sorts the pieces of an edge and joins them to segments.
 void CollarTrace::close_pieces(const PlacedPotential& y) {
   const auto behind = [](const Piece& p, const Piece& q) {
     return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
@@ -353,7 +358,7 @@ void CollarTrace::close_pieces(const PlacedPotential& y) {
       std::swap(pieces_[j], pieces_[j - 1]);
     }
   }
-  // Where the next cell has no piece, the edge passes a vertex up to round-off.
+  // If the next cell has no piece, the edge passes a vertex up to round-off.
   const auto crossed = [](const Piece& piece, End end) { return end == kEdge ? -1 : piece.cell; };
   const auto border = [](End end) { return end == kBorderBefore || end == kBorderAfter; };
   Run* run = nullptr;

@@ -1,10 +1,10 @@
-// phi of a polygon that is not convex, along the edges of another polygon that stay in its collar
-// (collar_cells.hpp). Most contacts are that shallow. The heights of the ends of an edge over the
-// lines of the cells then give all: where the edge enters and leaves a cell, and phi between. Four
-// cells are the lanes of a pack.
+// phi of a polygon that is not convex, along the edges of another polygon that stay in its boundary
+// layer (boundary_layer.hpp). Most contacts are that shallow. Everything follows from the heights
+// of the ends of an edge over the lines of the cells: where the edge enters and leaves a cell, and
+// phi between. Four cells are the lanes of a pack.
 //
-// Two cells share the number that says where an edge passes from one to the other, so that round-
-// off leaves no gap between them, and overlaps are no longer than round-off.
+// Two adjacent cells share the number that says where an edge passes from one to the other, so that
+// round-off leaves no gap between them, and overlaps are no longer than round-off.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@
 
 namespace apothem {
 
-/// Nothing is allocated after the first calls with polygons of a given size.
+/// Finds the segments of a polygon in another one by the boundary layer of the latter. Nothing is
+/// allocated after the first calls with polygons of a given size.
 class CollarTrace {
  public:
   /// A maximal part of an edge inside the polygon, from s0 to s1, with the integrals of phi along
@@ -27,23 +28,23 @@ class CollarTrace {
     SegmentMoments<double> moments;
   };
 
-  /// An edge of x that may enter y. An edge that leaves the collar, or is deeper all along, has no
-  /// runs here.
+  /// An edge of x that may enter y. An edge that leaves the boundary layer, or is deeper
+  /// everywhere, is marked as beyond_layer and has no segments here.
   struct Edge {
     int index;
     edge_detail::PlacedEdge placed;
     bool deep;
-    size_t runs_end;  ///< its runs are those behind the edge before, up to here
+    size_t runs_end;  ///< end of its segments, which begin where those of the edge before end
   };
 
-  /// Finds the runs of x in y, whose coordinates are finite. The arguments are those of walk_runs
-  /// (edge_trace.hpp). What is found of an edge depends on the polygons alone, and not on near_x
-  /// and near_y. Without `use` all edges are as if they left the collar.
+  /// Finds the segments of x in y, whose coordinates are finite. The arguments are those of
+  /// walk_segments (edge_trace.hpp). The result for an edge depends on the polygons alone, and not
+  /// on near_x and near_y. With `use` false all edges count as beyond the layer.
   void find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
             std::uint64_t near_x, std::uint64_t near_y, bool use = true);
-  /// The edges that may enter, in ascending order.
+  /// The edges that may enter y, in ascending order.
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
-  /// The runs of all of them, along each edge.
+  /// The segments of all edges, in their order along each edge.
   [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
 
  private:
@@ -51,15 +52,16 @@ class CollarTrace {
   using Pack = edge_detail::CellPack;
   using End = edge_detail::CellEnd;
   enum class Found { all, neighbour, deep };
-  // A part of an edge in the cell of an edge, or, of an arc, in the sector of a vertex.
+  // A part of an edge in the cell of an edge of y, or in the sector of a vertex of y, where phi
+  // forms an arc.
   struct Piece {
-    double s0, s1, v0, v1;  // its ends, and phi there
+    double s0, s1, v0, v1;  // its ends, and phi at the ends
     End end0, end1;
     int cell;
     bool arc;
-    double foot, square;  // of an arc: s of the point nearest to the vertex, and phi^2 there
+    double foot, square;  // for an arc: s of the point nearest to the vertex, and phi^2 there
   };
-  // Cells of consecutive edges, from `first` on: a bit of `cells` for each.
+  // Cells of consecutive edges from `first` on, with one bit of `cells` for each.
   struct Window {
     int first;
     unsigned cells;
@@ -85,12 +87,12 @@ class CollarTrace {
   void find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy);
 
   std::vector<Edge> edges_;
-  std::vector<Window> windows_;                    // of y, in ascending order of their first cells
-  bool distance_ = false;                          // phi is the distance from the boundary
-  const edge_detail::PlacedEdge* edge_ = nullptr;  // the one at hand
-  double end_x_ = 0, end_y_ = 0;                   // its end
-  std::vector<Piece> pieces_;                      // of this edge, and
-  size_t count_ = 0;                               // how many of them there are
+  std::vector<Window> windows_;  // windows of cells of y, in ascending order of their first cells
+  bool distance_ = false;        // true if phi is the distance from the boundary
+  const edge_detail::PlacedEdge* edge_ = nullptr;  // the present edge
+  double end_x_ = 0, end_y_ = 0;                   // end of the present edge
+  std::vector<Piece> pieces_;                      // pieces of the present edge
+  size_t count_ = 0;                               // number of these pieces
   std::vector<Run> runs_;
 };
 

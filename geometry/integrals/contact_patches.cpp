@@ -14,15 +14,15 @@ using namespace edge_detail;
 
 namespace {
 
-// Splits a pair into runs and patches. An end of a run has the number 2 run if it is the start and
-// 2 run + 1 if it is the end.
+// Splits a pair into boundary segments and patches. The start of the segment i has the number 2 i,
+// and its end 2 i + 1.
 class Splitter {
  public:
   Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
            PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
       : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
 
-  /// Finds all runs and returns what pair_integral returns.
+  /// Finds all segments and returns what pair_integral returns.
   PairIntegral find_runs(NearEdges& near) {
     const auto begin = [&] {
       runs_.clear();
@@ -44,7 +44,7 @@ class Splitter {
 
   [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
 
-  /// Joins the runs to patches.
+  /// Joins the segments to patches.
   void group() {
     const auto grow = [](auto& list, size_t least) {
       if (list.size() < least) list.resize(2 * least);
@@ -60,7 +60,7 @@ class Splitter {
     if (loose_ > 0) join_loose_ends();
   }
 
-  /// Numbers the patches in the order of their first run and returns how many there are.
+  /// Numbers the patches in the order of their first segment and returns their number.
   int number() {
     int count = 0;
     for (int r = 0; r < size(); ++r) {
@@ -70,7 +70,8 @@ class Splitter {
     return count;
   }
 
-  /// Sums the integrals of the runs over each of the `count` patches. The list is empty before.
+  /// Sums the integrals of the segments over each of the `count` patches, and appends them to the
+  /// empty list.
   void sum(int count, std::vector<PairIntegral>& patches) {
     work_.of_a.assign(count, {});
     work_.of_b.assign(count, {});
@@ -85,7 +86,7 @@ class Splitter {
   }
 
  private:
-  // The integrals are those that `combine` makes of one run.
+  // Appends a segment. Its integrals are those that `combine` would give for it alone.
   template <class Edge>
   void add_run(bool of_a, int e, const Edge& edge, const RunSpan& span,
                const EdgeSums<double>& half) {
@@ -114,8 +115,8 @@ class Splitter {
     return run;
   }
 
-  // Joins two ends. The smaller root becomes the root of the union, because it is the first run of
-  // the patch.
+  // Joins two ends. The smaller root becomes the root of the union, because it is the first segment
+  // of the patch.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
     loose_ -= 2;
@@ -124,8 +125,8 @@ class Splitter {
     work_.parent[std::max(first, second)] = std::min(first, second);
   }
 
-  // Joins runs that follow each other at a vertex. The runs first to last - 1 belong to one polygon
-  // and are in the order of its edges, whose number is `edges`.
+  // Joins segments that follow each other at a vertex. The segments first to last - 1 belong to one
+  // polygon and are in the order of its edges, whose number is `edges`.
   void join_at_vertices(int first, int last, int edges) {
     for (int r = first; r < last; ++r) {
       const int next = r + 1 < last ? r + 1 : first;
@@ -137,7 +138,8 @@ class Splitter {
     }
   }
 
-  // Joins runs where edge i of a crosses edge j of b. They are found by (i, j) and not by position.
+  // Joins segments where edge i of a crosses edge j of b. They are found by (i, j) and not by
+  // position.
   void join_at_crossings() {
     const auto end_of_a = runs_.begin() + of_a_;
     for (int end = 2 * of_a_; end < 2 * size(); ++end) {
@@ -157,11 +159,11 @@ class Splitter {
   }
 
   // Joins the ends that are still loose. The part of the boundary that round-off has lost between
-  // the end of a run and the start of the next one lies on both boundaries up to round-off: either
-  // the straight line between them does, or one of the two boundaries stays near the other all the
-  // way. Neither is true between ends of different patches. The length of the lost part decides
-  // only between candidates that are equally near. Two starts, or two ends, are joined only if they
-  // are at the same place; their cost is their distance.
+  // the end of a segment and the start of the next one lies on both boundaries up to round-off:
+  // either the straight line between them does, or one of the two boundaries stays near the other
+  // all the way. Neither is true between ends of different patches. The length of the lost part
+  // decides only between candidates that are equally near. Two starts, or two ends, are joined only
+  // if they are at the same place; their cost is their distance.
   void join_loose_ends() {
     auto& bridges = work_.bridges;
     bridges.clear();
@@ -201,8 +203,8 @@ class Splitter {
     return walk2(b_, shift_b(), a_, shift_a(), end, start, along_a);
   }
 
-  // The same if the lost part is the boundary of x from `end` to `start`, or `most` if that is
-  // smaller.
+  // The square of the gap if the lost part is the boundary of x from `end` to `start`, or `most` if
+  // that is smaller.
   static double walk2(const PlacedPotential& x, const Vec2& shift_x, const PlacedPotential& y,
                       const Vec2& shift_y, const Vec2& end, const Vec2& start, double most) {
     const Place from = nearest(x, shift_x, end);
@@ -227,8 +229,8 @@ class Splitter {
     return std::min(worst, most);
   }
 
-  // A point on a boundary: `share` is its position along the edge, from 0 to 1, and `distance2` its
-  // squared distance from the point that was asked for, m^2.
+  // The point on a boundary that is nearest to a given point: `fraction` is its position along the
+  // edge, from 0 to 1, and `distance2` its squared distance from the given point, m^2.
   struct Place {
     int edge;
     double share, distance2;
@@ -246,7 +248,7 @@ class Splitter {
     return place;
   }
 
-  // From a's reference point to the origins of the frames of a and b.
+  // The vectors from a's reference point to the origins of the frames of a and b.
   [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
   [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
 
@@ -276,7 +278,7 @@ class Splitter {
   const Vec2 offset_, arm_;
   PatchWorkspace& work_;
   std::vector<BoundaryRun>& runs_;
-  int of_a_ = 0;   // number of runs on edges of a, which come first
+  int of_a_ = 0;   // number of segments on edges of a, which come first
   int loose_ = 0;  // number of ends that are not joined
 };
 
@@ -335,7 +337,7 @@ void shared_length(std::span<const RunPlace> before, int patches_before,
   const auto behind = [](const RunPlace& r, const RunPlace& s) {
     return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
   };
-  size_t first = 0;  // first run of `now` on the edge of `old` or after it
+  size_t first = 0;  // first segment of `now` on the edge of `old` or after it
   for (const RunPlace& old : before) {
     while (first < now.size() && behind(now[first], old)) ++first;
     for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {

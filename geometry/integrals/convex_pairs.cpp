@@ -26,18 +26,19 @@ APOTHEM_INLINE double largest(const Four& p) {
 }
 
 // Above this ratio of the sizes of two polygons edges may have to be shortened, and heights at
-// their ends are not exact enough to leave them out: an edge is at most twice as long as the
+// their ends are not accurate enough to exclude them. An edge is at most twice as long as the
 // radius.
 constexpr double kSimilar = 3.99;
 bool is_long(double radius, double of_other) { return !(radius < kSimilar * of_other); }
 
 }  // namespace
 
-// Makes room for the largest number of pairs of polygons with so many sides.
+// Makes room for kAtOnce pairs of polygons with at most most_sides_ sides.
 void ConvexPairs::make_room() {
   const auto sides = static_cast<size_t>(most_sides_), groups = (sides + kLanes - 1) / kLanes;
   const size_t edges = 2 * sides * kAtOnce;
-  rows_.resize(2 * (sides + 1 + 2 * sides) * groups * kAtOnce);  // some edges may be shortened
+  rows_.resize(2 * (sides + 1 + 2 * sides) * groups *
+               kAtOnce);  // two more rows for each edge that is shortened
   copies_.resize(8 * groups * kAtOnce);
   parts_.resize(edges + 1);
   for (size_t g = 0; g < groups; ++g) edges_[g].resize(edges + kLanes);
@@ -56,16 +57,16 @@ void ConvexPairs::fill_up(Side& side, Numbers*& to) {
   }
 }
 
-// Writes the heights of the vertices of x, at (dx, dy), over the edges of y: a row for each vertex
-// and the first one again. Returns how far outside one edge of y all of x lies, in the unit of the
-// heights; 0 if there is no such edge. `edges` become those of x that are not wholly beyond one
-// edge of y by more than `margin`, by bits.
+// Writes the heights of the vertices of x, moved by (dx, dy), over the edges of y: one row for each
+// vertex and the first row again. Returns how far outside one edge of y all of x lies, in the unit
+// of the heights, or 0 if there is no such edge. Sets in `edges` the bits of those edges of x that
+// are not entirely beyond one edge of y by more than `margin`.
 template <bool quads>
 APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, double dx, double dy,
                                                 double margin, Numbers* rows, unsigned& edges) {
   const int size = quads ? 4 : x.size, groups = quads ? 1 : y.groups;
   const Four least(-margin);
-  std::array<unsigned, kMostSides + 1> beyond;  // edges of y that a vertex is beyond, by bits
+  std::array<unsigned, kMostSides + 1> beyond;  // bits of the edges of y that each vertex is beyond
   unsigned beyond_all = ~0U;
   const auto height = [&](int v, int g) APOTHEM_LAMBDA {
     const int first = kLanes * g;
@@ -90,7 +91,7 @@ APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, do
     edges |= unsigned{(beyond[k] & beyond[k + 1]) == 0} << v;
   }
   if (beyond_all == 0) return 0;
-  // A number that is not finite keeps the polygons together.
+  // If a number is not finite, the polygons do not count as apart.
   Four all(0.);
   double gap = -HUGE_VAL;
   for (int g = 0; g < groups; ++g) {
@@ -141,7 +142,7 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
   list_edges(b, a, -pair.dx, -pair.dy, edges_b, of_b, b_is_long, rows);
 }
 
-// Lists edges of x. If x is much larger than y, edges are shortened: see BasicEdge.
+// Lists edges of x. If x is much larger than y, edges are shortened, see BasicEdge.
 APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double dx, double dy,
                                             unsigned edges, const Numbers* heights, bool is_long,
                                             Numbers*& rows) {
@@ -151,7 +152,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
   const auto put = [&](int e) APOTHEM_LAMBDA {
     next->from = heights + std::ptrdiff_t{e} * y.groups;
     next->until = next->from + y.groups;
-    // Written at once, as it will be read.
+    // The frame is written as one pack, as it will be read.
     Four(Four::Vector{x.x[e] + dx - y.reference_x, x.y[e] + dy - y.reference_y, x.x[e + 1] - x.x[e],
                       x.y[e + 1] - x.y[e]})
         .store(&next->frame.qx);
@@ -159,7 +160,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
     next->number = e;
     next->whole = true;
   };
-  // Most have one edge or two: these are written without a branch.
+  // Most polygons have one edge or two here, which are written without a branch.
   const int count = std::popcount(edges);
   for (int k = 0; k < 2; ++k, ++next) {
     put(std::countr_zero(edges | 1U << (x.size - 1)));
@@ -192,8 +193,8 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
   }
 }
 
-// Four edges over polygons with so many groups of edges: their parts inside, and phi along
-// these.
+// Integrates four edges over polygons with `groups` groups of edges: finds their parts inside, and
+// phi along these.
 template <bool one_group>
 APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   std::array<Four, one_group ? 4 : kMostSides> from, until;
@@ -216,7 +217,7 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   const Four::Mask inside = clip(row, s0, s1);
   const SegmentMoments<Four> moments = any(inside)
                                            ? envelope_moments(row, s0, s1, inside)
-                                           : SegmentMoments<Four>();  // 0 where nothing lies inside
+                                           : SegmentMoments<Four>();  // 0 where no part lies inside
   const Four zero(0.), nowhere(std::numeric_limits<double>::quiet_NaN());
   const auto part = [&](int k) APOTHEM_LAMBDA -> Part& {
     return parts_[static_cast<size_t>(edges[k].part)];
@@ -237,8 +238,8 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   }
 }
 
-// Calls f(part) for all of them. Most polygons have one or two: these go without a branch, with
-// what changes no sum and no extent in the place of a missing one.
+// Calls f(part) for the parts of a polygon. Most polygons have one or two parts. These calls have
+// no branch; a missing part is replaced by one that changes no sum and no extent.
 template <class F>
 APOTHEM_INLINE void ConvexPairs::each_part(const Part* from, const Part* until, const F& f) {
   static constexpr double kNoEnd = std::numeric_limits<double>::quiet_NaN();
@@ -249,12 +250,13 @@ APOTHEM_INLINE void ConvexPairs::each_part(const Part* from, const Part* until, 
   for (auto k = std::ptrdiff_t{2}; k < count; ++k) f(from[k]);
 }
 
-// The results of `count` pairs from `first` on, up to four. The formulas are those of `join`.
+// Sums the results of `count` pairs from `first` on, at most four. The formulas are those of
+// `join`.
 APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
   FourOf<Four> linear_a, others_a, linear_b, others_b;
   std::array<std::uint64_t, kLanes> inside_a, inside_b;
   const Four::Mask last{Four::Mask::Vector{0, 0, 0, -1}};
-  // Lanes that are left over do the last pair again.
+  // The remaining lanes are padding, which repeats the last pair.
   const auto pair = [&](size_t k) APOTHEM_LAMBDA -> const Pair& {
     return pairs_[first + std::min(k, count - 1)];
   };
@@ -375,7 +377,7 @@ std::span<const PairIntegral> ConvexPairs::evaluate() {
     for (int groups = 1; groups <= kGroups; ++groups) {
       Edge* const edges = edges_[static_cast<size_t>(groups - 1)].data();
       const int count = listed_[static_cast<size_t>(groups - 1)];
-      // Lanes that are left over do the last edge again, for nobody.
+      // The remaining lanes are padding: they repeat the last edge, and their results are not used.
       for (int k = count; k % kLanes != 0; ++k) {
         edges[k] = edges[count - 1];
         edges[k].part = found_;

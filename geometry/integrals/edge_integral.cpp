@@ -61,7 +61,8 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
                     const Parts& parts) {
   std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
   if (p.roof) {
-    // Parts reach beyond their polygon; faces that it does not meet need not be summed up to 0.
+    // Convex parts may reach beyond their polygon. Faces that the polygon does not meet are
+    // skipped, because their sum would be 0.
     const lower_envelope::Bounds<double> reach(other);
     std::vector<Ring> faces;
     std::vector<lower_envelope::Line<double>> of_faces;
@@ -85,8 +86,8 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
   return volume;
 }
 
-// The same if p has a distance field. `shift` moves the coordinates of the other polygon to the
-// frame of p.
+// INT phi_p dA over the overlap if p has a distance field. `shift` moves the coordinates of the
+// other polygon to the frame of p.
 double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
                              const Vec2& shift) {
   std::vector<double> x, y;

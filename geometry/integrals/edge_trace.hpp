@@ -1,6 +1,6 @@
 // The potential phi of one polygon along the edges of another one, and the sums that give the
-// integrals of a pair. This header is private to edge_integral.cpp and contact_patches.cpp;
-// contact_patches.hpp includes it for the types of its workspace.
+// integrals of a pair. This header is private to geometry/integrals; contact_patches.hpp includes
+// it for the types of its workspace.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace apothem::edge_detail {
 // phi along an edge as the minimum of the linear functions a_i + s (b_i - a_i), s in [0, 1]. a_i
 // and b_i are the heights of the two ends of the edge over edge i of the other polygon, divided by
 // the reference length. The limit phi <= 1 is one more function, with a_i = b_i = 1. A row of packs
-// is of several edges.
+// belongs to several edges.
 template <class Real>
 struct Row {
   const Real* a;
@@ -117,9 +117,9 @@ APOTHEM_INLINE SegmentMoments<Real> envelope_moments(const Row<Real>& row, const
   return moments;
 }
 
-// Growth of a box, relative to its extent, beyond which rounding lets nothing reach into it.
+// Growth of a box, relative to its extent, so that rounding lets no point outside reach into it.
 inline constexpr double kFarAway = 1e-9;
-// Error of a distance between two polygons, relative to their sizes; amply.
+// Generous bound of the error of a distance between two polygons, relative to their sizes.
 inline constexpr double kRoundOff = 1e-12;
 
 // Heights of a point over the edges of y divided by the reference length, and 1 if phi is limited.
@@ -169,8 +169,8 @@ inline void add_capped(double u1, double v1, double u2, double v2,
 }
 
 /// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
-/// `heights` has written, or computed in `spare`, which has room for two rows, if the edge has been
-/// shortened.
+/// `heights` has written, or, if the edge has been shortened, computed in `scratch`, which has room
+/// for two rows.
 inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
                           const double* rows, double* spare) {
   const int width = y.size + (y.capped ? 1 : 0);
@@ -265,8 +265,9 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
   return -1;
 }
 
-/// Calls run(s0, edge0, s1, edge1, moments) for the runs of an edge in y, which is not convex, by
-/// all of its roof or of its distance field. The nodes of a roof are placed in the workspace.
+/// Calls segment(s0, edge0, s1, edge1, moments) for the segments of an edge in y, which is not
+/// convex, by its whole roof or distance field. The nodes of a roof must have been placed in the
+/// workspace.
 template <class Run>
 void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
                const Run& run) {
@@ -285,12 +286,13 @@ void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& 
       end);
 }
 
-/// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
-/// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
-/// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
-/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and `near_y`
-/// those of y that may enter x. `collars` tells whether edges in the collar of y go by it alone.
-/// Returns 0, or NaN without any call if y is not convex and a coordinate is not finite.
+/// Finds the segments of x: the maximal parts of its edges that lie inside y. Calls segment(e,
+/// edge, s0, edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of
+/// phi of y along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y
+/// that x crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and
+/// `near_y` those of y that may enter x. With `use_layer`, edges that stay in the boundary layer of
+/// y are evaluated by it alone. Returns 0, or NaN without any call if y is not convex and a
+/// coordinate is not finite.
 template <bool crossings, class Run>
 double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                  std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
@@ -303,7 +305,7 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
     CollarTrace& collar = workspace.collar;
     collar.find(x, y, dx, dy, near, near_y, collars);
     size_t r = 0;
-    bool nodes = false;  // whether they are placed
+    bool nodes = false;  // whether the nodes of the roof are placed
     for (const CollarTrace::Edge& edge : collar.edges()) {
       for (; r < edge.runs_end; ++r) {
         if (edge.deep) continue;
@@ -340,7 +342,7 @@ struct Extent {
   void include(double t) { low = std::min(low, t), high = std::max(high, t); }
 };
 
-/// The ends of runs, in a buffer that never shrinks.
+/// The ends of segments, in a buffer that never shrinks.
 class RunEnds {
  public:
   explicit RunEnds(std::vector<double>& buffer) : buffer_(buffer) {}
@@ -355,10 +357,11 @@ class RunEnds {
   /// Number of coordinates.
   [[nodiscard]] size_t used() const { return used_; }
   void clear() { used_ = 0; }
-  /// True if the runs are the sides of closed polygons, as the boundary of an overlap is, so that
-  /// none is missing. Runs that lie on each other may count twice; then it is false.
+  /// True if the segments are the sides of closed polygons, as the boundary of an overlap is, so
+  /// that none is missing. Segments that lie on each other may count twice; then the result is
+  /// false.
   [[nodiscard]] bool closed() const {
-    constexpr double kOpen = 1e-9;  // of the length of all runs
+    constexpr double kOpen = 1e-9;  // tolerance relative to the length of all segments
     double x = 0, y = 0, length = 0;
     for (size_t i = 0; i < used_; i += 4) {
       const double ex = buffer_[i + 2] - buffer_[i], ey = buffer_[i + 3] - buffer_[i + 1];
@@ -400,7 +403,8 @@ inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, con
   return pair;
 }
 
-/// True if both polygons are convex and apart; then `near` gets the margin, if it is not known.
+/// True if the polygons are apart. If both are convex, `near` gets their distance as its skin,
+/// unless it has one.
 APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
                               double steepest, NearEdges& near) {
   if (!(gap > 0)) return false;
@@ -412,8 +416,8 @@ APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const Placed
   return true;
 }
 
-/// The ends of a run along its edge, and the edges of the other polygon that it crosses there, as
-/// of walk_runs.
+/// The ends of a segment along its edge, and the edges of the other polygon that it crosses there,
+/// as in walk_segments.
 struct RunSpan {
   double s0;
   int edge0;
@@ -422,12 +426,12 @@ struct RunSpan {
 };
 
 /// Computes the integrals of a pair. Arguments and result are those of pair_integral. Calls
-/// run(of_a, e, edge, span, sums) for every run of edge e of a, and then of b; before the first one
-/// it calls begin().
+/// segment(of_a, e, edge, span, sums) for every segment of edge e of a, and then of b; before the
+/// first one it calls begin().
 ///
-/// The runs are found by those ways that are known, the fastest first. If they are not closed,
-/// features of the polygons coincide up to round-off, and the next way is taken: of a few near
-/// edges CollarPair; collars; at last the whole potentials.
+/// The segments are found by several methods, the fastest first: LayerPair for a few near edges,
+/// then the boundary layers, then the whole potentials. If the segments are not closed, features of
+/// the polygons coincide up to round-off, and the next method is used.
 template <bool crossings, class Begin, class Run>
 PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                             NearEdges& near, EdgeWorkspace& workspace, const Begin& begin,

@@ -23,7 +23,8 @@ double distance2(const Vec2& point, const Segment& s) {
   return nearest_on_segment(point - s.from, s.to - s.from).distance2;
 }
 
-// Segments that cross up to round-off have an end that is as near as that, or cross clearly.
+// The squared distance of two segments. Segments that only just cross have an end whose distance is
+// round-off; others cross clearly.
 double distance2(const Segment& s, const Segment& t) {
   const auto separates = [](const Segment& line, const Segment& other) {
     const Vec2 along = line.to - line.from;
@@ -35,8 +36,8 @@ double distance2(const Segment& s, const Segment& t) {
       {distance2(s.from, t), distance2(s.to, t), distance2(t.from, s), distance2(t.to, s)});
 }
 
-// The edges of x whose boxes are nearer than `margin` to the box of the other polygon. Lowers
-// `rest2` to the squared distance of the others.
+// Finds the edges of x whose boxes are nearer than the skin to the box of the other polygon. Lowers
+// `rest2` to the squared distance of the other edges.
 void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, double margin2,
              std::vector<Segment>& segments, double& rest2) {
   segments.clear();
@@ -80,7 +81,7 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const double size =
       (box_a.x1 - box_a.x0) + (box_a.y1 - box_a.y0) + (box_b.x1 - box_b.x0) + (box_b.y1 - box_b.y0);
   const double finite = size + all_finite(a, b, offset.x(), offset.y());
-  // Distances are rounded; what is no farther away than that is near.
+  // Distances are rounded; an edge within the round-off counts as near.
   const double round = 1e-12 * size;
   if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};
   const double margin2 = margin * margin;

@@ -11,8 +11,9 @@ namespace apothem {
 
 namespace {
 
-constexpr double kAccuracy = 1e-12;  // of a largest distance, relative
-constexpr double kShortest = 1e-14;  // interval that is not divided, share of the segment
+constexpr double kAccuracy = 1e-12;  // relative accuracy of a largest distance
+constexpr double kShortest =
+    1e-14;  // shortest interval to be divided, as a fraction of the segment
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -82,7 +83,7 @@ void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const
       boundary.add(Vec2(p.x[i], p.y[i]) - origin, Vec2(p.x[i + 1], p.y[i + 1]) - origin);
     }
   };
-  // The points of runs are relative to the reference point of a.
+  // The points of segments are relative to the reference point of a.
   place(a, a.reference, workspace.a);
   place(b, edge_detail::arm(a, b, offset) + b.reference, workspace.b);
   for (const BoundaryRun& run : runs) {

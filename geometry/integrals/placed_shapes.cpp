@@ -8,8 +8,8 @@
 namespace apothem {
 namespace {
 
-// A point in the frame of the edge from `v` to `w`: its components along and across, over the
-// length of the edge.
+// A point in the frame of the edge from `v` to `w`: its components along and across the edge,
+// divided by the length of the edge.
 Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
   const Vec2 edge = w - v, from = point - v;
   return Vec2(edge.dot(from), cross(edge, from)) / edge.squaredNorm();
@@ -98,10 +98,10 @@ PlacedPotential PlacedShapes::turn(int i, const SineCosine& angle, Turned& turne
 
 int PlacedShapes::add_deforming(const Potential& potential) {
   const int i = add(potential);
-  // Its inradius may grow beyond the length that it had at first, and its size is not known.
+  // The inradius may grow beyond its initial value, and the size is not known.
   shapes_[i].capped = true;
   shapes_[i].radius = 0;
-  inverse_length_.resize(shapes_[i].edges);  // without those of shapes that do not deform
+  inverse_length_.resize(shapes_[i].edges);  // entries of shapes that do not deform are not used
   for (const Vec2& g : potential.gradients) inverse_length_.push_back(g.norm());
   return i;
 }

@@ -26,7 +26,7 @@ struct Placement {
     double radius = 0;
     for (size_t i = 2; i < n + 2; ++i)
       radius = std::max(radius, hypotenuse(x[i] - x[1], y[i] - y[1]));
-    // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
+    // The boundary nodes are the vertices exactly as given. The inner nodes are shifted from the
     // coordinates of the polygon.
     view = {.x = x.data() + 1,
             .y = y.data() + 1,

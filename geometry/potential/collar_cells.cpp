@@ -9,20 +9,20 @@
 namespace apothem {
 namespace {
 
-constexpr double kSafe = .99;  // share of the height at which the front meets itself
-// Vertices that turn by less (sine) have no bisector that round-off leaves in its place, and edges
-// that are shorter (share of the polygon's extent) no two bisectors in their order.
+constexpr double kSafe = .99;  // depth of a cell over the height at which the front meets itself
+// At a vertex with a smaller turn (sine), round-off moves the bisector too much. At an edge shorter
+// than this fraction of the polygon's extent, round-off may exchange the two bisectors.
 constexpr double kLeastTurn = 1e-4;
 constexpr double kShortest = 1e-6;
 
-// Cells up to the given heights (phi) over their edges.
+// The layer whose cells reach up to the given heights (phi) over their edges.
 CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights) {
   const int n = polygon.size();
   const double shortest = kShortest * bounding_box(polygon).extent();
   CollarCells cells;
   cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
   cells.side.assign(cells.depth.size() + 1, 1);
-  // phi is limited to 1, and no cell is used beyond that.
+  // Cells end at phi = 1, because phi is limited to 1.
   for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
   for (int e = 0; e < n; ++e) {
     const int before = e == 0 ? n - 1 : e - 1;
@@ -66,7 +66,7 @@ CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
 // nearer than 2 h to the edge. For neighbours the cells themselves decide. Heights end at 1/slope,
 // where phi = 1, and at a multiple of the edge's length, so that few edges have to be looked at.
 CollarCells collar_cells(const Polygon& polygon, double slope) {
-  constexpr double kHighest = 8;  // of its length
+  constexpr double kHighest = 8;  // largest height of a cell over the length of its edge
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n));  // m
   std::vector<Box> boxes(heights.size());

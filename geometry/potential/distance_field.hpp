@@ -99,9 +99,9 @@ class DistanceTrace {
   }
 
   /// For every part of the segment p + s e, s in [0, 1], that lies inside the polygon, adds the
-  /// integrals of phi to `moments` and then calls run(s0, edge0, s1, edge1). `edge0` and `edge1`
-  /// are the polygon's edges that the segment crosses at the ends of the part, or -1 at an end of
-  /// the segment itself.
+  /// integrals of phi to `moments` and then calls segment(s0, edge0, s1, edge1). `edge0` and
+  /// `edge1` are the polygon's edges that the segment crosses at the ends of the part, or -1 at an
+  /// end of the segment itself.
   template <class Run>
   void runs(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
             const Real& ey, SegmentMoments<Real>& moments, const Run& run) {

@@ -9,7 +9,7 @@
 //   quadratic in the size of T.
 // - Lower bound: f_i is nowhere below its tangent plane at any point. A step to the highest point
 // of
-//   the tangent planes that would make f smaller is not taken; the steps converge quadratically to
+//   the tangent planes is not taken if it would make f smaller; the steps converge quadratically to
 //   a centre.
 // The result is a value of f at a point inside the polygon, so neither round-off nor a degenerate
 // position can make the radius too large. The upper bound ends the search only when no larger
@@ -42,14 +42,14 @@ namespace {
 constexpr double kNoise = 0x1p-50;        // larger than the round-off of a distance
 constexpr double kSameRadius = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
 constexpr double kSmallest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
-constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
+constexpr double kSamePlace = 1e-6;       // centres closer than this fraction of the radius are one
 constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
 constexpr size_t kManyEdges = 200;  // a search for a polygon with more edges starts with its box
 constexpr size_t kCellsPerReport = 100;
 constexpr size_t kMostCells = 2000;  // per edge; then that search is given up
 constexpr size_t kLongList = 64;     // with more edges in its list, a triangle is usually halved
-constexpr double kSimilar = .7;      // unless halving leaves more than this share of the list
-constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as none
+constexpr double kSimilar = .7;      // unless halving leaves more than this fraction of the list
+constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as zero
 constexpr double kInTheWay = .5;  // a circle that moves towards an edge at this rate stops at once
 constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
 // Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
@@ -338,8 +338,8 @@ class Search {
     return longest;
   }
 
-  // True if edges that the circle at a point touches stand in its way in the directions u and -u,
-  // which is so for most pairs of edges of a round polygon.
+  // True if edges that the circle at a point touches block it in the directions u and -u, which is
+  // the case for most pairs of edges of a round polygon.
   static bool blocked(const std::vector<const Edge*>& touched, const Vec2& point, const Vec2& u) {
     bool ahead = false;
     bool behind = false;

@@ -13,7 +13,7 @@ namespace {
 // of a rectangle's largest inscribed circles form a segment, although round-off makes the heights
 // at its ends differ.
 constexpr double kSameHeight = 1e-13;
-// A radius of the largest inscribed circle below this share of the polygon's size consists of
+// A radius of the largest inscribed circle below this fraction of the polygon's size consists of
 // round-off.
 constexpr double kThinnest = 8 * 0x1p-52;
 

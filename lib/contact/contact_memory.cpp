@@ -9,7 +9,8 @@
 namespace apothem {
 namespace {
 
-// The numbers in another scene of what belongs to bodies: -1 where there is no heir.
+// Maps the surface, vertex and body numbers of one scene to those of another scene. The result is
+// -1 for what belongs to a body that the other scene does not have.
 class Renumbering {
  public:
   Renumbering(const ContactNumbers& from, const ContactNumbers& to,
@@ -64,11 +65,12 @@ std::optional<ContactKey> renumbered(const ContactKey& old, const Renumbering& t
   return key;
 }
 
-// The lower number comes first, but for edges and their partners.
+// True if the two surfaces of a renumbered key are in the wrong order: the lower number comes
+// first, except in keys of an edge and its partner.
 bool is_exchanged(const ContactKey& key) { return key.law != outline_kernel && key.a > key.b; }
 
-// The force on the first body of a pair becomes that on the second one: the tangent turns round,
-// and the number along it stays.
+// The force on the first body of a pair becomes the force on the second one: the tangent is
+// reversed, and the signed force along it stays the same.
 void exchange(Spring& spring) {
   std::swap(spring.key.a, spring.key.b);
   spring.tangent = -spring.tangent;
@@ -81,7 +83,8 @@ void exchange(PatchRun& run) {
   run.place.of_a = !run.place.of_a;
 }
 
-// The records of pairs that have heirs, in the order of their new numbers.
+// Returns the records of those pairs whose bodies both exist in the other scene, in the order of
+// their new keys. finish(record, old_key) completes a record whose two surfaces were exchanged.
 template <class Record>
 std::vector<Record> renumbered(std::span<const Record> records, const Renumbering& to,
                                const auto& finish) {
@@ -106,7 +109,8 @@ std::vector<Record> renumbered(std::span<const Record> records, const Renumberin
 FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
                          const ContactNumbers& to, std::span<const BodyIndex> heirs) {
   const Renumbering numbers(from, to, heirs);
-  // Edges of an overlap are numbered through both bodies.
+  // The law per_edge numbers the edges of an overlap through both bodies, those of the first body
+  // first.
   const auto renumber_edge = [&](Spring& spring, const ContactKey& old) {
     if (spring.key.law != polygon_kernel || from.law != FrictionLaw::per_edge) return;
     const int of_a = numbers.edges(old.a), of_b = numbers.edges(old.b);

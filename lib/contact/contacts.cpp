@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kRoundOff = 1 - 1e-12;
 
-// No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
+// Returns a depth, m, below which no contact can exceed `floors`. `shortest` is the smallest of the
+// lengths that relative penetrations refer to, m.
 double least_of(const Penetrations& floors, double shortest) {
   return std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
 }
@@ -53,7 +54,7 @@ bool Contacts::search_if_stale() {
   return true;
 }
 
-// To the kernels that serve them.
+// Hands the pairs of the last search to the kernels that serve them.
 void Contacts::hand_out_pairs() {
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
   for (const BoxPair& pair : search_.pairs()) {
@@ -73,7 +74,6 @@ void Contacts::evaluate() {
   each([](Kernel& kernel) { kernel.evaluate(); });
 }
 
-// In the order of the kernels.
 void Contacts::visit(double least, const ContactVisitor& show) const {
   each([&](const Kernel& kernel) { kernel.visit_contacts(least, show); });
 }
@@ -90,7 +90,8 @@ int Contacts::count() const {
 
 std::optional<ContactFault> Contacts::fault() const {
   const auto is_out = [](const Contact& contact) {
-    return !(contact.share < 1) && contact.kernel != outline_kernel;  // also if it is NaN
+    return !(contact.share < 1) &&
+           contact.kernel != outline_kernel;  // a NaN counts as out of range
   };
   bool out = false;
   each([&](const Kernel& kernel) { out = out || kernel.summary().share >= 1; });
@@ -179,7 +180,8 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
 
 std::pair<BodyIndex, BodyIndex> Contacts::bodies(const ContactKey& key) const {
   if (key.law != outline_kernel) return {surfaces_.body(key.a), surfaces_.body(key.b)};
-  // The partner of an edge is a body, or a face of a mesh that slides on a rigid body.
+  // The partner of a mesh edge is a body. The partner of an edge of a rigid body is a face of a
+  // mesh.
   const Outlines& o = surfaces_.outlines();
   const BodyIndex own = o.body[key.a];
   return {own, o.bodies[own].is_rigid() ? o.body[key.b] : key.b};
@@ -193,7 +195,8 @@ size_t Contacts::candidates() const {
   return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }
 
-// First by what is known of the contacts; then exactly of the few that may be deeper than that.
+// The first pass uses the lower bounds that the kernels know anyway. The second pass measures only
+// those contacts exactly whose upper bounds exceed the result of the first pass.
 Penetrations Contacts::penetrations(std::span<const double> lengths,
                                     const Penetrations& floors) const {
   constexpr double kKnown = 1 + 1e-6;
@@ -212,7 +215,6 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   });
-  // Those that may be deeper still are few.
   visit(least_of(found, shortest), [&](const Contact& c) {
     if (c.at_most <= kKnown * c.depth) return;
     const double known = std::min(found.largest.value, found.relative.value * length(c));

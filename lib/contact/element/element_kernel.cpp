@@ -41,10 +41,11 @@ void ElementKernel::evaluate() {
     const SurfaceIndex a = pair.a, b = pair.b;
     Contact& contact =
         contacts_.emplace_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
-    // The potential measures the depth below borders that are not part of the body's boundary.
+    // The potential measures the depth below borders of the element that are not part of the body's
+    // boundary, so it gives no bounds of the penetration.
     contact.depth = 0, contact.at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
-      contact.share = 1;  // nothing beyond is to be trusted
+      contact.share = 1;  // the following pairs are not evaluated, as the state is out of range
       return;
     }
     add_touch(pair);
@@ -58,7 +59,7 @@ ContactSummary ElementKernel::summary() const {
   ContactSummary summary{.count = static_cast<int>(contacts_.size())};
   for (const Contact& contact : contacts_) {
     summary.deepest = HUGE_VAL;
-    if (!(contact.share < 1)) summary.share = 1;  // also if it is NaN
+    if (!(contact.share < 1)) summary.share = 1;  // a NaN counts as out of range
   }
   return summary;
 }
@@ -89,7 +90,7 @@ double ElementKernel::penetration(const Contact& c, double floor) {
   return convex(c.a) && convex(c.b) ? find_penetration(c.a, c.b, floor, depths_) : floor;
 }
 
-// True if an edge of a polygon is on the boundary of the body.
+// True if an edge of a polygon or element is on the boundary of the body.
 bool ElementKernel::outer(SurfaceIndex i, int edge) const {
   return surfaces_.is_rigid(i) || surfaces_.elements().outer(i - surfaces_.rigid_count(), edge);
 }
@@ -103,8 +104,8 @@ void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) con
   }
 }
 
-// Edges of the two bodies' boundaries in the other polygon, and their distance from the whole
-// boundary of the other body. The polygon's own edges in that boundary mostly say enough.
+// Finds the largest distance of the boundary edges of each body, inside the other polygon, from the
+// whole boundary of the other body. The polygon's own edges of that boundary usually decide.
 double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double floor,
                                        Depths& work) const {
   const PlacedShapes& shapes = surfaces_.shapes();
@@ -176,7 +177,8 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   }
 }
 
-// `point`: relative to the reference point. Rigid bodies have no nodes.
+// Finds the interpolation weights of the corners at `point`, which is relative to the reference
+// point. Rigid bodies have no nodes.
 void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const {
   corners.nodes = nodes(i);
   const size_t count = corners.nodes.size();
@@ -193,7 +195,7 @@ void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces
   }
 }
 
-// Of the material at a point.
+// The velocity of the material at a point.
 Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
                                 const Kinematics& now) const {
   if (surfaces_.is_rigid(i)) {
@@ -245,7 +247,7 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
   return dt / 2 * (power_before + power(tangential_, now));
 }
 
-// What touches between two bodies.
+// Sums the touches between each two bodies.
 void ElementKernel::find_damped_pairs() {
   damped_pairs_.clear();
   pair_of_.resize(touches_.size());
@@ -265,8 +267,8 @@ void ElementKernel::find_damped_pairs() {
   }
 }
 
-// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
-// them.
+// The ratio of critical damping refers to the two bodies as rigid ones, with the stiffness of all
+// touches between them.
 void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
   find_damped_pairs();
   for (const Touch& t : touches_) {
@@ -321,7 +323,7 @@ void ElementKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemo
   }
 }
 
-// Of forces on the bodies, W.
+// The power of forces on the bodies, W.
 double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   double sum = 0;
   for (const auto& [node, force] : forces.nodes) {
@@ -353,7 +355,7 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-// Of each body the steepest, 1/m.
+// The steepest slope of each body's potentials, 1/m.
 std::vector<double> ElementKernel::slopes() const {
   std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
@@ -366,7 +368,7 @@ std::vector<double> ElementKernel::slopes() const {
 double ElementKernel::rate(std::span<const double> node_mass) const {
   const auto bodies = static_cast<size_t>(surfaces_.body_count());
   const std::vector<double> slope = slopes();
-  std::vector<double> other(bodies);  // the steepest among the others
+  std::vector<double> other(bodies);  // steepest slope among the other bodies
   for (size_t a = 0; a < bodies; ++a) {
     for (size_t b = 0; b < bodies; ++b) {
       if (a != b) other[a] = std::max(other[a], slope[b]);
@@ -382,10 +384,10 @@ double ElementKernel::rate(std::span<const double> node_mass) const {
   return worst;
 }
 
-// What acts on polygons goes to the nearest edge of their boundary.
+// The force of a touch is assigned to the nearest boundary edge of its polygon.
 void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   const size_t begin = records.size();
-  std::vector<size_t> first;  // record of each surface
+  std::vector<size_t> first;  // first record of each surface
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
     first.push_back(records.size());
     const PlacedPotential view = surfaces_.shapes().view(i);
@@ -422,7 +424,8 @@ void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   }
 }
 
-// Pairs of polygons belong together if on both sides the polygons are the same or share a node.
+// Groups the touches into patches. Two touches belong together if on both sides the polygons are
+// the same or share a node.
 std::vector<int> ElementKernel::patches() const {
   const auto adjacent = [&](SurfaceIndex p, SurfaceIndex q) {
     if (p == q) return true;
@@ -431,7 +434,7 @@ std::vector<int> ElementKernel::patches() const {
   };
   Groups groups(touches_.size());
   std::vector<std::pair<int, int>> keys;
-  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements there
+  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements at each node
   for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
     const Touch& t = touches_[i];
     keys.emplace_back(surfaces_.body(t.a), surfaces_.body(t.b));

@@ -1,24 +1,25 @@
-// The impulse that velocity Verlet misses in a step in which a contact begins or ends
-// (docs/theory.md, "Contacts that begin or end within a step").
+// The impulse that velocity Verlet misses in a step with a contact event, which is the begin or end
+// of a contact (docs/theory.md, "Contacts that begin or end within a step").
 //
 // Velocity Verlet sums impulses by the trapezoid rule. Where the force F of a pair of bodies has a
 // kink within a step of h, because a vertex enters or leaves the other body, the sum is wrong in
-// the order of (omega h)^2 with an accidental sign. What is missing follows from the force along
-// the straight path of the drift:
+// the order of (omega h)^2 with an arbitrary sign. The missing impulse J follows from the force
+// along the straight path of the drift:
 //
 //   J = h (INT F dtheta - (F0 + F1)/2) + h (D1 - D0)/12,  D = dF/dtheta, 0 <= theta <= 1.
 //
-// In a smooth step J vanishes but for terms of high order. It keeps the modified energy of Verlet,
-// E + h^2/12 v.K v - h^2/24 F.W F with the inverse masses W, to the order h^2. With v the velocity
-// of the drift, v + d0 the one at the start of the step, v + d1 at its end, what is left over is
+// In a smooth step J vanishes except for terms of high order. J preserves the modified energy of
+// Verlet, E + h^2/12 v.K v - h^2/24 F.W F with the inverse masses W, to the order h^2. With v the
+// velocity of the drift, v + d0 that at the start of the step and v + d1 that at its end, the
+// residual is
 //
 //   R = (d1.d1 - d0.d0)/(2 W) - h (D1.d1 - D0.d0)/6 - h^2/24 (F1.W F1 - F0.W F0)
 //       + h^2/12 (d1.K d1 - d0.K d0) - h^4/48 (F1.W K W F1 - F0.W K W F0),
 //   d0 = -h W F0/2,  d1 = W (h F1/2 + J),
 //
-// which an impulse along the mean force takes up. F and D are those of all forces, K that of the
-// pair. The last two terms make the modified energy exact for one stiff direction: K is taken as -D
-// D^T / (h v.D), the stiffness along the path.
+// which an impulse along the mean force compensates. F and D belong to all forces, K to the pair.
+// The last two terms make the modified energy exact for one stiff direction, with the stiffness
+// along the path K = -D D^T / (h v.D).
 #pragma once
 
 #include <array>
@@ -28,16 +29,16 @@
 
 namespace apothem {
 
-/// How often the force at `theta` of the drift counts in its mean and in its slopes at the start
-/// and at the end of the step.
+/// A sample of the force at the fraction `theta` of the drift, with its weights in the mean and in
+/// the slopes at the start and at the end of the step.
 struct OnsetSample {
   double theta;
   double mean = 0, start_slope = 0, end_slope = 0;
 };
 
-/// Where in a step, 0 to 1, a height that is `h0` at its start and `h1` at its end changes its
-/// sign; negative if it does not. A vertex that is on an edge at the start but for round-off, as
-/// where a run starts with two bodies that touch, crosses it there.
+/// The fraction of a step, 0 to 1, at which a height that changes linearly from `h0` to `h1`
+/// changes its sign; negative if it does not. A vertex that lies on an edge at the start up to
+/// round-off, as where a simulation starts with two bodies that touch, crosses it at the start.
 inline double crossing(double h0, double h1) {
   constexpr double kRoundOff = 1e-7;
   if (std::abs(h0) <= kRoundOff * std::abs(h1 - h0)) return h0 == h1 ? -1 : 0;
@@ -47,19 +48,21 @@ inline double crossing(double h0, double h1) {
 /// Boole's rule on a panel of five samples.
 inline constexpr std::array kBoole{7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 
-/// Panels of a part of a step in which the force is smooth, and in which it may bend at once.
+/// Numbers of panels for a part of a step in which the force is smooth, and in which it may bend
+/// strongly.
 inline constexpr int kFewPanels = 2, kManyPanels = 4;
 
-/// Finds the samples for kinks at `events`, ascending and within the step: Boole's rule on `panels`
-/// equal parts between them, and slopes by differences of order 4 on the side of the nearest event
-/// that has no kink. Samples may lie a little beyond the step; the others come first, from theta =
-/// 0 to 1. Returns how many these are.
+/// Finds the samples for a force with kinks at the fractions `kinks` of the step, which ascend:
+/// Boole's rule with `panels` equal panels between neighbouring kinks, and slopes by differences of
+/// order 4 on that side of the nearest kink that has none. The samples of the slopes may lie
+/// slightly beyond the step; the others come first, from theta = 0 to 1. Returns the number of the
+/// latter.
 int find_onset_samples(std::span<const double> events, int panels,
                        std::vector<OnsetSample>& samples);
 
-/// The forces of a pair in a step, coordinate by coordinate.
+/// The force of a pair on one coordinate in a step.
 struct OnsetForces {
-  double first = 0, last = 0;  ///< at the start and at the end
+  double first = 0, last = 0;  ///< force at the start and at the end
   double mean = 0;
   double start_slope = 0, end_slope = 0;
 
@@ -74,20 +77,22 @@ struct OnsetForces {
   }
 };
 
-/// Forces of all but the pair on a coordinate, at the start and at the end of the step.
+/// The forces of everything except the pair on a coordinate, at the start and at the end of the
+/// step.
 struct OtherForces {
   double first, last;
-  /// What friction and damping do, of these and of the pair: it belongs to no potential.
+  /// The part due to friction and damping, including that of the pair. It belongs to no potential.
   double beside_first = 0, beside_last = 0;
 };
 
-/// What moves the bodies in a step: of every coordinate in the order of a state, rigid bodies
-/// first.
+/// Masses and forces in a step, for every coordinate in the order of a state, rigid bodies first.
 struct Dynamics {
-  std::span<const double> inverse_mass;   ///< 1/kg and 1/(kg m^2); 0 where forces cannot move it
+  std::span<const double>
+      inverse_mass;  ///< 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate
   std::span<const double> before, after;  ///< all forces at the start and at the end, N and N m
-  std::span<const double> weight;         ///< of gravity, besides these; may be empty
-  /// Of the forces of the first coordinates, what friction and damping do; of the others nothing.
+  std::span<const double> weight;         ///< weight, in addition to these forces; may be empty
+  /// The parts of the forces due to friction and damping, for the first coordinates; the others
+  /// have none.
   std::span<const double> beside_before = {}, beside_after = {};
 
   [[nodiscard]] OtherForces others(size_t coordinate, const OnsetForces& of_pair) const {
@@ -98,35 +103,37 @@ struct Dynamics {
     }
     return f;
   }
-  /// What the work of friction and damping, as the trapezoid rule sums it along the straight path
-  /// of the drift, lacks of that along the path of Verlet's modified energy, J, in a step of dt.
+  /// The difference, J, between the work of friction and damping in a step of dt along the path of
+  /// Verlet's modified energy and their work by the trapezoid rule along the straight path of the
+  /// drift.
   [[nodiscard]] double lost_in_bend(double dt) const;
 };
 
-/// Parts of J / h.
+/// Contributions to J / h.
 struct OnsetParts {
-  double missing;     ///< of the elastic force
-  double beside = 0;  ///< of friction and damping, whose work is booked by itself
+  double missing;     ///< contribution of the elastic force
+  double beside = 0;  ///< contribution of friction and damping, whose work is booked separately
 };
 
-/// R and what it takes to remove it, summed over the coordinates.
+/// The residual R and the impulse that removes it, summed over the coordinates.
 class OnsetRest {
  public:
   explicit OnsetRest(double dt) : dt_(dt) {}
 
-  /// A coordinate: the force `f` of the pair on it, its parts of J / h, and `others`, which are the
-  /// other forces on it at the start and at the end. `velocity` of the drift.
+  /// Adds a coordinate with the force `f` of the pair on it, its contributions to J / h, the other
+  /// forces on it, and the velocity of the drift.
   void add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
            double inverse_mass, double velocity);
-  /// The coordinates of another body. In this way the order of two bodies changes no bit.
+  /// Adds the coordinates of another body. Summed in this way, the order of two bodies changes no
+  /// bit.
   void add(const OnsetRest& other);
-  /// R, J.
+  /// The residual R, J.
   [[nodiscard]] double energy() const { return energy_ + dt_ * (last_.energy() - first_.energy()); }
-  /// The impulse over h along the mean force, as a multiple of it.
+  /// The impulse over h that removes the residual, as a multiple of the mean force.
   [[nodiscard]] double share() const;
 
  private:
-  /// At one end of the step.
+  /// Sums at one end of the step.
   struct End {
     double along = 0;  // D.v, W
     double aside = 0;  // D.d, W
@@ -137,12 +144,12 @@ class OnsetRest {
   };
 
   double dt_;
-  double energy_ = 0;  // R without what follows from the stiffness, J
+  double energy_ = 0;  // R without the terms of the stiffness, J
   End first_, last_;
-  double mean_ = 0;    // square of the mean force over the masses, W/s
+  double mean_ = 0;    // squares of the mean forces over the masses, W/s
   double slopes_ = 0;  // squares of both slopes over the masses, W/s
-  double power_ = 0;   // of the mean force, W
-  double gain_ = 0;    // what the forces may change of this power in a step, W
+  double power_ = 0;   // power of the mean force, W
+  double gain_ = 0;    // possible change of this power by the forces in a step, W
 };
 
 }  // namespace apothem

@@ -7,8 +7,8 @@
 namespace apothem {
 namespace {
 
-constexpr double kReach = 8;        // depths
-constexpr double kRounded = 1e-14;  // of a push: round-off
+constexpr double kReach = 8;        // length of a neighbourhood, as a multiple of the depth
+constexpr double kRounded = 1e-14;  // round-off error of a normal force, relative
 
 }  // namespace
 
@@ -56,11 +56,11 @@ void CommonNormals::find_places(const std::vector<SpringContact>& springs) {
                        spring.deepest});
   }
   const auto key = [](const Place& p) { return std::tuple(p.loop, p.other, p.at, p.spring); };
-  // They mostly are in order.
+  // The places are usually in order already.
   if (!std::ranges::is_sorted(places_, {}, key)) std::ranges::sort(places_, {}, key);
 }
 
-// Calls f(number, weight) for the places around the place i, those before it first.
+// Calls f(index, weight) for the neighbours of the place i, first for those before it.
 template <class F>
 void CommonNormals::each_neighbour(size_t first, size_t end, size_t i, const F& f) const {
   const size_t count = end - first;
@@ -86,13 +86,14 @@ void CommonNormals::each_neighbour(size_t first, size_t end, size_t i, const F& 
   }
 }
 
-// Places `first` to `end` belong to one closed line and one body.
+// The places from `first` to `end` belong to one closed line and one other body.
 void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size_t first,
                                        size_t end) {
   const Outlines& o = outlines_;
   const auto inward = [&](const SpringContact& s) { return Vec2(-o.ty[s.edge], o.tx[s.edge]); };
   const double perimeter = perimeter_[places_[first].loop];
-  // A depth reaches along the line, less by the distance over kReach. Twice around.
+  // A depth spreads along the line, reduced by the distance over kReach. Two rounds are needed
+  // because the line is closed.
   deepest_ = places_[first].depth;
   for (size_t i = first; i < end; ++i) deepest_ = std::max(deepest_, places_[i].depth);
   const auto spread = [&](size_t from, size_t to, double distance) {
@@ -137,7 +138,8 @@ void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size
     });
     own.pressed = own.normal * std::max(0., 1 - lost);
   }
-  // Pieces of faces resist by the cosine of their angle to the normal, and what cancels does not.
+  // The segments of the faces contribute with the cosine of their angle to the common normal. The
+  // part of the normal force that cancels does not contribute.
   for (size_t i = first; i < end; ++i) {
     SpringContact& own = springs[places_[i].spring];
     const double along = own.slope_y * own.nx - own.slope_x * own.ny;
@@ -147,8 +149,9 @@ void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size
   hand_over(springs, first, end);
 }
 
-// Contact that grows takes over what contact beside it gives up: stiffness with its elastic slip.
-// The rest of what grows joins without a force, and the rest of what has gone is lost.
+// Where contact moves along the boundary, springs that grow take over stiffness and elastic slip
+// from neighbouring springs that shrink. The remaining growth starts without a force, and the
+// remaining loss is dissipated.
 void CommonNormals::hand_over(std::vector<SpringContact>& springs, size_t first, size_t end) {
   const auto grown = [&](size_t k) {
     const SpringContact& s = springs[places_[k].spring];

@@ -6,10 +6,11 @@
 namespace apothem {
 namespace {
 
-constexpr int kUnitEdges = 48;      // of a unit
-constexpr int kUnitFaces = 64;      // of a unit with one long edge
-constexpr double kLong = 32;        // times the smallest r of a mesh
-constexpr double kNothing = 1e-12;  // of a collar: round-off where an edge begins on a face
+constexpr int kUnitEdges = 48;  // edges of a unit
+constexpr int kUnitFaces = 64;  // faces of a unit with one long edge
+constexpr double kLong = 32;    // an edge is long above this multiple of the smallest r of a mesh
+constexpr double kNothing = 1e-12;  // round-off of a depth where an edge begins on a face, relative
+                                    // to the depth of the collar
 
 }  // namespace
 
@@ -31,8 +32,9 @@ EdgeFaceBlocks::Key EdgeFaceBlocks::unit_of(const EdgeFace& c) const {
   return {-1 - c.edge / kUnitEdges, 0};
 }
 
-// Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
-// rigid bodies are long: they have one for each face, which the face takes with it.
+// The key of the spring that a contact belongs to. An edge of a mesh has one spring for each body
+// that it touches. An edge of a rigid body may be long and has one spring for each face, which
+// moves with the face.
 EdgeFaceBlocks::Key EdgeFaceBlocks::key_of(const EdgeFace& c) const {
   const Outlines& o = outlines_;
   return {c.edge, o.bodies[o.body[c.edge]].is_rigid() ? c.face : o.body[c.face]};

@@ -1,5 +1,5 @@
-// Edges against faces, several at a time: which of them meet, and the forces between them. Private
-// to outline_kernel.cpp.
+// Edges against faces, several at a time: which of them meet, and the forces between them. This
+// header is private to outline_kernel.cpp.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace apothem {
 
-/// The normal forces of the candidates of a block, N: of each lane on the start and the end of its
-/// edge, then of its face. 0 where they do not meet.
+/// The normal forces of the candidates of a block, N. Each lane has the forces on the start and the
+/// end of its edge, then those on its face; they are 0 where the edge does not meet the face.
 using EdgeFacePushes = std::array<FourOf<double>, kBlock>;
 
 /// The forces on the two ends of an edge.
@@ -43,7 +43,7 @@ namespace edge_face_detail {
 
 using Pack = PackOf<kBlock>;
 
-/// One candidate that may cross the top of the collar.
+/// Evaluates one candidate that may reach the saturated region of the collar.
 inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
                       unsigned& met, EdgeFacePushes& pushes, double& deepest,
                       EdgeFaceCrossings& crossings) {
@@ -66,14 +66,15 @@ inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, E
 
 }  // namespace edge_face_detail
 
-/// Finds the contacts of a unit. push(block, pushes) for blocks in which something meets.
+/// Finds the contacts of a unit. Calls push(block, pushes) for the blocks in which an edge meets
+/// its face.
 template <class Push>
 APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
                                   EdgeFaceCrossings& crossings, const Push& push) {
   using edge_face_detail::Pack;
   using Vertices = EdgeFaceBlock::Vertices;
   const Pack zero(0.), one(1.);
-  Pack deepest(0.);  // squares of bounds
+  Pack deepest(0.);  // squares of upper bounds
   double deep_deepest = 0;
   int touching = 0;
   for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.forces()[i].setZero();
@@ -120,15 +121,15 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     put(touch.height, (face.tx * y - face.ty * x) * scale);
     put(touch.climb, (face.tx * ey - face.ty * ex) * scale);
 
-    // The distance from the boundary over the height in a face is more than 1 where the face
-    // reaches beyond the end of its edge, at a reflex vertex.
+    // Where a face reaches beyond the end of its edge, at a reflex vertex, the distance from the
+    // boundary may exceed the height in the face. This factor bounds their ratio.
     const Pack alpha = -face.alpha(), beta = face.beta();
     const Pack further = select(alpha < beta, beta, alpha);
     const Pack beyond = where(further > zero, further);
     const Pack square = where(contact, piece.deepest * piece.deepest * (one + beyond * beyond));
     deepest = select(square <= deepest, deepest, square);
 
-    // What the body with the lower number feels at its edge, or at its face.
+    // The force on the body with the lower number, which acts at its edge or at its face.
     EdgeFaceTouch::Numbers lower_x, lower_y;
     const auto at_edge = Pack::load(block.edge_is_lower.data()) > zero;
     const Pack lower =

@@ -26,7 +26,7 @@ BoundaryDistance& OutlineDepths::boundary(BodyIndex body) {
 double OutlineDepths::of_piece(int edge, int face, const CollarPiece<double>& piece, double floor) {
   const BodyIndex in = outlines_.body[face];
   if (outlines_.body[edge] == in || !is_depth(face, piece)) return of_edge(edge, in, floor);
-  // A face that does not reach beyond its edge has heights that are distances.
+  // In a face that does not reach beyond its edge, heights are distances.
   const CollarFace<double> at = outlines_.face(face);
   if (at.alpha() >= 0 && at.beta() <= 0) return std::max(floor, piece.deepest);
   const Vec2 start = outlines_.point(edge);
@@ -34,11 +34,12 @@ double OutlineDepths::of_piece(int edge, int face, const CollarPiece<double>& pi
   return boundary(in).largest(start + piece.from * along, start + piece.to * along, floor);
 }
 
-// In its own body an edge is inside where this lies once more on its outer side, and edges that
-// carry it on are not the boundary.
+// An edge is inside its own body where the body covers the outer side of the edge as well. Edges
+// that continue it smoothly do not count as boundary then.
 double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
-  constexpr double kBeside = 1e-9;   // of the edge
-  constexpr double kCarriesOn = .7;  // cosine of the turn
+  constexpr double kBeside = 1e-9;  // offset to the outer side, relative to the length of the edge
+  constexpr double kCarriesOn =
+      .7;  // cosine of the angle up to which a neighbour continues the edge
   const Outlines& o = outlines_;
   const bool self = o.body[edge] == in;
   const auto is_other = [&](int i) {

@@ -32,8 +32,8 @@ OutlineFriction::OutlineFriction(const Surfaces& surfaces, const PairTable& tabl
   std::iota(all_.begin(), all_.end(), 0);
 }
 
-// Finds the velocities of the vertices, and makes room for the new forces. Returns the power of the
-// old ones, W.
+// Finds the velocities of the vertices of a body and clears their new forces. Returns the power of
+// the old forces, W.
 double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& step) {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[b];
@@ -54,7 +54,7 @@ double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& st
   }
   const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
   double drawn = 0, turned = 0;
-  if (now.finite) {  // from where the vertex was, along the chord of its arc
+  if (now.finite) {  // mean velocity along the chord of the vertex's path
     const double spin = v[2] - (now.slip.empty() ? 0 : now.slip[3 * size_t(body.rigid) + 2]);
     const double angle = spin * step.dt, half = sine_cosine(angle / 2).sine;
     turned = sine_cosine(angle).sine / step.dt - spin, drawn = 2 * half * half / step.dt;
@@ -71,7 +71,7 @@ double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& st
   return power;
 }
 
-// What the contacts of springs add up to, without what springs remember.
+// Sums the contacts of the springs of a unit, without the memory of the springs.
 void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) {
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     for (std::int32_t i = unit.first; i < unit.end; ++i) {
@@ -102,7 +102,7 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
   }
 }
 
-// What springs remember.
+// Looks up the springs of the step before.
 void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> walk) {
   for (const EdgeFaceUnit& unit : step.blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
@@ -118,7 +118,7 @@ void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> wa
   }
 }
 
-// The part of a long step in which a new contact was closed: what came before is no slip.
+// The fraction of a long step for which a new contact was closed; motion before that is no slip.
 double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
                                      const EdgeFaceGroup& group, const SpringContact& contact) {
   double width = 0, depth = 0;
@@ -132,7 +132,7 @@ double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
   return closed > depth / width ? depth / width / closed : 1;
 }
 
-// Finds the forces of springs. Returns their energy, J.
+// Updates the springs of a unit and finds their forces. Returns their energy, J.
 double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) {
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
   double energy = 0;
@@ -165,7 +165,7 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
   return energy;
 }
 
-// Adds the forces on the vertices. Returns their power, W.
+// Adds the forces of a unit's springs to the vertices. Returns their power, W.
 APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit& unit,
                                             Worker& worker, bool divided) {
   double power = 0;
@@ -173,7 +173,7 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
     if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
     const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
     const SlipPull& pull = worker.pulls[static_cast<size_t>(i - unit.first)];
-    for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+    for (size_t l = 0; l < kBlock; ++l) {  // in the order of the contacts, whatever their blocks
       power += pull.x[l] * slip.rate_x[l] + pull.y[l] * slip.rate_y[l];
     }
     SlipForces forces;
@@ -192,12 +192,13 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
   return power;
 }
 
-// `divided`: several threads work. Forces on vertices that two of them have are added later.
+// Updates the springs of a unit. If `divided`, several threads work, and forces on vertices that
+// two of them share are deferred.
 void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool divided) {
   const EdgeFaceUnit& unit = step.blocks.units()[index];
   Unit& found = units_[index] = {};
   if (unit.touching == 0) return;
-  // The last block may have lanes without a spring.
+  // The last block may have padding, which has no spring.
   const auto last = static_cast<size_t>(unit.end - unit.first) - 1;
   worker.pulls[last] = {};
   found.energy = follow(step, unit, worker);
@@ -245,7 +246,8 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
     Worker& worker = workers_[static_cast<size_t>(number)];
     for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, divided);
   });
-  // In the order of the units, as if one thread had worked on them.
+  // Deferred forces are added in the order of the units, as if one thread had worked on all of
+  // them.
   for (const Worker& worker : workers_) {
     for (const auto& [vertex, force] : worker.late) {
       VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
@@ -266,8 +268,8 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   return dt / 2 * power;
 }
 
-// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
-// them.
+// Sums the contacts of each pair of bodies. The ratio of critical damping refers to the two bodies
+// as rigid ones, with the stiffness of all contacts between them.
 void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now) {
   const Outlines& o = outlines_;
   for (PairSum& pair : pairs_) pair = {};
@@ -297,7 +299,7 @@ void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics&
     if (pair.a < 0 || !(size > 0)) continue;
     const PairLaw& law = table_.between(pair.a, pair.b);
     const Vec2 normal = pair.force / size;
-    // The middle of the forces, moved to the line of action.
+    // The point is the mean of the points of the forces, moved to the line of action.
     const Vec2 middle = pair.places / pair.sizes;
     const Vec2 point =
         middle + (pair.moment - cross(middle, pair.force)) / size * Vec2(normal.y(), -normal.x());
@@ -312,7 +314,7 @@ void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics&
   }
 }
 
-// Calls f(unit, group, contact) for the springs with dashpots, in their order.
+// Calls f(unit, group, law, contact) for the contacts with dashpots, in their order.
 template <class F>
 void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
   for (const EdgeFaceUnit& unit : blocks.units()) {
@@ -343,7 +345,7 @@ void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematic
   });
 }
 
-// The parts of the vertices in the rates along the normal and the tangent.
+// Adds the contributions of the vertices to the rates along the normal and the tangent.
 void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                                       const EdgeFaceGroup& group, const SpringContact& contact,
                                       Dashpots& to) const {

@@ -10,8 +10,9 @@ namespace apothem {
 namespace {
 
 constexpr double kMeetTime = 80, kForceTime = 4;  // ns
-constexpr double kInsideTop = 2;                  // share of a contact that is not with a face
-constexpr double kAbove = 1 + 1e-9;               // of bounds
+constexpr double kInsideTop =
+    2;  // relative depth of a contact inside a saturated region, which is not with a face
+constexpr double kAbove = 1 + 1e-9;  // factor that makes bounds safe against round-off
 
 }  // namespace
 
@@ -61,8 +62,8 @@ std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
   return static_cast<std::int32_t>(at - pair_forces_.begin());
 }
 
-// By what edges and faces of the body with the lower number feel. That of a body with itself is
-// none.
+// The force of a pair is summed over the edges and faces of the body with the lower number. The
+// force of a body on itself does not count.
 void OutlineKernel::find_largest_force() {
   const Outlines& o = outlines_;
   for (PairForce& pair : pair_forces_) pair.force = Vec2::Zero();
@@ -90,8 +91,8 @@ void OutlineKernel::find_largest_force() {
   }
 }
 
-// An edge of a body lies on its own face, without a depth, and in those of the edges next to it
-// only where these have shrunk to nothing.
+// An edge lies on its own face without a depth, and in the faces of its neighbours only where these
+// have shrunk to nothing.
 bool OutlineKernel::are_neighbours(int edge, int face) const {
   const Outlines& o = outlines_;
   if (edge == face) return true;
@@ -100,7 +101,8 @@ bool OutlineKernel::are_neighbours(int edge, int face) const {
   return o.tx[face] * top.x() + o.ty[face] * top.y() > 2 * o.growth();
 }
 
-// Edges of a, faces of b: sweep along the longer side of the common region.
+// Finds the candidates of the edges of a and the faces of b, by a sweep along the longer side of
+// the region that they share.
 void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
   const Outlines& o = outlines_;
   near_edges_.clear(), near_faces_.clear();
@@ -177,7 +179,8 @@ void OutlineKernel::evaluate() {
       return 0.;
     });
   });
-  // In the order of the units, as if one thread had worked on them.
+  // Deferred forces are added in the order of the units, as if one thread had worked on all of
+  // them.
   for (const Worker& worker : workers_) {
     for (const auto& [edge, force] : worker.late) add(force, ends_[edge]);
     for (const auto& [pair, top] : worker.crossings) plateaus_.add(pair, top);
@@ -186,7 +189,8 @@ void OutlineKernel::evaluate() {
   find_largest_force();
 }
 
-// An edge inside the top of a body is a contact with that body.
+// Adds the forces of saturated regions. An edge inside the saturated region of a body is a contact
+// with that body.
 void OutlineKernel::add_plateaus() {
   const Outlines& o = outlines_;
   plateaus_.evaluate();
@@ -205,7 +209,7 @@ void OutlineKernel::add_plateaus() {
   }
 }
 
-// Outlines have no contacts out of range.
+// Contacts of outlines are never out of range.
 ContactSummary OutlineKernel::summary() const {
   size_t count = plateaus_.edges().size() + plateaus_.faces().size();
   double square = 0;
@@ -217,7 +221,8 @@ ContactSummary OutlineKernel::summary() const {
   return {.count = static_cast<int>(count), .deepest = deepest};
 }
 
-// A plateau has the first face, or the first edge, of its body for its partner.
+// In a contact with a saturated region, the partner is the first face, or the first edge, of its
+// body.
 void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) const {
   const Outlines& o = outlines_;
   blocks_.each_contact([&](size_t i, size_t lane) {
@@ -227,8 +232,8 @@ void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) co
     const CollarFace<double> face = o.face(a);
     const double deepest = touch.deepest[lane], share = deepest / face.depth;
     const double surely = deepest <= sure_depth(face.plain, face.depth) ? deepest : 0;
-    // The distance from the boundary over the height in a face is more than 1 where the face
-    // reaches beyond the end of its edge, at a reflex vertex.
+    // Where a face reaches beyond the end of its edge, at a reflex vertex, the distance from the
+    // boundary may exceed the height in the face. This factor bounds their ratio.
     const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
     const bool known = o.body[edge] == o.body[a] && surely > 0;
     const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
@@ -239,13 +244,13 @@ void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) co
   for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
     visit({outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
   }
-  if (least >= 0) return;  // the others have no depth
+  if (least >= 0) return;  // contacts of saturated faces have no depth
   for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
     visit({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
 
-// What an evaluation does not keep of the contacts is found again.
+// An evaluation does not store the pieces of the contacts; they are computed again.
 const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
   if (listed_) return edge_faces_;
   const Outlines& o = outlines_;
@@ -351,7 +356,8 @@ double OutlineKernel::energy() const {
 
 double OutlineKernel::rate(std::span<const double> node_mass) const {
   const Outlines& o = outlines_;
-  // The steepest potential among the others: of the first and second of all.
+  // `first` and `second` are the two steepest slopes of all bodies. The partner of the steepest
+  // body has at most the second one.
   double first = 0, second = 0;
   BodyIndex steepest = -1;
   for (BodyIndex b = 0; b < static_cast<BodyIndex>(o.bodies.size()); ++b) {
@@ -376,10 +382,11 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
 
 void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
   const Outlines& o = outlines_;
-  std::vector<double> slope(o.size(), 0);       // of each vertex: 1/r_c + 1/r_t
+  std::vector<double> slope(o.size(), 0);       // largest 1/r_c + 1/r_t at each vertex
   std::vector<double> normal(o.size(), 0);      // largest k_n thickness, N/m
   std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m
-  std::vector<std::pair<BodyIndex, int>> met;   // rigid bodies and vertices of meshes near them
+  std::vector<std::pair<BodyIndex, int>>
+      met;  // pairs of a rigid body and a vertex of a mesh near it
   for (const EdgeFace& c : candidates_) {
     const BodyIndex own = o.body[c.edge], other = o.body[c.face];
     const double both = o.bodies[own].slope() + o.bodies[other].slope();
@@ -393,7 +400,7 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
       if (o.bodies[partner].is_rigid() && o.node[i] >= 0) met.emplace_back(partner, i);
     }
   }
-  // Springs pull along the contact, potentials push across it.
+  // Friction springs act along the contact, potentials across it.
   const auto of_vertex = [&](int i) {
     return node_rate(normal[i] + tangential[i], slope[i], o.share(i));
   };
@@ -403,7 +410,7 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
   std::sort(met.begin(), met.end());
   met.erase(std::unique(met.begin(), met.end()), met.end());
   for (const auto& [b, i] : met) {
-    // Displacement and rotation add: k (x + r theta)^2 <= 2 k (x^2 + r^2 theta^2).
+    // Displacement and rotation add up: k (x + r theta)^2 <= 2 k (x^2 + r^2 theta^2).
     const double stiffness = 2 * of_vertex(i);
     const double x = o.x[i] - o.bodies[b].cx, y = o.y[i] - o.bodies[b].cy;
     double* const of_body = &rigid[3 * static_cast<size_t>(o.bodies[b].rigid)];

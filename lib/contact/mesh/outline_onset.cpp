@@ -7,19 +7,20 @@
 namespace apothem {
 namespace {
 
-constexpr double kSuddenLength = .1;  // change of the boundary inside, of the smaller r
+constexpr double kSuddenLength =
+    .1;  // change of the length inside that counts as sudden, relative to the smaller r
 constexpr double kRoundOff = 1e-9;
-constexpr double kPathTime = 5000;  // of a pair, ns
+constexpr double kPathTime = 5000;  // time for a pair, ns
 constexpr double kUnitTime = 1000;  // ns
 
-// Sums of these tell sets of vertices apart.
+// A hash of a vertex. The sums of these hashes differ for different sets of vertices.
 std::uint64_t scrambled(int vertex) {
   std::uint64_t z = (static_cast<std::uint64_t>(vertex) + 1) * 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 31)) * 0xbf58476d1ce4e5b9ULL;
   return z ^ (z >> 29);
 }
 
-// Makes one entry of those of the same pair that follow each other.
+// Joins consecutive entries of the same pair.
 void join_neighbours(std::vector<TouchingPair>& list) {
   size_t last = 0;
   for (size_t i = 1; i < list.size(); ++i) {
@@ -36,8 +37,9 @@ void join_neighbours(std::vector<TouchingPair>& list) {
 
 }  // namespace
 
-// One entry for each run of contacts of a pair within a unit, then one for each pair. Units do not
-// depend on the number of threads, nor do sums over the contacts of one.
+// Lists the pairs that touch: first one entry for each sequence of contacts of a pair within a
+// unit, then one for each pair. Units do not depend on the number of threads, nor do sums over the
+// contacts of a unit.
 void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus,
                                  bool at_first) {
   const Outlines& o = outlines_;
@@ -101,7 +103,7 @@ bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBloc
 }
 
 void OutlineOnset::add(double scale, const ForceViews& forces) const {
-  // In the order of the pairs, as if one thread had worked on them.
+  // Impulses are added in the order of the pairs, as if one thread had worked on all of them.
   for (const Worker& worker : workers_) {
     for (const auto& [i, mean] : worker.on_nodes) forces.nodes[i] += scale * mean;
     for (const auto& [i, mean] : worker.on_rigid) forces.rigid[i] += scale * mean;

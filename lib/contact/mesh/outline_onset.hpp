@@ -1,5 +1,5 @@
-// Contacts of deformable bodies that begin or end within a step: see onset_rule.hpp. The force of a
-// pair of bodies is that on the vertices of both outlines, all at the same samples.
+// Contact events of deformable bodies, see event_impulse.hpp. The force of a pair of bodies is the
+// set of forces on the vertices of both outlines, all at the same samples.
 #pragma once
 
 #include <span>
@@ -20,21 +20,22 @@ namespace apothem {
 
 class OutlineOnset {
  public:
-  /// Both must outlive this object.
+  /// Both arguments must outlive this object.
   OutlineOnset(const Outlines& outlines, const OutlineSlopes& slopes, int threads)
       : outlines_(outlines),
         threads_(threads),
         workers_(static_cast<size_t>(threads_.count()), {{outlines, slopes}, {}, {}}) {}
 
-  /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
-  /// pairs of bodies whose vertices inside each other are not those of the step before, or of which
-  /// much more or less boundary is inside. `blocks` hold the contacts of now, `candidates` ascend.
-  /// True if there is a J. With dt = 0, at the start, there is none, and what touches then is new
-  /// in the first step. Pairs with `plateaus` are left as they are.
+  /// Finds the missing impulse J of the pairs of bodies with a contact event, at the end of the
+  /// drift of a step of dt (s), with half-step velocities. A pair has an event if its vertices
+  /// inside each other are not those of the step before, or if much more or less boundary is
+  /// inside. `blocks` holds the present contacts, and `candidates` ascend. Returns true if there is
+  /// an impulse. With dt = 0, at the start, there is none, and pairs that touch then are new in the
+  /// first step. Pairs that reach into saturated regions get no correction.
   bool find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
             const OutlinePlateaus& plateaus, const Kinematics& now, const Dynamics& dynamics,
             double dt);
-  /// Adds J / dt of the last `find`, times `scale`.
+  /// Adds J / dt of the last `find`, multiplied by `scale`.
   void add(double scale, const ForceViews& forces) const;
 
   void fields(Archive& archive) { watch_.fields(archive); }
@@ -44,7 +45,7 @@ class OutlineOnset {
     BodyIndex a, b;
     int panels;
   };
-  /// What a thread needs, and what it has found.
+  /// Memory and results of a thread.
   struct Worker {
     OutlinePath path;
     std::vector<OutlinePath::Impulse> on_nodes, on_rigid;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;
 
-// A number of each lane.
+// A pack with one number for each lane.
 template <class F>
 PackOf<4> of_lanes(const F& f) {
   return pack_of<4>(f);
@@ -48,7 +48,8 @@ void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
   for (const Side& side : sides_) keep(side, on_nodes, on_rigid);
 }
 
-// The candidates of the two bodies; candidates ascend by edge, and so by the body of the edge.
+// Lists the candidates of the two bodies. Candidates ascend by edge, and so by the body of the
+// edge.
 void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates) {
   const Outlines& o = outlines_;
   candidates_.clear(), ends_.clear(), corners_.clear(), near_.clear(), faces_.clear();
@@ -61,7 +62,7 @@ void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> 
   };
   take(a, b);
   if (a != b) take(b, a);
-  // Every vertex once: those that have been listed are marked.
+  // Every vertex is listed once; listed vertices are marked.
   corner_of_.resize(static_cast<size_t>(o.size()), -1);
   const auto list = [&](int vertex, std::vector<int>& to) {
     if (corner_of_[static_cast<size_t>(vertex)] >= 0) return;
@@ -85,7 +86,7 @@ void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> 
   };
   corner_of_end_.clear();
   for (const int i : ends_) corner_of_end_.push_back(corner(i));
-  // Faces, by the corner that they begin at.
+  // Each face is listed once, at the corner where it begins.
   face_at_.assign(corners_.size(), -1);
   for (const EdgeFace& c : candidates_) {
     const int f = c.face;
@@ -133,7 +134,7 @@ OutlinePath::Side OutlinePath::take_side(BodyIndex body, const Step& step) {
   return side;
 }
 
-// Moves the corners of a body to places of the path.
+// Moves the corners of a body to their positions at the fractions theta of the drift.
 APOTHEM_INLINE void OutlinePath::place(const Side& side, const Step& step, const Pack& theta) {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[side.body];
@@ -161,8 +162,8 @@ APOTHEM_INLINE void OutlinePath::place(const Side& side, const Step& step, const
   }
 }
 
-// Where a vertex of one outline crosses an edge of the other one: heights are linear in theta, but
-// for small deformations and rotations.
+// Finds the kinks of the force, where a vertex of one outline crosses an edge of the other one.
+// Heights are linear in theta except for small deformations and rotations.
 void OutlinePath::find_events(const Step& step) {
   const Pack ends = of_lanes([](int k) { return k == 0 ? 0. : 1.; });
   for (const Side& side : sides_) place(side, step, ends);
@@ -187,10 +188,10 @@ void OutlinePath::find_events(const Step& step) {
   std::ranges::sort(events_);
 }
 
-// The forces on all coordinates at up to four samples; the first `inside` of all are within the
-// step.
+// Finds the forces on all coordinates at up to four samples. Of all samples the first `inside` lie
+// within the step.
 void OutlinePath::find_loads(const Step& step, size_t first, size_t count, size_t inside) {
-  // Lanes that are left over take the last sample again.
+  // The remaining lanes are padding, which repeats the last sample.
   const Pack theta = of_lanes(
       [&](int k) { return samples_[first + std::min(static_cast<size_t>(k), count - 1)].theta; });
   forces_.clear();
@@ -232,7 +233,7 @@ APOTHEM_INLINE void OutlinePath::place(Face& face) const {
   face.placed = true;
 }
 
-// Of the near edges and faces, where the corners are.
+// Finds the forces of the near edges and faces at the present positions of the corners.
 APOTHEM_INLINE void OutlinePath::find_forces() {
   const Pack zero(0.), one(1.);
   for (const size_t k : corner_of_end_) at_.fx[k] = at_.fy[k] = zero;
@@ -271,7 +272,7 @@ APOTHEM_INLINE void OutlinePath::find_forces() {
   }
 }
 
-// A candidate that may cross the top of the collar at one of the places.
+// Adds the forces of a candidate that may reach the saturated region of the collar in the lane l.
 void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
   const CollarFace<Pack>& f = face.at;
   const CollarFace<double> at{f.ax.v[l],  f.ay.v[l],     f.bx.v[l],   f.by.v[l],  f.tx.v[l],
@@ -296,7 +297,7 @@ void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
   push(face.b, from_face, force.face_end);
 }
 
-// The forces on the coordinates of a body.
+// Sums the forces on the coordinates of a body.
 APOTHEM_INLINE void OutlinePath::add_forces(const Side& side, const Step& step, const Pack& theta) {
   const Outlines::Body& body = outlines_.bodies[side.body];
   Pack* to = &forces_[side.coordinates];
@@ -320,15 +321,16 @@ APOTHEM_INLINE void OutlinePath::add_forces(const Side& side, const Step& step, 
   to[0] = x, to[1] = y, to[2] = moment;
 }
 
-// Moments of forces at earlier positions do not balance at the end of the step. What is left over
-// goes to both bodies in equal parts, so that the angular momentum is kept.
+// Moments of forces at earlier positions do not balance at the end of the step. Half of the
+// difference goes to each body, so that the angular momentum is conserved.
 void OutlinePath::balance() {
   double rest = 0;
   for (const Side& side : sides_) rest += moment(side);
   for (const Side& side : sides_) turn(side, -rest / static_cast<double>(sides_.size()));
 }
 
-// Of what is missing, about the first end, where the bodies are at the end of the step.
+// The moment of the missing impulses on a body about the first vertex of ends_, at the end of the
+// step.
 double OutlinePath::moment(const Side& side) const {
   const Outlines& o = outlines_;
   const Outlines::Body& body = o.bodies[side.body];
@@ -345,7 +347,8 @@ double OutlinePath::moment(const Side& side) const {
   return sum;
 }
 
-// Adds a moment: on a mesh, the smallest forces on the ends that have one already.
+// Adds a moment to the missing impulses of a body. On a mesh this is done by the smallest forces on
+// those vertices that have a missing impulse already.
 void OutlinePath::turn(const Side& side, double moment) {
   const Outlines& o = outlines_;
   Coordinate* const first = &coordinates_[side.coordinates];

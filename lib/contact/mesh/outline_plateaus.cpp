@@ -7,7 +7,7 @@
 namespace apothem {
 namespace {
 
-constexpr int kTrials = 16;  // vertices of a line that are tried as its base
+constexpr int kTrials = 16;  // number of vertices of a line that are tried as its base
 
 }  // namespace
 
@@ -37,8 +37,9 @@ void OutlinePlateaus::add_pair(BodyIndex edges, BodyIndex faces) {
   pairs_.push_back(pair);
 }
 
-// A vertex that keeps its winding number until the next search: one that is not near the other
-// body, or not near the line that it would have to cross.
+// Chooses a vertex of a closed line as its base. A vertex is settled if its winding number cannot
+// change until the next search, because it is not near the other body, or not near the line that it
+// would have to cross.
 OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool top) const {
   const Outlines& o = outlines_;
   const Outlines::Loop& loop = o.loops[static_cast<size_t>(index)];
@@ -68,7 +69,8 @@ OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool 
   return {index, loop.first, 0, top, false};
 }
 
-// Of the other body's outline round a place of a top, or of its top round a place of an outline.
+// The winding number of the other body's outline about a point of an offset curve, or of its offset
+// curve about a point of an outline.
 int OutlinePlateaus::winding(const Vec2& place, int loop, BodyIndex other, bool top,
                              bool* clear) const {
   const bool self = outlines_.loops[static_cast<size_t>(loop)].body == other;
@@ -115,7 +117,7 @@ void OutlinePlateaus::evaluate() {
   }
 }
 
-// Winding numbers go on along a closed line and change where it crosses the other one.
+// The winding number is constant along a closed line except where the line crosses the other one.
 void OutlinePlateaus::find_edges(const Pair& pair, std::span<const Crossing> crossings) {
   const Outlines& o = outlines_;
   const Vec2 origin = o.point(o.bodies[pair.edges].first);

@@ -1,7 +1,7 @@
-// Where outlines are deeper in each other than their collars: the potential is constant inside the
-// top of a collar (docs/theory.md, Contact). Which edges and faces that concerns follows from the
-// places where edges cross tops, and from one winding number for each closed line, which most often
-// stays what it was at the last search.
+// Contact of outlines inside saturated regions. The potential is constant inside the offset curve
+// of a collar (docs/theory.md, Contact). The edges and faces concerned follow from the places where
+// edges cross offset curves, and from one winding number for each closed line, which usually is
+// that of the last search.
 #pragma once
 
 #include <span>
@@ -15,38 +15,40 @@ namespace apothem {
 
 class OutlinePlateaus {
  public:
-  /// An edge of one outline inside the top of a body.
+  /// An edge of one outline inside the saturated region of a body.
   struct Edge {
     int edge;
-    BodyIndex in;       ///< the body
-    double sum, first;  ///< INT W du and INT W u du, with the winding number W of the top
-    double swept;       ///< part of the area inside both, m^2
+    BodyIndex in;       ///< the body with the saturated region
+    double sum, first;  ///< INT W du and INT W u du, with the winding number W of the offset curve
+    double swept;       ///< contribution to the area inside both, m^2
   };
-  /// A face whose top lies in another body.
+  /// A face whose side of the offset curve lies in another body.
   struct Face {
     int face;
-    BodyIndex in;                  ///< the body
-    CollarMoments<double> moment;  ///< what collar_piece leaves out
-    double swept;                  ///< part of the area inside both, m^2
+    BodyIndex in;                  ///< the other body
+    CollarMoments<double> moment;  ///< terms that collar_piece leaves out
+    double swept;                  ///< contribution to the area inside both, m^2
   };
 
   explicit OutlinePlateaus(const Outlines& outlines) : outlines_(outlines) {}
 
-  /// After a search: the pairs of bodies, both bodies of each being the one of the edges in turn. A
-  /// body that touches itself is a pair with itself: an outline counts once less round a top of the
-  /// same body, which lies inside it by nature.
+  /// Sets the pairs of bodies after a search; each body of a pair provides the edges in turn. A
+  /// body that may touch itself is a pair with itself. Its outline encloses its own offset curve
+  /// once by nature, and this does not count.
   void take(std::span<const BoxPair> pairs);
-  /// Forgets the crossings.
+  /// Removes the crossings.
   void begin() { crossings_.clear(); }
   void add(const EdgeFace& pair, const CollarCrossings<double>& top) {
     for (int i = 0; i < top.count; ++i) {
       crossings_.push_back({pair.edge, pair.face, top.at[static_cast<size_t>(i)]});
     }
   }
-  /// Finds edges and faces where the outlines are. The crossings must be those of all candidates.
+  /// Finds the edges and faces at the present positions of the outlines. The crossings of all
+  /// candidates must have been added.
   void evaluate();
 
-  /// Ascending pairs of bodies (that of the edges first), then along closed lines.
+  /// The results in ascending order of the pairs of bodies (the body of the edges first), then
+  /// along the closed lines.
   [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
 
@@ -55,14 +57,16 @@ class OutlinePlateaus {
     int edge, face;
     CollarCrossing<double> at;
   };
-  /// One vertex of a closed line: of an outline in the top of a body, or of a top in an outline.
+  /// One vertex of a closed line and its winding number: a vertex of an outline in an offset curve,
+  /// or of an offset curve in an outline.
   struct Base {
     int loop, vertex;
     int winding;
     bool top;
-    bool settled;  ///< until the next search
+    bool settled;  ///< true if the winding number holds until the next search
   };
-  /// Edges of one body, faces of another, and their bases: first the loops of the edges.
+  /// The edges of one body, the faces of another one, and the range of their bases: first those of
+  /// the loops of the edges.
   struct Pair {
     BodyIndex edges, faces;
     size_t first, end;
@@ -77,9 +81,9 @@ class OutlinePlateaus {
   void find_faces(const Pair& pair, std::span<Crossing> crossings);
 
   const Outlines& outlines_;
-  std::vector<Pair> pairs_;  ///< ascending
+  std::vector<Pair> pairs_;  ///< pairs, ascending
   std::vector<Base> bases_;
-  bool quiet_ = true;  ///< no base needs a look, and none is inside
+  bool quiet_ = true;  ///< true if all bases are settled and none of them is inside
   std::vector<Crossing> crossings_;
   std::vector<int> at_;  ///< first crossing of each edge or face, or -1
   std::vector<Edge> edges_;

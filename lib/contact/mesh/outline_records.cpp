@@ -10,20 +10,20 @@
 namespace apothem {
 namespace {
 
-// A contact patch while it is summed. Where a body touches itself, the side of the first edge is
-// called a, and that of its face b.
+// The sums over a contact patch. Where a body touches itself, the side of the first edge is called
+// a, and that of its face b.
 struct PatchSum {
   ContactRecord record;
   double weight = 0, deepest = 0;
-  double moment = 0;         // of the normal force on a, about the origin, N m
-  int edge = -1, face = -1;  // first ones
+  double moment = 0;         // moment of the normal force on a about the origin, N m
+  int edge = -1, face = -1;  // the first edge and its face
 
-  /// A force that acts on a.
+  /// Adds a force that acts on a.
   void add(const Vec2& point, const Vec2& force) {
     record.normal += force;
     moment += cross(point, force);
   }
-  /// What presses on an edge there, with that size (N) and depth (m).
+  /// Adds the pressure on an edge at a point, with the given magnitude (N) and depth (m).
   void press(const Vec2& point, double size, double depth) {
     record.point += size * point;
     weight += size;
@@ -31,8 +31,8 @@ struct PatchSum {
   }
 };
 
-// The mean of where edges are pushed, moved across the force until the force has the moment there
-// that it has. Where forces nearly cancel there is no line of action, and the mean stays.
+// The mean point of the pressure on the edges, moved across the force onto its line of action. If
+// the forces nearly cancel, there is no line of action, and the result is the mean point.
 Vec2 loading_point(const PatchSum& patch) {
   if (!(patch.weight > 0)) return patch.record.point;
   const Vec2 force = patch.record.normal;
@@ -42,9 +42,9 @@ Vec2 loading_point(const PatchSum& patch) {
   return mean + (patch.moment - cross(mean, force)) / squared * Vec2(force.y(), -force.x());
 }
 
-// Puts the contacts, and then the edges and the faces of the plateaus, into patches: the boundary
-// of an overlap goes on in the next face or at a vertex, or crosses over to the other outline, or
-// goes on inside the top.
+// Groups the contacts, and then the edges and faces of saturated regions, into patches. The
+// boundary of an overlap continues in the next face, at a vertex, on the other outline where the
+// two cross, or inside the saturated region.
 class PatchGroups {
  public:
   explicit PatchGroups(const OutlineState& state)
@@ -57,7 +57,7 @@ class PatchGroups {
     for (size_t i = 0; i < contacts_.size(); ++i) join_contact(i);
     join_plateaus();
   }
-  /// The number of the patch of each; ascending pairs of bodies.
+  /// The patch number of each contact. The numbers ascend with the pairs of bodies.
   std::vector<int> numbers() { return groups_.numbers(keys_); }
 
  private:
@@ -69,7 +69,7 @@ class PatchGroups {
                          }) -
         contacts_.begin());
   }
-  // Calls f(number) for the contacts of an edge with the faces of a body.
+  // Calls f(index) for the contacts of an edge with the faces of a body.
   template <class F>
   void each(int edge, BodyIndex in, const F& f) const {
     const Outlines::Body& body = o_.bodies[in];
@@ -101,7 +101,8 @@ class PatchGroups {
     });
   }
 
-  // By the numbers of edges and faces, and the body inside whose top they are.
+  // Joins edges and faces of saturated regions by their numbers and by the body whose saturated
+  // region they are in.
   void join_plateaus() {
     std::map<std::pair<int, BodyIndex>, size_t> edge_at, face_at;
     for (size_t k = 0; k < edges_.size(); ++k) {
@@ -141,7 +142,7 @@ class PatchGroups {
   std::vector<std::pair<int, int>> keys_;
 };
 
-// How far apart two vertices of a closed line are, in edges.
+// The number of edges between two vertices of a closed line.
 int steps_between(const Outlines& outlines, int vertex, int other) {
   const std::vector<Outlines::Loop>& loops = outlines.loops;
   const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &Outlines::Loop::first));
@@ -150,7 +151,7 @@ int steps_between(const Outlines& outlines, int vertex, int other) {
   return std::min(steps, loop->end - loop->first - steps);
 }
 
-// At the part u of an edge.
+// The point at the fraction u of an edge.
 Vec2 point_of(const Outlines& outlines, int edge, double u) {
   const Vec2 start = outlines.point(edge);
   return start + u * (outlines.point(outlines.next[edge]) - start);
@@ -161,7 +162,7 @@ bool is_a(const Outlines& outlines, const PatchSum& patch, int edge) {
   return steps_between(outlines, edge, patch.edge) <= steps_between(outlines, edge, patch.face);
 }
 
-// Sums what is found into the patches.
+// Sums contacts into the patches.
 class PatchSums {
  public:
   PatchSums(const OutlineState& state, int patches)
@@ -253,7 +254,7 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   for (const auto& [edge, face, slope, piece, drag, push] : state.contacts) {
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
-    for (const int k : {edge, face}) {  // the faces look the other way
+    for (const int k : {edge, face}) {  // the tangent of the face is that of the contact
       record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }

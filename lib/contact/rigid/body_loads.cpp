@@ -5,7 +5,7 @@
 namespace apothem {
 namespace {
 
-constexpr double kAddTime = 10;  // of a body, ns
+constexpr double kAddTime = 10;  // time for a body, ns
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> to
     }
     fastest_[static_cast<size_t>(worker)] = fastest;
   });
-  // Most steps end here: no pair is near the limit.
+  // In most steps no pair is near the limit, and the rates of partners are not needed.
   const double most = 2 * *std::ranges::max_element(fastest_);
   if (most > forces.lambda_limit) find_rates(forces.lambda_limit, touching);
   threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int) {
@@ -62,8 +62,8 @@ void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> to
   });
 }
 
-// The largest rate of a partner that can move, of each body: see stiffness.hpp. Rates are exact
-// above the limit, so that they do not shorten the step in vain.
+// Finds for each body the largest rate of its partners that can move, see stiffness.hpp. Rates are
+// exact above the limit, so that bounds do not shorten the step without need.
 void BodyLoads::find_rates(double limit, std::span<const PairInTouch> touching) {
   const auto sharpen = [&](size_t i) {
     if (rates_[i].exact) return;

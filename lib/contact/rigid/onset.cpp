@@ -10,15 +10,17 @@
 namespace apothem {
 namespace {
 
-constexpr double kSudden = .03;      // change of the boundary inside, of an inradius
-constexpr double kAtFirst = 1e-9;    // a potential that is round-off where a run starts
+constexpr double kSudden =
+    .03;  // change of the length inside that counts as sudden, relative to the inradius
+constexpr double kAtFirst =
+    1e-9;  // largest potential that counts as round-off at the start of a simulation
 constexpr double kPairTime = 2000;   // ns
-constexpr int kMostLooks = 1 << 14;  // for crossings of vertices and edges
+constexpr int kMostLooks = 1 << 14;  // largest number of pairs of a vertex and an edge to be tested
 constexpr size_t kMostEvents = 8;
-constexpr double kAtOnce = 1e-3;  // of the step
-constexpr int kMostPanels = 8;    // of a step with kinks
+constexpr double kAtOnce = 1e-3;  // kinks closer than this fraction of the step are one
+constexpr int kMostPanels = 8;    // largest number of panels of a step with kinks
 
-// Calls f(coordinate, number in a load, sign) for the coordinates of both bodies of a pair.
+// Calls f(coordinate, index in a load, sign) for the coordinates of both bodies of a pair.
 template <class F>
 void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
   const size_t of_a = 3 * static_cast<size_t>(a), of_b = 3 * static_cast<size_t>(b);
@@ -30,9 +32,9 @@ void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
 
 struct Onset::Path {
   RigidIndex a, b;
-  std::array<double, 3> rate_a, rate_b;  // of the pose, in a whole step
-  double angle_a, angle_b;               // at its end
-  Vec2 between;                          // at its end
+  std::array<double, 3> rate_a, rate_b;  // change of the pose in the whole step
+  double angle_a, angle_b;               // angles at the end of the step
+  Vec2 between;                          // a relative to b at the end of the step
 
   [[nodiscard]] double turn_a(double theta) const { return angle_a - (1 - theta) * rate_a[2]; }
   [[nodiscard]] double turn_b(double theta) const { return angle_b - (1 - theta) * rate_b[2]; }
@@ -74,8 +76,8 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
   return !impulses_.empty();
 }
 
-// The work of friction in the impulses, with the velocities when half of what these parts change is
-// done, after all other parts.
+// Finds the work of friction in the impulses. The velocities are those after all other impulses and
+// after half of the change by the friction.
 void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
   loss_ = 0;
   if (!tangential_) return;
@@ -91,7 +93,8 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
     double power = 0;
     each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
       const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
-      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // for dt / 2
+      const double pushed =
+          dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // mean force during dt / 2
       const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
       power += sign * i.friction[k] * speed;
     });
@@ -102,11 +105,12 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
   }
 }
 
-// What friction lacks: it goes with the normal force. Not where the pair has several patches, each
-// of which has friction by itself.
+// Finds the missing impulse of friction, which is proportional to the normal force. It is left out
+// for pairs with several patches, each of which has friction of its own.
 Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
                                  size_t inside) const {
-  constexpr double kVanishes = 1e-3;  // of the mean force
+  constexpr double kVanishes =
+      1e-3;  // a force below this fraction of the mean force is about to vanish
   Load friction{};
   if (!table_.between(pair.a, pair.b).rough()) return friction;
   const std::optional<PairForce> none = PairForce{};
@@ -121,7 +125,7 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
   double mean = 0;
   for (size_t i = 0; i < inside; ++i) mean += worker.samples[i].mean * size(i);
   const double lacks = mean - (ends[0] + ends[1]) / 2;
-  // A force that is about to vanish says nothing of the rest of the step.
+  // A force that is about to vanish says nothing about the rest of the step.
   const double least = kVanishes * 2 * mean;
   const double known = (ends[0] > least ? 1 : 0) + (ends[1] > least ? 1 : 0);
   for (const size_t end : {0, 1}) {
@@ -134,7 +138,7 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
   return friction;
 }
 
-// The loads at all samples, those of convex polygons together.
+// Finds the loads at all samples. Those of convex polygons are evaluated several at a time.
 void Onset::find_loads(const Path& path, Worker& worker) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
@@ -165,9 +169,10 @@ void Onset::find_loads(const Path& path, Worker& worker) const {
   evaluate();
 }
 
-// Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
-// for the rotation of a step. False if there are many, or many to look for: each is then a small
-// part of the force, and samples at equal distances do as well.
+// Finds the kinks of the force, where a vertex of one polygon crosses an edge of the other one.
+// Heights are linear in theta except for the rotation within a step. Returns false if there are
+// many kinks, or too many candidates: each kink then concerns a small part of the force, and
+// equidistant samples are sufficient.
 bool Onset::find_events(const Path& path, Worker& worker) const {
   worker.events.clear();
   const PlacedShapes& shapes = surfaces_.shapes();
@@ -181,7 +186,7 @@ bool Onset::find_events(const Path& path, Worker& worker) const {
   find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
   std::ranges::sort(worker.events);
   if (worker.events.size() <= kMostEvents) return true;
-  // Where many vertices cross at once, as the teeth of a comb that lands, they are one event.
+  // Where many vertices cross at once, as the teeth of a comb that lands, they count as one kink.
   const auto same = [](double a, double b) { return b - a < kAtOnce; };
   worker.events.erase(std::unique(worker.events.begin(), worker.events.end(), same),
                       worker.events.end());
@@ -190,7 +195,8 @@ bool Onset::find_events(const Path& path, Worker& worker) const {
   return false;
 }
 
-// Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
+// Finds where vertices of x cross edges of y. Coordinates are given at the start (0) and at the end
+// (1) of the step; `offset` leads from y to x.
 void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                            const PlacedPotential& y0, const PlacedPotential& y1,
                            const Vec2& offset0, const Vec2& offset1, std::vector<double>& events) {
@@ -268,8 +274,8 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   rest.add(rest_of(b, 3, -1));
   const double share = rest.share();
   for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean + friction[k];
-  // Moments of forces at earlier positions do not balance at the end of the step. What is left over
-  // goes half and half to both bodies, so that the angular momentum is kept.
+  // Moments of forces at earlier positions do not balance at the end of the step. Half of the
+  // difference goes to each body, so that the angular momentum is conserved.
   const auto balance = [&](Load& part) {
     const double couple = cross(path.between, Vec2(part[0], part[1])) + (part[2] + part[3]);
     part[2] -= couple / 2;

@@ -1,4 +1,4 @@
-// Contacts of rigid bodies that begin or end within a step: see onset_rule.hpp.
+// Contact events of rigid bodies, see event_impulse.hpp.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace apothem {
 
 class Onset {
  public:
-  /// `thickness` in m. All must outlive this object.
+  /// `thickness` is in m. All arguments must outlive this object.
   Onset(const Surfaces& surfaces, const PairTable& table, double thickness, int threads)
       : surfaces_(surfaces),
         table_(table),
@@ -25,16 +25,17 @@ class Onset {
         threads_(threads),
         workers_(static_cast<size_t>(threads_.count())) {}
 
-  /// At the end of the drift of a step of dt (s), with the half-step velocities: finds J of the
-  /// pairs whose vertices inside each other are not those of the step before, or of which much more
-  /// or less boundary is inside. True if there is a J. With dt = 0, at the start, there is none,
-  /// and what only just touches then is new in the first step. `tangential`: null if there is no
-  /// friction, which is followed along the path of these pairs, as a part of J.
+  /// Finds the missing impulse J of the pairs with a contact event, at the end of the drift of a
+  /// step of dt (s), with half-step velocities. A pair has an event if its vertices inside each
+  /// other are not those of the step before, or if much more or less boundary is inside. Returns
+  /// true if there is an impulse. With dt = 0, at the start, there is none, and pairs that only
+  /// just touch then are new in the first step. `tangential` is null without friction; otherwise J
+  /// includes the friction along the path.
   bool find(const PairIntegrals& pairs, const PatchTangential* tangential, const Kinematics& now,
             const Dynamics& dynamics, double dt);
-  /// What friction in the last J takes from the bodies, J.
+  /// The energy that the friction in the last impulses takes from the bodies, J.
   [[nodiscard]] double loss() const { return loss_; }
-  /// Adds J / dt of the last `find`, times `scale`, to the forces on rigid bodies.
+  /// Adds J / dt of the last `find`, multiplied by `scale`, to the forces on rigid bodies.
   void add(double scale, std::span<double> forces) const;
 
   void fields(Archive& archive) { watch_.fields(archive); }
@@ -45,15 +46,15 @@ class Onset {
   struct Impulse {
     int a, b;
     Load mean;      ///< J / dt
-    Load friction;  ///< of it
+    Load friction;  ///< the part of friction in `mean`
   };
-  /// Where the two polygons of a pair are within a step.
+  /// The positions of the two polygons of a pair within a step.
   struct Path;
-  /// What a thread needs.
+  /// Memory of a thread.
   struct Worker {
     std::vector<double> events;
     std::vector<OnsetSample> samples;
-    std::vector<Load> loads;  // of the samples
+    std::vector<Load> loads;  // loads at the samples
     PlacedShapes::Turned start_a, start_b;
     std::array<PlacedShapes::Turned, 2 * ConvexPairs::kAtOnce> turned;
     std::array<NearEdges, ConvexPairs::kAtOnce> near;
@@ -67,7 +68,7 @@ class Onset {
                              const PlacedPotential& y0, const PlacedPotential& y1,
                              const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);
   void find_loads(const Path& path, Worker& worker) const;
-  /// Of a pair of one patch, N and N m.
+  /// The missing friction of a pair with one patch, N and N m.
   [[nodiscard]] Load find_friction(const PairChange& pair, const Worker& worker,
                                    size_t inside) const;
   void book_loss(const Kinematics& now, const Dynamics& dynamics, double dt);
@@ -77,12 +78,12 @@ class Onset {
   double thickness_;
   Threads threads_;
   OnsetWatch watch_;
-  const PatchTangential* tangential_ = nullptr;  // of the last call
+  const PatchTangential* tangential_ = nullptr;  // argument of the last call of find
   std::vector<PairChange> changed_;
-  std::vector<Impulse> impulses_;  // of these
+  std::vector<Impulse> impulses_;  // impulses of the changed pairs
   double loss_ = 0;
-  // Of each coordinate: the forces of all impulses, and their parts of friction; 0 but while losses
-  // are booked.
+  // Forces of all impulses on each coordinate, and their parts of friction. Both are 0 except while
+  // find_friction_loss works.
   std::vector<double> all_, parts_;
   std::vector<Worker> workers_;
 };

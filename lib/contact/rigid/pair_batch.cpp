@@ -8,13 +8,13 @@
 namespace apothem {
 namespace {
 
-// Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
-// length: twice the worst of a million pairs (docs/verification.md).
+// Error of the sum of the normal forces of a patch, in units of eps times size over reference
+// length times own length: twice the worst value of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
-// A contact that is narrower than this part of its depth is a point.
+// A contact whose breadth over its depth is smaller than this is a point.
 constexpr double kNarrow = 1e-9;
 
-// A number of each lane; a plain number is that of the first one.
+// Reads one number for each lane; a single number is that of the first lane.
 template <class F>
 APOTHEM_INLINE void read_lanes(double& number, const F& of) {
   number = of(0);
@@ -23,7 +23,7 @@ template <int lanes, class F>
 APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
   pack = pack_of<lanes>(of);
 }
-// A truth value of each lane, from 1 or 0.
+// Reads one truth value for each lane, from 1 or 0.
 template <class F>
 APOTHEM_INLINE void read_lanes(bool& truth, const F& of) {
   truth = of(0) > 0;
@@ -35,7 +35,7 @@ APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& of) {
   mask = number > PackOf<lanes>(0.);
 }
 
-// The mass centre of a minus that of b; `lanes` have these numbers.
+// Reads the mass centre of a minus that of b for the pairs of `lanes`.
 template <class Real, class Lane>
 APOTHEM_INLINE void read_between(const Surfaces& surfaces, const Lane* lanes,
                                  VectorOf<Real>& between) {
@@ -67,7 +67,7 @@ APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<R
   number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
 }
 
-// The integrals of a pair and where its bodies are, which its load needs.
+// Reads the integrals of a pair and the positions of its bodies, which its load needs.
 template <class Real>
 APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, PatchStep<Real>& p) {
   const Surfaces& surfaces = scene.surfaces;
@@ -85,7 +85,7 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
   p.centre = {four[2], four[3]};
   integral(kLengthNumbers);
   const Real length_a = four[0], length_b = four[1];
-  // Inverse masses and slope.
+  // A row of Surfaces::Rigid holds the inverse masses and the slope.
   read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].a).inverse_mass.data(); },
             four);
   const Real slope_a = four[3];
@@ -141,7 +141,7 @@ APOTHEM_INLINE void hold(const PairWork* work, const PatchStep<Real>& p, BodySti
   strip.hold(p, a, b);
 }
 
-// Force and moments of a pair, with those beside the normal force.
+// Force and moments of a pair, including those of friction.
 template <class Real>
 APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
                                               const PairVectorOf<Real>& beside) {
@@ -149,7 +149,7 @@ APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
   return PairVectorOf<Real>{k * p.force.x, k * p.force.y, k * p.moment_a, k * p.moment_b} + beside;
 }
 
-// The numbers of a load stand in a row.
+// The numbers of a load are contiguous, so that they can be written as rows.
 static_assert(offsetof(BodyLoad, held) == 3 * sizeof(double) &&
               sizeof(BodyLoad) == 12 * sizeof(double));
 template <int lanes, class F>
@@ -178,7 +178,8 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
     PatchFriction<Pack> found;
     read_pair(scene, all.data(), p);
     read_memory(scene, all.data(), p);
-    // What the spring of one patch of several did before is not known: it may have been elsewhere.
+    // The previous force of the spring of one patch among several is not known, because the patch
+    // may have been elsewhere.
     p.friction_before = p.force_at_point(p.spring * p.normal.turned());
     rub(p, scene.dt, found);
     scatter(found, [&](int k) APOTHEM_LAMBDA -> PatchFriction<double>& { return friction_of[k]; });
@@ -210,14 +211,15 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
     dashpot.spring = spring;
     dashpot.coefficient = law.friction.coefficient;
   }
-  // The strip of the contact as two dashpots that resist its turning as a spread one does.
+  // The strip of the contact is represented by two dashpots that resist its rotation as a uniformly
+  // distributed one does.
   const double apart = patch.breadth / std::sqrt(12.), off = point.dot(across) - patch.middle;
   const bool both = apart > kNarrow * pressed / stiffness;
   const double share = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
   const std::array<double, 2> along{both ? -off - apart : 0, both ? apart - off : 0};
   const std::array<double, 2> shares{1 - share, share};
   for (const size_t k : {0, 1}) {
-    const double part = both ? .5 : shares[k];  // of the stiffness
+    const double part = both ? .5 : shares[k];  // fraction of the stiffness
     dashpot.across[k] =
         Dashpot::Normal::of(part * normal_rate, shares[k] * pressed, part * stiffness, patch.depth);
   }
@@ -279,7 +281,7 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
 
 void PairBatch::flush(const PairScene& scene) {
   if (count_ == 0) return;
-  // Lanes that are left over do the last pair again, for nobody.
+  // The remaining lanes are padding: they repeat the last pair, and their results are not used.
   PairWork again = work_[static_cast<size_t>(count_ - 1)];
   again.load = &spare_.load;
   again.now = &spare_.now;

@@ -7,17 +7,19 @@
 namespace apothem {
 namespace {
 
-constexpr double kMoved = .99;  // of the margin, beyond which near edges are found again
-// The margin is larger where bodies move faster, so that near edges are found again after some tens
-// of evaluations, and smaller in packs at rest, where few edges are near. These powers of two times
-// the smaller inradius:
+constexpr double kMoved =
+    .99;  // A Verlet list is renewed when the bodies have moved by this fraction of its skin.
+// The skin of a Verlet list is 2^exponent times the smaller inradius. The exponent rises where
+// bodies move fast, so that a list lasts for some tens of evaluations, and falls in packs at rest,
+// so that few edges are listed.
 constexpr int kSmallestMargin = -10;
 constexpr int kLargestMargin = -3;
 constexpr int kSoon = 32;
-constexpr size_t kPairsAhead = 16;  // that are fetched, for large scenes
+constexpr size_t kPairsAhead = 16;  // number of pairs that are prefetched, for large scenes
 constexpr int kLate = 256;
 
-// For one more. Large scenes need the memory.
+// Makes room for one more element. The capacity grows by little, because large scenes need the
+// memory.
 template <class T>
 void make_room(std::vector<T>& list) {
   if (list.size() == list.capacity()) list.reserve(list.size() * 9 / 8 + 16);
@@ -25,7 +27,7 @@ void make_room(std::vector<T>& list) {
 
 }  // namespace
 
-// Pairs that were there before keep what is known of their edges. The lists of before are not kept:
+// Pairs that existed before keep their Verlet lists. The old lists are not kept as buffers:
 // searches are rare, and large scenes need the memory.
 void PairIntegrals::take(std::span<const BoxPair> pairs) {
   const std::vector<BoxPair> pairs_before = std::move(pairs_);
@@ -54,13 +56,14 @@ void PairIntegrals::begin() {
   }
 }
 
-// Finds the near edges anew if the bodies have moved against each other by more than the margin.
+// Renews the Verlet list of a pair if the bodies have moved relative to each other by more than its
+// skin.
 void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace& workspace) {
   const auto [a, b] = pairs_[p];
   const PlacedShapes& shapes = surfaces_.shapes();
   Near& near = near_[p];
   const bool convex = shapes.convex(a) && shapes.convex(b);
-  if (convex && near.edges.margin == 0) return;  // pair_integral tells their distance
+  if (convex && near.edges.margin == 0) return;  // pair_integral finds their distance
   const double turn_a = surfaces_.pose(a)[2];
   const double turn_b = surfaces_.pose(b)[2];
   const Vec2 shift = between - near.between;
@@ -85,7 +88,8 @@ void PairIntegrals::find_near(size_t p, const Vec2& between, NearEdgesWorkspace&
   near.edges = near_edges(view_a, view_b, between, margin, workspace);
 }
 
-// Evaluates pairs from `first` on, as many as go together. Returns where the next ones begin.
+// Evaluates pairs from `first` on until a batch of convex pairs is full. Returns the index of the
+// next pair.
 size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
   const PlacedShapes& shapes = surfaces_.shapes();
   const std::vector<Box>& boxes = shapes.boxes();
@@ -108,7 +112,7 @@ size_t PairIntegrals::evaluate_some(size_t first, size_t end, int index) {
       worker.convex_pairs[static_cast<size_t>(worker.workspace.edge.convex.count())] = p;
       worker.workspace.edge.convex.add(view_a, view_b, between, near_[p].edges);
     } else {
-      evaluate_convex(index);  // those before it
+      evaluate_convex(index);  // evaluates the convex pairs before this one
       evaluate_alone(p, view_a, view_b, index);
     }
   }
@@ -130,7 +134,7 @@ void PairIntegrals::evaluate_convex(int index) {
   }
 }
 
-// The pair is apart by its margin where its bodies are now.
+// Notes that the polygons are apart by the skin at the present positions of their bodies.
 void PairIntegrals::note_margin(size_t p, const Vec2& between) {
   near_[p].between = between;
   near_[p].angle_a = surfaces_.pose(pairs_[p].first)[2];
@@ -147,7 +151,7 @@ void PairIntegrals::add(size_t p, const PairIntegral& integral, int index, int s
   results.push_back({pairs_[p].first, pairs_[p].second, number, index, split});
 }
 
-// Puts the lists of the workers together.
+// Joins the lists of the threads.
 void PairIntegrals::collect() {
   parts_.clear();
   for (Worker& worker : workers_) {
@@ -190,7 +194,7 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
     worker.whole_runs.insert(worker.whole_runs.end(), worker.pair_runs.begin(),
                              worker.pair_runs.end());
   }
-  if (parts.patches != 1) {  // the only one is the whole pair
+  if (parts.patches != 1) {  // a single patch is the whole pair
     parts.first_patch = static_cast<int>(worker.patches.size());
     worker.patches.insert(worker.patches.end(), worker.pair_patches.begin(),
                           worker.pair_patches.end());
@@ -212,7 +216,7 @@ double PairIntegrals::energy(const PairTable& table) const {
   return std::accumulate(energies_.begin(), energies_.end(), 0.);
 }
 
-// phi may be limited to 1.
+// A largest phi of 1 gives no bound, because phi may be limited to 1.
 double PairIntegrals::deepest(const PairInTouch& pair, const PairIntegral& integral) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double ratio = std::max(shapes.depth_ratio(pair.a), shapes.depth_ratio(pair.b));
@@ -235,9 +239,10 @@ Contact PairIntegrals::contact(KernelKind kernel, const PairInTouch& result, dou
 bool PairIntegrals::too_deep(const PairInTouch& result, const PairIntegral& pair) const {
   const SurfaceIndex a = result.a, b = result.b;
   if (!(pair.largest_phi <= kDeepestPhi)) return true;
-  // The boundary of an overlap around the top of a polygon lies outside a circle about it: the
-  // polygon's own boundary is as far away as the radius of its incircle, and the other one's is
-  // nearer by no more than the depth. The top of a shape that deforms is another point.
+  // If an overlap contains the centre of a polygon's incircle, its boundary is long: the polygon's
+  // own boundary is at least an inradius away from the centre, and the other one is nearer by at
+  // most the depth. So a short boundary excludes this case. The highest point of a shape that
+  // deforms is not the centre, and the bound is weaker.
   const double inradius = std::min(surfaces_.inradius(a), surfaces_.inradius(b));
   const bool rigid = surfaces_.is_rigid(a) && surfaces_.is_rigid(b);
   const double shortest = rigid ? 6 * (inradius - deepest(result, pair)) : inradius;

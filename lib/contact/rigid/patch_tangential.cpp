@@ -7,10 +7,10 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kPairsAheadOfStep = 8;  // that are fetched, for large scenes
+constexpr size_t kPairsAheadOfStep = 8;  // number of pairs that are prefetched, for large scenes
 
-// The force of a spring after a slip in m. What it loses is the mean force times the slip that it
-// does not follow.
+// The force of a spring after a slip in m. The spring loses the mean force times the part of the
+// slip that it does not follow.
 double follow(const CoulombSpring<double>& spring, double force, double slip, PairBook& book) {
   const double trial = spring.trial(force, slip), next = spring.within(trial);
   book.loss += (force + next) * (trial - next) / (2 * spring.stiffness);
@@ -38,7 +38,7 @@ void PatchTangential::begin_step(const Kinematics& now, double dt) {
   make_room();
 }
 
-// Every pair has its place in the lists, so that threads do not wait for each other.
+// Every pair gets its range in the lists, so that threads need not wait for each other.
 void PatchTangential::make_room() {
   const std::vector<PairInTouch>& touching = pairs_.touching();
   books_.assign((touching.size() + kBlock - 1) / kBlock, {});
@@ -66,7 +66,8 @@ void PatchTangential::end_step() {
   for (const PairBook& book : books_) memory_.add(book);
 }
 
-// Of a pair that touches no more: in the first half of this step its last force has still acted.
+// The energy lost by the springs of a pair that no longer touches. In the first half of this step
+// its last force has still acted.
 double PatchTangential::lost_at_end(std::span<const Spring> springs) const {
   double energy = 0;
   PairForce force;
@@ -78,7 +79,8 @@ double PatchTangential::lost_at_end(std::span<const Spring> springs) const {
   return energy - scene_.dt / 2 * force.power(pair_rate(kinematics_, pair.a, pair.b));
 }
 
-// Where the last step has put them, unless there has been an evaluation or an undone step since.
+// The springs of a pair. The guess is their index in the last step, which is right unless there has
+// been an evaluation or an undone step since.
 std::span<Spring> PatchTangential::springs_of(const PairInTouch& pair) const {
   const auto number = static_cast<size_t>(pair.number);
   const size_t guess = number < places_.size() ? place_of(number).spring : number;
@@ -121,7 +123,8 @@ void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const B
   }
 }
 
-// Pairs that have ended between those of this range and of the next one belong to it.
+// Pairs that have ended and lie between the pairs of this range and those of the next one belong to
+// this range.
 void PatchTangential::Range::begin(size_t first, size_t end) {
   const std::vector<PairInTouch>& touching = all_.pairs_.touching();
   const auto key = [&](size_t number) -> ContactKey {
@@ -151,7 +154,7 @@ void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book
   for (const PairBook& pair : books_) book.add(pair);
 }
 
-// Begins to bring what a pair needs to the cache.
+// Prefetches the data of a pair.
 void PatchTangential::fetch(const PairInTouch& pair) const {
   const auto* const integral = reinterpret_cast<const char*>(&pairs_.integral(pair));
   for (size_t at = 0; at < sizeof(PairIntegral); at += 64) __builtin_prefetch(integral + at);
@@ -218,7 +221,7 @@ void PatchTangential::Range::step_patches(const PairInTouch& touching, const Pai
   load_pair(scene, pair, sum.force, sum.held_a, sum.held_b);
 }
 
-// One spring for each patch.
+// Updates one spring for each patch.
 void PatchTangential::Range::step_springs(const PairWork& pair, Sum& sum) {
   friction_.resize(patches_.size());
   std::array<PairWork, kComparedLanes> work;
@@ -248,9 +251,9 @@ void PatchTangential::Range::step_springs(const PairWork& pair, Sum& sum) {
   pair.book->loss = lost_by_balance(pair, sum);
 }
 
-// What the patches before hand down to those of now: everything to the only heir, otherwise in
-// proportion to the normal forces of those that share boundary with it. Forces are neither invented
-// nor lost.
+// Contact matching: finds the fraction of each earlier patch's spring that goes to each present
+// patch. If only one present patch shares boundary with it, that patch gets all of it; otherwise
+// the fractions are proportional to the normal forces. Forces are neither created nor lost.
 void PatchTangential::Range::find_shares(const ContactKey& pair) {
   if (before_.empty()) return;
   runs_before_.clear();
@@ -289,7 +292,7 @@ void PatchTangential::Range::inherit() {
   }
 }
 
-// What friction has taken from the bodies and the springs do not store.
+// The energy that friction has taken from the bodies and the springs do not store.
 double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& sum) const {
   PairForce force_before;
   for (const Spring& spring : before_) force_before = force_before + spring.on_bodies;
@@ -300,8 +303,8 @@ double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& 
   return lost - pair.book->energy;
 }
 
-// The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
-// against the motion meet a false tangential force.
+// The older friction law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges
+// that are inclined to the motion get a false tangential force.
 void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const BoundaryRun> runs,
                                       Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
@@ -311,7 +314,7 @@ void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const Boun
   const int edges_of_a = all_.surfaces_.shapes().view(pair.a).size;
   auto next = now_.begin();
   auto old = before_.begin();
-  const auto end_one = [&] { pair.book->loss += (old++)->energy(); };  // an edge is free again
+  const auto end_one = [&] { pair.book->loss += (old++)->energy(); };  // the edge no longer touches
   for (const BoundaryRun& run : runs) {
     const ContactKey key{polygon_kernel, pair.a, pair.b,
                          run.of_a ? run.edge : edges_of_a + run.edge};

@@ -7,10 +7,10 @@ namespace apothem {
 
 namespace {
 
-// Of a touching pair, ns.
+// Time for a touching pair, ns.
 constexpr double kLoadTime = 100;
 
-// What friction and damping need.
+// The pairs that friction and damping need to be split.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
   if (!table.rough() && !table.damped()) return PairIntegrals::Split::none;
   return law.friction_law == FrictionLaw::per_edge ? PairIntegrals::Split::all
@@ -91,7 +91,7 @@ double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& /*
                       [&](std::span<const PairLoad> loads) { add_block(loads, worker); });
   });
   tangential_->end_step();
-  return 0;  // it books itself what its springs lose
+  return 0;  // the losses of the springs have been booked
 }
 
 void PolygonKernel::add_forces(const ForceViews& forces) {
@@ -123,7 +123,7 @@ void PolygonKernel::sum_loads(const Part& part) {
   }
 }
 
-// The loads of pairs in scenes without friction.
+// Finds the loads of pairs in scenes without friction.
 void PolygonKernel::find_normal_loads(int first, int end, int worker) {
   const PairScene scene{surfaces_, thickness_};
   Found& found = found_[static_cast<size_t>(worker)];
@@ -143,7 +143,7 @@ void PolygonKernel::find_normal_loads(int first, int end, int worker) {
   }
 }
 
-// Calls f(pair, number of the patch, integrals) for all patches of damped pairs.
+// Calls f(pair, index of the patch, integrals) for all patches of damped pairs.
 template <class F>
 void PolygonKernel::each_patch(const F& f) const {
   for (const PairInTouch& pair : pairs_.touching()) {

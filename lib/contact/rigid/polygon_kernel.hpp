@@ -1,4 +1,4 @@
-// Contact of rigid bodies: the potentials of their whole polygons, by the pair kernel.
+// Contact of rigid bodies by the potentials of their whole polygons.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace apothem {
 
 class PolygonKernel final : public Kernel {
  public:
-  /// `thickness` in m. All must outlive this object.
+  /// `thickness` is in m. All arguments must outlive this object.
   PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 FrictionMemory& memory, double thickness, int threads);
 
@@ -28,7 +28,7 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
-  /// What the next slide needs is in the memory.
+  /// Nothing is to be done: all that the next update needs is in the memory.
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
   void add_dashpots(const Kinematics& now, Dashpots& to) override;
@@ -61,7 +61,7 @@ class PolygonKernel final : public Kernel {
   [[nodiscard]] double stiffness(RigidIndex a, RigidIndex b) const {
     return table_.between(a, b).normal_stiffness * thickness_;
   }
-  // What one thread has found.
+  // The results of one thread.
   struct Found {
     ContactSummary summary;
     PairPeak largest_force;
@@ -79,9 +79,9 @@ class PolygonKernel final : public Kernel {
   double thickness_;  // m
   PairIntegrals pairs_;
   Onset onset_;
-  std::optional<PatchTangential> tangential_;  // only where there is friction or damping
+  std::optional<PatchTangential> tangential_;  // empty without friction
   Threads threads_;
-  std::vector<Found> found_;  // by each thread
+  std::vector<Found> found_;  // results of each thread
   BodyLoads loads_;
   ContactSummary summary_;
   PairPeak largest_force_;
@@ -90,9 +90,9 @@ class PolygonKernel final : public Kernel {
   PenetrationWorkspace penetration_workspace_;
   std::vector<BoundaryRun> runs_;
   std::vector<PairIntegral> patches_;
-  std::vector<double> deepest_;  // of each patch, m
-  std::vector<char> damped_;     // of each patch of damped pairs, whether it has dashpots
-  // Of these: the forces of their dashpots along the normal, and along the tangent, N.
+  std::vector<double> deepest_;  // penetration of each patch, m
+  std::vector<char> damped_;     // for each patch of damped pairs, whether it has dashpots
+  // Forces of the dashpots of these patches along the normal and along the tangent, N.
   std::vector<double> pushes_, drags_;
 };
 

@@ -55,7 +55,7 @@ void ElementSurfaces::place(const Kinematics& now, SurfaceIndex first, PlacedSha
       const double* u = &now.displacement[2 * static_cast<size_t>(nodes_[corner])];
       return {u[0], u[1]};
     };
-    // Differences before sums: no digit is lost far from the origin.
+    // Differences are taken before sums, so that no digit is lost far from the origin.
     const Vec2& origin = start_[element.corners];
     const Vec2 carried = moved(element.corners);
     const double x = origin.x() + carried.x(), y = origin.y() + carried.y();

@@ -13,9 +13,10 @@
 namespace apothem {
 namespace {
 
-constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
-constexpr int kTogether = 16;    // bodies, so that what is known of them stays in the cache
-constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+constexpr double kMoveTime = 3, kEdgeTime = 6;  // time for a vertex, ns
+constexpr int kTogether = 16;  // bodies placed together, so that their data stay in the cache
+constexpr double kClear =
+    1e-9;  // a point nearer to a line than this, relative to the depth, is not clear
 
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
@@ -44,8 +45,8 @@ APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
   store(value, to.data() + i);
 }
 
-// Tangents, bisectors and plain depths of outlines. Each member does one edge or vertex, or a pack
-// of them that follow each other in all arrays.
+// Computes tangents, bisectors and regular depths of outlines. Each member function treats one edge
+// or vertex, or a pack of them that are consecutive in all arrays.
 template <class Of = Outlines>
 struct EdgeGeometry {
   Of& o;
@@ -75,7 +76,7 @@ struct EdgeGeometry {
     const Number event = collar_event(loaded<Number>(o.length, i), alpha, beta);
     store(plain_depth(loaded<Number>(o.depth, i), event), o.plain, i);
   }
-  /// Raises `farthest` to how far a vertex of the top is from a place.
+  /// Raises `farthest` to the distance of a vertex of the offset curve from a given position.
   template <class Number>
   APOTHEM_INLINE void stray(int i, const std::vector<double>& top_x,
                             const std::vector<double>& top_y, double* farthest) const {
@@ -91,8 +92,8 @@ struct EdgeGeometry {
   }
 };
 
-// f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some may
-// be done twice.
+// Calls f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some
+// indices may be treated twice.
 template <int lanes, class F>
 APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
   if (end - first < lanes) {
@@ -103,7 +104,7 @@ APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
   f(std::type_identity<PackOf<lanes>>(), end - lanes);
 }
 
-// The area over the length of the boundary, m: no more than the inradius of the body.
+// The area over the length of the boundary, m, which is a lower bound of the inradius of the body.
 double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   double area = 0, length = 0;
   for (const std::vector<Vec2>& ring : rings) {
@@ -116,7 +117,7 @@ double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   return area / length;
 }
 
-// The smallest thickness of a body, m, or `most` if it is nowhere thinner.
+// The smallest thickness of a body, m, or `most` if the body is nowhere thinner.
 double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
   std::vector<std::vector<Vec2>> rings;
   for (const BoundaryLoop& loop : boundary.loops) {
@@ -147,8 +148,8 @@ void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex fi
     close_body({first, size(), -1, *reference, thickness / 2});
     return;
   }
-  // The collars of opposite sides must not reach through a body that is squeezed to half. A row of
-  // squares is four times half its r thick: less is never needed.
+  // The collars of opposite sides must not meet in a body that is squeezed to half its thickness. A
+  // row of square elements is 4 r thick, so thicknesses beyond that need not be measured.
   const double r = boundary_inradius(mesh, boundary);
   const double thickness = thickness_of(mesh, boundary, 4 * r);
   close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
@@ -192,7 +193,8 @@ void Outlines::close_body(const Body& added) {
 void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
   std::atomic<bool> strayed = kept_.x.empty();
   const int count = static_cast<int>(bodies.size());
-  const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
+  const double vertices =
+      static_cast<double>(size()) / std::max(count, 1);  // mean number of vertices of a body
   const auto place_some = [&](BodyIndex first, BodyIndex end) {
     for (BodyIndex b = first; b < end; ++b) {
       if (!move(bodies[b], now, polygons)) strayed = true;
@@ -208,13 +210,14 @@ void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const 
   strayed_ = strayed;
 }
 
-// The active bodies from `first` to `end` - 1.
+// The active bodies with numbers from `first` to `end` - 1.
 std::span<const BodyIndex> Outlines::active(BodyIndex first, BodyIndex end) const {
   const auto from = std::ranges::lower_bound(active_, first);
   return {from, std::lower_bound(from, active_.end(), end)};
 }
 
-// False if a vertex is not near where it was at the last search, or not at a finite place.
+// Moves the vertices of a body. Returns false if a vertex is not near its position at the last
+// search, or not at a finite position.
 bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
   const bool compare = !kept_.x.empty();
   const double limit = growth();
@@ -244,13 +247,13 @@ bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons
 
 void Outlines::require_finite() const {
   for (const Body& b : bodies) {
-    double all = 0;  // NaN if a place is not finite
+    double all = 0;  // NaN if a coordinate is not finite
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
     if (all != 0) throw NotFinite(body[b.first]);
   }
 }
 
-// The edges of a body follow each other, but for those that close a line.
+// The edges of a body are consecutive, except for those that close a line.
 void Outlines::find_edges(std::span<const BodyIndex> of) {
   const EdgeGeometry<> g{*this};
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
@@ -296,8 +299,8 @@ void Outlines::find_boxes(double growth) {
   }
 }
 
-// Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
-// bodies that are not active without a look at their faces.
+// Bodies do not overlap as long as their vertices are in separate boxes. For bodies that are not
+// active this is known without their faces.
 bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
   const EdgeGeometry<const Outlines> g{*this};
   const double limit = growth();
@@ -353,7 +356,8 @@ void Outlines::prepare_search_at(const std::vector<double>& px, const std::vecto
 }
 
 std::optional<Outlines::Notch> Outlines::closed_notch() const {
-  constexpr double kSharp = 3;  // length of the bisector, over the height: an angle of 39 degrees
+  constexpr double kSharp =
+      3;  // length of the bisector over the height, which is 3 at an angle of 39 degrees
   std::optional<Notch> found;
   double longest = kSharp * kSharp;
   each_active_vertex([&](int i) {

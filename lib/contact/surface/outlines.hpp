@@ -3,7 +3,8 @@
 // An outline is the boundary of a body: the closed lines around a mesh, or the polygon of a rigid
 // body that may touch a mesh. The collar is the part of the outline's roof near the surface, up to
 // a depth that is the same all around a body and does not follow the deformation. Every edge has
-// one face of it. The upper sides of the faces form the top, closed lines as well. The vertices of
+// one face of the collar. The upper sides of the faces form the offset curve, which consists of
+// closed lines; inside it is the saturated region, where the potential is constant. The vertices of
 // all outlines form one list; edge i leads from vertex i to vertex next[i].
 #pragma once
 
@@ -27,72 +28,73 @@ namespace apothem {
 class Outlines {
  public:
   struct Body {
-    int first, end;         ///< the vertices of the body
+    int first, end;         ///< range of the vertices of the body
     RigidIndex rigid;       ///< -1 if the body is deformable
-    double reference;       ///< r of its potential, m; it does not follow the deformation
-    double depth;           ///< of its collar, m; nor does this
+    double reference;       ///< reference length r of its potential, m, which does not follow the
+                            ///< deformation
+    double depth;           ///< depth of its collar, m, which does not follow the deformation
     double cx = 0, cy = 0;  ///< mass centre of a rigid body, m
-    int first_loop = 0, end_loop = 0;  ///< its closed lines
+    int first_loop = 0, end_loop = 0;  ///< range of its closed lines
 
     [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
-    [[nodiscard]] double slope() const { return 1 / reference; }  ///< of its potential, 1/m
+    [[nodiscard]] double slope() const { return 1 / reference; }  ///< slope of its potential, 1/m
   };
   std::vector<Body> bodies;         ///< in the order of BodyIndex
-  std::vector<BodyIndex> body;      ///< of each vertex
-  std::vector<int> next, previous;  ///< vertices around each vertex
-  std::vector<NodeIndex> node;      ///< of each vertex; -1 on a rigid body
-  /// The vertices of a closed line of a body.
+  std::vector<BodyIndex> body;      ///< body of each vertex
+  std::vector<int> next, previous;  ///< next and previous vertex of each vertex
+  std::vector<NodeIndex> node;      ///< node of each vertex; -1 on a rigid body
+  /// The range of the vertices of a closed line of a body.
   struct Loop {
     int first, end;
     BodyIndex body;
   };
-  std::vector<Loop> loops;      ///< ascending
-  std::vector<double> x, y;     ///< present place of each vertex, m
+  std::vector<Loop> loops;      ///< closed lines, ascending
+  std::vector<double> x, y;     ///< present position of each vertex, m
   std::vector<double> mx, my;   ///< direction of the bisector at each vertex
   std::vector<double> tx, ty;   ///< unit tangent of each edge
-  std::vector<double> length;   ///< of each edge, m
-  std::vector<double> depth;    ///< of the collar at each edge: that of the body, m
-  std::vector<double> plain;    ///< of each face (geometry/integrals/collar.hpp), m
-  std::vector<Box> edge_boxes;  ///< of the edges at the last search, grown by half the skin
-  std::vector<Box> face_boxes;  ///< of the faces, likewise
-  std::vector<Box> body_boxes;  ///< of the edges and faces of each body, likewise
+  std::vector<double> length;   ///< length of each edge, m
+  std::vector<double> depth;    ///< depth of the collar at each edge, which is that of the body, m
+  std::vector<double> plain;    ///< regular depth of each face (geometry/integrals/collar.hpp), m
+  std::vector<Box> edge_boxes;  ///< boxes of the edges at the last search, grown by half the skin
+  std::vector<Box> face_boxes;  ///< boxes of the faces, grown likewise
+  std::vector<Box> body_boxes;  ///< boxes of the edges and faces of each body, grown likewise
 
-  /// `skin`: how far corners of edges and faces may move between two searches, twice over, m.
+  /// Corners of edges and faces may move by half of `skin` (m) between two searches.
   explicit Outlines(double skin = 0) : skin_(skin) {}
 
-  /// Adds the outline of a mesh whose node 0 has the number `first_node`. r is the smallest
-  /// inradius of the elements at its boundary, or `reference` (m). The collar has the depth r, or
-  /// less where the body is thin: see collar_depth.
+  /// Adds the outline of a mesh whose first node has the number `first_node`. r is the smallest
+  /// inradius of the elements at its boundary, or `reference` (m). The depth of the collar is r, or
+  /// less where the body is thin (docs/theory.md, Beyond the collar).
   void add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                 std::optional<double> reference = {});
 
-  /// Adds the polygon of a rigid body, counter-clockwise about the mass centre; `reference`: its r
-  /// in m. The collar has the depth r, or half the smallest thickness.
+  /// Adds the polygon of a rigid body, counter-clockwise and relative to the mass centre, with the
+  /// reference length `reference`, m. The depth of the collar is r, or half the smallest thickness.
   void add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference);
 
-  /// Moves the outlines to where the bodies are; those of rigid bodies follow their polygons. Those
-  /// of active bodies get their tangents, bisectors and depths. Throws NotFinite if a vertex is not
-  /// at a finite place.
+  /// Moves the outlines with their bodies; those of rigid bodies follow their polygons. The
+  /// tangents, bisectors and regular depths of active bodies are computed. Throws NotFinite if a
+  /// coordinate of a vertex is not finite.
   void place(const Kinematics& now, const PlacedShapes& polygons,
              const Threads& threads = Threads());
 
-  /// True if a vertex, or a face of an active body, has moved through half the skin since the last
-  /// search, where the outlines have been placed.
+  /// True if a vertex, or a corner of a face of an active body, has moved by more than half the
+  /// skin since the last search.
   [[nodiscard]] bool stale() const { return strayed_; }
-  /// Has the outlines be stale until the next search.
+  /// Marks the outlines as stale until the next search.
   void forget() {
     kept_ = {};
     strayed_ = true;
   }
-  /// Renews the boxes for the search.
+  /// Renews the boxes for a search.
   void prepare_search();
-  /// Where the vertices were at the last search, m.
+  /// The positions of the vertices at the last search, m.
   [[nodiscard]] const std::vector<double>& searched_x() const { return kept_.x; }
   [[nodiscard]] const std::vector<double>& searched_y() const { return kept_.y; }
-  /// Puts the vertices where they were at a search, and renews the boxes for it.
+  /// Moves the vertices to their positions at an earlier search, and renews the boxes for it.
   void prepare_search_at(const std::vector<double>& px, const std::vector<double>& py);
-  /// After a search: only bodies of these pairs are active, as others are near nothing. Until the
-  /// first call all are.
+  /// Sets the active bodies after a search: those of the given pairs, as the others are near
+  /// nothing. Until the first call all bodies are active.
   void activate(std::span<const BoxPair> pairs);
   /// The active bodies, ascending.
   [[nodiscard]] std::span<const BodyIndex> active() const { return active_; }
@@ -104,29 +106,29 @@ class Outlines {
     }
   }
 
-  /// How often the outline of a body, or the top of its collar, goes round a point. `clear`, if
-  /// given, becomes false where round-off might decide.
+  /// The winding number of the outline of a body, or of the offset curve of its collar, about a
+  /// point. `clear`, if given, becomes false where round-off might decide.
   [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
                             bool* clear = nullptr) const;
 
-  /// A reflex corner of an active body with a mesh, so sharp that the collar reaches out of the
-  /// body on the other side: self-contact is wrong there (docs/theory.md, Contact of a body with
-  /// itself).
+  /// A reflex corner of an active body with a mesh that is so sharp that the collar reaches out of
+  /// the body on the other side, where self-contact is wrong (docs/theory.md, Contact of a body
+  /// with itself).
   struct Notch {
     int vertex;
-    double angle;  ///< between its edges, outside the body, rad
+    double angle;  ///< angle between its edges, outside the body, rad
   };
-  /// The sharpest one.
+  /// The sharpest such corner.
   [[nodiscard]] std::optional<Notch> closed_notch() const;
 
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
-  /// Half the length of the two edges at a vertex, m.
+  /// The tributary length of a vertex, m: half the length of the two edges at it.
   [[nodiscard]] double share(int vertex) const {
     return ((point(next[vertex]) - point(vertex)).norm() +
             (point(vertex) - point(previous[vertex])).norm()) /
            2;
   }
-  /// Length of an edge as given, m.
+  /// The length of an edge in the undeformed state, m.
   [[nodiscard]] double given_length(int edge) const {
     return hypotenuse(x0_[next[edge]] - x0_[edge], y0_[next[edge]] - y0_[edge]);
   }
@@ -136,9 +138,9 @@ class Outlines {
     return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],   length[i],
             mx[i], my[i], mx[j], my[j], depth[i], plain[i]};
   }
-  /// By how much the boxes are grown, m.
+  /// The distance by which the boxes are grown, m.
   [[nodiscard]] double growth() const { return skin_ / 2; }
-  /// The vertex of the top over a vertex.
+  /// The vertex of the offset curve that belongs to vertex i.
   [[nodiscard]] Vec2 top(int i) const { return {x[i] + depth[i] * mx[i], y[i] + depth[i] * my[i]}; }
 
  private:
@@ -152,15 +154,15 @@ class Outlines {
   void find_boxes(double growth);
 
   double skin_;
-  std::vector<double> x0_, y0_;  // of each vertex in the mesh as given
-  /// The vertices of the outlines and of their tops at the last search.
+  std::vector<double> x0_, y0_;  // undeformed position of each vertex, m
+  /// The vertices of the outlines and of their offset curves at the last search.
   struct Kept {
     std::vector<double> x, y, top_x, top_y;
   };
   Kept kept_;
   bool strayed_ = true;
   std::vector<BodyIndex> active_;
-  std::vector<char> is_active_;  // of each body
+  std::vector<char> is_active_;  // whether each body is active
 };
 
 }  // namespace apothem

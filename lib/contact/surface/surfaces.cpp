@@ -7,7 +7,7 @@ namespace apothem {
 
 namespace {
 
-constexpr double kPlaceTime = 30;  // of a polygon, ns
+constexpr double kPlaceTime = 30;  // time for a polygon, ns
 
 double angle_of(const Kinematics& now, RigidIndex i) {
   return now.pose[3 * static_cast<size_t>(i) + 2];
@@ -112,7 +112,7 @@ void Surfaces::place(const Kinematics& now, const Threads& threads) {
       if (other != one && !place_polygon(other, now, angles[1])) finite = false;
     }
   });
-  if (!finite) place_all(now);  // says which one it is
+  if (!finite) place_all(now);  // throws with the number of the body
   place_meshes(now, threads);
 }
 

@@ -5,7 +5,7 @@ namespace apothem {
 
 std::optional<Buried> find_buried(const Outlines& o, const std::vector<std::uint8_t>& absent) {
   std::vector<Loops> loops;
-  std::vector<double> reach;  // of the potentials, m
+  std::vector<double> reach;  // depth to which the potential of each body reaches, m
   std::vector<Box> boxes;
   for (const Outlines::Body& body : o.bodies) {
     Loops& of_body = loops.emplace_back();
