@@ -150,7 +150,7 @@ struct Crosses {
   std::vector<Vec2> offsets;
   EdgeWorkspace edges;
   PatchWorkspace for_patches;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> runs;
   std::vector<PairIntegral> patches;
 };
 

@@ -55,7 +55,7 @@ struct Mitre {
 /// The height of the edge event, at which a face between bisectors of these slopes shrinks to a
 /// point. `Real` is a number or a pack.
 template <class Real>
-APOTHEM_INLINE Real collar_event(const Real& length, const Real& alpha, const Real& beta) {
+APOTHEM_INLINE Real edge_event_height(const Real& length, const Real& alpha, const Real& beta) {
   return select(alpha > beta, length / (alpha - beta),
                 Real(std::numeric_limits<double>::infinity()));
 }
@@ -63,7 +63,7 @@ APOTHEM_INLINE Real collar_event(const Real& length, const Real& alpha, const Re
 /// The regular depth of a face: up to this height an edge neither reaches the saturated region nor
 /// the part of the face that counts negatively.
 template <class Real>
-APOTHEM_INLINE Real plain_depth(const Real& depth, const Real& event) {
+APOTHEM_INLINE Real regular_depth(const Real& depth, const Real& event) {
   return select(event < depth, event, depth) * Real(1 - 1e-9);
 }
 
@@ -78,10 +78,10 @@ struct CollarFace {
   RealPart<Number> plain;  ///< see regular_depth()
 
   /// The same face with its regular depth.
-  [[nodiscard]] APOTHEM_INLINE CollarFace with_plain() const {
+  [[nodiscard]] APOTHEM_INLINE CollarFace with_regular_depth() const {
     CollarFace face = *this;
     face.plain =
-        plain_depth(depth, collar_event(real_part(length), real_part(alpha()), real_part(beta())));
+        regular_depth(depth, edge_event_height(real_part(length), real_part(alpha()), real_part(beta())));
     return face;
   }
 
@@ -125,8 +125,8 @@ struct CollarCrossings {
 
 namespace detail {
 
-constexpr double kThird = 1. / 3,
-                 kSixth = 1. / 6;  // because a division takes as long as ten products
+// Factors in place of divisions, which take as long as ten products.
+constexpr double kThird = 1. / 3, kSixth = 1. / 6;
 
 // The heights of the ends P and Q of an edge over the base of a face, and their sides of the
 // bisectors at a and b.
@@ -195,7 +195,7 @@ struct AlongBisector {
 /// crossings of a closed line with the offset curve add up to zero. Arguments and result are those
 /// of collar_piece.
 template <class Number>
-inline bool deep_collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
+inline bool general_collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
                               const Number& qx, const Number& qy, CollarPiece<Number>& piece,
                               CollarCrossings<Number>& top) {
   struct Cut {
@@ -362,7 +362,7 @@ inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Nu
                          const Number& qx, const Number& qy, CollarPiece<Number>& piece,
                          CollarCrossings<Number>& top) {
   const CollarPieces<Number> found = collar_pieces(f, px, py, qx, qy);
-  if (found.deep) return deep_collar_piece(f, px, py, qx, qy, piece, top);
+  if (found.deep) return general_collar_piece(f, px, py, qx, qy, piece, top);
   if (found.met) piece = found;
   return found.met;
 }

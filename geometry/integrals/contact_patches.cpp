@@ -19,7 +19,7 @@ namespace {
 class Splitter {
  public:
   Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-           PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
+           PatchWorkspace& workspace, std::vector<BoundarySegment>& runs)
       : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
 
   /// Finds all segments and returns what pair_integral returns.
@@ -33,7 +33,7 @@ class Splitter {
     begin();
     return integrate_pair<true>(
         a_, b_, offset_, near, work_.edge, begin,
-        [&](bool of_a, int e, const auto& edge, const RunSpan& span, const EdgeSums<double>& sums) {
+        [&](bool of_a, int e, const auto& edge, const SegmentSpan& span, const EdgeSums<double>& sums) {
           work_.halves.push_back(sums);
           add_run(of_a, e, edge, span, sums);
           work_.crossed.push_back(span.edge0);
@@ -88,7 +88,7 @@ class Splitter {
  private:
   // Appends a segment. Its integrals are those that `combine` would give for it alone.
   template <class Edge>
-  void add_run(bool of_a, int e, const Edge& edge, const RunSpan& span,
+  void add_run(bool of_a, int e, const Edge& edge, const SegmentSpan& span,
                const EdgeSums<double>& half) {
     const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
     const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
@@ -146,7 +146,7 @@ class Splitter {
       const int i = work_.crossed[end];
       if (i < 0) continue;
       auto run = std::lower_bound(runs_.begin(), end_of_a, i,
-                                  [](const BoundaryRun& r, int edge) { return r.edge < edge; });
+                                  [](const BoundarySegment& r, int edge) { return r.edge < edge; });
       for (; run != end_of_a && run->edge == i && !work_.joined[end]; ++run) {
         const int first = 2 * static_cast<int>(run - runs_.begin());
         for (const int other : {first, first + 1}) {
@@ -256,7 +256,7 @@ class Splitter {
   void add_extents(std::vector<PairIntegral>& patches) {
     auto& extents = work_.extents;
     extents.assign(patches.size(), {});
-    for (const BoundaryRun& run : runs_) {
+    for (const BoundarySegment& run : runs_) {
       const Vec2& force = patches[run.patch].force;
       const double size = force.norm();
       if (!(size > 0)) continue;
@@ -277,7 +277,7 @@ class Splitter {
   const PlacedPotential& b_;
   const Vec2 offset_, arm_;
   PatchWorkspace& work_;
-  std::vector<BoundaryRun>& runs_;
+  std::vector<BoundarySegment>& runs_;
   int of_a_ = 0;   // number of segments on edges of a, which come first
   int loose_ = 0;  // number of ends that are not joined
 };
@@ -285,7 +285,7 @@ class Splitter {
 }  // namespace
 
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
                              std::vector<PairIntegral>& patches, NearEdges& near) {
   patches.clear();
   Splitter splitter(a, b, offset, workspace, runs);
@@ -308,7 +308,7 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
 }
 
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
                              std::vector<PairIntegral>& patches) {
   NearEdges all;
   return contact_patches(a, b, offset, workspace, runs, patches, all);
@@ -322,7 +322,7 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
   contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
                   result.patches);
   for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
-  for (BoundaryRun& run : result.runs) {
+  for (BoundarySegment& run : result.runs) {
     placed.about_centroids(run);
     run.start -= placed.centroid_a;
     run.end -= placed.centroid_a;
@@ -330,21 +330,21 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
   return result;
 }
 
-void shared_length(std::span<const RunPlace> before, int patches_before,
-                   std::span<const RunPlace> now, int patches_now, std::vector<double>& table) {
+void shared_length(std::span<const SegmentPlace> before, int patches_before,
+                   std::span<const SegmentPlace> now, int patches_now, std::vector<double>& table) {
   table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
   // True if r is on an earlier edge than s.
-  const auto behind = [](const RunPlace& r, const RunPlace& s) {
+  const auto behind = [](const SegmentPlace& r, const SegmentPlace& s) {
     return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
   };
   size_t first = 0;  // first segment of `now` on the edge of `old` or after it
-  for (const RunPlace& old : before) {
+  for (const SegmentPlace& old : before) {
     while (first < now.size() && behind(now[first], old)) ++first;
     for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {
-      const RunPlace& run = now[i];
+      const SegmentPlace& run = now[i];
       const double overlap = std::min(old.to, run.to) - std::max(old.from, run.from);
       if (!(overlap >= 0)) continue;
-      const RunPlace& longer = old.to - old.from > run.to - run.from ? old : run;
+      const SegmentPlace& longer = old.to - old.from > run.to - run.from ? old : run;
       const double share = longer.to - longer.from;
       double& entry = table[static_cast<size_t>(old.patch) * patches_now + run.patch];
       if (overlap > 0) {

@@ -16,7 +16,7 @@
 namespace apothem {
 
 /// The place of a boundary segment, a maximal part of one edge inside the other polygon.
-struct RunPlace {
+struct SegmentPlace {
   bool of_a;        ///< true for an edge of a and phi of b, false for the opposite
   int edge;         ///< index of the edge in its polygon
   int patch;        ///< index of the contact patch that the segment belongs to
@@ -27,7 +27,7 @@ struct RunPlace {
 /// A boundary segment with the integrals of the other polygon's potential phi along it, for unit
 /// stiffness. As in PairIntegral, points are relative to the reference point of a, and moments are
 /// about the reference points of a and b.
-struct BoundaryRun : RunPlace {
+struct BoundarySegment : SegmentPlace {
   Vec2 start = Vec2::Zero();   ///< the point at `from`, m
   Vec2 end = Vec2::Zero();     ///< the point at `to`, m
   Vec2 force = Vec2::Zero();   ///< force on a, normal to the edge, m
@@ -67,15 +67,15 @@ struct PatchWorkspace {
 /// edges lie on each other. A loose end of a segment is then joined to the loose end that is
 /// nearest along both boundaries.
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
                              std::vector<PairIntegral>& patches, NearEdges& near);
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
                              std::vector<PairIntegral>& patches);
 
 /// The boundary segments and contact patches of two polygons.
 struct PatchResult {
-  std::vector<BoundaryRun> runs;      ///< segments, ordered by their edges, those of a first
+  std::vector<BoundarySegment> runs;      ///< segments, ordered by their edges, those of a first
   std::vector<PairIntegral> patches;  ///< patches, ordered by their first segment
 };
 
@@ -89,7 +89,7 @@ PatchResult edge_patches(const Polygon& a, const Potential& potential_a, const P
 /// The entry i * patches_now + j of the table is the length of boundary of both polygons, in m,
 /// that lies in the earlier patch i and in the present patch j. A segment of length zero that lies
 /// in another segment counts as the smallest positive number.
-void shared_length(std::span<const RunPlace> before, int patches_before,
-                   std::span<const RunPlace> now, int patches_now, std::vector<double>& table);
+void shared_length(std::span<const SegmentPlace> before, int patches_before,
+                   std::span<const SegmentPlace> now, int patches_now, std::vector<double>& table);
 
 }  // namespace apothem

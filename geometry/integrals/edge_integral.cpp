@@ -196,7 +196,7 @@ class FineLines {
 
 // The integrals of phi of y along the edges of x in long double, for polygons at their given
 // positions.
-Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnds& ends) {
+Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, SegmentEnds& ends) {
   const FineLines lines(y);
   Half half;
   for (int e = 0; e < x.size; ++e) {
@@ -227,7 +227,7 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnd
 
 PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
                              EdgeWorkspace& workspace) {
-  RunEnds ends(workspace.ends);
+  SegmentEnds ends(workspace.ends);
   const Half of_a = integrate_needle(a, b, ends);
   const size_t middle = ends.used();
   const Half of_b = integrate_needle(b, a, ends);

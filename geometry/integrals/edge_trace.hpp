@@ -269,7 +269,7 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
 /// convex, by its whole roof or distance field. The nodes of a roof must have been placed in the
 /// workspace.
 template <class Run>
-void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
+void walk_whole_potential(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
                const Run& run) {
   SegmentMoments<double> moments;
   const auto end = [&](double s0, int edge0, double s1, int edge1) {
@@ -294,7 +294,7 @@ void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& 
 /// y are evaluated by it alone. Returns 0, or NaN without any call if y is not convex and a
 /// coordinate is not finite.
 template <bool crossings, class Run>
-double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+double walk_segments(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                  std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
                  EdgeWorkspace& workspace, bool collars, const Run& run) {
   if (!y.convex()) {
@@ -302,19 +302,19 @@ double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, 
     if (near == NearEdges::kAll || near_y == NearEdges::kAll) {
       if (const double finite = all_finite(x, y, dx, dy); !(finite == 0)) return finite;
     }
-    CollarTrace& collar = workspace.collar;
+    LayerTrace& collar = workspace.collar;
     collar.find(x, y, dx, dy, near, near_y, collars);
     size_t r = 0;
     bool nodes = false;  // whether the nodes of the roof are placed
-    for (const CollarTrace::Edge& edge : collar.edges()) {
+    for (const LayerTrace::Edge& edge : collar.edges()) {
       for (; r < edge.runs_end; ++r) {
         if (edge.deep) continue;
-        const CollarTrace::Run& part = collar.runs()[r];
+        const LayerTrace::Run& part = collar.runs()[r];
         run(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
       }
       if (!edge.deep) continue;
       if (y.roof && !nodes) workspace.nodes.place(y), nodes = true;
-      walk_deep(y, edge.placed, workspace,
+      walk_whole_potential(y, edge.placed, workspace,
                 [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
                   run(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
                 });
@@ -343,9 +343,9 @@ struct Extent {
 };
 
 /// The ends of segments, in a buffer that never shrinks.
-class RunEnds {
+class SegmentEnds {
  public:
-  explicit RunEnds(std::vector<double>& buffer) : buffer_(buffer) {}
+  explicit SegmentEnds(std::vector<double>& buffer) : buffer_(buffer) {}
   template <class Edge>
   void add(const Edge& e, double s0, double s1) {
     if (buffer_.size() < used_ + 4) buffer_.resize(2 * (used_ + 4));
@@ -380,7 +380,7 @@ class RunEnds {
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
 /// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.
 inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                         const Half& of_a, const Half& of_b, const RunEnds& ends, size_t middle) {
+                         const Half& of_a, const Half& of_b, const SegmentEnds& ends, size_t middle) {
   const Vec2 r = arm(a, b, offset);
   PairIntegral pair = combine(of_a, of_b, r);
   pair.depth = depth(a, b, of_a, of_b);
@@ -418,7 +418,7 @@ APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const Placed
 
 /// The ends of a segment along its edge, and the edges of the other polygon that it crosses there,
 /// as in walk_segments.
-struct RunSpan {
+struct SegmentSpan {
   double s0;
   int edge0;
   double s1;
@@ -444,7 +444,7 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
   if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
     return {};
   }
-  RunEnds ends(workspace.ends);
+  SegmentEnds ends(workspace.ends);
   Half half_a, half_b;
   size_t middle = 0;
   const auto start = [&] {
@@ -453,7 +453,7 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
     middle = 0;
     begin();
   };
-  const auto take = [&](bool of_a, int e, const auto& edge, const RunSpan& span,
+  const auto take = [&](bool of_a, int e, const auto& edge, const SegmentSpan& span,
                         const EdgeSums<double>& sums) {
     Half& half = of_a ? half_a : half_b;
     half.add(sums);
@@ -465,7 +465,7 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
   const auto pair = [&] { return join(a, b, offset, half_a, half_b, ends, middle); };
   if (workspace.pair.find(a, b, offset, near)) {
     start();
-    for (const CollarPair::Run& r : workspace.pair.runs()) {
+    for (const LayerPair::Run& r : workspace.pair.runs()) {
       take(r.of_a, r.edge, *r.placed, {r.s0, r.edge0, r.s1, r.edge1}, *r.integrals);
     }
     if (ends.closed()) return pair();
@@ -479,9 +479,9 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
       };
     };
     // A NaN is added to the weight, so that it is never taken for "no contact".
-    half_a.weight += walk_runs<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
+    half_a.weight += walk_segments<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
                                           height.spare, workspace, collars, walk(true));
-    half_b.weight += walk_runs<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
+    half_b.weight += walk_segments<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
                                           height.spare, workspace, collars, walk(false));
     if (ends.closed() || std::isnan(half_a.weight + half_b.weight) || (a.convex() && b.convex())) {
       break;

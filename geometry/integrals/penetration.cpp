@@ -12,8 +12,8 @@ namespace apothem {
 namespace {
 
 constexpr double kAccuracy = 1e-12;  // relative accuracy of a largest distance
-constexpr double kShortest =
-    1e-14;  // shortest interval to be divided, as a fraction of the segment
+// Shortest interval to be divided, as a fraction of the segment.
+constexpr double kShortest = 1e-14;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -75,7 +75,7 @@ double BoundaryDistance::largest(const Vec2& p, const Vec2& q, double floor) {
 }
 
 void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                       std::span<const BoundaryRun> runs, PenetrationWorkspace& workspace,
+                       std::span<const BoundarySegment> runs, PenetrationWorkspace& workspace,
                        std::span<double> deepest) {
   const auto place = [](const PlacedPotential& p, const Vec2& origin, BoundaryDistance& boundary) {
     boundary.clear();
@@ -86,7 +86,7 @@ void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const
   // The points of segments are relative to the reference point of a.
   place(a, a.reference, workspace.a);
   place(b, edge_detail::arm(a, b, offset) + b.reference, workspace.b);
-  for (const BoundaryRun& run : runs) {
+  for (const BoundarySegment& run : runs) {
     double& deep = deepest[static_cast<size_t>(run.patch)];
     deep = (run.of_a ? workspace.b : workspace.a).largest(run.start, run.end, deep);
   }
@@ -100,7 +100,7 @@ double penetration(const Polygon& a, const Polygon& b) {
   const Potential potential_b = make_potential(b, any);
   const PlacedPair placed(a, potential_a, b, potential_b);
   PatchWorkspace patch_workspace;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> runs;
   std::vector<PairIntegral> patches;
   contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), patch_workspace, runs, patches);
   std::vector<double> deepest(patches.size());

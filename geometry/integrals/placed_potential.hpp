@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/skeleton/roof.hpp"
 
@@ -27,7 +27,7 @@ struct PlacedPotential {
   Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
   double radius = 0;                   ///< largest distance of a vertex from `reference`, m, or 0
   double steepest = 0;                 ///< largest |g_i|, 1/m, or 0 if it is not known
-  const CollarCells* cells = nullptr;  ///< boundary layer, if it is not convex
+  const BoundaryLayer* cells = nullptr;  ///< boundary layer, if it is not convex
   /// Position of the inner nodes of the roof in the frame: they are rotated by the angle with this
   /// cosine and sine, and then moved by `shift`, m.
   double cosine = 1, sine = 0;

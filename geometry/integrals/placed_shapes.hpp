@@ -100,7 +100,7 @@ class PlacedShapes {
     // The following are needed for shapes that are not convex.
     const Roof* roof;
     const DistanceField* distance;
-    const CollarCells* cells;
+    const BoundaryLayer* cells;
     bool capped;
     double depth_ratio;
     double top_radius;  // distance of the highest point from the reference point

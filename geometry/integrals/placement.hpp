@@ -57,7 +57,7 @@ struct PlacedPair {
   Placement a, b;
   Vec2 centroid_a, centroid_b;  ///< centroids relative to vertex 0 of each polygon, m
 
-  /// Changes the reference points of a PairIntegral or a BoundaryRun from vertex 0 to the
+  /// Changes the reference points of a PairIntegral or a BoundarySegment from vertex 0 to the
   /// centroids.
   template <class Integrals>
   void about_centroids(Integrals& pair) const {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "geometry/polygon/polygon.hpp"
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/potential/rare.hpp"
 #include "geometry/skeleton/roof.hpp"
@@ -33,7 +33,7 @@ struct Potential {
   double steepest = 0;           ///< largest |g_i|, 1/m
   Rare<Roof> roof;               ///< roof over the straight skeleton
   Rare<DistanceField> distance;  ///< distance field
-  Rare<CollarCells> cells;       ///< boundary layer, if the polygon is not convex
+  Rare<BoundaryLayer> cells;       ///< boundary layer, if the polygon is not convex
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }

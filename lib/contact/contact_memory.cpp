@@ -78,7 +78,7 @@ void exchange(Spring& spring) {
   spring.on_bodies = {-on.x, -on.y, on.b, on.a};
 }
 
-void exchange(PatchRun& run) {
+void exchange(PatchSegment& run) {
   std::swap(run.key.a, run.key.b);
   run.place.of_a = !run.place.of_a;
 }
@@ -117,8 +117,8 @@ FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& fro
     spring.key.part = old.part < of_a ? of_b + old.part : old.part - of_a;
   };
   std::vector<Spring> springs = renumbered(memory.springs(), numbers, renumber_edge);
-  std::vector<PatchRun> runs =
-      renumbered(memory.runs().now(), numbers, [](const PatchRun&, const ContactKey&) {});
+  std::vector<PatchSegment> runs =
+      renumbered(memory.runs().now(), numbers, [](const PatchSegment&, const ContactKey&) {});
   if (from.law != to.law) {
     std::erase_if(springs, [](const Spring& s) { return s.key.law == polygon_kernel; });
     runs.clear();

@@ -18,8 +18,8 @@ struct ContactNumbers {
     int edges = 0;                        ///< number of edges of a rigid body's polygon
     int first_surface = 0, surfaces = 0;  ///< range of the body's surfaces, see Surfaces
     int first_vertex = 0,
-        vertices =
-            0;  ///< range of the body's vertices, see OutlineSurfaces; empty without outlines
+        /// Range of the body's vertices, see OutlineSurfaces; empty without outlines.
+        vertices = 0;
     void fields(Archive& archive) {
       archive("rigid", rigid)("edges", edges)("first_surface", first_surface)("surfaces", surfaces)(
           "first_vertex", first_vertex)("vertices", vertices);

@@ -114,7 +114,7 @@ void Contacts::slide(const Kinematics& now, double dt) {
   memory_.end_step(work);
 }
 
-void Contacts::try_slide(const Kinematics& now, double dt) {
+void Contacts::try_friction(const Kinematics& now, double dt) {
   drop_trial();
   slide(now, dt);
   tried_ = tangential_;
@@ -124,7 +124,7 @@ void Contacts::drop_trial() {
   if (!tried_) return;
   tried_ = false;
   memory_.undo_step();
-  each([](Kernel& kernel) { kernel.undo_slide(); });
+  each([](Kernel& kernel) { kernel.undo_friction(); });
 }
 
 void Contacts::add_forces(ForceViews forces) {
@@ -149,7 +149,7 @@ void Contacts::add_dashpots(const Kinematics& now, const Dashpots::Motion& motio
   dashpots_.add_forces(forces);
 }
 
-void Contacts::book_bend(Dynamics dynamics, double dt) {
+void Contacts::add_bend_losses(Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   const double lost = dynamics.lost_in_bend(dt);
   if (table_.damped()) {
@@ -159,15 +159,15 @@ void Contacts::book_bend(Dynamics dynamics, double dt) {
   }
 }
 
-bool Contacts::find_onsets(const Kinematics& now, Dynamics dynamics, double dt) {
+bool Contacts::find_event_impulses(const Kinematics& now, Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   bool found = false;
-  each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt, memory_) || found; });
+  each([&](Kernel& kernel) { found = kernel.find_event_impulses(now, dynamics, dt, memory_) || found; });
   return found;
 }
 
-void Contacts::add_onsets(double scale, const ForceViews& forces) const {
-  each([&](const Kernel& kernel) { kernel.add_onsets(scale, forces); });
+void Contacts::add_event_impulses(double scale, const ForceViews& forces) const {
+  each([&](const Kernel& kernel) { kernel.add_event_impulses(scale, forces); });
 }
 
 std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
@@ -182,7 +182,7 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const ContactKey& key) const {
   if (key.law != outline_kernel) return {surfaces_.body(key.a), surfaces_.body(key.b)};
   // The partner of a mesh edge is a body. The partner of an edge of a rigid body is a face of a
   // mesh.
-  const Outlines& o = surfaces_.outlines();
+  const OutlineSurfaces& o = surfaces_.outlines();
   const BodyIndex own = o.body[key.a];
   return {own, o.bodies[own].is_rigid() ? o.body[key.b] : key.b};
 }
@@ -329,7 +329,7 @@ ContactNumbers Contacts::numbers() const {
     body.rigid = true;
     body.edges = surfaces_.shapes().view(i).size;
   }
-  const std::vector<Outlines::Body>& outlines = surfaces_.outlines().bodies;
+  const std::vector<OutlineSurfaces::Body>& outlines = surfaces_.outlines().bodies;
   for (size_t i = 0; i < outlines.size(); ++i) {
     numbers.bodies[i].first_vertex = outlines[i].first;
     numbers.bodies[i].vertices = outlines[i].end - outlines[i].first;

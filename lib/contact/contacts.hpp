@@ -60,7 +60,7 @@ class Contacts {
   void slide(const Kinematics& now, double dt);
   /// Updates the friction springs for a trial state. The next update starts from the same springs
   /// as this one did.
-  void try_slide(const Kinematics& now, double dt);
+  void try_friction(const Kinematics& now, double dt);
   /// Discards the last trial update of the friction springs.
   void drop_trial();
   /// Makes the next refresh() keep the present candidates.
@@ -88,10 +88,10 @@ class Contacts {
   [[nodiscard]] bool damped() const { return table_.damped(); }
   /// Adds to the ledger what friction and damping take because the path of a step is curved. It
   /// must be called after the forces at the end of a drift of dt (s) are known.
-  void book_bend(Dynamics dynamics, double dt);
+  void add_bend_losses(Dynamics dynamics, double dt);
   /// Finds and adds the impulses of contact events in the drift of dt (s), see Kernel.
-  bool find_onsets(const Kinematics& now, Dynamics dynamics, double dt);
-  void add_onsets(double scale, const ForceViews& forces) const;
+  bool find_event_impulses(const Kinematics& now, Dynamics dynamics, double dt);
+  void add_event_impulses(double scale, const ForceViews& forces) const;
 
   /// Elastic energy of contacts and friction springs, J. It is too slow for every step.
   [[nodiscard]] double energy() const;
@@ -181,13 +181,13 @@ class Contacts {
 /// A body that is engulfed by another one: one of its vertices lies deeper inside the other body
 /// than the potentials near the surface reach, so that contact would not feel it. Pairs of rigid
 /// bodies are not checked, because their potentials reach to the centre.
-struct Buried {
+struct EngulfedBody {
   BodyIndex inner, outer;
   Vec2 place;  ///< m
 };
 /// Finds an engulfed body. Bodies with a nonzero entry in `absent` are ignored; `absent` may be
 /// empty.
-std::optional<Buried> find_buried(const Outlines& outlines,
+std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& outlines,
                                   const std::vector<std::uint8_t>& absent = {});
 
 }  // namespace apothem

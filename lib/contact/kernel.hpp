@@ -15,7 +15,7 @@
 #include "lib/contact/law/dashpots.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
@@ -90,7 +90,7 @@ class Kernel {
   /// of those springs whose losses the kernel does not book itself.
   virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
   /// Undoes the last friction update. The caller undoes the same step of the memory.
-  virtual void undo_slide() {}
+  virtual void undo_friction() {}
   /// Recomputes the friction forces that the next update needs, after the memory has been restored.
   virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
   /// Adds all forces except those of dashpots, the normal forces first.
@@ -102,12 +102,12 @@ class Kernel {
   virtual void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) = 0;
   /// Finds the impulses that velocity Verlet misses because contacts have begun or ended in the
   /// drift of dt (s) that ends now (law/event_impulse.hpp). Returns true if there is one.
-  virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
+  virtual bool find_event_impulses(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
                            FrictionMemory& /*memory*/) {
     return false;
   }
   /// Adds these impulses divided by dt and multiplied by `scale` to the forces.
-  virtual void add_onsets(double /*scale*/, const ForceViews& /*forces*/) const {}
+  virtual void add_event_impulses(double /*scale*/, const ForceViews& /*forces*/) const {}
   /// The largest normal force of a pair of bodies in the last evaluation, N.
   [[nodiscard]] virtual PairPeak largest_force() const = 0;
 

@@ -75,7 +75,7 @@ Number closed_form(const NumberRing<Number>& c, const NumberRing<Number>& t, dou
     const CollarFace<Number> face =
         CollarFace<Number>{t.x[i], t.y[i], t.x[q], t.y[q], tx[i], ty[i], length[i],
                            mx[i],  my[i],  mx[q],  my[q],  depth, 0}
-            .with_plain();
+            .with_regular_depth();
     const double around = winding_of(real_c, real_top[i]) - (self ? 1 : 0);
     sum +=
         around * (collar_cell(face).height + depth * swept(top.x[i], top.y[i], top.x[q], top.y[q]));

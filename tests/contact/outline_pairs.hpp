@@ -38,7 +38,7 @@ struct OutlinePair : Bodies {
   }
   /// Force on a body and moment about the origin, by its nodes.
   [[nodiscard]] Resultant on(BodyIndex body) const {
-    const Outlines& o = contacts->surfaces().outlines();
+    const OutlineSurfaces& o = contacts->surfaces().outlines();
     Resultant sum;
     for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
       const Vec2 force = on_node(o.node[i]);
@@ -70,7 +70,7 @@ inline std::vector<double> first_nodes(const std::vector<Vec2>& ring) {
 /// The largest share of the depth up to which the collar of a face is the roof; less than 1 where
 /// all contact is of this kind. `first`: of both outlines.
 inline double roof_share(const OutlinePair& pair, const std::vector<double>& first) {
-  const Outlines& o = pair.contacts->surfaces().outlines();
+  const OutlineSurfaces& o = pair.contacts->surfaces().outlines();
   double share = 0;
   for (const Contact& c : pair.contacts->contacts()) {
     const double depth = c.share * o.depth[c.b];

@@ -114,7 +114,7 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
   const Vec2 place = surfaces_.reference(a);
   const auto deepest = [&](bool of_a) {
     double most = floor;
-    for (const BoundaryRun& run : work.runs) {
+    for (const BoundarySegment& run : work.runs) {
       if (run.of_a != of_a || !outer(of_a ? a : b, run.edge)) continue;
       most = work.boundary.largest(place + run.start, place + run.end, most);
     }
@@ -171,7 +171,7 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   }
   const PlacedShapes& shapes = surfaces_.shapes();
   contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
-  for (const BoundaryRun& run : runs_) {
+  for (const BoundarySegment& run : runs_) {
     add(a, k * run.force, run.centre);
     add(b, -k * run.force, run.centre + offset);
   }

@@ -101,7 +101,7 @@ class ElementKernel final : public Kernel {
   /// Memory of find_penetration.
   struct Depths {
     PatchWorkspace workspace;
-    std::vector<BoundaryRun> runs;
+    std::vector<BoundarySegment> runs;
     std::vector<PairIntegral> patches;
     BoundaryDistance boundary;
   };
@@ -130,19 +130,19 @@ class ElementKernel final : public Kernel {
   std::vector<BodyTouch> body_touches_;  // one for each touch, ascending
   /// Sums over the touches between two damped bodies.
   struct DampedPair {
-    double resistance = 0,
-           stiffness = 0;       ///< stiffness along the forces, and of the friction springs, N/m
+    /// Stiffness along the forces, and of the friction springs, N/m.
+    double resistance = 0, stiffness = 0;
     double sizes = 0;           ///< sum of the magnitudes of the forces, N
     Vec2 force = Vec2::Zero();  ///< sum of the forces, N
-    Vec2 places =
-        Vec2::Zero();  ///< sum of the action points times the magnitudes of the forces, N m
+    /// Sum of the action points times the magnitudes of the forces, N m.
+    Vec2 places = Vec2::Zero();
   };
   std::vector<DampedPair> damped_pairs_;
   std::vector<size_t> pair_of_;  // index of the pair of each touch
   PairPeak largest_force_;
   Forces normal_, tangential_;
   PatchWorkspace workspace_;
-  std::vector<BoundaryRun> runs_;
+  std::vector<BoundarySegment> runs_;
   std::vector<PairIntegral> patches_;
   Depths depths_;
   Corners of_a_, of_b_;

@@ -140,8 +140,8 @@ class Dashpots {
     void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
   };
   struct Moving {
-    double inverse_mass,
-        velocity;  // velocity half a step later, including the impulses found so far
+    // Velocity half a step later, including the impulses found so far.
+    double inverse_mass, velocity;
   };
   using Parts = std::array<double, 3>;
   // The contributions of a coordinate to the three rates of a contact.

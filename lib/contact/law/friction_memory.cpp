@@ -19,7 +19,7 @@ void FrictionMemory::undo_step() {
   damping_loss_ = sums_before_.damping_loss;
 }
 
-void FrictionMemory::inherit(std::vector<Spring> springs, std::vector<PatchRun> runs) {
+void FrictionMemory::inherit(std::vector<Spring> springs, std::vector<PatchSegment> runs) {
   springs_.inherit(std::move(springs));
   runs_.inherit(std::move(runs));
   energy_ = balanced_ = 0;

@@ -45,9 +45,9 @@ struct Spring {
 
 /// A boundary segment in the overlap of two rigid bodies that touch in several patches. The patches
 /// of the next step are matched by these segments. The part of its key is its number in the pair.
-struct PatchRun {
+struct PatchSegment {
   ContactKey key;
-  RunPlace place;
+  SegmentPlace place;
   void fields(Archive& archive) {
     archive("key", key)("of_a", place.of_a)("edge", place.edge)("patch", place.patch)(
         "from", place.from)("to", place.to)("length", place.length);
@@ -57,12 +57,12 @@ struct PatchRun {
 /// The energies of a pair, or of a block of pairs, in a step, J. Each block has a ledger of its
 /// own, and these are summed in their order, so that the sums do not depend on which thread works
 /// on which pairs.
-struct PairBook {
+struct PairLedger {
   double energy = 0;        ///< energy stored in its springs
   double loss = 0;          ///< energy lost by its springs
   double damping_loss = 0;  ///< energy that damping has taken from the bodies
 
-  void add(const PairBook& other) {
+  void add(const PairLedger& other) {
     energy += other.energy;
     loss += other.loss;
     damping_loss += other.damping_loss;
@@ -84,7 +84,7 @@ class FrictionMemory {
                                                  const ContactKey& end) const {
     return ContactWalk(records_between(springs_.before(), first, end));
   }
-  void add(const PairBook& book) {
+  void add(const PairLedger& book) {
     energy_ += book.energy;
     loss_ += book.loss;
     damping_loss_ += book.damping_loss;
@@ -119,8 +119,8 @@ class FrictionMemory {
   [[nodiscard]] std::span<Spring> springs_of(int law) {
     return records_of_law(springs_.now(), law);
   }
-  [[nodiscard]] ContactHistory<PatchRun>& runs() { return runs_; }
-  [[nodiscard]] const ContactHistory<PatchRun>& runs() const { return runs_; }
+  [[nodiscard]] ContactHistory<PatchSegment>& runs() { return runs_; }
+  [[nodiscard]] const ContactHistory<PatchSegment>& runs() const { return runs_; }
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
@@ -129,7 +129,7 @@ class FrictionMemory {
   void damp(double energy) { damping_loss_ += energy; }
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
   /// Replaces the springs and boundary segments, in ascending order of their keys, at a restart.
-  void inherit(std::vector<Spring> springs, std::vector<PatchRun> runs);
+  void inherit(std::vector<Spring> springs, std::vector<PatchSegment> runs);
   /// Sets the dissipated energies to zero.
   void start_ledger() { loss_ = damping_loss_ = 0; }
 
@@ -142,7 +142,7 @@ class FrictionMemory {
 
  private:
   ContactHistory<Spring> springs_;
-  ContactHistory<PatchRun> runs_;
+  ContactHistory<PatchSegment> runs_;
   double energy_ = 0;                          // energy of all springs, J
   double balanced_ = 0, balanced_before_ = 0;  // energy of the springs whose losses no law books, J
   double loss_ = 0, damping_loss_ = 0;         // J

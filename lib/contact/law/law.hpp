@@ -13,7 +13,7 @@ namespace apothem {
 /// The default ratio of the tangential to the normal stiffness of a contact. R. D. Mindlin (J.
 /// Appl. Mech. 16 (1949), 259) finds 2 (1 - nu)/(2 - nu) for elastic bodies; this is its value at
 /// nu = 1/3.
-inline constexpr double kTangentialShare = 0.8;
+inline constexpr double kTangentialRatio = 0.8;
 
 struct Friction {
   double coefficient = 0;  ///< mu; 0 means no friction
@@ -21,17 +21,17 @@ struct Friction {
   /// contact (Eq. 12). With 0 the stiffness follows from the ratio below.
   double tangential_stiffness = 0;
   /// Stiffness of the spring over the normal stiffness dN/dd of its contact.
-  double stiffness_ratio = kTangentialShare;
+  double stiffness_ratio = kTangentialRatio;
 };
 
 /// Viscous damping of contacts; 0 means none.
 struct ContactDamping {
   double normal = 0;  ///< ratio of critical damping, or time constant in s
-  double tangential =
-      0;            ///< the same for the dashpot beside the friction spring, within Coulomb's limit
+  /// The same for the dashpot beside the friction spring, within Coulomb's limit.
+  double tangential = 0;
   double bulk = 0;  ///< ratio for the strains of bodies with a mesh; one value for the whole scene
-  bool are_times =
-      false;  ///< true if the first two are time constants, which are coefficients over stiffnesses
+  /// True if the first two are time constants, which are coefficients over stiffnesses.
+  bool are_times = false;
 };
 
 /// The contact law between two bodies.

@@ -72,7 +72,7 @@ struct PatchStep {
 /// The fraction of a step for which a new patch has been closed: its mean depth over the approach
 /// in the step.
 template <class Real>
-APOTHEM_INLINE Real closed_share(const PatchStep<Real>& p, double dt) {
+APOTHEM_INLINE Real closed_fraction(const PatchStep<Real>& p, double dt) {
   const Real approach = -p.slip(p.rate).dot(p.normal) * Real(dt);
   const Real depth = p.size / p.growth;
   return select(p.begins & (approach > depth), depth / approach, Real(1.));
@@ -112,7 +112,7 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   const Real power_before = p.friction_before.power(p.rate);
   const Real slip_before = select(p.spring * p.spring > Real(0.), power_before / p.spring, slip);
   const Real kept = select(k < p.stiffness_before, k / p.stiffness_before, Real(1.)) * p.spring;
-  const Real share = closed_share(p, dt) * Real(dt);
+  const Real share = closed_fraction(p, dt) * Real(dt);
   const Real next = spring.after(kept, Real(.5) * (slip + slip_before) * share);
   friction.spring = select(p.has_direction, next, Real(0.));
   friction.stiffness = k;

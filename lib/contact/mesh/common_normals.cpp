@@ -25,13 +25,13 @@ void CommonNormals::find(std::vector<SpringContact>& springs) {
 }
 
 void CommonNormals::find_places(const std::vector<SpringContact>& springs) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   if (loop_of_.empty()) {
     loop_of_.resize(static_cast<size_t>(o.size()));
     at_.resize(loop_of_.size());
     perimeter_.resize(o.loops.size());
     for (size_t k = 0; k < o.loops.size(); ++k) {
-      const Outlines::Loop& loop = o.loops[k];
+      const OutlineSurfaces::Loop& loop = o.loops[k];
       std::fill(loop_of_.begin() + loop.first, loop_of_.begin() + loop.end,
                 static_cast<std::int32_t>(k));
     }
@@ -89,7 +89,7 @@ void CommonNormals::each_neighbour(size_t first, size_t end, size_t i, const F& 
 // The places from `first` to `end` belong to one closed line and one other body.
 void CommonNormals::find_neighbourhood(std::vector<SpringContact>& springs, size_t first,
                                        size_t end) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const auto inward = [&](const SpringContact& s) { return Vec2(-o.ty[s.edge], o.tx[s.edge]); };
   const double perimeter = perimeter_[places_[first].loop];
   // A depth spreads along the line, reduced by the distance over kReach. Two rounds are needed

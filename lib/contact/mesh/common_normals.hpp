@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lib/contact/mesh/edge_face_blocks.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
@@ -46,7 +46,7 @@ struct SpringContact {
 class CommonNormals {
  public:
   /// `outlines` must outlive this object.
-  explicit CommonNormals(const Outlines& outlines) : outlines_(outlines) {}
+  explicit CommonNormals(const OutlineSurfaces& outlines) : outlines_(outlines) {}
 
   /// Computes in place the normals, the normal forces and the forces of the springs before the
   /// step. The result has the same bits for any order of the springs and any number of threads.
@@ -71,7 +71,7 @@ class CommonNormals {
   template <class F>
   void each_neighbour(size_t first, size_t end, size_t i, const F& f) const;
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   std::vector<double> at_;              // position of each vertex along its line, m
   std::vector<double> perimeter_;       // length of each line, m
   std::vector<std::int32_t> loop_of_;   // closed line of each vertex

@@ -31,8 +31,8 @@ struct EdgeFaceContact {
   std::int32_t edge, face;
   double slope;  ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
-  Vec2 drag =
-      Vec2::Zero();  ///< force of the friction spring and of the dashpot beside it on the edge, N
+  /// Force of the friction spring and of the dashpot beside it on the edge, N.
+  Vec2 drag = Vec2::Zero();
   Vec2 push = Vec2::Zero();  ///< force of the dashpot along the normal on the edge, N
 };
 

@@ -14,13 +14,13 @@ constexpr double kNothing = 1e-12;  // round-off of a depth where an edge begins
 
 }  // namespace
 
-EdgeFaceBlocks::EdgeFaceBlocks(const Outlines& outlines)
+EdgeFaceBlocks::EdgeFaceBlocks(const OutlineSurfaces& outlines)
     : outlines_(outlines), is_long_(static_cast<size_t>(outlines.size())) {
   double smallest = HUGE_VAL;
-  for (const Outlines::Body& body : outlines.bodies) {
+  for (const OutlineSurfaces::Body& body : outlines.bodies) {
     if (!body.is_rigid()) smallest = std::min(smallest, body.reference);
   }
-  for (const Outlines::Body& body : outlines.bodies) {
+  for (const OutlineSurfaces::Body& body : outlines.bodies) {
     for (int i = body.first; body.is_rigid() && i < body.end; ++i) {
       is_long_[static_cast<size_t>(i)] = outlines.given_length(i) > kLong * smallest;
     }
@@ -36,7 +36,7 @@ EdgeFaceBlocks::Key EdgeFaceBlocks::unit_of(const EdgeFace& c) const {
 // that it touches. An edge of a rigid body may be long and has one spring for each face, which
 // moves with the face.
 EdgeFaceBlocks::Key EdgeFaceBlocks::key_of(const EdgeFace& c) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   return {c.edge, o.bodies[o.body[c.edge]].is_rigid() ? c.face : o.body[c.face]};
 }
 
@@ -85,7 +85,7 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
 
 void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                               std::span<const EdgeFaceLaw> laws) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const auto size = [](const auto& of) { return static_cast<std::int32_t>(of.size()); };
   EdgeFaceUnit unit{};
   unit.first = size(blocks_), unit.first_law = size(laws_), unit.first_group = size(groups_);

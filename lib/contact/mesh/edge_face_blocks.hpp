@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/execution/pack.hpp"
 #include "lib/execution/parallel.hpp"
 
@@ -70,7 +70,7 @@ struct EdgeFaceUnit {
 
 class EdgeFaceBlocks {
  public:
-  explicit EdgeFaceBlocks(const Outlines& outlines);
+  explicit EdgeFaceBlocks(const OutlineSurfaces& outlines);
 
   /// Sets the candidates, which ascend. EdgeFace::pair is an index of `laws`.
   void take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws);
@@ -142,7 +142,7 @@ class EdgeFaceBlocks {
   void add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                 std::span<const EdgeFaceLaw> laws);
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   std::vector<bool> is_long_;  // whether each edge belongs to a rigid body and may touch many faces
   std::vector<EdgeFaceUnit> units_;
   std::vector<EdgeFaceBlock> blocks_;

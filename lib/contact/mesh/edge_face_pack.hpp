@@ -11,7 +11,7 @@
 
 #include "geometry/integrals/collar.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
@@ -44,14 +44,14 @@ namespace edge_face_detail {
 using Pack = PackOf<kBlock>;
 
 /// Evaluates one candidate that may reach the saturated region of the collar.
-inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
+inline void find_deep(const OutlineSurfaces& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
                       unsigned& met, EdgeFacePushes& pushes, double& deepest,
                       EdgeFaceCrossings& crossings) {
   const std::int32_t p = block.p[l], q = block.q[l], a = block.a[l];
   const CollarFace<double> face = o.face(a);
   CollarPiece<double> piece;
   CollarCrossings<double> top;
-  if (!deep_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
+  if (!general_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
   const EdgeFaceForces<double> f =
       edge_face_forces(piece, block.slope[l], o.length[p], 1 / face.length);
   pushes[l] = {f.edge_start, f.edge_end, f.face_start, f.face_end};
@@ -69,7 +69,7 @@ inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, E
 /// Finds the contacts of a unit. Calls push(block, pushes) for the blocks in which an edge meets
 /// its face.
 template <class Push>
-APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
+APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
                                   EdgeFaceCrossings& crossings, const Push& push) {
   using edge_face_detail::Pack;
   using Vertices = EdgeFaceBlock::Vertices;

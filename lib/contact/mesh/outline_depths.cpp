@@ -14,7 +14,7 @@ void OutlineDepths::forget() {
 }
 
 BoundaryDistance& OutlineDepths::boundary(BodyIndex body) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   BoundaryDistance& found = boundaries_[static_cast<size_t>(body)];
   if (!found.empty()) return found;
   for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
@@ -38,9 +38,9 @@ double OutlineDepths::of_piece(int edge, int face, const CollarPiece<double>& pi
 // that continue it smoothly do not count as boundary then.
 double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
   constexpr double kBeside = 1e-9;  // offset to the outer side, relative to the length of the edge
-  constexpr double kCarriesOn =
-      .7;  // cosine of the angle up to which a neighbour continues the edge
-  const Outlines& o = outlines_;
+  // Cosine of the angle up to which a neighbour continues the edge.
+  constexpr double kCarriesOn = .7;
+  const OutlineSurfaces& o = outlines_;
   const bool self = o.body[edge] == in;
   const auto is_other = [&](int i) {
     if (!self) return true;
@@ -51,7 +51,7 @@ double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
   const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
   const Vec2 beside = self ? kBeside * Vec2(along.y(), -along.x()) : Vec2(0, 0);
   std::vector<double> ends{0, 1};
-  const Outlines::Body& body = o.bodies[in];
+  const OutlineSurfaces::Body& body = o.bodies[in];
   BoundaryDistance of_others;
   BoundaryDistance& depths = self ? of_others : boundary(in);
   for (int i = body.first; i < body.end; ++i) {

@@ -5,14 +5,14 @@
 
 #include "geometry/integrals/collar.hpp"
 #include "geometry/integrals/penetration.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
 class OutlineDepths {
  public:
   /// `outlines` must outlive this object.
-  explicit OutlineDepths(const Outlines& outlines)
+  explicit OutlineDepths(const OutlineSurfaces& outlines)
       : outlines_(outlines), boundaries_(outlines.bodies.size()) {}
 
   /// True if the height of a piece in a face is certainly its depth. Where faces overlap it may not
@@ -29,7 +29,7 @@ class OutlineDepths {
  private:
   BoundaryDistance& boundary(BodyIndex body);
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   std::vector<BoundaryDistance> boundaries_;  // boundaries of the bodies that were asked for
 };
 

@@ -35,8 +35,8 @@ OutlineFriction::OutlineFriction(const Surfaces& surfaces, const PairTable& tabl
 // Finds the velocities of the vertices of a body and clears their new forces. Returns the power of
 // the old forces, W.
 double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& step) {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[b];
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[b];
   double power = 0;
   const auto put = [&](int i, double vx, double vy) {
     velocities_[2 * static_cast<size_t>(i)] = vx;
@@ -119,7 +119,7 @@ void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> wa
 }
 
 // The fraction of a long step for which a new contact was closed; motion before that is no slip.
-double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
+double OutlineFriction::closed_fraction(const Step& step, const EdgeFaceUnit& unit,
                                      const EdgeFaceGroup& group, const SpringContact& contact) {
   double width = 0, depth = 0;
   step.blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
@@ -147,7 +147,7 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
       const CoulombSpring<double> spring{
           contact.stiffness, step.limited ? friction_limit(coefficient, pressed) : HUGE_VAL};
       double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
-      if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
+      if (step.finite && !contact.is_old) slip *= closed_fraction(step, unit, group, contact);
       contact.friction = spring.after(contact.force_before, slip * step.dt);
       energy += spring_energy(contact.friction, contact.stiffness);
       worker.springs.push_back({.key = key_of(group),
@@ -194,7 +194,7 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
 
 // Updates the springs of a unit. If `divided`, several threads work, and forces on vertices that
 // two of them share are deferred.
-void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool divided) {
+void OutlineFriction::update_unit(const Step& step, size_t index, Worker& worker, bool divided) {
   const EdgeFaceUnit& unit = step.blocks.units()[index];
   Unit& found = units_[index] = {};
   if (unit.touching == 0) return;
@@ -210,7 +210,7 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
 
 double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
                               FrictionMemory& memory) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const Step step{blocks, dt, now.finite, !now.restored};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
@@ -244,7 +244,7 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
     Worker& worker = workers_[static_cast<size_t>(number)];
-    for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, divided);
+    for (int i = first; i < end; ++i) update_unit(step, static_cast<size_t>(i), worker, divided);
   });
   // Deferred forces are added in the order of the units, as if one thread had worked on all of
   // them.
@@ -271,7 +271,7 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
 // Sums the contacts of each pair of bodies. The ratio of critical damping refers to the two bodies
 // as rigid ones, with the stiffness of all contacts between them.
 void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   for (PairSum& pair : pairs_) pair = {};
   for (const EdgeFaceUnit& unit : blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
@@ -349,10 +349,10 @@ void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematic
 void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                                       const EdgeFaceGroup& group, const SpringContact& contact,
                                       Dashpots& to) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
   const auto add = [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
-    const Outlines::Body& body = o.bodies[o.body[vertex]];
+    const OutlineSurfaces::Body& body = o.bodies[o.body[vertex]];
     if (body.is_rigid()) {
       to.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
     } else {

@@ -38,7 +38,7 @@ class OutlineFriction {
                FrictionMemory& memory);
 
   /// Undoes the last update, in a scene without damping.
-  void undo_slide() {
+  void undo_friction() {
     std::swap(drags_, drags_before_);
     everywhere_ = kBothVectors;
   }
@@ -79,8 +79,8 @@ class OutlineFriction {
   [[nodiscard]] double begin(BodyIndex body, const Kinematics& now, const Step& step);
   void find_contacts(const Step& step, const EdgeFaceUnit& unit);
   void find_before(const Step& step, ContactWalk<const Spring> walk);
-  void slide_unit(const Step& step, size_t index, Worker& worker, bool divided);
-  [[nodiscard]] static double closed_share(const Step& step, const EdgeFaceUnit& unit,
+  void update_unit(const Step& step, size_t index, Worker& worker, bool divided);
+  [[nodiscard]] static double closed_fraction(const Step& step, const EdgeFaceUnit& unit,
                                            const EdgeFaceGroup& group,
                                            const SpringContact& contact);
   [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker);
@@ -95,7 +95,7 @@ class OutlineFriction {
 
   const Surfaces& surfaces_;
   const PairTable& table_;
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   Threads threads_;
   CommonNormals normals_;
   // Bodies that have become inactive may still have forces, in drags_ or drags_before_. For this

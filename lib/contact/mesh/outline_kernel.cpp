@@ -10,8 +10,8 @@ namespace apothem {
 namespace {
 
 constexpr double kMeetTime = 80, kForceTime = 4;  // ns
-constexpr double kInsideTop =
-    2;  // relative depth of a contact inside a saturated region, which is not with a face
+// Relative depth of a contact inside a saturated region, which is not with a face.
+constexpr double kInsideTop = 2;
 constexpr double kAbove = 1 + 1e-9;  // factor that makes bounds safe against round-off
 
 }  // namespace
@@ -65,7 +65,7 @@ std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
 // The force of a pair is summed over the edges and faces of the body with the lower number. The
 // force of a body on itself does not count.
 void OutlineKernel::find_largest_force() {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   for (PairForce& pair : pair_forces_) pair.force = Vec2::Zero();
   const std::span<const EdgeFaceLaw> laws = blocks_.laws();
   for (size_t i = 0; i < laws.size(); ++i) {
@@ -76,11 +76,11 @@ void OutlineKernel::find_largest_force() {
     pair_forces_[static_cast<size_t>(pair_number(o.body[line], other))].force +=
         force * Vec2(-o.ty[line], o.tx[line]);
   };
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+  for (const SaturatedEdge& on : plateaus_.edges()) {
     add(on.edge, on.in,
         slopes_(on.in, o.body[on.edge]) * o.bodies[on.in].depth * on.sum * o.length[on.edge]);
   }
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+  for (const SaturatedFace& on : plateaus_.faces()) {
     add(on.face, on.in, slopes_(o.body[on.face], on.in) * on.moment.area);
   }
   largest_force_ = {};
@@ -94,7 +94,7 @@ void OutlineKernel::find_largest_force() {
 // An edge lies on its own face without a depth, and in the faces of its neighbours only where these
 // have shrunk to nothing.
 bool OutlineKernel::are_neighbours(int edge, int face) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   if (edge == face) return true;
   if (o.next[edge] != face && o.previous[edge] != face) return false;
   const Vec2 top = o.top(o.next[face]) - o.top(face);
@@ -104,7 +104,7 @@ bool OutlineKernel::are_neighbours(int edge, int face) const {
 // Finds the candidates of the edges of a and the faces of b, by a sweep along the longer side of
 // the region that they share.
 void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   near_edges_.clear(), near_faces_.clear();
   Box common;
   for (int i = o.bodies[a].first; i < o.bodies[a].end; ++i) {
@@ -143,7 +143,7 @@ void OutlineKernel::find_candidates(BodyIndex a, BodyIndex b) {
 }
 
 void OutlineKernel::evaluate() {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   listed_ = false;
   depths_.forget();
   o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
@@ -192,16 +192,16 @@ void OutlineKernel::evaluate() {
 // Adds the forces of saturated regions. An edge inside the saturated region of a body is a contact
 // with that body.
 void OutlineKernel::add_plateaus() {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   plateaus_.evaluate();
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
-    const Outlines::Body& in = o.bodies[on.in];
+  for (const SaturatedEdge& on : plateaus_.edges()) {
+    const OutlineSurfaces::Body& in = o.bodies[on.in];
     const BodyIndex own = o.body[on.edge];
     const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
     ends_[on.edge][0] += force * (on.sum - on.first);
     ends_[on.edge][1] += force * on.first;
   }
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+  for (const SaturatedFace& on : plateaus_.faces()) {
     const double slope = slopes_(o.body[on.face], on.in);
     const double end = slope * on.moment.along / o.length[on.face];
     ends_[on.face][0] += slope * on.moment.area - end;
@@ -224,7 +224,7 @@ ContactSummary OutlineKernel::summary() const {
 // In a contact with a saturated region, the partner is the first face, or the first edge, of its
 // body.
 void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   blocks_.each_contact([&](size_t i, size_t lane) {
     const EdgeFaceBlock& block = blocks_.blocks()[i];
     const EdgeFaceTouch& touch = blocks_.touches()[i];
@@ -241,11 +241,11 @@ void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) co
     visit({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
            block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
   });
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+  for (const SaturatedEdge& on : plateaus_.edges()) {
     visit({outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
   }
   if (least >= 0) return;  // contacts of saturated faces have no depth
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+  for (const SaturatedFace& on : plateaus_.faces()) {
     visit({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
   }
 }
@@ -253,7 +253,7 @@ void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) co
 // An evaluation does not store the pieces of the contacts; they are computed again.
 const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
   if (listed_) return edge_faces_;
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   edge_faces_.clear();
   blocks_.each_contact([&](size_t i, size_t lane) {
     const EdgeFaceBlock& block = blocks_.blocks()[i];
@@ -269,7 +269,7 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
 }
 
 double OutlineKernel::penetration(const Contact& c, double floor) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   if (c.share > 1) return depths_.of_edge(c.a, o.body[c.b], floor);
   const int q = o.next[c.a];
   CollarPiece<double> piece;
@@ -284,7 +284,7 @@ double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
 }
 
 Vec2 OutlineKernel::normal_force(int i) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const int p = o.previous[i];
   const double own = ends_[i][0], before = ends_[p][1];
   return {-before * o.ty[p] - own * o.ty[i], before * o.tx[p] + own * o.tx[i]};
@@ -296,13 +296,13 @@ Vec2 OutlineKernel::force(int vertex) const {
 }
 
 void OutlineKernel::add_forces(const ForceViews& forces) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const std::span<const BodyIndex> active = o.active();
   const int bodies = static_cast<int>(active.size());
   threads_.chunks(bodies, kForceTime * o.size() / std::max(bodies, 1),
                   [&](int first, int end, int) {
                     for (int k = first; k < end; ++k) {
-                      const Outlines::Body& body = o.bodies[active[k]];
+                      const OutlineSurfaces::Body& body = o.bodies[active[k]];
                       if (body.is_rigid()) {
                         const Resultant on = resultant(active[k]);
                         double* const f = &forces.rigid[3 * static_cast<size_t>(body.rigid)];
@@ -322,8 +322,8 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
 }
 
 Resultant OutlineKernel::resultant(BodyIndex b) const {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[b];
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[b];
   Resultant on;
   for (int i = body.first; i < body.end; ++i) {
     const Vec2 f = force(i);
@@ -344,10 +344,10 @@ void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
 double OutlineKernel::energy() const {
   double sum = 0;
   for (const EdgeFaceContact& c : edge_faces()) sum += c.slope * c.piece.height;
-  for (const OutlinePlateaus::Edge& on : plateaus_.edges()) {
+  for (const SaturatedEdge& on : plateaus_.edges()) {
     sum += slopes_(on.in, outlines_.body[on.edge]) * outlines_.bodies[on.in].depth * on.swept;
   }
-  for (const OutlinePlateaus::Face& on : plateaus_.faces()) {
+  for (const SaturatedFace& on : plateaus_.faces()) {
     sum += slopes_(outlines_.body[on.face], on.in) *
            (on.moment.height + outlines_.depth[on.face] * on.swept);
   }
@@ -355,7 +355,7 @@ double OutlineKernel::energy() const {
 }
 
 double OutlineKernel::rate(std::span<const double> node_mass) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   // `first` and `second` are the two steepest slopes of all bodies. The partner of the steepest
   // body has at most the second one.
   double first = 0, second = 0;
@@ -381,7 +381,7 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
 }
 
 void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rigid) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   std::vector<double> slope(o.size(), 0);       // largest 1/r_c + 1/r_t at each vertex
   std::vector<double> normal(o.size(), 0);      // largest k_n thickness, N/m
   std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m

@@ -19,8 +19,8 @@
 #include "lib/contact/mesh/edge_face_pack.hpp"
 #include "lib/contact/mesh/outline_depths.hpp"
 #include "lib/contact/mesh/outline_friction.hpp"
-#include "lib/contact/mesh/outline_onset.hpp"
-#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/outline_events.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/mesh/outline_records.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
 #include "lib/execution/parallel.hpp"
@@ -40,8 +40,8 @@ class OutlineKernel final : public Kernel {
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
-  void undo_slide() override {
-    if (friction_) friction_->undo_slide();
+  void undo_friction() override {
+    if (friction_) friction_->undo_friction();
   }
   void add_forces(const ForceViews& forces) override;
   void add_dashpots(const Kinematics& now, Dashpots& to) override {
@@ -51,11 +51,11 @@ class OutlineKernel final : public Kernel {
     listed_ = false;
     if (friction_) friction_->keep_pushes(blocks_, from, next, memory);
   }
-  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
+  bool find_event_impulses(const Kinematics& now, const Dynamics& dynamics, double dt,
                    FrictionMemory& /*memory*/) override {
     return onset_.find(candidates_, blocks_, plateaus_, now, dynamics, dt);
   }
-  void add_onsets(double scale, const ForceViews& forces) const override {
+  void add_event_impulses(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces);
   }
   void fields(Archive& archive) override { archive("outline_onset", onset_); }
@@ -91,7 +91,7 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] Vec2 force(int vertex) const;
   [[nodiscard]] OutlineState state() const { return {slopes_, edge_faces(), plateaus_}; }
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   double thickness_;
   const PairTable& table_;
   OutlineSlopes slopes_;
@@ -117,9 +117,9 @@ class OutlineKernel final : public Kernel {
   mutable std::vector<EdgeFaceContact> edge_faces_;  // contacts, found when they are asked for
   mutable bool listed_ = false;                      // true if edge_faces_ is up to date
   std::vector<EndForces> ends_;  // forces on the two ends of each edge, along its inward normal, N
-  OutlinePlateaus plateaus_;
+  SaturatedRegions plateaus_;
   OutlineDepths depths_;
-  OutlineOnset onset_;
+  OutlineEvents onset_;
 };
 
 }  // namespace apothem

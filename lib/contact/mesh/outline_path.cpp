@@ -29,11 +29,11 @@ void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
   sides_.push_back(take_side(body_a, step));
   if (body_b != body_a) sides_.push_back(take_side(body_b, step));
   find_events(step);
-  const auto inside = static_cast<size_t>(find_onset_samples(events_, panels, samples_));
+  const auto inside = static_cast<size_t>(find_event_samples(events_, panels, samples_));
   for (size_t first = 0; first < samples_.size(); first += kAtOnce) {
     find_loads(step, first, std::min<size_t>(kAtOnce, samples_.size() - first), inside);
   }
-  OnsetRest rest_a(step.dt), rest_b(step.dt);
+  EventResidual rest_a(step.dt), rest_b(step.dt);
   for (size_t i = 0; i < coordinates_.size(); ++i) {
     Coordinate& c = coordinates_[i];
     c.missing = c.force.missing();
@@ -51,7 +51,7 @@ void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
 // Lists the candidates of the two bodies. Candidates ascend by edge, and so by the body of the
 // edge.
 void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   candidates_.clear(), ends_.clear(), corners_.clear(), near_.clear(), faces_.clear();
   const auto take = [&](BodyIndex edges, BodyIndex faces) {
     const auto first = std::ranges::lower_bound(candidates, o.bodies[edges].first, {},
@@ -107,7 +107,7 @@ void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> 
 }
 
 OutlinePath::Side OutlinePath::take_side(BodyIndex body, const Step& step) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const auto at = [](const std::vector<int>& list, int vertex) {
     return static_cast<size_t>(std::ranges::lower_bound(list, vertex) - list.begin());
   };
@@ -136,8 +136,8 @@ OutlinePath::Side OutlinePath::take_side(BodyIndex body, const Step& step) {
 
 // Moves the corners of a body to their positions at the fractions theta of the drift.
 APOTHEM_INLINE void OutlinePath::place(const Side& side, const Step& step, const Pack& theta) {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[side.body];
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[side.body];
   const Pack back = (Pack(1.) - theta) * Pack(step.dt);
   if (!body.is_rigid()) {
     for (size_t k = side.first_corner; k < side.last_corner; ++k) {
@@ -203,7 +203,7 @@ void OutlinePath::find_loads(const Step& step, size_t first, size_t count, size_
     return 0.;
   });
   for (size_t c = 0; c < coordinates_.size(); ++c) {
-    OnsetForces& f = coordinates_[c].force;
+    EventForces& f = coordinates_[c].force;
     for (size_t k = 0; k < count; ++k) {
       const double force = forces_[c].v[k];
       f.add(samples_[first + k], force);
@@ -229,7 +229,7 @@ APOTHEM_INLINE void OutlinePath::place(Face& face) const {
   face.at = {at_.x[face.a], at_.y[face.a],    at_.x[face.b], at_.y[face.b], own.x,
              own.y,         own.length,       a.x,           a.y,           b.x,
              b.y,           Pack(face.depth), Pack(0.)};
-  face.at = face.at.with_plain();
+  face.at = face.at.with_regular_depth();
   face.placed = true;
 }
 
@@ -282,7 +282,7 @@ void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
   const Vec2 q(at_.x[near.q].v[l], at_.y[near.q].v[l]);
   CollarPiece<double> piece;
   CollarCrossings<double> top;
-  if (!deep_collar_piece(at, p.x(), p.y(), q.x(), q.y(), piece, top)) return;
+  if (!general_collar_piece(at, p.x(), p.y(), q.x(), q.y(), piece, top)) return;
   const Vec2 edge = q - p;
   const double length = edge.norm();
   const EdgeFaceForces<double> force = edge_face_forces(piece, near.slope, length, 1 / at.length);
@@ -299,7 +299,7 @@ void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
 
 // Sums the forces on the coordinates of a body.
 APOTHEM_INLINE void OutlinePath::add_forces(const Side& side, const Step& step, const Pack& theta) {
-  const Outlines::Body& body = outlines_.bodies[side.body];
+  const OutlineSurfaces::Body& body = outlines_.bodies[side.body];
   Pack* to = &forces_[side.coordinates];
   if (!body.is_rigid()) {
     for (size_t i = side.first_end; i < side.end; ++i) {
@@ -332,8 +332,8 @@ void OutlinePath::balance() {
 // The moment of the missing impulses on a body about the first vertex of ends_, at the end of the
 // step.
 double OutlinePath::moment(const Side& side) const {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[side.body];
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[side.body];
   const Vec2 origin = o.point(ends_.front());
   const Coordinate* c = &coordinates_[side.coordinates];
   if (body.is_rigid()) {
@@ -350,7 +350,7 @@ double OutlinePath::moment(const Side& side) const {
 // Adds a moment to the missing impulses of a body. On a mesh this is done by the smallest forces on
 // those vertices that have a missing impulse already.
 void OutlinePath::turn(const Side& side, double moment) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   Coordinate* const first = &coordinates_[side.coordinates];
   if (o.bodies[side.body].is_rigid()) {
     first[2].missing += moment;
@@ -378,7 +378,7 @@ void OutlinePath::turn(const Side& side, double moment) {
 
 void OutlinePath::keep(const Side& side, std::vector<Impulse>& on_nodes,
                        std::vector<Impulse>& on_rigid) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const Coordinate* c = &coordinates_[side.coordinates];
   if (o.bodies[side.body].is_rigid()) {
     for (size_t k = 0; k < 3; ++k) {

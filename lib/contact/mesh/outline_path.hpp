@@ -8,10 +8,10 @@
 
 #include "geometry/integrals/collar.hpp"
 #include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
@@ -20,7 +20,7 @@ namespace apothem {
 class OutlinePath {
  public:
   /// Both arguments must outlive this object.
-  OutlinePath(const Outlines& outlines, const OutlineSlopes& slopes)
+  OutlinePath(const OutlineSurfaces& outlines, const OutlineSlopes& slopes)
       : outlines_(outlines), slopes_(slopes) {}
 
   /// A step of dt (s) at the end of its drift.
@@ -47,7 +47,7 @@ class OutlinePath {
   struct Coordinate {
     size_t index;     ///< in the order of a state
     double velocity;  ///< velocity of the drift
-    OnsetForces force = {};
+    EventForces force = {};
     double missing = 0;  ///< J / dt, N or N m
   };
   /// One of the two bodies, with its ranges in ends_ and corners_ and its first index in
@@ -87,7 +87,7 @@ class OutlinePath {
   void turn(const Side& side, double moment);
   void keep(const Side& side, std::vector<Impulse>& on_nodes, std::vector<Impulse>& on_rigid) const;
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   const OutlineSlopes& slopes_;
   std::vector<Side> sides_;
   std::vector<EdgeFace> candidates_;
@@ -100,7 +100,7 @@ class OutlinePath {
   std::vector<Face> faces_;
   Corners at_;  // positions and forces at the present samples
   std::vector<double> events_;
-  std::vector<OnsetSample> samples_;
+  std::vector<EventSample> samples_;
   std::vector<Pack> forces_;             // force on each coordinate at these samples, N or N m
   std::vector<Coordinate> coordinates_;  // coordinates of body a, then of b; three for a rigid body
 };

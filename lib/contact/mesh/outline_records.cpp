@@ -72,7 +72,7 @@ class PatchGroups {
   // Calls f(index) for the contacts of an edge with the faces of a body.
   template <class F>
   void each(int edge, BodyIndex in, const F& f) const {
-    const Outlines::Body& body = o_.bodies[in];
+    const OutlineSurfaces::Body& body = o_.bodies[in];
     for (size_t k = from(edge, body.first);
          k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < body.end; ++k) {
       f(k);
@@ -106,13 +106,13 @@ class PatchGroups {
   void join_plateaus() {
     std::map<std::pair<int, BodyIndex>, size_t> edge_at, face_at;
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const OutlinePlateaus::Edge& on = edges_[k];
+      const SaturatedEdge& on = edges_[k];
       keys_.push_back(std::minmax(o_.body[on.edge], on.in));
       const size_t i = edge_at[{on.edge, on.in}] = contacts_.size() + k;
       each(on.edge, on.in, [&](size_t contact) { join(i, contact); });
     }
     for (size_t k = 0; k < faces_.size(); ++k) {
-      const OutlinePlateaus::Face& on = faces_[k];
+      const SaturatedFace& on = faces_[k];
       keys_.push_back(std::minmax(o_.body[on.face], on.in));
       face_at[{on.face, on.in}] = first_face_ + k;
     }
@@ -120,7 +120,7 @@ class PatchGroups {
       if (const auto it = at.find({number, in}); it != at.end()) join(i, it->second);
     };
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const OutlinePlateaus::Edge& on = edges_[k];
+      const SaturatedEdge& on = edges_[k];
       join_at(edge_at, contacts_.size() + k, o_.next[on.edge], on.in);
       join_at(face_at, contacts_.size() + k, on.edge, on.in);
     }
@@ -133,31 +133,31 @@ class PatchGroups {
     }
   }
 
-  const Outlines& o_;
+  const OutlineSurfaces& o_;
   const std::vector<EdgeFaceContact>& contacts_;
-  const std::vector<OutlinePlateaus::Edge>& edges_;
-  const std::vector<OutlinePlateaus::Face>& faces_;
+  const std::vector<SaturatedEdge>& edges_;
+  const std::vector<SaturatedFace>& faces_;
   size_t first_face_;
   Groups groups_;
   std::vector<std::pair<int, int>> keys_;
 };
 
 // The number of edges between two vertices of a closed line.
-int steps_between(const Outlines& outlines, int vertex, int other) {
-  const std::vector<Outlines::Loop>& loops = outlines.loops;
-  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &Outlines::Loop::first));
+int steps_between(const OutlineSurfaces& outlines, int vertex, int other) {
+  const std::vector<OutlineSurfaces::Loop>& loops = outlines.loops;
+  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &OutlineSurfaces::Loop::first));
   if (other < loop->first || other >= loop->end) return std::numeric_limits<int>::max() / 2;
   const int steps = std::abs(vertex - other);
   return std::min(steps, loop->end - loop->first - steps);
 }
 
 // The point at the fraction u of an edge.
-Vec2 point_of(const Outlines& outlines, int edge, double u) {
+Vec2 point_of(const OutlineSurfaces& outlines, int edge, double u) {
   const Vec2 start = outlines.point(edge);
   return start + u * (outlines.point(outlines.next[edge]) - start);
 }
 
-bool is_a(const Outlines& outlines, const PatchSum& patch, int edge) {
+bool is_a(const OutlineSurfaces& outlines, const PatchSum& patch, int edge) {
   if (patch.record.a != patch.record.b) return outlines.body[edge] == patch.record.a;
   return steps_between(outlines, edge, patch.edge) <= steps_between(outlines, edge, patch.face);
 }
@@ -189,7 +189,7 @@ class PatchSums {
     sum.record.damping += own_is_a ? push : Vec2(-push);
   }
 
-  void add(int patch, const OutlinePlateaus::Edge& on) {
+  void add(int patch, const SaturatedEdge& on) {
     PatchSum& sum = of(patch, o_.body[on.edge], on.in, on.edge, -1);
     const double depth = o_.bodies[on.in].depth;
     const double force = slopes_(on.in, o_.body[on.edge]) * depth * on.sum * o_.length[on.edge];
@@ -199,7 +199,7 @@ class PatchSums {
     sum.record.penetration = depths_.of_edge(on.edge, on.in, sum.record.penetration);
   }
 
-  void add(int patch, const OutlinePlateaus::Face& on) {
+  void add(int patch, const SaturatedFace& on) {
     PatchSum& sum = found_[static_cast<size_t>(patch)];
     std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[on.face], on.in);
     if (!is_a(o_, sum, on.face)) return;
@@ -226,7 +226,7 @@ class PatchSums {
   }
   [[nodiscard]] Vec2 inward(int edge) const { return {-o_.ty[edge], o_.tx[edge]}; }
 
-  const Outlines& o_;
+  const OutlineSurfaces& o_;
   const OutlineSlopes& slopes_;
   OutlineDepths depths_;
   std::vector<PatchSum> found_;
@@ -239,13 +239,13 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   PatchSums sums(state, patch.empty() ? 0 : *std::ranges::max_element(patch) + 1);
   auto next = patch.begin();
   for (const EdgeFaceContact& contact : state.contacts) sums.add(*next++, contact);
-  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) sums.add(*next++, on);
-  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) sums.add(*next++, on);
+  for (const SaturatedEdge& on : state.plateaus.edges()) sums.add(*next++, on);
+  for (const SaturatedFace& on : state.plateaus.faces()) sums.add(*next++, on);
   sums.finish(records);
 }
 
 void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& records) {
-  const Outlines& o = state.outlines();
+  const OutlineSurfaces& o = state.outlines();
   const OutlineSlopes& slopes = state.slopes;
   const double thickness = slopes.thickness;
   const size_t first = records.size();
@@ -258,11 +258,11 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
       record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }
-  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {
+  for (const SaturatedEdge& on : state.plateaus.edges()) {
     const double slope = slopes(on.in, o.body[on.edge]);
     record[on.edge].pressure += slope * o.bodies[on.in].depth / thickness * on.sum;
   }
-  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) {
+  for (const SaturatedFace& on : state.plateaus.faces()) {
     const double slope = slopes(o.body[on.face], on.in);
     record[on.face].pressure += slope / thickness * on.moment.area / o.length[on.face];
   }

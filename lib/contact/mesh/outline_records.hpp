@@ -5,7 +5,7 @@
 
 #include "lib/contact/law/contact.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
 
 namespace apothem {
@@ -14,8 +14,8 @@ namespace apothem {
 struct OutlineState {
   const OutlineSlopes& slopes;
   const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
-  const OutlinePlateaus& plateaus;
-  [[nodiscard]] const Outlines& outlines() const { return slopes.outlines; }
+  const SaturatedRegions& plateaus;
+  [[nodiscard]] const OutlineSurfaces& outlines() const { return slopes.outlines; }
 };
 
 /// Adds a record for every patch, in ascending order of the pairs of bodies.

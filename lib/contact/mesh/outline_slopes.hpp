@@ -4,12 +4,12 @@
 
 #include "lib/contact/law/pair_table.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
 struct OutlineSlopes {
-  const Outlines& outlines;
+  const OutlineSurfaces& outlines;
   const PairTable& table;
   double thickness;  ///< m
 

@@ -27,7 +27,7 @@ void BodyLoads::take(std::span<const BoxPair> pairs) {
 
 void BodyLoads::end() {
   for (Part& part : parts_) {
-    for (const LateLoad& late : part.late) sums_[static_cast<size_t>(late.body)].add(late.load);
+    for (const DeferredLoad& late : part.late) sums_[static_cast<size_t>(late.body)].add(late.load);
     part.begin(-1);
   }
 }

@@ -41,14 +41,14 @@ class BodyLoads {
   void add_to(const ForceViews& forces, std::span<const PairInTouch> touching);
 
  private:
-  struct LateLoad {
+  struct DeferredLoad {
     BodyLoad load;
     RigidIndex body;
   };
   // The loads that one thread has deferred.
   struct Part {
     RigidIndex first = -1;
-    std::vector<LateLoad> late;
+    std::vector<DeferredLoad> late;
     void begin(RigidIndex body) {
       first = body;
       late.clear();

@@ -42,7 +42,7 @@ struct PairWork {
   const Spring* before = &kNoSpring;  ///< the spring in the step before
   bool begins = true;                 ///< true if the pair had no patch in the step before
   Spring* now = nullptr;     ///< the spring of this step, without its key; null without friction
-  PairBook* book = nullptr;  ///< null without friction
+  PairLedger* book = nullptr;  ///< null without friction
 };
 
 /// Finds the friction of work.size() contact patches, at most kComparedLanes. The results that
@@ -81,7 +81,7 @@ class PairBatch {
   struct {
     PairLoad load;
     Spring now;
-    PairBook book;
+    PairLedger book;
   } spare_ = {};
 };
 

@@ -7,8 +7,8 @@
 namespace apothem {
 namespace {
 
-constexpr double kMoved =
-    .99;  // A Verlet list is renewed when the bodies have moved by this fraction of its skin.
+// A Verlet list is renewed when the bodies have moved by this fraction of its skin.
+constexpr double kMoved = .99;
 // The skin of a Verlet list is 2^exponent times the smaller inradius. The exponent rises where
 // bodies move fast, so that a list lasts for some tens of evaluations, and falls in packs at rest,
 // so that few edges are listed.
@@ -129,13 +129,13 @@ void PairIntegrals::evaluate_convex(int index) {
     if (integral.touching()) {
       add(p, integral, index, -1);
     } else if (near_[p].edges.margin > 0) {
-      note_margin(p, surfaces_.between(pairs_[p].first, pairs_[p].second));
+      note_distance(p, surfaces_.between(pairs_[p].first, pairs_[p].second));
     }
   }
 }
 
 // Notes that the polygons are apart by the skin at the present positions of their bodies.
-void PairIntegrals::note_margin(size_t p, const Vec2& between) {
+void PairIntegrals::note_distance(size_t p, const Vec2& between) {
   near_[p].between = between;
   near_[p].angle_a = surfaces_.pose(pairs_[p].first)[2];
   near_[p].angle_b = surfaces_.pose(pairs_[p].second)[2];
@@ -180,7 +180,7 @@ void PairIntegrals::evaluate_alone(size_t p, const PlacedPotential& view_a,
       split ? contact_patches(view_a, view_b, between, worker.workspace, worker.pair_runs,
                               worker.pair_patches, near)
             : pair_integral(view_a, view_b, between, worker.workspace.edge, near);
-  if (near.margin > margin) note_margin(p, between);
+  if (near.margin > margin) note_distance(p, between);
   if (!integral.touching()) return;
   if (!split) {
     add(p, integral, index, -1);

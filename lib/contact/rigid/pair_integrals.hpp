@@ -23,8 +23,8 @@ struct PairInTouch {
   SurfaceIndex a, b;
   int number;  ///< index in the list of all touching pairs
   int worker;  ///< thread that has found the pair
-  int split =
-      -1;  ///< index among the pairs that are split into contact patches; -1 if it is not split
+  /// Index among the pairs that are split into contact patches; -1 if it is not split.
+  int split = -1;
 };
 
 /// The touching pairs of a list of pairs, and their integrals.
@@ -76,14 +76,14 @@ class PairIntegrals {
         .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
   }
   /// The boundary segments of a pair; none if it is not split.
-  [[nodiscard]] std::span<const RunPlace> runs(const PairInTouch& pair) const {
+  [[nodiscard]] std::span<const SegmentPlace> runs(const PairInTouch& pair) const {
     const Parts* const parts = parts_of(pair);
     if (!parts) return {};
     return std::span(workers_[static_cast<size_t>(parts->worker)].runs)
         .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
   }
   /// The boundary segments with their integrals, if all pairs are split.
-  [[nodiscard]] std::span<const BoundaryRun> whole_runs(const PairInTouch& pair) const {
+  [[nodiscard]] std::span<const BoundarySegment> whole_runs(const PairInTouch& pair) const {
     const Parts* const parts = parts_of(pair);
     if (!parts || split_ != Split::all) return {};
     return std::span(workers_[static_cast<size_t>(parts->worker)].whole_runs)
@@ -111,15 +111,15 @@ class PairIntegrals {
     double angle_a = 0;
     Vec2 between = Vec2::Zero();
     double angle_b = 0;
-    std::int16_t share =
-        kFirstMargin;      // the requested skin is 2^skin_exponent times the smaller inradius
+    // The requested skin is 2^skin_exponent times the smaller inradius.
+    std::int16_t share = kFirstMargin;
     std::int16_t age = 0;  // evaluations since the list was made
   };
   // The patches and boundary segments of a pair, as ranges of the lists of a thread.
   struct Parts {
     int patches, runs;
-    int worker, first_patch,
-        first_run;  // first_patch is negative if the only patch is the whole pair
+    // `first_patch` is negative if the only patch is the whole pair.
+    int worker, first_patch, first_run;
   };
   struct Worker {
     PatchWorkspace workspace;
@@ -132,18 +132,18 @@ class PairIntegrals {
     int first = 0;                        // index of the first one in the list of all
     // The pairs that the thread has split.
     std::vector<Parts> parts;
-    std::vector<RunPlace> runs;
-    std::vector<BoundaryRun>
+    std::vector<SegmentPlace> runs;
+    std::vector<BoundarySegment>
         whole_runs;  // the same segments with integrals, if all pairs are split
     std::vector<PairIntegral> patches;
     // The segments and patches of the present pair.
-    std::vector<BoundaryRun> pair_runs;
+    std::vector<BoundarySegment> pair_runs;
     std::vector<PairIntegral> pair_patches;
   };
   void begin();
   size_t evaluate_some(size_t first, size_t end, int worker);
   void evaluate_convex(int worker);
-  void note_margin(size_t pair, const Vec2& between);
+  void note_distance(size_t pair, const Vec2& between);
   void add(size_t pair, const PairIntegral& integral, int worker, int split);
   void collect();
   void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,

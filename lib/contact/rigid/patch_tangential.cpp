@@ -11,7 +11,7 @@ constexpr size_t kPairsAheadOfStep = 8;  // number of pairs that are prefetched,
 
 // The force of a spring after a slip in m. The spring loses the mean force times the part of the
 // slip that it does not follow.
-double follow(const CoulombSpring<double>& spring, double force, double slip, PairBook& book) {
+double follow(const CoulombSpring<double>& spring, double force, double slip, PairLedger& book) {
   const double trial = spring.trial(force, slip), next = spring.within(trial);
   book.loss += (force + next) * (trial - next) / (2 * spring.stiffness);
   return next;
@@ -63,7 +63,7 @@ void PatchTangential::end_step() {
   for (const Range& range : ranges_) {
     for (const double lost : range.ended) memory_.lose(lost);
   }
-  for (const PairBook& book : books_) memory_.add(book);
+  for (const PairLedger& book : books_) memory_.add(book);
 }
 
 // The energy lost by the springs of a pair that no longer touches. In the first half of this step
@@ -89,12 +89,12 @@ std::span<Spring> PatchTangential::springs_of(const PairInTouch& pair) const {
 
 std::optional<PairForce> PatchTangential::friction_of(RigidIndex a, RigidIndex b,
                                                       std::span<const Spring> springs,
-                                                      std::span<const PatchRun> runs) const {
+                                                      std::span<const PatchSegment> runs) const {
   const ContactKey pair{polygon_kernel, a, b, 0};
   const std::span<const Spring> all = records_of_pair(springs, pair);
   const bool alone =
       per_edge_ ? std::ranges::all_of(records_of_pair(runs, pair),
-                                      [](const PatchRun& run) { return run.place.patch == 0; })
+                                      [](const PatchSegment& run) { return run.place.patch == 0; })
                 : all.size() == 1;
   if (!alone) return {};
   PairForce sum;
@@ -114,7 +114,7 @@ void PatchTangential::keep_push(const PairInTouch& pair, size_t patch, double pu
   if (patch < springs.size()) springs[patch].push = push;
 }
 
-void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundarySegment> runs,
                              const PairInTouch& pair) const {
   const std::span<const Spring> springs = springs_of(pair);
   for (size_t i = 0; i < springs.size(); ++i) {
@@ -140,7 +140,7 @@ void PatchTangential::Range::finish() {
       [&](std::span<const Spring> springs) { ended.push_back(all_.lost_at_end(springs)); });
 }
 
-void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book) {
+void PatchTangential::Range::step_block(size_t first, size_t end, PairLedger& book) {
   const std::vector<PairInTouch>& touching = all_.pairs_.touching();
   const size_t count = end - first;
   loads.resize(count);
@@ -151,7 +151,7 @@ void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book
     step_pair(i, loads[k], books_[k]);
   }
   batch_.flush(all_.scene_);
-  for (const PairBook& pair : books_) book.add(pair);
+  for (const PairLedger& pair : books_) book.add(pair);
 }
 
 // Prefetches the data of a pair.
@@ -162,7 +162,7 @@ void PatchTangential::fetch(const PairInTouch& pair) const {
   __builtin_prefetch(&kinematics_.pose_rate[3 * static_cast<size_t>(pair.b)]);
 }
 
-void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& book) {
+void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairLedger& book) {
   const PairInTouch& touching = all_.pairs_.touching()[number];
   const ContactKey key{polygon_kernel, touching.a, touching.b, 0};
   const PairLaw& law = all_.table_.between(touching.a, touching.b);
@@ -203,9 +203,9 @@ void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& 
 }
 
 void PatchTangential::Range::keep_runs(const ContactKey& pair, size_t number) const {
-  PatchRun* to = all_.runs_.data() + all_.place_of(number).run;
+  PatchSegment* to = all_.runs_.data() + all_.place_of(number).run;
   int part = 0;
-  for (const RunPlace& run : runs_) *to++ = {{pair.law, pair.a, pair.b, part++}, run};
+  for (const SegmentPlace& run : runs_) *to++ = {{pair.law, pair.a, pair.b, part++}, run};
 }
 
 void PatchTangential::Range::step_patches(const PairInTouch& touching, const PairWork& pair) {
@@ -257,8 +257,8 @@ void PatchTangential::Range::step_springs(const PairWork& pair, Sum& sum) {
 void PatchTangential::Range::find_shares(const ContactKey& pair) {
   if (before_.empty()) return;
   runs_before_.clear();
-  const std::span<const PatchRun> runs = all_.memory_.runs().before();
-  for (const PatchRun& run : records_of_pair(runs, pair)) {
+  const std::span<const PatchSegment> runs = all_.memory_.runs().before();
+  for (const PatchSegment& run : records_of_pair(runs, pair)) {
     runs_before_.push_back(run.place);
   }
   const size_t heirs = patches_.size();
@@ -305,7 +305,7 @@ double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& 
 
 // The older friction law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges
 // that are inclined to the motion get a false tangential force.
-void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const BoundaryRun> runs,
+void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const BoundarySegment> runs,
                                       Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
   const PairRate& rate = sum.rate;
@@ -315,7 +315,7 @@ void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const Boun
   auto next = now_.begin();
   auto old = before_.begin();
   const auto end_one = [&] { pair.book->loss += (old++)->energy(); };  // the edge no longer touches
-  for (const BoundaryRun& run : runs) {
+  for (const BoundarySegment& run : runs) {
     const ContactKey key{polygon_kernel, pair.a, pair.b,
                          run.of_a ? run.edge : edges_of_a + run.edge};
     while (old != before_.end() && old->key < key) end_one();

@@ -55,7 +55,7 @@ class PatchTangential {
 
   /// Adds friction to the records of a pair, one for each patch. The law per_edge needs the
   /// boundary segments of the pair.
-  void add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+  void add_to(std::span<ContactRecord> patches, std::span<const BoundarySegment> runs,
               const PairInTouch& pair) const;
 
   /// The number of pairs in a block. The sums of a block are booked together, so that they do not
@@ -74,7 +74,7 @@ class PatchTangential {
     explicit Range(PatchTangential& all) : all_(all) {}
 
     void begin(size_t first, size_t end);
-    void step_block(size_t first, size_t end, PairBook& book);
+    void step_block(size_t first, size_t end, PairLedger& book);
     void finish();
 
     std::vector<PairLoad> loads;  // loads of the block
@@ -87,25 +87,25 @@ class PatchTangential {
       PairForce force = {};
       BodyStiffness held_a = {}, held_b = {};  // stiffness of its friction springs
     };
-    void step_pair(size_t number, PairLoad& load, PairBook& book);
+    void step_pair(size_t number, PairLoad& load, PairLedger& book);
     void step_patches(const PairInTouch& touching, const PairWork& pair);
     void step_springs(const PairWork& pair, Sum& sum);
     void keep_runs(const ContactKey& pair, size_t number) const;
     void find_shares(const ContactKey& pair);
     void inherit();
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;
-    void per_edge(const PairWork& pair, std::span<const BoundaryRun> runs, Sum& sum);
+    void per_edge(const PairWork& pair, std::span<const BoundarySegment> runs, Sum& sum);
 
     PatchTangential& all_;
     PairBatch batch_;
-    std::vector<PairBook> books_;  // ledgers of the pairs of the block
+    std::vector<PairLedger> books_;  // ledgers of the pairs of the block
     ContactWalk<const Spring> walk_;
     // The present pair.
-    std::span<const RunPlace> runs_;
+    std::span<const SegmentPlace> runs_;
     std::span<const PairIntegral> patches_;
     std::span<const Spring> before_;
     std::span<Spring> now_;
-    std::vector<RunPlace> runs_before_;
+    std::vector<SegmentPlace> runs_before_;
     std::vector<double> shares_;  // fraction of each earlier patch that goes to each present patch
     std::vector<Spring> patch_springs_;
     std::vector<PatchFriction<double>> friction_;  // friction of each patch
@@ -114,7 +114,7 @@ class PatchTangential {
   void make_room();
   [[nodiscard]] std::optional<PairForce> friction_of(RigidIndex a, RigidIndex b,
                                                      std::span<const Spring> springs,
-                                                     std::span<const PatchRun> runs) const;
+                                                     std::span<const PatchSegment> runs) const;
   [[nodiscard]] double lost_at_end(std::span<const Spring> springs) const;
   [[nodiscard]] Place place_of(size_t number) const {
     return places_.empty() ? Place{number, 0} : places_[number];
@@ -132,11 +132,11 @@ class PatchTangential {
   // The present step.
   Kinematics kinematics_;
   PairScene scene_;
-  std::vector<PairBook> books_;  // ledger of each block
+  std::vector<PairLedger> books_;  // ledger of each block
   // Offsets of each touching pair, and of the end; empty if each pair has one spring.
   std::vector<Place> places_;
   std::span<Spring> springs_;
-  std::span<PatchRun> runs_;
+  std::span<PatchSegment> runs_;
 };
 
 template <class Take>

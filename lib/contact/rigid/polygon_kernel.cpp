@@ -199,7 +199,7 @@ void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
 void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
   PatchWorkspace workspace;
   PenetrationWorkspace penetration_workspace;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> runs;
   std::vector<PairIntegral> patches;
   std::vector<double> deepest;
   size_t dashpot = 0;

@@ -7,7 +7,7 @@
 #include "geometry/integrals/penetration.hpp"
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/rigid/body_loads.hpp"
-#include "lib/contact/rigid/onset.hpp"
+#include "lib/contact/rigid/polygon_events.hpp"
 #include "lib/contact/rigid/pair_batch.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/contact/rigid/patch_tangential.hpp"
@@ -33,14 +33,14 @@ class PolygonKernel final : public Kernel {
   void add_forces(const ForceViews& forces) override;
   void add_dashpots(const Kinematics& now, Dashpots& to) override;
   void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
-  bool find_onsets(const Kinematics& now, const Dynamics& dynamics, double dt,
+  bool find_event_impulses(const Kinematics& now, const Dynamics& dynamics, double dt,
                    FrictionMemory& memory) override {
     const bool found =
         onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
     if (found) memory.lose(onset_.loss());
     return found;
   }
-  void add_onsets(double scale, const ForceViews& forces) const override {
+  void add_event_impulses(double scale, const ForceViews& forces) const override {
     onset_.add(scale, forces.rigid);
   }
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
@@ -78,7 +78,7 @@ class PolygonKernel final : public Kernel {
   const PairTable& table_;
   double thickness_;  // m
   PairIntegrals pairs_;
-  Onset onset_;
+  PolygonEvents onset_;
   std::optional<PatchTangential> tangential_;  // empty without friction
   Threads threads_;
   std::vector<Found> found_;  // results of each thread
@@ -88,7 +88,7 @@ class PolygonKernel final : public Kernel {
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;
   PenetrationWorkspace penetration_workspace_;
-  std::vector<BoundaryRun> runs_;
+  std::vector<BoundarySegment> runs_;
   std::vector<PairIntegral> patches_;
   std::vector<double> deepest_;  // penetration of each patch, m
   std::vector<char> damped_;     // for each patch of damped pairs, whether it has dashpots

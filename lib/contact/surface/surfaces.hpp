@@ -17,7 +17,7 @@
 
 #include "geometry/integrals/placed_shapes.hpp"
 #include "lib/contact/surface/element_surfaces.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/execution/parallel.hpp"
 
 namespace apothem {
@@ -135,8 +135,8 @@ class Surfaces {
   /// The elements; element e has the surface rigid_count() + e.
   [[nodiscard]] const ElementSurfaces& elements() const { return elements_; }
   /// The outlines of all bodies, with the numbers of their surfaces.
-  [[nodiscard]] const Outlines& outlines() const { return outlines_; }
-  [[nodiscard]] Outlines& outlines() { return outlines_; }
+  [[nodiscard]] const OutlineSurfaces& outlines() const { return outlines_; }
+  [[nodiscard]] OutlineSurfaces& outlines() { return outlines_; }
 
  private:
   /// Moves a polygon. Returns false and does not move it if its position is not finite.
@@ -161,7 +161,7 @@ class Surfaces {
   PlacedShapes shapes_;
   std::vector<std::array<double, 3>> pose_;
   ElementSurfaces elements_;
-  Outlines outlines_;
+  OutlineSurfaces outlines_;
 };
 
 }  // namespace apothem

@@ -36,7 +36,7 @@ TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_fr
     pair->slide(.01);
     const double size = spring_sum(*pair->contacts);
     REQUIRE(size > 0);
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     Vec2 sum = Vec2::Zero();
     double moment = 0, largest = 0;
     for (int k = 0; k < o.size(); ++k) {
@@ -60,7 +60,7 @@ TEST_CASE("rigid motion of the pair as a whole is no slip", "[outline_friction][
   for (int i = 0; i < scaled(200); ++i) {
     auto pair = random_pair(random, 8, .6, law_of(1, {10, 1}));
     if (!pair) continue;
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     const Vec2 drift(random.uniform(-1, 1), random.uniform(-1, 1));
     const double spin = random.uniform(-1, 1);
     for (int k = 0; k < o.size(); ++k) {
@@ -181,7 +181,7 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   // Moment about the world's origin: that of the rigid body is about its centre.
   const Resultant on_floor = bodies.on_rigid(0);
   double moment = on_floor.moment + cross(Vec2(bodies.pose[0], bodies.pose[1]), on_floor.force);
-  const Outlines& o = bodies.contacts->surfaces().outlines();
+  const OutlineSurfaces& o = bodies.contacts->surfaces().outlines();
   for (int i = o.bodies[1].first; i < o.bodies[1].end; ++i) {
     moment += cross(o.point(i), bodies.on_node(o.node[i]));
   }

@@ -26,7 +26,7 @@ std::set<std::pair<int, int>> touching(const Contacts& contacts) {
 }
 
 // Every edge against every face of other bodies.
-std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
+std::set<std::pair<int, int>> touching_of_all(const OutlineSurfaces& o) {
   std::set<std::pair<int, int>> pairs;
   for (int e = 0; e < o.size(); ++e) {
     for (int f = 0; f < o.size(); ++f) {
@@ -141,7 +141,7 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
     // Only where the collars are the roofs.
     std::vector<double> first = first_nodes(a.vertices());
     for (const double h : first_nodes(b.vertices())) first.push_back(h);
-    const Outlines& o = bodies.contacts->surfaces().outlines();
+    const OutlineSurfaces& o = bodies.contacts->surfaces().outlines();
     if (std::ranges::any_of(bodies.contacts->contacts(), [&](const Contact& c) {
           return c.share * o.depth[c.b] > first[c.b];
         })) {
@@ -225,7 +225,7 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
 TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
           "[outline_kernel][contact]") {
   const auto depth_of = [](const Mesh& mesh, std::optional<double> reference = {}) {
-    Outlines outlines;
+    OutlineSurfaces outlines;
     outlines.add_mesh(mesh, boundary(mesh), 0, reference);
     return outlines.bodies[0].depth;
   };
@@ -253,7 +253,7 @@ TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
   CHECK(smallest_thickness({round, hole}, 9) == Approx(.2).epsilon(.01));
   // A given r, and a rigid body: half of its thickness.
   CHECK(depth_of(bar(1, 10, ElementShape::quadrilateral), .2) == .2);
-  Outlines outlines;
+  OutlineSurfaces outlines;
   outlines.add_rigid(comb, 0, .4);
   CHECK(outlines.bodies[0].depth == Approx(.1));
   outlines.add_rigid(samples::block(0, 0, 4, 1).vertices(), 1, .5);
@@ -384,7 +384,7 @@ TEST_CASE("what touches is the same for any number of threads",
     std::vector<double>& u = bodies.displacement;
     for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
     bodies.evaluate();
-    CHECK_FALSE(bodies.contacts->find_onsets(bodies.kinematics(), {}, 0));
+    CHECK_FALSE(bodies.contacts->find_event_impulses(bodies.kinematics(), {}, 0));
     JsonWriter archive;
     archive("contacts", *bodies.contacts);
     const std::string saved = archive.json().dump();

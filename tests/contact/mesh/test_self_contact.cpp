@@ -233,7 +233,7 @@ TEST_CASE("an inner corner whose collar leaves the body is named", "[self_contac
   CHECK_FALSE(notch(.4, .3));
   CHECK_FALSE(notch(.3, .3));
   CHECK_FALSE(notch(.05, 3));
-  const std::optional<Outlines::Notch> closed = notch(.05, .3);
+  const std::optional<OutlineSurfaces::Notch> closed = notch(.05, .3);
   REQUIRE(closed);
   CHECK(closed->vertex == 4);
   CHECK(closed->angle == Approx(2 * std::atan(.05 / .7)));

@@ -358,7 +358,7 @@ TEST_CASE("a slide that was tried leaves nothing behind", "[polygon_kernel][fric
         bodies.pose[c] = pose[c] + dt * bodies.pose_rate[c];
       }
       bodies.evaluate();
-      bodies.contacts->try_slide(bodies.kinematics(), dt);
+      bodies.contacts->try_friction(bodies.kinematics(), dt);
       bodies.find_forces();
     }
     bodies.contacts->drop_trial();

@@ -42,7 +42,7 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, double depth) {
     const CollarFace<Complex> face =
         CollarFace<Complex>{t.x[i], t.y[i], t.x[q], t.y[q], tx[i], ty[i], length[i],
                             a.x,    a.y,    b.x,    b.y,    depth, 0}
-            .with_plain();
+            .with_regular_depth();
     for (size_t e = 0; e < m; ++e) {
       CollarPiece<Complex> piece;
       CollarCrossings<Complex> top;
@@ -56,7 +56,7 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, double depth) {
 // Largest |f + dE/dx| over largest |f|.
 double gradient_error(const OutlinePair& pair) {
   ComplexRing a = complex_ring(pair.a), b = complex_ring(pair.b);
-  const std::vector<Outlines::Body>& bodies = pair.contacts->surfaces().outlines().bodies;
+  const std::vector<OutlineSurfaces::Body>& bodies = pair.contacts->surfaces().outlines().bodies;
   const auto slope = [&] {
     const double h = 1e-40;
     return -(volume(b, a, bodies[0].depth) / pair.reference_a +
@@ -260,7 +260,7 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
       continue;
     // Overlapping parts of faces beyond the heights at which they shrink to a point cancel each
     // other; what remains may be small against them.
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     if (std::ranges::any_of(pair->contacts->contacts(), [&](const Contact& c) {
           return c.share * o.depth[c.b] > o.plain[c.b];
         })) {
@@ -325,7 +325,7 @@ struct EdgeAndFace {
                               t.x(), t.y(), (b - a).norm(), ma.x,
                               ma.y,  mb.x,  mb.y,           random.uniform(.1, 2),
                               0}
-               .with_plain();
+               .with_regular_depth();
     p = {place(3), place(3)}, q = {place(3), place(3)};
   }
 };

@@ -52,7 +52,7 @@ double worst_sum(const PatchResult& split, const PairIntegral& pair, double size
   Sum all;
   double own_a = 0, own_b = 0;
   std::vector<Sum> by_run(split.patches.size());
-  for (const BoundaryRun& run : split.runs) {
+  for (const BoundarySegment& run : split.runs) {
     REQUIRE(run.patch >= 0);
     REQUIRE(run.patch < static_cast<int>(split.patches.size()));
     REQUIRE(run.from >= 0);
@@ -386,8 +386,8 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
       const int after = static_cast<int>(now.patches.size());
       most = std::max(most, after);
       if (step == 0) continue;
-      const std::vector<RunPlace> earlier(last.runs.begin(), last.runs.end());
-      const std::vector<RunPlace> present(now.runs.begin(), now.runs.end());
+      const std::vector<SegmentPlace> earlier(last.runs.begin(), last.runs.end());
+      const std::vector<SegmentPlace> present(now.runs.begin(), now.runs.end());
       shared_length(earlier, before, present, after, table);
       if (before != after) {
         ++changes;
@@ -416,9 +416,9 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
 }
 
 TEST_CASE("shared length", "[patches]") {
-  const std::vector<RunPlace> before{
+  const std::vector<SegmentPlace> before{
       {true, 0, 0, .1, .5, .8}, {true, 0, 1, .7, .9, .4}, {false, 2, 0, 0, 1, 3}};
-  const std::vector<RunPlace> now{{true, 0, 0, .4, .8, .8},
+  const std::vector<SegmentPlace> now{{true, 0, 0, .4, .8, .8},
                                   {true, 1, 0, .4, .8, .8},
                                   {false, 2, 1, .5, .5, 0},
                                   {false, 2, 1, .75, 1, .75}};
@@ -429,7 +429,7 @@ TEST_CASE("shared length", "[patches]") {
   CHECK(table[2] == Approx(.2));
   CHECK(table[1] == Approx(.75));
   CHECK(table[3] == 0);
-  shared_length(before, 2, std::vector<RunPlace>{now[2]}, 2, table);
+  shared_length(before, 2, std::vector<SegmentPlace>{now[2]}, 2, table);
   CHECK(table[1] > 0);  // without length, but inside
   shared_length({}, 0, now, 2, table);
   CHECK(table.empty());
@@ -460,7 +460,7 @@ TEST_CASE("a polygon inside the other is one patch", "[patches]") {
   const PatchResult inside = split(Polygon(ring), Polygon(test::cross_ring(3)));
   REQUIRE(inside.patches.size() == 1);
   CHECK(inside.runs.size() == 12);
-  for (const BoundaryRun& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
+  for (const BoundarySegment& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
 }
 
 TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][near]") {

@@ -1,4 +1,4 @@
-#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ constexpr int kTrials = 16;  // number of vertices of a line that are tried as i
 
 }  // namespace
 
-void OutlinePlateaus::take(std::span<const BoxPair> pairs) {
+void SaturatedRegions::take(std::span<const BoxPair> pairs) {
   pairs_.clear(), bases_.clear();
   for (const auto& [a, b] : pairs) {
     add_pair(a, b);
@@ -22,11 +22,11 @@ void OutlinePlateaus::take(std::span<const BoxPair> pairs) {
   at_.assign(static_cast<size_t>(outlines_.size()), -1);
 }
 
-void OutlinePlateaus::add_pair(BodyIndex edges, BodyIndex faces) {
-  const std::vector<Outlines::Loop>& loops = outlines_.loops;
+void SaturatedRegions::add_pair(BodyIndex edges, BodyIndex faces) {
+  const std::vector<OutlineSurfaces::Loop>& loops = outlines_.loops;
   Pair pair{edges, faces, bases_.size(), 0};
   const auto add = [&](BodyIndex own, BodyIndex other, bool top) {
-    auto loop = std::ranges::lower_bound(loops, own, {}, &Outlines::Loop::body);
+    auto loop = std::ranges::lower_bound(loops, own, {}, &OutlineSurfaces::Loop::body);
     for (; loop != loops.end() && loop->body == own; ++loop) {
       bases_.push_back(base_of(static_cast<int>(loop - loops.begin()), other, top));
     }
@@ -40,14 +40,14 @@ void OutlinePlateaus::add_pair(BodyIndex edges, BodyIndex faces) {
 // Chooses a vertex of a closed line as its base. A vertex is settled if its winding number cannot
 // change until the next search, because it is not near the other body, or not near the line that it
 // would have to cross.
-OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool top) const {
-  const Outlines& o = outlines_;
-  const Outlines::Loop& loop = o.loops[static_cast<size_t>(index)];
+SaturatedRegions::Base SaturatedRegions::base_of(int index, BodyIndex other, bool top) const {
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Loop& loop = o.loops[static_cast<size_t>(index)];
   const std::vector<Box>& own = top ? o.face_boxes : o.edge_boxes;
   for (int i = loop.first; i < loop.end; ++i) {
     if (apart(own[i], o.body_boxes[other])) return {index, i, 0, top, true};
   }
-  const Outlines::Body& body = o.bodies[other];
+  const OutlineSurfaces::Body& body = o.bodies[other];
   const auto box_of = [&](const Vec2& a, const Vec2& b) {
     Box box;
     box.include(a.x(), a.y());
@@ -71,15 +71,15 @@ OutlinePlateaus::Base OutlinePlateaus::base_of(int index, BodyIndex other, bool 
 
 // The winding number of the other body's outline about a point of an offset curve, or of its offset
 // curve about a point of an outline.
-int OutlinePlateaus::winding(const Vec2& place, int loop, BodyIndex other, bool top,
+int SaturatedRegions::winding(const Vec2& place, int loop, BodyIndex other, bool top,
                              bool* clear) const {
   const bool self = outlines_.loops[static_cast<size_t>(loop)].body == other;
   return outlines_.winding(place, other, !top, clear) - (self && top ? 1 : 0);
 }
 
-void OutlinePlateaus::settle(Base& base, BodyIndex other) const {
-  const Outlines& o = outlines_;
-  const Outlines::Loop& loop = o.loops[static_cast<size_t>(base.loop)];
+void SaturatedRegions::settle(Base& base, BodyIndex other) const {
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Loop& loop = o.loops[static_cast<size_t>(base.loop)];
   for (base.vertex = loop.first; base.vertex < loop.end; ++base.vertex) {
     bool clear = true;
     const Vec2 place = base.top ? o.top(base.vertex) : o.point(base.vertex);
@@ -89,10 +89,10 @@ void OutlinePlateaus::settle(Base& base, BodyIndex other) const {
   base.vertex = loop.end - 1;
 }
 
-void OutlinePlateaus::evaluate() {
+void SaturatedRegions::evaluate() {
   edges_.clear(), faces_.clear();
   if (quiet_ && crossings_.empty()) return;
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   std::ranges::sort(crossings_, {}, [&](const Crossing& c) {
     return std::tuple(o.body[c.edge], o.body[c.face], c.edge, c.face);
   });
@@ -118,8 +118,8 @@ void OutlinePlateaus::evaluate() {
 }
 
 // The winding number is constant along a closed line except where the line crosses the other one.
-void OutlinePlateaus::find_edges(const Pair& pair, std::span<const Crossing> crossings) {
-  const Outlines& o = outlines_;
+void SaturatedRegions::find_edges(const Pair& pair, std::span<const Crossing> crossings) {
+  const OutlineSurfaces& o = outlines_;
   const Vec2 origin = o.point(o.bodies[pair.edges].first);
   for (size_t c = crossings.size(); c-- > 0;) at_[crossings[c].edge] = static_cast<int>(c);
   for (size_t i = pair.first; i < pair.end; ++i) {
@@ -148,8 +148,8 @@ void OutlinePlateaus::find_edges(const Pair& pair, std::span<const Crossing> cro
   for (const Crossing& c : crossings) at_[c.edge] = -1;
 }
 
-void OutlinePlateaus::find_faces(const Pair& pair, std::span<Crossing> crossings) {
-  const Outlines& o = outlines_;
+void SaturatedRegions::find_faces(const Pair& pair, std::span<Crossing> crossings) {
+  const OutlineSurfaces& o = outlines_;
   const Vec2 origin = o.point(o.bodies[pair.edges].first);
   std::ranges::sort(crossings, {}, [](const Crossing& c) { return std::pair(c.face, c.edge); });
   for (size_t c = crossings.size(); c-- > 0;) at_[crossings[c].face] = static_cast<int>(c);

@@ -9,11 +9,11 @@
 
 #include "geometry/spatial/boxes.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
-class OutlinePlateaus {
+class SaturatedRegions {
  public:
   /// An edge of one outline inside the saturated region of a body.
   struct Edge {
@@ -30,7 +30,7 @@ class OutlinePlateaus {
     double swept;                  ///< contribution to the area inside both, m^2
   };
 
-  explicit OutlinePlateaus(const Outlines& outlines) : outlines_(outlines) {}
+  explicit SaturatedRegions(const OutlineSurfaces& outlines) : outlines_(outlines) {}
 
   /// Sets the pairs of bodies after a search; each body of a pair provides the edges in turn. A
   /// body that may touch itself is a pair with itself. Its outline encloses its own offset curve
@@ -80,7 +80,7 @@ class OutlinePlateaus {
   void find_edges(const Pair& pair, std::span<const Crossing> crossings);
   void find_faces(const Pair& pair, std::span<Crossing> crossings);
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   std::vector<Pair> pairs_;  ///< pairs, ascending
   std::vector<Base> bases_;
   bool quiet_ = true;  ///< true if all bases are settled and none of them is inside

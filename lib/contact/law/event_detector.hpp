@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 namespace apothem {
 
@@ -54,7 +54,7 @@ struct PairChange {
   int now, before;  ///< index in the lists of this step and of the step before, or -1
 };
 
-class OnsetWatch {
+class EventDetector {
  public:
   /// The pairs of this step become those of the step before. Returns the empty list of this step,
   /// to be filled in ascending order.

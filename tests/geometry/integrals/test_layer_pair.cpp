@@ -52,7 +52,7 @@ bool same(const PairIntegral& p, const PairIntegral& q) {
          p.inside_a == q.inside_a && p.inside_b == q.inside_b;
 }
 
-bool same(const BoundaryRun& r, const BoundaryRun& s) {
+bool same(const BoundarySegment& r, const BoundarySegment& s) {
   return r.of_a == s.of_a && r.edge == s.edge && r.patch == s.patch && r.from == s.from &&
          r.to == s.to && r.start == s.start && r.end == s.end && r.force == s.force &&
          r.moment_a == s.moment_a && r.moment_b == s.moment_b && r.weight == s.weight &&
@@ -89,7 +89,7 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
       ++by_pair;
       split += alone.patches.size() > 1;
       // Runs that go on from one cell to the next.
-      for (const CollarPair::Run& run : memory.edge.pair.runs()) {
+      for (const LayerPair::Run& run : memory.edge.pair.runs()) {
         across += run.edge0 >= 0 && run.edge1 >= 0 && run.edge0 != run.edge1;
       }
     }
@@ -106,7 +106,7 @@ TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
   const Polygon cross = samples::cross_of_squares();
   const Potential potential =
       translated(make_potential(cross, PotentialChoice{}), area_moments(cross).centroid);
-  CollarPair pair;
+  LayerPair pair;
   int deep = 0;
   for (int i = 0; i < test::scaled(100); ++i) {
     Touching t(potential, random, .01);
@@ -114,7 +114,7 @@ TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
     PlacedPotential b = t.placed.view(1);
     CHECK_FALSE(pair.find(a, b, t.offset, {}));
     if (!pair.find(a, b, t.offset, t.near)) continue;
-    CollarCells cells = *b.cells;
+    BoundaryLayer cells = *b.cells;
     b.cells = &cells;
     for (double& depth : cells.depth) depth = 1e-6;
     deep += !pair.find(a, b, t.offset, t.near);

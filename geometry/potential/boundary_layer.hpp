@@ -24,7 +24,7 @@ namespace apothem {
 inline constexpr int kReadBehind = 4;
 
 /// The cells of the edges of a polygon with n vertices. Both arrays have kReadBehind more entries.
-struct CollarCells {
+struct BoundaryLayer {
   /// For edge e: the depth of its cell, which is valid where phi is smaller; 0 if the cell must not
   /// be used.
   std::vector<double> depth;
@@ -35,9 +35,9 @@ struct CollarCells {
 };
 
 /// The boundary layer of a polygon with a roof.
-CollarCells collar_cells(const Polygon& polygon, const Roof& roof);
+BoundaryLayer boundary_layer(const Polygon& polygon, const Roof& roof);
 
 /// The boundary layer of a polygon with a distance field of the given slope, 1/m.
-CollarCells collar_cells(const Polygon& polygon, double slope);
+BoundaryLayer boundary_layer(const Polygon& polygon, double slope);
 
 }  // namespace apothem

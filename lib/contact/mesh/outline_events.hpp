@@ -7,21 +7,21 @@
 
 #include "lib/archive/archive.hpp"
 #include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/onset_rule.hpp"
-#include "lib/contact/law/onset_watch.hpp"
+#include "lib/contact/law/event_impulse.hpp"
+#include "lib/contact/law/event_detector.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/mesh/outline_path.hpp"
-#include "lib/contact/mesh/outline_plateaus.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/execution/worker_lists.hpp"
 
 namespace apothem {
 
-class OutlineOnset {
+class OutlineEvents {
  public:
   /// Both arguments must outlive this object.
-  OutlineOnset(const Outlines& outlines, const OutlineSlopes& slopes, int threads)
+  OutlineEvents(const OutlineSurfaces& outlines, const OutlineSlopes& slopes, int threads)
       : outlines_(outlines),
         threads_(threads),
         workers_(static_cast<size_t>(threads_.count()), {{outlines, slopes}, {}, {}}) {}
@@ -33,7 +33,7 @@ class OutlineOnset {
   /// an impulse. With dt = 0, at the start, there is none, and pairs that touch then are new in the
   /// first step. Pairs that reach into saturated regions get no correction.
   bool find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
-            const OutlinePlateaus& plateaus, const Kinematics& now, const Dynamics& dynamics,
+            const SaturatedRegions& plateaus, const Kinematics& now, const Dynamics& dynamics,
             double dt);
   /// Adds J / dt of the last `find`, multiplied by `scale`.
   void add(double scale, const ForceViews& forces) const;
@@ -51,11 +51,11 @@ class OutlineOnset {
     std::vector<OutlinePath::Impulse> on_nodes, on_rigid;
   };
 
-  void find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus, bool at_first);
+  void find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& plateaus, bool at_first);
 
-  const Outlines& outlines_;
+  const OutlineSurfaces& outlines_;
   Threads threads_;
-  OnsetWatch watch_;
+  EventDetector watch_;
   WorkerLists<TouchingPair> runs_;
   std::vector<Changed> changed_;
   std::vector<Worker> workers_;

@@ -16,7 +16,7 @@
 namespace apothem {
 
 /// Finds the segments of a pair of polygons by their boundary layers. Nothing is allocated.
-class CollarPair {
+class LayerPair {
  public:
   /// An edge in the frame of the other polygon.
   using Edge = edge_detail::EdgeFrame<double>;

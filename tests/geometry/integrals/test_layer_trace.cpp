@@ -33,7 +33,7 @@ Total total(const PlacedEdge& edge, double s0, double s1, const SegmentMoments<d
 // lengths may count or not.
 double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2& offset,
                   EdgeWorkspace& workspace, int& shallow, bool with_lengths) {
-  CollarTrace& collar = workspace.collar;
+  LayerTrace& collar = workspace.collar;
   collar.find(x, y, offset.x(), offset.y(), kAll, kAll);
   if (y.roof) workspace.nodes.place(y);
   double worst = 0;
@@ -46,18 +46,18 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
       to.sum += part.sum, to.first += part.first, to.length += part.length;
       to.largest = std::max(to.largest, part.largest);
     };
-    edge_detail::walk_deep(
+    edge_detail::walk_whole_potential(
         y, edge, workspace,
         [&](double s0, int, double s1, int, const SegmentMoments<double>& moments) {
           add(all, s0, s1, moments);
         });
     bool deep = false;
     if (listed < collar.edges().size() && collar.edges()[listed].index == e) {
-      const CollarTrace::Edge& found = collar.edges()[listed++];
+      const LayerTrace::Edge& found = collar.edges()[listed++];
       deep = found.deep;
       if (!deep) shallow += found.runs_end > r;
       for (; r < found.runs_end; ++r) {
-        const CollarTrace::Run& run = collar.runs()[r];
+        const LayerTrace::Run& run = collar.runs()[r];
         add(here, run.s0, run.s1, run.moments);
       }
     }
@@ -119,7 +119,7 @@ TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
 TEST_CASE("cells of a cross", "[collar]") {
   const Polygon cross = samples::cross_of_squares();
   for (const Field field : {Field::roof, Field::distance}) {
-    const CollarCells cells = *make_potential(cross, {.field = field}).cells;
+    const BoundaryLayer cells = *make_potential(cross, {.field = field}).cells;
     int reflex = 0;
     for (int i = 0; i < cross.size(); ++i) {
       reflex += cells.reflex(i);
@@ -164,7 +164,7 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
       const double turn_x = random.uniform(0, 6), turn_y = random.uniform(0, 6);
       const double direction = random.uniform(0, 6);
       const Vec2 between = random.uniform(2, 2.6) * Vec2(std::cos(direction), std::sin(direction));
-      std::vector<CollarTrace::Run> first;
+      std::vector<LayerTrace::Run> first;
       for (int shift = 0; shift < 12; ++shift) {
         std::vector<Vec2> turned = ring;
         std::rotate(turned.begin(), turned.begin() + shift, turned.end());
@@ -175,12 +175,12 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
         PlacedShapes placed;
         placed.place(placed.add(other), 0, 0, turn_x);
         placed.place(placed.add(potential), 0, 0, turn_y);
-        CollarTrace collar;
+        LayerTrace collar;
         collar.find(placed.view(0), placed.view(1), between.x(), between.y(), kAll, kAll);
         if (shift == 0) first = collar.runs();
         REQUIRE(collar.runs().size() == first.size());
         for (size_t r = 0; r < first.size(); ++r) {
-          const CollarTrace::Run &p = first[r], &q = collar.runs()[r];
+          const LayerTrace::Run &p = first[r], &q = collar.runs()[r];
           REQUIRE((p.s0 == q.s0 && p.s1 == q.s1 && p.moments.sum == q.moments.sum &&
                    p.moments.first == q.moments.first && p.moments.largest == q.moments.largest));
         }

@@ -18,7 +18,7 @@ namespace apothem {
 
 /// Finds the segments of a polygon in another one by the boundary layer of the latter. Nothing is
 /// allocated after the first calls with polygons of a given size.
-class CollarTrace {
+class LayerTrace {
  public:
   /// A maximal part of an edge inside the polygon, from s0 to s1, with the integrals of phi along
   /// it. edge0 and edge1 are the edges that it crosses there, or -1 at an end of the edge itself.

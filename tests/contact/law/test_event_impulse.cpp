@@ -1,4 +1,4 @@
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,11 +8,11 @@ using namespace apothem;
 namespace {
 
 template <class Force>
-OnsetForces sampled(const std::vector<double>& events, int panels, const Force& force) {
-  std::vector<OnsetSample> samples;
-  const int inside = find_onset_samples(events, panels, samples);
-  OnsetForces f;
-  for (const OnsetSample& s : samples) f.add(s, force(s.theta));
+EventForces sampled(const std::vector<double>& events, int panels, const Force& force) {
+  std::vector<EventSample> samples;
+  const int inside = find_event_samples(events, panels, samples);
+  EventForces f;
+  for (const EventSample& s : samples) f.add(s, force(s.theta));
   f.first = force(samples.front().theta);
   f.last = force(samples[static_cast<size_t>(inside) - 1].theta);
   return f;
@@ -30,7 +30,7 @@ TEST_CASE("samples of a step integrate and differentiate polynomials between kin
         const double u = t - kink;
         return t < kink ? 2 + u * u * u * u - 3 * u : 2 + 5 * u - u * u * u * u;
       };
-      const OnsetForces f = sampled({kink}, panels, force);
+      const EventForces f = sampled({kink}, panels, force);
       const double a = kink, b = 1 - kink;
       const double before = 2 * a + std::pow(a, 5) / 5 + 1.5 * a * a;
       const double behind = 2 * b + 2.5 * b * b - std::pow(b, 5) / 5;
@@ -44,9 +44,9 @@ TEST_CASE("samples of a step integrate and differentiate polynomials between kin
 }
 
 TEST_CASE("a smooth step misses no impulse", "[onset]") {
-  const OnsetForces f = sampled({}, 1, [](double t) { return 1 + 2 * t - 3 * t * t; });
+  const EventForces f = sampled({}, 1, [](double t) { return 1 + 2 * t - 3 * t * t; });
   CHECK(f.missing() == Approx(0).margin(1e-14));
-  const OnsetForces g = sampled({.4, .4, .7}, 1, [](double t) { return 1 + 2 * t; });
+  const EventForces g = sampled({.4, .4, .7}, 1, [](double t) { return 1 + 2 * t; });
   CHECK(g.missing() == Approx(0).margin(1e-14));
 }
 
@@ -60,9 +60,9 @@ TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[
     double v = speed, x = share * h * v;
     const auto spring = [&](double place) { return place > 0 ? -w2 * place : 0; };
     const auto step = [&](double from, double velocity, double event) {
-      const OnsetForces f =
+      const EventForces f =
           sampled({event}, 1, [&](double t) { return spring(from + t * h * velocity); });
-      OnsetRest rest(h);
+      EventResidual rest(h);
       rest.add(f, {f.missing()}, {0, 0}, 1, velocity);
       return h * (f.last / 2 + f.missing() + rest.share() * f.mean);
     };

@@ -1,4 +1,4 @@
-#include "lib/contact/mesh/outline_onset.hpp"
+#include "lib/contact/mesh/outline_events.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 namespace apothem {
 namespace {
 
-constexpr double kSuddenLength =
-    .1;  // change of the length inside that counts as sudden, relative to the smaller r
+// Change of the length inside that counts as sudden, relative to the smaller r.
+constexpr double kSuddenLength = .1;
 constexpr double kRoundOff = 1e-9;
 constexpr double kPathTime = 5000;  // time for a pair, ns
 constexpr double kUnitTime = 1000;  // ns
@@ -40,9 +40,9 @@ void join_neighbours(std::vector<TouchingPair>& list) {
 // Lists the pairs that touch: first one entry for each sequence of contacts of a pair within a
 // unit, then one for each pair. Units do not depend on the number of threads, nor do sums over the
 // contacts of a unit.
-void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlateaus& plateaus,
+void OutlineEvents::find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& plateaus,
                                  bool at_first) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const auto add_unit = [&](const EdgeFaceUnit& unit, std::vector<TouchingPair>& runs) {
     const size_t before = runs.size();
     blocks.each_contact(unit, [&](size_t i, size_t lane) {
@@ -69,20 +69,20 @@ void OutlineOnset::find_touching(const EdgeFaceBlocks& blocks, const OutlinePlat
     const TouchingPair pair{a, b, 0, 0, 0, 0, 0, true};
     if (list.empty() || !list.back().same_pair(pair) || !list.back().deep) list.push_back(pair);
   };
-  for (const OutlinePlateaus::Edge& on : plateaus.edges()) add_deep(on.edge, on.in);
-  for (const OutlinePlateaus::Face& on : plateaus.faces()) add_deep(on.face, on.in);
+  for (const SaturatedEdge& on : plateaus.edges()) add_deep(on.edge, on.in);
+  for (const SaturatedFace& on : plateaus.faces()) add_deep(on.face, on.in);
   std::ranges::sort(list, std::less<>());
   join_neighbours(list);
 }
 
-bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
-                        const OutlinePlateaus& plateaus, const Kinematics& now,
+bool OutlineEvents::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
+                        const SaturatedRegions& plateaus, const Kinematics& now,
                         const Dynamics& dynamics, double dt) {
   find_touching(blocks, plateaus, !(dt > 0));
   changed_.clear();
   for (Worker& worker : workers_) worker.on_nodes.clear(), worker.on_rigid.clear();
   if (!(dt > 0)) return false;
-  const std::vector<Outlines::Body>& bodies = outlines_.bodies;
+  const std::vector<OutlineSurfaces::Body>& bodies = outlines_.bodies;
   watch_.compare(
       [&](BodyIndex a, BodyIndex b) {
         return kSuddenLength * std::min(bodies[a].reference, bodies[b].reference);
@@ -102,7 +102,7 @@ bool OutlineOnset::find(std::span<const EdgeFace> candidates, const EdgeFaceBloc
   return std::ranges::any_of(workers_, [](const Worker& w) { return !w.on_nodes.empty(); });
 }
 
-void OutlineOnset::add(double scale, const ForceViews& forces) const {
+void OutlineEvents::add(double scale, const ForceViews& forces) const {
   // Impulses are added in the order of the pairs, as if one thread had worked on all of them.
   for (const Worker& worker : workers_) {
     for (const auto& [i, mean] : worker.on_nodes) forces.nodes[i] += scale * mean;

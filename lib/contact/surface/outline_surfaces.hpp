@@ -25,7 +25,7 @@
 
 namespace apothem {
 
-class Outlines {
+class OutlineSurfaces {
  public:
   struct Body {
     int first, end;         ///< range of the vertices of the body
@@ -60,7 +60,7 @@ class Outlines {
   std::vector<Box> body_boxes;  ///< boxes of the edges and faces of each body, grown likewise
 
   /// Corners of edges and faces may move by half of `skin` (m) between two searches.
-  explicit Outlines(double skin = 0) : skin_(skin) {}
+  explicit OutlineSurfaces(double skin = 0) : skin_(skin) {}
 
   /// Adds the outline of a mesh whose first node has the number `first_node`. r is the smallest
   /// inradius of the elements at its boundary, or `reference` (m). The depth of the collar is r, or

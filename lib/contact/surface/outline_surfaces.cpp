@@ -1,4 +1,4 @@
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kMoveTime = 3, kEdgeTime = 6;  // time for a vertex, ns
 constexpr int kTogether = 16;  // bodies placed together, so that their data stay in the cache
-constexpr double kClear =
-    1e-9;  // a point nearer to a line than this, relative to the depth, is not clear
+// A point nearer to a line than this, relative to the depth, is not clear.
+constexpr double kClear = 1e-9;
 
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
@@ -47,7 +47,7 @@ APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
 
 // Computes tangents, bisectors and regular depths of outlines. Each member function treats one edge
 // or vertex, or a pack of them that are consecutive in all arrays.
-template <class Of = Outlines>
+template <class Of = OutlineSurfaces>
 struct EdgeGeometry {
   Of& o;
 
@@ -73,8 +73,8 @@ struct EdgeGeometry {
     const Number tx = loaded<Number>(o.tx, i), ty = loaded<Number>(o.ty, i);
     const Number alpha = loaded<Number>(o.mx, i) * tx + loaded<Number>(o.my, i) * ty;
     const Number beta = loaded<Number>(o.mx, next) * tx + loaded<Number>(o.my, next) * ty;
-    const Number event = collar_event(loaded<Number>(o.length, i), alpha, beta);
-    store(plain_depth(loaded<Number>(o.depth, i), event), o.plain, i);
+    const Number event = edge_event_height(loaded<Number>(o.length, i), alpha, beta);
+    store(regular_depth(loaded<Number>(o.depth, i), event), o.plain, i);
   }
   /// Raises `farthest` to the distance of a vertex of the offset curve from a given position.
   template <class Number>
@@ -130,7 +130,7 @@ double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
 
 }  // namespace
 
-void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
+void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                         std::optional<double> reference) {
   const int first = size();
   std::vector<Vec2> places;
@@ -155,14 +155,14 @@ void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex fi
   close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
 }
 
-void Outlines::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
+void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
   const int first = size();
   add_loop(vertices, {});
   close_body({first, size(), rigid, reference,
               std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2)});
 }
 
-void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
+void OutlineSurfaces::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
   const int first = size();
   const int n = static_cast<int>(places.size());
   for (int i = 0; i < n; ++i) {
@@ -177,7 +177,7 @@ void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeInd
   loops.push_back({first, size(), static_cast<BodyIndex>(bodies.size())});
 }
 
-void Outlines::close_body(const Body& added) {
+void OutlineSurfaces::close_body(const Body& added) {
   const int first_loop = bodies.empty() ? 0 : bodies.back().end_loop;
   bodies.push_back(added);
   bodies.back().first_loop = first_loop;
@@ -190,11 +190,11 @@ void Outlines::close_body(const Body& added) {
   forget();
 }
 
-void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+void OutlineSurfaces::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
   std::atomic<bool> strayed = kept_.x.empty();
   const int count = static_cast<int>(bodies.size());
-  const double vertices =
-      static_cast<double>(size()) / std::max(count, 1);  // mean number of vertices of a body
+  // Mean number of vertices of a body.
+  const double vertices = static_cast<double>(size()) / std::max(count, 1);
   const auto place_some = [&](BodyIndex first, BodyIndex end) {
     for (BodyIndex b = first; b < end; ++b) {
       if (!move(bodies[b], now, polygons)) strayed = true;
@@ -211,14 +211,14 @@ void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const 
 }
 
 // The active bodies with numbers from `first` to `end` - 1.
-std::span<const BodyIndex> Outlines::active(BodyIndex first, BodyIndex end) const {
+std::span<const BodyIndex> OutlineSurfaces::active(BodyIndex first, BodyIndex end) const {
   const auto from = std::ranges::lower_bound(active_, first);
   return {from, std::lower_bound(from, active_.end(), end)};
 }
 
 // Moves the vertices of a body. Returns false if a vertex is not near its position at the last
 // search, or not at a finite position.
-bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
+bool OutlineSurfaces::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
   const bool compare = !kept_.x.empty();
   const double limit = growth();
   bool near = true;
@@ -245,7 +245,7 @@ bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons
   return near;
 }
 
-void Outlines::require_finite() const {
+void OutlineSurfaces::require_finite() const {
   for (const Body& b : bodies) {
     double all = 0;  // NaN if a coordinate is not finite
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
@@ -254,7 +254,7 @@ void Outlines::require_finite() const {
 }
 
 // The edges of a body are consecutive, except for those that close a line.
-void Outlines::find_edges(std::span<const BodyIndex> of) {
+void OutlineSurfaces::find_edges(std::span<const BodyIndex> of) {
   const EdgeGeometry<> g{*this};
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
@@ -285,7 +285,7 @@ void Outlines::find_edges(std::span<const BodyIndex> of) {
   });
 }
 
-void Outlines::find_boxes(double growth) {
+void OutlineSurfaces::find_boxes(double growth) {
   const int n = size();
   edge_boxes.resize(n), face_boxes.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -301,8 +301,8 @@ void Outlines::find_boxes(double growth) {
 
 // Bodies do not overlap as long as their vertices are in separate boxes. For bodies that are not
 // active this is known without their faces.
-bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
-  const EdgeGeometry<const Outlines> g{*this};
+bool OutlineSurfaces::have_tops_strayed(std::span<const BodyIndex> among) const {
+  const EdgeGeometry<const OutlineSurfaces> g{*this};
   const double limit = growth();
   const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
@@ -321,7 +321,7 @@ bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
   return with_widest(look) != 0;
 }
 
-void Outlines::activate(std::span<const BoxPair> pairs) {
+void OutlineSurfaces::activate(std::span<const BoxPair> pairs) {
   is_active_.assign(bodies.size(), 0);
   for (const auto& [a, b] : pairs) is_active_[a] = is_active_[b] = 1;
   active_.clear();
@@ -330,7 +330,7 @@ void Outlines::activate(std::span<const BoxPair> pairs) {
   }
 }
 
-void Outlines::prepare_search() {
+void OutlineSurfaces::prepare_search() {
   const int count = static_cast<int>(bodies.size());
   std::vector<BodyIndex> others;
   for (BodyIndex b = 0; b < count; ++b) {
@@ -349,15 +349,15 @@ void Outlines::prepare_search() {
   }
 }
 
-void Outlines::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
+void OutlineSurfaces::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
   x = px, y = py;
   find_edges(active_);
   prepare_search();
 }
 
-std::optional<Outlines::Notch> Outlines::closed_notch() const {
-  constexpr double kSharp =
-      3;  // length of the bisector over the height, which is 3 at an angle of 39 degrees
+std::optional<OutlineSurfaces::Notch> OutlineSurfaces::closed_notch() const {
+  // Length of the bisector over the height, which is 3 at an angle of 39 degrees.
+  constexpr double kSharp = 3;
   std::optional<Notch> found;
   double longest = kSharp * kSharp;
   each_active_vertex([&](int i) {
@@ -372,7 +372,7 @@ std::optional<Outlines::Notch> Outlines::closed_notch() const {
   return found;
 }
 
-int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+int OutlineSurfaces::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
   int sum = 0;
   for (int i = bodies[b].first; i < bodies[b].end; ++i) {
     const Vec2 from = (of_top ? top(i) : point(i)) - p;

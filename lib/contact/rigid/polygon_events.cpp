@@ -1,4 +1,4 @@
-#include "lib/contact/rigid/onset.hpp"
+#include "lib/contact/rigid/polygon_events.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,10 @@
 namespace apothem {
 namespace {
 
-constexpr double kSudden =
-    .03;  // change of the length inside that counts as sudden, relative to the inradius
-constexpr double kAtFirst =
-    1e-9;  // largest potential that counts as round-off at the start of a simulation
+// Change of the length inside that counts as sudden, relative to the inradius.
+constexpr double kSudden = .03;
+// Largest potential that counts as round-off at the start of a simulation.
+constexpr double kAtFirst = 1e-9;
 constexpr double kPairTime = 2000;   // ns
 constexpr int kMostLooks = 1 << 14;  // largest number of pairs of a vertex and an edge to be tested
 constexpr size_t kMostEvents = 8;
@@ -30,7 +30,7 @@ void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
 
 }  // namespace
 
-struct Onset::Path {
+struct PolygonEvents::Path {
   RigidIndex a, b;
   std::array<double, 3> rate_a, rate_b;  // change of the pose in the whole step
   double angle_a, angle_b;               // angles at the end of the step
@@ -44,7 +44,7 @@ struct Onset::Path {
   }
 };
 
-bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
+bool PolygonEvents::find(const PairIntegrals& pairs, const PatchTangential* tangential,
                  const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
   tangential_ = tangential;
@@ -78,7 +78,7 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
 
 // Finds the work of friction in the impulses. The velocities are those after all other impulses and
 // after half of the change by the friction.
-void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
+void PolygonEvents::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
   loss_ = 0;
   if (!tangential_) return;
   all_.resize(now.pose_rate.size());
@@ -93,8 +93,8 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
     double power = 0;
     each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
       const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
-      const double pushed =
-          dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // mean force during dt / 2
+      // Mean force during dt / 2.
+      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];
       const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
       power += sign * i.friction[k] * speed;
     });
@@ -107,10 +107,10 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
 
 // Finds the missing impulse of friction, which is proportional to the normal force. It is left out
 // for pairs with several patches, each of which has friction of its own.
-Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
+PolygonEvents::Load PolygonEvents::find_friction(const PairChange& pair, const Worker& worker,
                                  size_t inside) const {
-  constexpr double kVanishes =
-      1e-3;  // a force below this fraction of the mean force is about to vanish
+  // A force below this fraction of the mean force is about to vanish.
+  constexpr double kVanishes = 1e-3;
   Load friction{};
   if (!table_.between(pair.a, pair.b).rough()) return friction;
   const std::optional<PairForce> none = PairForce{};
@@ -139,7 +139,7 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
 }
 
 // Finds the loads at all samples. Those of convex polygons are evaluated several at a time.
-void Onset::find_loads(const Path& path, Worker& worker) const {
+void PolygonEvents::find_loads(const Path& path, Worker& worker) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
   worker.loads.clear();
@@ -151,7 +151,7 @@ void Onset::find_loads(const Path& path, Worker& worker) const {
   const auto evaluate = [&] {
     for (const PairIntegral& pair : together.evaluate()) add(pair);
   };
-  for (const OnsetSample& sample : worker.samples) {
+  for (const EventSample& sample : worker.samples) {
     const auto at = static_cast<size_t>(together.count());
     const auto [turn_a, turn_b] =
         sine_cosine({path.turn_a(sample.theta), path.turn_b(sample.theta)});
@@ -173,7 +173,7 @@ void Onset::find_loads(const Path& path, Worker& worker) const {
 // Heights are linear in theta except for the rotation within a step. Returns false if there are
 // many kinks, or too many candidates: each kink then concerns a small part of the force, and
 // equidistant samples are sufficient.
-bool Onset::find_events(const Path& path, Worker& worker) const {
+bool PolygonEvents::find_events(const Path& path, Worker& worker) const {
   worker.events.clear();
   const PlacedShapes& shapes = surfaces_.shapes();
   if (shapes.view(path.a).size * shapes.view(path.b).size > kMostLooks) return false;
@@ -197,7 +197,7 @@ bool Onset::find_events(const Path& path, Worker& worker) const {
 
 // Finds where vertices of x cross edges of y. Coordinates are given at the start (0) and at the end
 // (1) of the step; `offset` leads from y to x.
-void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+void PolygonEvents::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                            const PlacedPotential& y0, const PlacedPotential& y1,
                            const Vec2& offset0, const Vec2& offset1, std::vector<double>& events) {
   constexpr double kRound = 1e-9;
@@ -230,7 +230,7 @@ void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
   }
 }
 
-Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
+PolygonEvents::Impulse PolygonEvents::find_pair(const PairChange& pair, const Kinematics& now,
                                 const Dynamics& dynamics, double dt, Worker& worker) const {
   const RigidIndex a = pair.a, b = pair.b;
   const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
@@ -243,9 +243,9 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   const int most = kMostPanels / (static_cast<int>(worker.events.size()) + 1);
   const int panels = std::clamp(few ? pair.panels : kFewPanels, 1, std::max(most, 1));
   const auto inside =
-      static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
+      static_cast<size_t>(find_event_samples(worker.events, panels, worker.samples));
   find_loads(path, worker);
-  std::array<OnsetForces, 4> forces;
+  std::array<EventForces, 4> forces;
   for (size_t i = 0; i < worker.samples.size(); ++i) {
     const Load& load = worker.loads[i];
     for (size_t k = 0; k < 4; ++k) {
@@ -258,11 +258,11 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   Load missing;
   for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
   const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
-    OnsetRest rest(dt);
+    EventResidual rest(dt);
     for (const size_t axis : {0, 1, 2}) {
       const size_t k = axis < 2 ? axis : moment;
       const size_t c = 3 * static_cast<size_t>(body) + axis;
-      OnsetForces f = forces[k];
+      EventForces f = forces[k];
       const double own = axis < 2 ? sign : 1;
       for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
       rest.add(f, {own * missing[k], own * friction[k]}, dynamics.others(c, f),
@@ -270,7 +270,7 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
     }
     return rest;
   };
-  OnsetRest rest = rest_of(a, 2, 1);
+  EventResidual rest = rest_of(a, 2, 1);
   rest.add(rest_of(b, 3, -1));
   const double share = rest.share();
   for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean + friction[k];
@@ -285,7 +285,7 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   return {a, b, missing, friction};
 }
 
-void Onset::add(double scale, std::span<double> forces) const {
+void PolygonEvents::add(double scale, std::span<double> forces) const {
   for (const Impulse& i : impulses_) {
     double* fa = &forces[3 * static_cast<size_t>(i.a)];
     double* fb = &forces[3 * static_cast<size_t>(i.b)];

@@ -1,4 +1,4 @@
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,10 @@ constexpr double kLeastTurn = 1e-4;
 constexpr double kShortest = 1e-6;
 
 // The layer whose cells reach up to the given heights (phi) over their edges.
-CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights) {
+BoundaryLayer cells_of(const Polygon& polygon, const std::vector<double>& heights) {
   const int n = polygon.size();
   const double shortest = kShortest * bounding_box(polygon).extent();
-  CollarCells cells;
+  BoundaryLayer cells;
   cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
   cells.side.assign(cells.depth.size() + 1, 1);
   // Cells end at phi = 1, because phi is limited to 1.
@@ -51,7 +51,7 @@ double distance(const Polygon& polygon, int e, int k) {
 
 }  // namespace
 
-CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
+BoundaryLayer boundary_layer(const Polygon& polygon, const Roof& roof) {
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n), HUGE_VAL);
   for (int e = 0; e < n; ++e) {
@@ -65,7 +65,7 @@ CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
 // A point in front of an edge at the height h is nearer than h to another feature only if that is
 // nearer than 2 h to the edge. For neighbours the cells themselves decide. Heights end at 1/slope,
 // where phi = 1, and at a multiple of the edge's length, so that few edges have to be looked at.
-CollarCells collar_cells(const Polygon& polygon, double slope) {
+BoundaryLayer boundary_layer(const Polygon& polygon, double slope) {
   constexpr double kHighest = 8;  // largest height of a cell over the length of its edge
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n));  // m

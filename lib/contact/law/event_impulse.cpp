@@ -1,4 +1,4 @@
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@ constexpr double kShortest = 1e-3;
 // Where other forces reverse the motion within the step, the power of the mean force says little.
 // This fraction of the other forces counts against it.
 constexpr double kOthers = .25;
-constexpr double kLargestRest =
-    .5;  // limit of the correction, relative to the term of J with the slopes
+// Limit of the correction, relative to the term of J with the slopes.
+constexpr double kLargestRest = .5;
 
 // Returns x^2 y / (x^2 + y^2), which is close to x^2/y but stays finite where y is small.
 double bounded_ratio(double x, double y) {
@@ -26,8 +26,8 @@ double bounded_ratio(double x, double y) {
 
 }  // namespace
 
-int find_onset_samples(std::span<const double> events, int panels,
-                       std::vector<OnsetSample>& samples) {
+int find_event_samples(std::span<const double> events, int panels,
+                       std::vector<EventSample>& samples) {
   samples.assign(1, {0});
   double from = 0, last_part = 0;
   const auto integrate_until = [&](double until) {
@@ -81,7 +81,7 @@ double Dynamics::lost_in_bend(double dt) const {
   return dt * dt / 12 * sum;
 }
 
-void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
+void EventResidual::add(const EventForces& f, const ImpulseParts& parts, const OtherForces& others,
                     double inverse_mass, double velocity) {
   const double first = f.first + others.first;
   const double last = f.last + others.last;
@@ -114,13 +114,13 @@ void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherFo
            (std::abs(f.mean) + kOthers * std::max(std::abs(others.first), std::abs(others.last)));
 }
 
-void OnsetRest::End::add(const End& other) {
+void EventResidual::End::add(const End& other) {
   along += other.along;
   aside += other.aside;
   pull += other.pull;
 }
 
-void OnsetRest::add(const OnsetRest& other) {
+void EventResidual::add(const EventResidual& other) {
   energy_ += other.energy_;
   first_.add(other.first_);
   last_.add(other.last_);
@@ -130,11 +130,11 @@ void OnsetRest::add(const OnsetRest& other) {
   gain_ += other.gain_;
 }
 
-double OnsetRest::End::energy() const {
+double EventResidual::End::energy() const {
   return -bounded_ratio(aside, along) / 12 + bounded_ratio(pull, along) / 48;
 }
 
-double OnsetRest::share() const {
+double EventResidual::share() const {
   const double energy = this->energy();
   // Where the motion is about to reverse, no impulse along the force changes the energy.
   const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);

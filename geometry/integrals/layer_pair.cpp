@@ -1,4 +1,4 @@
-#include "geometry/integrals/collar_pair.hpp"
+#include "geometry/integrals/layer_pair.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@ namespace apothem {
 
 using namespace edge_detail;
 
-bool CollarPair::find(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
+bool LayerPair::find(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                       const NearEdges& near) {
   count_ = 0;
   if (!list(a, b, near)) return false;
@@ -25,9 +25,9 @@ bool CollarPair::find(const PlacedPotential& a, const PlacedPotential& b, const 
 
 // Lists the pairs of near edges. Returns false if they are too many or unknown, if an edge may be
 // so long that PlacedEdge shortens it, or if a cell must not be used.
-bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const NearEdges& near) {
-  constexpr double kShort =
-      3.9;  // an edge is at most 2 radii long, and is shortened beyond 8 radii of the other polygon
+bool LayerPair::list(const PlacedPotential& a, const PlacedPotential& b, const NearEdges& near) {
+  // An edge is at most 2 radii long, and is shortened beyond 8 radii of the other polygon.
+  constexpr double kShort = 3.9;
   if (!a.cells || !b.cells || (a.distance == nullptr) != (b.distance == nullptr)) return false;
   if (!(a.radius < kShort * b.radius && b.radius < kShort * a.radius)) return false;
   if (near.margin == 0 || a.size > 64 || b.size > 64) return false;
@@ -56,7 +56,7 @@ bool CollarPair::list(const PlacedPotential& a, const PlacedPotential& b, const 
   return true;
 }
 
-APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const PlacedPotential& b,
+APOTHEM_INLINE void LayerPair::find_parts(const PlacedPotential& a, const PlacedPotential& b,
                                            const Vec2& offset) {
   const bool distance = a.distance != nullptr;
   const Pack zero(0.);
@@ -135,7 +135,7 @@ APOTHEM_INLINE void CollarPair::find_parts(const PlacedPotential& a, const Place
 
 // Joins the parts of each edge to segments. Returns false if an edge continues in a cell that is
 // not listed, or in the sector of a vertex.
-bool CollarPair::join_parts() {
+bool LayerPair::join_parts() {
   for (Bits rest = there_; rest != 0;) {
     const Lane& lane = lane_[std::countr_zero(rest)];
     Bits parts = 0;  // parts of the same edge
@@ -150,7 +150,7 @@ bool CollarPair::join_parts() {
   return true;
 }
 
-bool CollarPair::join_parts_of_edge(Bits parts) {
+bool LayerPair::join_parts_of_edge(Bits parts) {
   if (((border0_ | border1_) & parts) == 0 && std::has_single_bit(parts)) {
     const int i = std::countr_zero(parts);
     add_run(i, i);
@@ -187,7 +187,7 @@ bool CollarPair::join_parts_of_edge(Bits parts) {
   return true;
 }
 
-void CollarPair::add_run(int first, int last) {
+void LayerPair::add_run(int first, int last) {
   runs_[count_++] = {lane_[first].of_a,
                      lane_[first].edge,
                      has(own0_, first) ? lane_[first].cell : -1,

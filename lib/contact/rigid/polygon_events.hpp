@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/onset_rule.hpp"
-#include "lib/contact/law/onset_watch.hpp"
+#include "lib/contact/law/event_impulse.hpp"
+#include "lib/contact/law/event_detector.hpp"
 #include "lib/contact/law/pair_table.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/contact/rigid/patch_tangential.hpp"
@@ -15,10 +15,10 @@
 
 namespace apothem {
 
-class Onset {
+class PolygonEvents {
  public:
   /// `thickness` is in m. All arguments must outlive this object.
-  Onset(const Surfaces& surfaces, const PairTable& table, double thickness, int threads)
+  PolygonEvents(const Surfaces& surfaces, const PairTable& table, double thickness, int threads)
       : surfaces_(surfaces),
         table_(table),
         thickness_(thickness),
@@ -53,7 +53,7 @@ class Onset {
   /// Memory of a thread.
   struct Worker {
     std::vector<double> events;
-    std::vector<OnsetSample> samples;
+    std::vector<EventSample> samples;
     std::vector<Load> loads;  // loads at the samples
     PlacedShapes::Turned start_a, start_b;
     std::array<PlacedShapes::Turned, 2 * ConvexPairs::kAtOnce> turned;
@@ -77,7 +77,7 @@ class Onset {
   const PairTable& table_;
   double thickness_;
   Threads threads_;
-  OnsetWatch watch_;
+  EventDetector watch_;
   const PatchTangential* tangential_ = nullptr;  // argument of the last call of find
   std::vector<PairChange> changed_;
   std::vector<Impulse> impulses_;  // impulses of the changed pairs

@@ -31,7 +31,7 @@ namespace apothem {
 
 /// A sample of the force at the fraction `theta` of the drift, with its weights in the mean and in
 /// the slopes at the start and at the end of the step.
-struct OnsetSample {
+struct EventSample {
   double theta;
   double mean = 0, start_slope = 0, end_slope = 0;
 };
@@ -57,16 +57,16 @@ inline constexpr int kFewPanels = 2, kManyPanels = 4;
 /// order 4 on that side of the nearest kink that has none. The samples of the slopes may lie
 /// slightly beyond the step; the others come first, from theta = 0 to 1. Returns the number of the
 /// latter.
-int find_onset_samples(std::span<const double> events, int panels,
-                       std::vector<OnsetSample>& samples);
+int find_event_samples(std::span<const double> events, int panels,
+                       std::vector<EventSample>& samples);
 
 /// The force of a pair on one coordinate in a step.
-struct OnsetForces {
+struct EventForces {
   double first = 0, last = 0;  ///< force at the start and at the end
   double mean = 0;
   double start_slope = 0, end_slope = 0;
 
-  void add(const OnsetSample& sample, double force) {
+  void add(const EventSample& sample, double force) {
     mean += sample.mean * force;
     start_slope += sample.start_slope * force;
     end_slope += sample.end_slope * force;
@@ -95,7 +95,7 @@ struct Dynamics {
   /// have none.
   std::span<const double> beside_before = {}, beside_after = {};
 
-  [[nodiscard]] OtherForces others(size_t coordinate, const OnsetForces& of_pair) const {
+  [[nodiscard]] OtherForces others(size_t coordinate, const EventForces& of_pair) const {
     const double g = weight.empty() ? 0 : weight[coordinate];
     OtherForces f{before[coordinate] - of_pair.first + g, after[coordinate] - of_pair.last + g};
     if (coordinate < beside_after.size()) {
@@ -110,23 +110,23 @@ struct Dynamics {
 };
 
 /// Contributions to J / h.
-struct OnsetParts {
+struct ImpulseParts {
   double missing;     ///< contribution of the elastic force
   double beside = 0;  ///< contribution of friction and damping, whose work is booked separately
 };
 
 /// The residual R and the impulse that removes it, summed over the coordinates.
-class OnsetRest {
+class EventResidual {
  public:
-  explicit OnsetRest(double dt) : dt_(dt) {}
+  explicit EventResidual(double dt) : dt_(dt) {}
 
   /// Adds a coordinate with the force `f` of the pair on it, its contributions to J / h, the other
   /// forces on it, and the velocity of the drift.
-  void add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
+  void add(const EventForces& f, const ImpulseParts& parts, const OtherForces& others,
            double inverse_mass, double velocity);
   /// Adds the coordinates of another body. Summed in this way, the order of two bodies changes no
   /// bit.
-  void add(const OnsetRest& other);
+  void add(const EventResidual& other);
   /// The residual R, J.
   [[nodiscard]] double energy() const { return energy_ + dt_ * (last_.energy() - first_.energy()); }
   /// The impulse over h that removes the residual, as a multiple of the mean force.

@@ -1,4 +1,4 @@
-#include "geometry/integrals/collar_trace.hpp"
+#include "geometry/integrals/layer_trace.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -38,7 +38,7 @@ void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& re
 
 }  // namespace
 
-void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+void LayerTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
                        std::uint64_t near_x, std::uint64_t near_y, bool use) {
   distance_ = y.distance != nullptr;
   list_edges(x, y, dx, dy, near_x);
@@ -55,7 +55,7 @@ void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, doubl
 
 // Lists the edges that may enter y. If nothing is known, edges whose boxes are apart from that of y
 // are left out.
-void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
+void LayerTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
                              double dy, std::uint64_t near) {
   edges_.clear();
   const auto add = [&](int e) { edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0}); };
@@ -70,7 +70,7 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
 // edge that is deeper than the layer everywhere follows an edge that leaves the layer, or another
 // such edge. Cells that only such edges reach may be unknown. So an edge that follows one beyond
 // the layer is beyond the layer as well if it begins inside y.
-void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx,
+void LayerTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx,
                             double dy) {
   if (edges_.empty()) return;
   const auto begins_inside = [&](const Edge& edge) {
@@ -94,7 +94,7 @@ void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, 
   }
 }
 
-void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
+void LayerTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
                                double dy, std::uint64_t near) {
   windows_.clear();
   const auto add = [&](int c) {
@@ -109,14 +109,14 @@ void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& 
 }
 
 // The last window that begins at the cell or before it, or null.
-CollarTrace::Window* CollarTrace::window_of(int cell) {
+LayerTrace::Window* LayerTrace::window_of(int cell) {
   const auto behind = std::upper_bound(windows_.begin(), windows_.end(), cell,
                                        [](int c, const Window& w) { return c < w.first; });
   return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
 // Lists a cell. Returns false if it was listed before.
-bool CollarTrace::add_cell(int cell) {
+bool LayerTrace::add_cell(int cell) {
   Window* const window = window_of(cell);
   if (window && cell < window->first + kPack) {
     const unsigned bit = 1u << (cell - window->first);
@@ -131,14 +131,14 @@ bool CollarTrace::add_cell(int cell) {
 
 // Lists the cells on both sides of a cell in which an edge has ended. Returns false if both were
 // listed before.
-bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
+bool LayerTrace::add_neighbours(const PlacedPotential& y, int cell) {
   const bool before = add_cell(cell == 0 ? y.size - 1 : cell - 1);
   const bool after = add_cell(cell + 1 == y.size ? 0 : cell + 1);
   return before || after;
 }
 
 // True if the present edge touches edge c of y up to round-off, whose cell must not be used.
-bool CollarTrace::touches(const PlacedPotential& y, int c) const {
+bool LayerTrace::touches(const PlacedPotential& y, int c) const {
   constexpr double kNear = 1e-9;  // round-off of phi
   const auto height = [&](double px, double py) {
     return y.gx[c] * (px - y.x[c]) + y.gy[c] * (py - y.y[c]);
@@ -159,7 +159,7 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
 }
 
 // Finds the pieces of the present edge in the cells of a window.
-APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
+APOTHEM_INLINE LayerTrace::Found LayerTrace::trace_cells(const PlacedPotential& y,
                                                            const Window& window) {
   const auto line = [&](int i) APOTHEM_LAMBDA {
     const int k = window.first + i;
@@ -203,7 +203,7 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   return Found::all;
 }
 
-APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
+APOTHEM_INLINE bool LayerTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
                                              double dx, double dy) {
   // `ended` is the cell in which the edge before has ended, or -1. An edge that does not begin
   // there begins on a border, in a cell that may be unlisted or too shallow.
@@ -247,7 +247,7 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
 }
 
 // Traces all edges. Returns false if more cells were found, so that the trace must be repeated.
-bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
+bool LayerTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
   runs_.clear();
   // Each cell has at most one piece, and so has the sector of each of its two vertices.
   if (const size_t most = size_t{3} * kPack * windows_.size(); pieces_.size() < most)
@@ -262,7 +262,7 @@ bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, doub
 
 // Checks whether a piece stays in the layer and whether the adjacent cells are listed; cells that
 // are not are added.
-CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Piece& piece,
+LayerTrace::Found LayerTrace::check_borders(const PlacedPotential& y, const Piece& piece,
                                               int before, int after) {
   if (piece.end0 == kTop || piece.end1 == kTop) return Found::deep;
   Found found = Found::all;
@@ -281,7 +281,7 @@ CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Pi
 }
 
 // Finds the pieces of the present edge in the sectors of the vertices of all cells.
-CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
+LayerTrace::Found LayerTrace::trace_sectors(const PlacedPotential& y) {
   int last = -1;  // last vertex that was treated
   const bool begins_at_zero = !windows_.empty() && windows_[0].first == 0;
   for (const Window& window : windows_) {
@@ -300,7 +300,7 @@ CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
   return Found::all;
 }
 
-CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int vertex) {
+LayerTrace::Found LayerTrace::trace_sector(const PlacedPotential& y, int vertex) {
   const PlacedEdge& edge = *edge_;
   Piece& piece = pieces_[count_];
   piece = {.s0 = 0,
@@ -349,7 +349,7 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
 }
 
 // Sorts the pieces of an edge and joins them to segments.
-void CollarTrace::close_pieces(const PlacedPotential& y) {
+void LayerTrace::close_pieces(const PlacedPotential& y) {
   const auto behind = [](const Piece& p, const Piece& q) {
     return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
   };
