@@ -11,7 +11,7 @@ namespace apothem::edge_detail {
 
 /// What ends the part of an edge in a cell: the cell's own edge, the end of the edge itself, the
 /// border to the cell before or after, or the depth of the cell.
-enum CellEnd { kOwn, kEdge, kBorderBefore, kBorderAfter, kTop };
+enum CellEnd { kOwn, kEdge, kBorderBefore, kBorderAfter, kDepthLimit };
 
 using CellPack = PackOf<kComparedLanes>;
 
@@ -66,15 +66,15 @@ struct CellParts {
   /// Restricts the parts to where a linear function is inside its bound. The function is `a` at the
   /// start of the edge and `b` at its end.
   APOTHEM_INLINE void cut(const CellPack& a, const CellPack& b, const CellPack::Mask& a_inside,
-                          const CellPack::Mask& b_inside, CellEnd by) {
+                          const CellPack::Mask& b_inside, CellEnd cause) {
     there = there & (a_inside | b_inside);
     const CellPack s = a / (a - b);
     const CellPack::Mask ends = a_inside & (!b_inside) & (s < s1);
     const CellPack::Mask begins = (!a_inside) & b_inside & (s > s0);
     s1 = select(ends, s, s1);
-    end1 = select(ends, CellPack(double(by)), end1);
+    end1 = select(ends, CellPack(double(cause)), end1);
     s0 = select(begins, s, s0);
-    end0 = select(begins, CellPack(double(by)), end0);
+    end0 = select(begins, CellPack(double(cause)), end0);
   }
 };
 
@@ -105,7 +105,7 @@ APOTHEM_INLINE bool find_parts(const CellHeights& from, const CellHeights& to,
   if (!any(parts.there)) return false;
   const CellPack::Mask a_below = a < cells.depth, b_below = b < cells.depth;
   if (any(parts.there & !(a_below & b_below))) {
-    parts.cut(cells.depth - a, cells.depth - b, a_below, b_below, kTop);
+    parts.cut(cells.depth - a, cells.depth - b, a_below, b_below, kDepthLimit);
     parts.there = parts.there & (parts.s0 < parts.s1);
     if (!any(parts.there)) return false;
   }

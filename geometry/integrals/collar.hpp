@@ -63,25 +63,25 @@ APOTHEM_INLINE Real edge_event_height(const Real& length, const Real& alpha, con
 /// The regular depth of a face: up to this height an edge neither reaches the saturated region nor
 /// the part of the face that counts negatively.
 template <class Real>
-APOTHEM_INLINE Real regular_depth(const Real& depth, const Real& event) {
+APOTHEM_INLINE Real regular_depth_of(const Real& depth, const Real& event) {
   return select(event < depth, event, depth) * Real(1 - 1e-9);
 }
 
 template <class Number>
 struct CollarFace {
   Number ax, ay, bx, by;
-  Number tx, ty;           ///< unit tangent of the edge
-  Number length;           ///< length of the edge
-  Number max, may;         ///< direction of the bisector at a
-  Number mbx, mby;         ///< direction of the bisector at b
-  RealPart<Number> depth;  ///< depth of the collar
-  RealPart<Number> plain;  ///< see regular_depth()
+  Number tx, ty;                   ///< unit tangent of the edge
+  Number length;                   ///< length of the edge
+  Number max, may;                 ///< direction of the bisector at a
+  Number mbx, mby;                 ///< direction of the bisector at b
+  RealPart<Number> depth;          ///< depth of the collar
+  RealPart<Number> regular_depth;  ///< see regular_depth_of()
 
   /// The same face with its regular depth.
   [[nodiscard]] APOTHEM_INLINE CollarFace with_regular_depth() const {
     CollarFace face = *this;
-    face.plain =
-        regular_depth(depth, edge_event_height(real_part(length), real_part(alpha()), real_part(beta())));
+    face.regular_depth = regular_depth_of(
+        depth, edge_event_height(real_part(length), real_part(alpha()), real_part(beta())));
     return face;
   }
 
@@ -104,8 +104,8 @@ struct CollarPiece {
 /// Pieces of several edges, and which of them exist.
 template <class Number>
 struct CollarPieces : CollarPiece<Number> {
-  Truth<RealPart<Number>> met;   ///< the edge meets its face
-  Truth<RealPart<Number>> deep;  ///< only general_collar_piece can decide; `met` is false then
+  Truth<RealPart<Number>> met;      ///< the edge meets its face
+  Truth<RealPart<Number>> general;  ///< only general_collar_piece can decide; `met` is false then
 };
 
 /// A place where an edge crosses the offset curve.
@@ -120,7 +120,7 @@ struct CollarCrossing {
 template <class Number>
 struct CollarCrossings {
   int count = 0;
-  std::array<CollarCrossing<Number>, 2> at;
+  std::array<CollarCrossing<Number>, 2> list;
 };
 
 namespace detail {
@@ -196,8 +196,8 @@ struct AlongBisector {
 /// of collar_piece.
 template <class Number>
 inline bool general_collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
-                              const Number& qx, const Number& qy, CollarPiece<Number>& piece,
-                              CollarCrossings<Number>& top) {
+                                 const Number& qx, const Number& qy, CollarPiece<Number>& piece,
+                                 CollarCrossings<Number>& crossings) {
   struct Cut {
     Number u, h;
     bool above, below;
@@ -238,15 +238,18 @@ inline bool general_collar_piece(const CollarFace<Number>& f, const Number& px, 
   const auto part = [&](const Cut& start, const Cut& end, int sign) {
     if (sign == 0 || (start.above && end.above) || (start.below && end.below)) return;
     const Number d = end.u - start.u, dh = end.h - start.h;
-    const auto at = [&](double level) -> Number { return start.u + d * ((level - start.h) / dh); };
+    const auto fraction_at = [&](double level) -> Number {
+      return start.u + d * ((level - start.h) / dh);
+    };
     Number lo = start.u, hi = end.u, h1 = start.h, h2 = end.h;
     const auto cross = [&](const Number& u, int change) {
-      if (top.count < 2) top.at[static_cast<size_t>(top.count++)] = {u, tp + u * dt, change};
+      if (crossings.count < 2)
+        crossings.list[static_cast<size_t>(crossings.count++)] = {u, tp + u * dt, change};
     };
-    if (start.below) lo = at(0), h1 = 0;
-    if (end.below) hi = at(0), h2 = 0;
-    if (start.above) lo = at(f.depth), h1 = f.depth, cross(lo, -sign);
-    if (end.above) hi = at(f.depth), h2 = f.depth, cross(hi, sign);
+    if (start.below) lo = fraction_at(0), h1 = 0;
+    if (end.below) hi = fraction_at(0), h2 = 0;
+    if (start.above) lo = fraction_at(f.depth), h1 = f.depth, cross(lo, -sign);
+    if (end.above) hi = fraction_at(f.depth), h2 = f.depth, cross(hi, sign);
     if (!found || real_part(lo) < real_part(piece.from)) piece.from = lo;
     if (!found || real_part(hi) > real_part(piece.to)) piece.to = hi;
     found = true;
@@ -298,15 +301,15 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   using Mask = Truth<Real>;
   const auto negative = [](const Number& x)
                             APOTHEM_LAMBDA -> Mask { return real_part(x) < Real(0.); };
-  const auto is_plain = [&](const Number& p, const Number& q) APOTHEM_LAMBDA -> Mask {
-    return (real_part(p) <= f.plain) & (real_part(q) <= f.plain);
+  const auto is_regular = [&](const Number& p, const Number& q) APOTHEM_LAMBDA -> Mask {
+    return (real_part(p) <= f.regular_depth) & (real_part(q) <= f.regular_depth);
   };
   const detail::CollarSides<Number> side(f, px, py, qx, qy);
   const auto& [pax, pay, pbx, pby, hp, hq, ap, aq, bp, bq] = side;
   const Mask out_ap = negative(ap), out_aq = negative(aq);
   const Mask out_bp = !negative(bp), out_bq = !negative(bq);
   const Mask under = negative(hp) & negative(hq);
-  const Mask plain = is_plain(hp, hq);
+  const Mask regular = is_regular(hp, hq);
   // Edges that are entirely beyond one bisector and not beyond the other one miss the face, unless
   // a number is not finite.
   const Real all = real_part(side.all());
@@ -344,7 +347,8 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   // piece of zero length still crosses a bisector. The conditions are written so that NaN never
   // counts as a miss.
   const Mask reversed = real_part(lo) > real_part(hi);
-  const Mask easy = plain | !((out_ap & out_bp) | (out_aq & out_bq) | reversed | !is_plain(h1, h2));
+  const Mask easy =
+      regular | !((out_ap & out_bp) | (out_aq & out_bq) | reversed | !is_regular(h1, h2));
   CollarPieces<Number> piece{detail::collar_part(Number(f.tx * pax + f.ty * pay),
                                                  Number(f.tx * ex + f.ty * ey), lo, hi, h1, h2),
                              Mask(easy & !(missed | reversed)), !(easy | under | beside)};
@@ -360,9 +364,9 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
 template <class Number>
 inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
                          const Number& qx, const Number& qy, CollarPiece<Number>& piece,
-                         CollarCrossings<Number>& top) {
+                         CollarCrossings<Number>& crossings) {
   const CollarPieces<Number> found = collar_pieces(f, px, py, qx, qy);
-  if (found.deep) return general_collar_piece(f, px, py, qx, qy, piece, top);
+  if (found.general) return general_collar_piece(f, px, py, qx, qy, piece, crossings);
   if (found.met) piece = found;
   return found.met;
 }

@@ -67,16 +67,16 @@ struct PatchWorkspace {
 /// edges lie on each other. A loose end of a segment is then joined to the loose end that is
 /// nearest along both boundaries.
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& segments,
                              std::vector<PairIntegral>& patches, NearEdges& near);
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundarySegment>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& segments,
                              std::vector<PairIntegral>& patches);
 
 /// The boundary segments and contact patches of two polygons.
 struct PatchResult {
-  std::vector<BoundarySegment> runs;      ///< segments, ordered by their edges, those of a first
-  std::vector<PairIntegral> patches;  ///< patches, ordered by their first segment
+  std::vector<BoundarySegment> segments;  ///< segments, ordered by their edges, those of a first
+  std::vector<PairIntegral> patches;      ///< patches, ordered by their first segment
 };
 
 /// Splits two polygons at their given positions into contact patches. As with edge_method, moments

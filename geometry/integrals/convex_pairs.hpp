@@ -62,21 +62,21 @@ class ConvexPairs {
     double radius, steepest;
     double reference_x, reference_y;
   };
-  struct Pair {
+  struct ConvexPair {
     Side a, b;
     double dx, dy;  // offset from the frame of a to that of b
     NearEdges* near;
     int first = 0, of_a = 0, of_b = 0;  // range of its parts, and their numbers on a and b
   };
   // An edge that may enter the other polygon.
-  struct Edge {
+  struct ConvexEdge {
     const Numbers *from, *until;  // heights of its ends over the edges of the other polygon
     edge_detail::EdgeFrame<double> frame;
     int part, number;
     bool whole;  // true if it has not been shortened at its start
   };
   // The part of an edge inside the other polygon.
-  struct alignas(32) Part {
+  struct alignas(32) EdgePart {
     edge_detail::EdgeSums<double> sums;
     Numbers ends;  // x of its start and its end, then y; NaN if no part lies inside
     int number;    // number of the edge
@@ -98,28 +98,28 @@ class ConvexPairs {
             p.reference.y()};
   }
   void make_room();
-  static void fill_up(Side& side, Numbers*& to);
-  void find(Pair& pair, Numbers*& rows);
+  static void fill_up(Side& side, Numbers*& memory);
+  void find(ConvexPair& pair, Numbers*& rows);
   template <bool quads>
   static double find_heights(const Side& x, const Side& y, double dx, double dy, double margin,
                              Numbers* rows, unsigned& edges);
   void list_edges(const Side& x, const Side& y, double dx, double dy, unsigned edges,
                   const Numbers* heights, bool is_long, Numbers*& rows);
   template <bool one_group>
-  void integrate(const Edge* edges, int groups);
+  void integrate(const ConvexEdge* edges, int groups);
   template <class F>
-  static void each_part(const Part* from, const Part* until, const F& f);
+  static void each_part(const EdgePart* from, const EdgePart* until, const F& f);
   void add_up(size_t first, size_t count);
 
-  std::array<Pair, kAtOnce> pairs_;
+  std::array<ConvexPair, kAtOnce> pairs_;
   int count_ = 0;
   bool uneven_ = false;  // true if a last group has to be padded
   int most_sides_ = 0, room_ = 0;
   std::vector<Numbers> rows_, copies_;
-  std::array<std::vector<Edge>, kGroups>
+  std::array<std::vector<ConvexEdge>, kGroups>
       edges_;  // edges, by the number of groups of the other polygon
   std::array<int, kGroups> listed_{};
-  std::vector<Part> parts_;
+  std::vector<EdgePart> parts_;
   int found_ = 0;  // number of parts
   std::array<PairIntegral, kAtOnce> results_;
 };

@@ -201,21 +201,21 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, Segmen
   Half half;
   for (int e = 0; e < x.size; ++e) {
     const BasicEdge<Fine> edge(x, y, e, 0, 0);
-    const std::vector<Fine> from = lines.at(edge.px, edge.py);
-    const std::vector<Fine> to = lines.at(edge.px + edge.ex, edge.py + edge.ey);
-    const Row<Fine> row{from.data(), to.data(), y.size, static_cast<int>(from.size())};
+    const std::vector<Fine> start = lines.at(edge.px, edge.py);
+    const std::vector<Fine> end = lines.at(edge.px + edge.ex, edge.py + edge.ey);
+    const Row<Fine> row{start.data(), end.data(), y.size, static_cast<int>(start.size())};
     Fine s0, s1;
     if (!clip(row, s0, s1)) continue;
-    const Fine share = s1 - s0;
+    const Fine fraction = s1 - s0;
     SegmentMoments<Fine> moments;  // along the part of the edge inside y
     walk_envelope(row, s0, s1, true, [&](bool there, Fine u1, Fine v1, Fine u2, Fine v2) {
-      moments.add(there, (u1 - s0) / share, v1, (u2 - s0) / share, v2);
+      moments.add(there, (u1 - s0) / fraction, v1, (u2 - s0) / fraction, v2);
     });
     PlacedEdge part(x, y, e, 0, 0);
     part.qx = static_cast<double>(edge.qx + s0 * edge.ex);
     part.qy = static_cast<double>(edge.qy + s0 * edge.ey);
-    part.ex = static_cast<double>(share * edge.ex);
-    part.ey = static_cast<double>(share * edge.ey);
+    part.ex = static_cast<double>(fraction * edge.ex);
+    part.ey = static_cast<double>(fraction * edge.ey);
     const SegmentMoments<double> rounded{static_cast<double>(moments.sum),
                                          static_cast<double>(moments.first),
                                          static_cast<double>(moments.largest)};

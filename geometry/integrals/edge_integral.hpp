@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/integrals/convex_pairs.hpp"
 #include "geometry/integrals/layer_pair.hpp"
 #include "geometry/integrals/layer_trace.hpp"
-#include "geometry/integrals/convex_pairs.hpp"
 #include "geometry/integrals/near_edges.hpp"
 #include "geometry/integrals/pair_integral.hpp"
 #include "geometry/integrals/placed_potential.hpp"
@@ -36,8 +36,8 @@ struct EdgeWorkspace {
   RoofTrace<double> roof;      ///< memory for polygons with a roof
   RoofNodes nodes;             ///< the nodes of a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
-  LayerTrace collar;              ///< memory for the boundary layers of both
-  LayerPair pair;                 ///< memory for pairs with few near edges
+  LayerTrace layer_trace;          ///< memory for the boundary layers of both
+  LayerPair layer_pair;            ///< memory for pairs with few near edges
   ConvexPairs convex;              ///< memory for pairs of convex polygons with few sides
 };
 

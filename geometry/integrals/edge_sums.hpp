@@ -26,7 +26,7 @@ template <class Real>
 struct EdgeFrame {
   Real qx, qy, ex, ey;
   // As in BasicEdge, for an edge that is not shortened.
-  [[nodiscard]] Real share(const Real& s) const { return s; }
+  [[nodiscard]] Real fraction(const Real& s) const { return s; }
 };
 
 // The integrals along one edge. `m` has the moments of phi over the parameter of the edge, and

@@ -172,19 +172,19 @@ inline void add_capped(double u1, double v1, double u2, double v2,
 /// `heights` has written, or, if the edge has been shortened, computed in `scratch`, which has room
 /// for two rows.
 inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
-                          const double* rows, double* spare) {
+                          const double* rows, double* scratch) {
   const int width = y.size + (y.capped ? 1 : 0);
   if (!edge.shortened) return {rows + e * width, rows + (e + 1) * width, y.size, width};
-  height_row(y, edge.px, edge.py, spare);
-  height_row(y, edge.px + edge.ex, edge.py + edge.ey, spare + width);
-  return {spare, spare + width, y.size, width};
+  height_row(y, edge.px, edge.py, scratch);
+  height_row(y, edge.px + edge.ex, edge.py + edge.ey, scratch + width);
+  return {scratch, scratch + width, y.size, width};
 }
 
 /// Memory for heights of the vertices of both polygons over the edges of the other one.
 struct HeightRows {
-  double* of_a;   ///< rows for the vertices of a
-  double* of_b;   ///< rows for the vertices of b
-  double* spare;  ///< two rows for a shortened edge
+  double* of_a;     ///< rows for the vertices of a
+  double* of_b;     ///< rows for the vertices of b
+  double* scratch;  ///< two rows for a shortened edge
 };
 
 /// Takes the memory from `buffer`, which grows if necessary.
@@ -192,8 +192,8 @@ inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b
                               std::vector<double>& buffer) {
   const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
   const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
-  const size_t spare = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
-  if (buffer.size() < rows_a + rows_b + spare) buffer.resize(rows_a + rows_b + spare);
+  const size_t scratch = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
+  if (buffer.size() < rows_a + rows_b + scratch) buffer.resize(rows_a + rows_b + scratch);
   return {buffer.data(), buffer.data() + rows_a, buffer.data() + rows_a + rows_b};
 }
 
@@ -268,20 +268,21 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
 /// Calls segment(s0, edge0, s1, edge1, moments) for the segments of an edge in y, which is not
 /// convex, by its whole roof or distance field. The nodes of a roof must have been placed in the
 /// workspace.
-template <class Run>
-void walk_whole_potential(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
-               const Run& run) {
+template <class Segment>
+void walk_whole_potential(const PlacedPotential& y, const PlacedEdge& edge,
+                          EdgeWorkspace& workspace, const Segment& segment) {
   SegmentMoments<double> moments;
   const auto end = [&](double s0, int edge0, double s1, int edge1) {
-    run(s0, edge0, s1, edge1, moments);
+    segment(s0, edge0, s1, edge1, moments);
     moments = {};
   };
   if (y.distance) {
-    workspace.distance.runs(placed_distance(y), edge.px, edge.py, edge.ex, edge.ey, moments, end);
+    workspace.distance.segments(placed_distance(y), edge.px, edge.py, edge.ex, edge.ey, moments,
+                                end);
     return;
   }
   workspace.roof.cross(placed_roof(y, workspace.nodes), edge.px, edge.py, edge.ex, edge.ey);
-  workspace.roof.runs(
+  workspace.roof.segments(
       [&](double u1, double v1, double u2, double v2) { add_piece(y, u1, v1, u2, v2, moments); },
       end);
 }
@@ -293,44 +294,45 @@ void walk_whole_potential(const PlacedPotential& y, const PlacedEdge& edge, Edge
 /// `near_y` those of y that may enter x. With `use_layer`, edges that stay in the boundary layer of
 /// y are evaluated by it alone. Returns 0, or NaN without any call if y is not convex and a
 /// coordinate is not finite.
-template <bool crossings, class Run>
+template <bool crossings, class Segment>
 double walk_segments(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                 std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
-                 EdgeWorkspace& workspace, bool collars, const Run& run) {
+                     std::uint64_t near, std::uint64_t near_y, const double* rows, double* scratch,
+                     EdgeWorkspace& workspace, bool use_layer, const Segment& segment) {
   if (!y.convex()) {
     // If edges are known to be near each other, all coordinates are finite.
     if (near == NearEdges::kAll || near_y == NearEdges::kAll) {
       if (const double finite = all_finite(x, y, dx, dy); !(finite == 0)) return finite;
     }
-    LayerTrace& collar = workspace.collar;
-    collar.find(x, y, dx, dy, near, near_y, collars);
+    LayerTrace& trace = workspace.layer_trace;
+    trace.find(x, y, dx, dy, near, near_y, use_layer);
     size_t r = 0;
     bool nodes = false;  // whether the nodes of the roof are placed
-    for (const LayerTrace::Edge& edge : collar.edges()) {
-      for (; r < edge.runs_end; ++r) {
-        if (edge.deep) continue;
-        const LayerTrace::Run& part = collar.runs()[r];
-        run(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
+    for (const LayerEdge& edge : trace.edges()) {
+      for (; r < edge.segments_end; ++r) {
+        if (edge.beyond_layer) continue;
+        const LayerSegment& part = trace.segments()[r];
+        segment(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
       }
-      if (!edge.deep) continue;
+      if (!edge.beyond_layer) continue;
       if (y.roof && !nodes) workspace.nodes.place(y), nodes = true;
-      walk_whole_potential(y, edge.placed, workspace,
-                [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
-                  run(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
-                });
+      walk_whole_potential(
+          y, edge.placed, workspace,
+          [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
+            segment(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
+          });
     }
     return 0;
   }
   for_each_edge(near, x.size, [&](int e) {
     const PlacedEdge edge(x, y, e, dx, dy);
-    const Row<double> row = row_of(edge, e, y, rows, spare);
+    const Row<double> row = row_of(edge, e, y, rows, scratch);
     double s0, s1;
     if (!clip(row, s0, s1)) return;
     const SegmentMoments<double> moments = envelope_moments(row, s0, s1, true);
     if constexpr (crossings) {
-      run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
+      segment(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
     } else {
-      run(e, edge, s0, -1, s1, -1, moments);
+      segment(e, edge, s0, -1, s1, -1, moments);
     }
   });
   return 0;
@@ -380,7 +382,8 @@ class SegmentEnds {
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
 /// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.
 inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                         const Half& of_a, const Half& of_b, const SegmentEnds& ends, size_t middle) {
+                         const Half& of_a, const Half& of_b, const SegmentEnds& ends,
+                         size_t middle) {
   const Vec2 r = arm(a, b, offset);
   PairIntegral pair = combine(of_a, of_b, r);
   pair.depth = depth(a, b, of_a, of_b);
@@ -408,10 +411,9 @@ inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, con
 APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
                               double steepest, NearEdges& near) {
   if (!(gap > 0)) return false;
-  if (near.margin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 &&
-      b.radius > 0) {
-    const double margin = gap / steepest - kRoundOff * (a.radius + b.radius);
-    if (margin > kRoundOff * (a.radius + b.radius)) near = {0, 0, margin};
+  if (near.skin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 && b.radius > 0) {
+    const double skin = gap / steepest - kRoundOff * (a.radius + b.radius);
+    if (skin > kRoundOff * (a.radius + b.radius)) near = {0, 0, skin};
   }
   return true;
 }
@@ -432,10 +434,10 @@ struct SegmentSpan {
 /// The segments are found by several methods, the fastest first: LayerPair for a few near edges,
 /// then the boundary layers, then the whole potentials. If the segments are not closed, features of
 /// the polygons coincide up to round-off, and the next method is used.
-template <bool crossings, class Begin, class Run>
+template <bool crossings, class Begin, class Segment>
 PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                             NearEdges& near, EdgeWorkspace& workspace, const Begin& begin,
-                            const Run& run) {
+                            const Segment& segment) {
   const double dx = offset.x(), dy = offset.y();
   const HeightRows height = height_rows(a, b, workspace.values);
   if (b.convex() && separated(heights(a, b, dx, dy, height.of_a), a, b, b.steepest, near)) {
@@ -457,20 +459,20 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
                         const EdgeSums<double>& sums) {
     Half& half = of_a ? half_a : half_b;
     half.add(sums);
-    if (edge.share(span.s0) == 0) half.enter(e);
+    if (edge.fraction(span.s0) == 0) half.enter(e);
     ends.add(edge, span.s0, span.s1);
     if (of_a) middle = ends.used();
-    run(of_a, e, edge, span, sums);
+    segment(of_a, e, edge, span, sums);
   };
   const auto pair = [&] { return join(a, b, offset, half_a, half_b, ends, middle); };
-  if (workspace.pair.find(a, b, offset, near)) {
+  if (workspace.layer_pair.find(a, b, offset, near)) {
     start();
-    for (const LayerPair::Run& r : workspace.pair.runs()) {
+    for (const LayerPair::PairSegment& r : workspace.layer_pair.segments()) {
       take(r.of_a, r.edge, *r.placed, {r.s0, r.edge0, r.s1, r.edge1}, *r.integrals);
     }
     if (ends.closed()) return pair();
   }
-  for (const bool collars : {true, false}) {
+  for (const bool use_layer : {true, false}) {
     start();
     const auto walk = [&](bool of_a) {
       return [&, of_a](int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
@@ -480,9 +482,9 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
     };
     // A NaN is added to the weight, so that it is never taken for "no contact".
     half_a.weight += walk_segments<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
-                                          height.spare, workspace, collars, walk(true));
+                                              height.scratch, workspace, use_layer, walk(true));
     half_b.weight += walk_segments<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
-                                          height.spare, workspace, collars, walk(false));
+                                              height.scratch, workspace, use_layer, walk(false));
     if (ends.closed() || std::isnan(half_a.weight + half_b.weight) || (a.convex() && b.convex())) {
       break;
     }

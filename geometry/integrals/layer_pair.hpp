@@ -21,7 +21,7 @@ class LayerPair {
   /// An edge in the frame of the other polygon.
   using Edge = edge_detail::EdgeFrame<double>;
   /// A segment, as walk_segments finds it (edge_trace.hpp).
-  struct Run {
+  struct PairSegment {
     bool of_a;
     int edge, edge0, edge1;
     double s0, s1;
@@ -36,8 +36,8 @@ class LayerPair {
   bool find(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
             const NearEdges& near);
   /// The segments of a in ascending order, then those of b.
-  [[nodiscard]] std::span<const Run> runs() const {
-    return {runs_.data(), static_cast<size_t>(count_)};
+  [[nodiscard]] std::span<const PairSegment> segments() const {
+    return {segments_.data(), static_cast<size_t>(count_)};
   }
 
  private:
@@ -55,7 +55,7 @@ class LayerPair {
   void find_parts(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
   bool join_parts();
   bool join_parts_of_edge(Bits parts);
-  void add_run(int first, int last);
+  void add_segment(int first, int last);
   static bool has(Bits bits, int lane) { return (bits >> lane & 1) != 0; }
 
   int lanes_ = 0;  // a multiple of kPack
@@ -67,9 +67,9 @@ class LayerPair {
   // Lanes that are listed, that have a part, whose part begins or ends at the cell's own edge, and
   // whose part begins or ends at a border.
   Bits listed_ = 0, there_ = 0, own0_ = 0, own1_ = 0, border0_ = 0, border1_ = 0;
-  bool deep_ = false;  // true if a part reaches the depth of its cell
-  int count_ = 0;      // number of segments
-  std::array<Run, kMost> runs_;
+  bool reaches_depth_ = false;  // true if a part reaches the depth of its cell
+  int count_ = 0;               // number of segments
+  std::array<PairSegment, kMost> segments_;
 };
 
 }  // namespace apothem

@@ -38,7 +38,7 @@ double distance2(const Segment& s, const Segment& t) {
 
 // Finds the edges of x whose boxes are nearer than the skin to the box of the other polygon. Lowers
 // `rest2` to the squared distance of the other edges.
-void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, double margin2,
+void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, double skin2,
              std::vector<Segment>& segments, double& rest2) {
   segments.clear();
   for (int e = 0; e < x.size; ++e) {
@@ -50,7 +50,7 @@ void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, doub
     s.box.include(s.from.x(), s.from.y());
     s.box.include(s.to.x(), s.to.y());
     const double d2 = distance2(s.box, other);
-    if (d2 > margin2) {
+    if (d2 > skin2) {
       rest2 = std::min(rest2, d2);
     } else {
       segments.push_back(s);
@@ -59,10 +59,10 @@ void collect(const PlacedPotential& x, const Vec2& shift, const Box& other, doub
 }
 
 std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& other,
-                     const Vec2& shift, double margin2, double& rest2) {
+                     const Vec2& shift, double skin2, double& rest2) {
   std::uint64_t set = 0;
   for (const Segment& s : segments) {
-    if (s.distance2 <= margin2 || encloses(other, shift, s.from)) {
+    if (s.distance2 <= skin2 || encloses(other, shift, s.from)) {
       set |= std::uint64_t{1} << (s.edge % 64);
     } else {
       rest2 = std::min(rest2, s.distance2);
@@ -74,7 +74,7 @@ std::uint64_t select(std::vector<Segment>& segments, const PlacedPotential& othe
 }  // namespace
 
 NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     double margin, NearEdgesWorkspace& workspace) {
+                     double skin, NearEdgesWorkspace& workspace) {
   const Vec2 zero = Vec2::Zero();
   const Box box_a = box_of(a, offset);
   const Box box_b = box_of(b, zero);
@@ -83,12 +83,12 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
   const double finite = size + all_finite(a, b, offset.x(), offset.y());
   // Distances are rounded; an edge within the round-off counts as near.
   const double round = 1e-12 * size;
-  if (!(finite < HUGE_VAL) || !(margin > 2 * round)) return {};
-  const double margin2 = margin * margin;
+  if (!(finite < HUGE_VAL) || !(skin > 2 * round)) return {};
+  const double skin2 = skin * skin;
   auto& [of_a, of_b] = workspace;
   double rest2 = std::numeric_limits<double>::infinity();
-  collect(a, offset, box_b, margin2, of_a, rest2);
-  collect(b, zero, box_a, margin2, of_b, rest2);
+  collect(a, offset, box_b, skin2, of_a, rest2);
+  collect(b, zero, box_a, skin2, of_b, rest2);
   for (Segment& s : of_a) {
     for (Segment& t : of_b) {
       const double known = std::max(s.distance2, t.distance2);
@@ -99,9 +99,9 @@ NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const V
     }
   }
   NearEdges result;
-  result.of_a = select(of_a, b, zero, margin2, rest2);
-  result.of_b = select(of_b, a, offset, margin2, rest2);
-  result.margin = (result.none() ? std::sqrt(rest2) : margin) - round;
+  result.of_a = select(of_a, b, zero, skin2, rest2);
+  result.of_b = select(of_b, a, offset, skin2, rest2);
+  result.skin = (result.none() ? std::sqrt(rest2) : skin) - round;
   return result;
 }
 

@@ -21,7 +21,7 @@ struct NearEdges {
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
   std::uint64_t of_a = kAll;  ///< edges of a
   std::uint64_t of_b = kAll;  ///< edges of b
-  double margin = 0;          ///< m; 0 if nothing is known
+  double skin = 0;            ///< m; 0 if nothing is known
   /// True if the polygons are apart by the skin.
   [[nodiscard]] bool none() const { return of_a == 0 && of_b == 0; }
 };
@@ -43,7 +43,7 @@ struct NearEdgesWorkspace {
 /// The arguments a, b and offset are those of pair_integral. If a coordinate is not finite, all
 /// edges are near and the skin is 0.
 NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     double margin, NearEdgesWorkspace& workspace);
+                     double skin, NearEdgesWorkspace& workspace);
 
 /// Calls f(edge) for the edges of a polygon with `size` edges that a set stands for, in ascending
 /// order.

@@ -50,7 +50,7 @@ struct PenetrationWorkspace {
 /// Raises the entry of `deepest` of every patch, m, to the patch's penetration if that is larger.
 /// `segments` are those that contact_patches has found for the same arguments.
 void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                       std::span<const BoundarySegment> runs, PenetrationWorkspace& workspace,
+                       std::span<const BoundarySegment> segments, PenetrationWorkspace& workspace,
                        std::span<double> deepest);
 
 /// The largest penetration of two polygons at their given positions, m; 0 if they do not touch. It

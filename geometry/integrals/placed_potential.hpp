@@ -25,9 +25,9 @@ struct PlacedPotential {
   const Roof* roof = nullptr;               ///< roof, or null
   const DistanceField* distance = nullptr;  ///< distance field, or null
   Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
-  double radius = 0;                   ///< largest distance of a vertex from `reference`, m, or 0
-  double steepest = 0;                 ///< largest |g_i|, 1/m, or 0 if it is not known
-  const BoundaryLayer* cells = nullptr;  ///< boundary layer, if it is not convex
+  double radius = 0;                     ///< largest distance of a vertex from `reference`, m, or 0
+  double steepest = 0;                   ///< largest |g_i|, 1/m, or 0 if it is not known
+  const BoundaryLayer* layer = nullptr;  ///< boundary layer, if it is not convex
   /// Position of the inner nodes of the roof in the frame: they are rotated by the angle with this
   /// cosine and sine, and then moved by `shift`, m.
   double cosine = 1, sine = 0;

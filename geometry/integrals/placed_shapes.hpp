@@ -52,7 +52,7 @@ class PlacedShapes {
             .reference = Vec2::Zero(),
             .radius = s.radius,
             .steepest = s.slope,
-            .cells = s.cells,
+            .layer = s.layer,
             .cosine = s.cosine,
             .sine = s.sine,
             .shift = Vec2::Zero()};
@@ -100,7 +100,7 @@ class PlacedShapes {
     // The following are needed for shapes that are not convex.
     const Roof* roof;
     const DistanceField* distance;
-    const BoundaryLayer* cells;
+    const BoundaryLayer* layer;
     bool capped;
     double depth_ratio;
     double top_radius;  // distance of the highest point from the reference point
@@ -113,7 +113,7 @@ class PlacedShapes {
     double *x, *y, *gx, *gy;
   };
   // Writes the coordinates of a shape at an angle and returns their box.
-  Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const;
+  Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& target) const;
   // The arrays of a shape whose x begins at `first`.
   static Coordinates coordinates(double* first, int stride) {
     return {first, first + stride, first + 2 * stride, first + 3 * stride};

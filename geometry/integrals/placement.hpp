@@ -39,7 +39,7 @@ struct Placement {
             .reference = Vec2(x[1], y[1]),
             .radius = radius,
             .steepest = potential.steepest,
-            .cells = potential.cells ? &*potential.cells : nullptr,
+            .layer = potential.layer ? &*potential.layer : nullptr,
             .shift = polygon.origin() - origin};
   }
   Placement(const Placement&) = delete;

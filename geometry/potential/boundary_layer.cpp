@@ -16,26 +16,26 @@ constexpr double kLeastTurn = 1e-4;
 constexpr double kShortest = 1e-6;
 
 // The layer whose cells reach up to the given heights (phi) over their edges.
-BoundaryLayer cells_of(const Polygon& polygon, const std::vector<double>& heights) {
+BoundaryLayer layer_of(const Polygon& polygon, const std::vector<double>& heights) {
   const int n = polygon.size();
   const double shortest = kShortest * bounding_box(polygon).extent();
-  BoundaryLayer cells;
-  cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
-  cells.side.assign(cells.depth.size() + 1, 1);
+  BoundaryLayer layer;
+  layer.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
+  layer.side.assign(layer.depth.size() + 1, 1);
   // Cells end at phi = 1, because phi is limited to 1.
-  for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
+  for (int e = 0; e < n; ++e) layer.depth[e] = kSafe * std::min(heights[e], 1.);
   for (int e = 0; e < n; ++e) {
     const int before = e == 0 ? n - 1 : e - 1;
-    const Vec2 in = polygon[e] - polygon[before], out = polygon.after(e) - polygon[e];
-    const double turn = cross(in, out) / (in.norm() * out.norm());
-    cells.side[e] = turn < 0 ? -1 : 1;
-    if (!(std::abs(turn) > kLeastTurn)) cells.depth[before] = cells.depth[e] = 0;
-    if (!(out.norm() > shortest)) {
-      cells.depth[before] = cells.depth[e] = cells.depth[e + 1 == n ? 0 : e + 1] = 0;
+    const Vec2 incoming = polygon[e] - polygon[before], outgoing = polygon.after(e) - polygon[e];
+    const double turn = cross(incoming, outgoing) / (incoming.norm() * outgoing.norm());
+    layer.side[e] = turn < 0 ? -1 : 1;
+    if (!(std::abs(turn) > kLeastTurn)) layer.depth[before] = layer.depth[e] = 0;
+    if (!(outgoing.norm() > shortest)) {
+      layer.depth[before] = layer.depth[e] = layer.depth[e + 1 == n ? 0 : e + 1] = 0;
     }
   }
-  cells.side[n] = cells.side[0];
-  return cells;
+  layer.side[n] = layer.side[0];
+  return layer;
 }
 
 double distance(const Vec2& point, const Vec2& from, const Vec2& along) {
@@ -59,7 +59,7 @@ BoundaryLayer boundary_layer(const Polygon& polygon, const Roof& roof) {
       if (node >= n) heights[e] = std::min(heights[e], roof.values[node]);
     }
   }
-  return cells_of(polygon, heights);
+  return layer_of(polygon, heights);
 }
 
 // A point in front of an edge at the height h is nearer than h to another feature only if that is
@@ -86,7 +86,7 @@ BoundaryLayer boundary_layer(const Polygon& polygon, double slope) {
     heights[k] = std::min(heights[k], height);
   }
   for (double& height : heights) height *= slope;
-  return cells_of(polygon, heights);
+  return layer_of(polygon, heights);
 }
 
 }  // namespace apothem

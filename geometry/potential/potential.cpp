@@ -137,7 +137,7 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice,
   Potential potential = sloped_lines(polygon, reference);
   potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
   potential.roof = make_roof(skeleton, reference);
-  potential.cells = boundary_layer(polygon, *potential.roof);
+  potential.layer = boundary_layer(polygon, *potential.roof);
   for (const Skeleton::Node& node : skeleton.nodes) {
     if (node.height >= skeleton.roof_height * (1 - kSameHeight)) {
       potential.top_points.push_back(node.point);
@@ -159,7 +159,7 @@ Potential field_potential(const Polygon& polygon, const PotentialChoice& choice,
   potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
   potential.top_points = circle.centres;
   potential.distance = make_distance_field(polygon, reference);
-  potential.cells = boundary_layer(polygon, potential.distance->slope);
+  potential.layer = boundary_layer(polygon, potential.distance->slope);
   return potential;
 }
 

@@ -33,7 +33,7 @@ struct Potential {
   double steepest = 0;           ///< largest |g_i|, 1/m
   Rare<Roof> roof;               ///< roof over the straight skeleton
   Rare<DistanceField> distance;  ///< distance field
-  Rare<BoundaryLayer> cells;       ///< boundary layer, if the polygon is not convex
+  Rare<BoundaryLayer> layer;     ///< boundary layer, if the polygon is not convex
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }

@@ -17,9 +17,8 @@ struct ContactNumbers {
     bool rigid = false;
     int edges = 0;                        ///< number of edges of a rigid body's polygon
     int first_surface = 0, surfaces = 0;  ///< range of the body's surfaces, see Surfaces
-    int first_vertex = 0,
-        /// Range of the body's vertices, see OutlineSurfaces; empty without outlines.
-        vertices = 0;
+    /// Range of the body's vertices, see OutlineSurfaces; empty without outlines.
+    int first_vertex = 0, vertices = 0;
     void fields(Archive& archive) {
       archive("rigid", rigid)("edges", edges)("first_surface", first_surface)("surfaces", surfaces)(
           "first_vertex", first_vertex)("vertices", vertices);
@@ -36,10 +35,10 @@ struct ContactNumbers {
 };
 
 /// Maps the friction memory of one simulation to the numbering of another one (restart mapping).
-/// `body_map` gives for each body of `from` its number in `to`, or -1 if it has no counterpart;
-/// contacts of such bodies are dropped. Springs between rigid bodies are dropped if the friction
-/// laws of the two scenes differ.
-FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
-                         const ContactNumbers& to, std::span<const BodyIndex> heirs);
+/// `body_map` gives for each body of `source` its number in `target`, or -1 if it has no
+/// counterpart; contacts of such bodies are dropped. Springs between rigid bodies are dropped if
+/// the friction laws of the two scenes differ.
+FrictionMemory map_memory(const FrictionMemory& memory, const ContactNumbers& source,
+                          const ContactNumbers& target, std::span<const BodyIndex> body_map);
 
 }  // namespace apothem

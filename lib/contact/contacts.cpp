@@ -66,7 +66,7 @@ void Contacts::hand_out_pairs() {
   }
   if (surfaces_.has_outlines()) surfaces_.outlines().activate(pairs_of[outline_kernel]);
   for (size_t k = 0; k < kernels_.size(); ++k) {
-    if (kernels_[k]) kernels_[k]->take(pairs_of[k]);
+    if (kernels_[k]) kernels_[k]->set_pairs(pairs_of[k]);
   }
 }
 
@@ -90,11 +90,11 @@ int Contacts::count() const {
 
 std::optional<ContactFault> Contacts::fault() const {
   const auto is_out = [](const Contact& contact) {
-    return !(contact.share < 1) &&
+    return !(contact.relative_depth < 1) &&
            contact.kernel != outline_kernel;  // a NaN counts as out of range
   };
   bool out = false;
-  each([&](const Kernel& kernel) { out = out || kernel.summary().share >= 1; });
+  each([&](const Kernel& kernel) { out = out || kernel.summary().relative_depth >= 1; });
   if (!out) return {};
   for (const Contact& contact : contacts()) {
     if (!is_out(contact)) continue;
@@ -105,18 +105,18 @@ std::optional<ContactFault> Contacts::fault() const {
   return {};
 }
 
-void Contacts::slide(const Kinematics& now, double dt) {
+void Contacts::update_friction(const Kinematics& now, double dt) {
   if (!tangential_) return;
   tried_ = false;
   memory_.begin_step();
   double work = 0;
-  each([&](Kernel& kernel) { work += kernel.slide(now, dt, memory_); });
+  each([&](Kernel& kernel) { work += kernel.update_friction(now, dt, memory_); });
   memory_.end_step(work);
 }
 
 void Contacts::try_friction(const Kinematics& now, double dt) {
   drop_trial();
-  slide(now, dt);
+  update_friction(now, dt);
   tried_ = tangential_;
 }
 
@@ -162,7 +162,9 @@ void Contacts::add_bend_losses(Dynamics dynamics, double dt) {
 bool Contacts::find_event_impulses(const Kinematics& now, Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   bool found = false;
-  each([&](Kernel& kernel) { found = kernel.find_event_impulses(now, dynamics, dt, memory_) || found; });
+  each([&](Kernel& kernel) {
+    found = kernel.find_event_impulses(now, dynamics, dt, memory_) || found;
+  });
   return found;
 }
 
@@ -234,7 +236,7 @@ bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const 
     const ContactSummary all = kernel.summary();
     if (!(all.deepest > least)) return;
     deeper = deeper || all.deepest > floors.largest.value ||
-             all.relative > kRoundOff * floors.relative.value;
+             all.inradius_ratio > kRoundOff * floors.relative.value;
   });
   return deeper;
 }
@@ -337,7 +339,7 @@ ContactNumbers Contacts::numbers() const {
   return numbers;
 }
 
-void Contacts::inherit(const FrictionMemory& memory) {
+void Contacts::set_memory(const FrictionMemory& memory) {
   if (tangential_) memory_ = memory;
 }
 

@@ -57,7 +57,7 @@ class Contacts {
   /// Updates the friction springs at the end of a step of dt (s). `now` must hold the half-step
   /// velocities (Eq. 18), because full-step velocities would add energy. With dt = 0 the springs
   /// keep their forces.
-  void slide(const Kinematics& now, double dt);
+  void update_friction(const Kinematics& now, double dt);
   /// Updates the friction springs for a trial state. The next update starts from the same springs
   /// as this one did.
   void try_friction(const Kinematics& now, double dt);
@@ -143,7 +143,7 @@ class Contacts {
   /// The numbers that the keys of the friction memory refer to.
   [[nodiscard]] ContactNumbers numbers() const;
   /// Replaces the friction memory. Its keys must refer to the numbers of these contacts.
-  void inherit(const FrictionMemory& memory);
+  void set_memory(const FrictionMemory& memory);
 
  private:
   void hand_out_pairs();
@@ -188,6 +188,6 @@ struct EngulfedBody {
 /// Finds an engulfed body. Bodies with a nonzero entry in `absent` are ignored; `absent` may be
 /// empty.
 std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& outlines,
-                                  const std::vector<std::uint8_t>& absent = {});
+                                          const std::vector<std::uint8_t>& absent = {});
 
 }  // namespace apothem

@@ -3,7 +3,8 @@
 
 namespace apothem {
 
-std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& o, const std::vector<std::uint8_t>& absent) {
+std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& o,
+                                          const std::vector<std::uint8_t>& absent) {
   std::vector<Loops> loops;
   std::vector<double> reach;  // depth to which the potential of each body reaches, m
   std::vector<Box> boxes;
@@ -24,8 +25,10 @@ std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& o, const std::v
   BoxGrid().find_pairs(boxes, pairs);
   for (const auto& [a, b] : pairs) {
     if (o.bodies[a].is_rigid() && o.bodies[b].is_rigid()) continue;
-    if (const auto place = deep_vertex(loops[a], loops[b], reach[b])) return EngulfedBody{a, b, *place};
-    if (const auto place = deep_vertex(loops[b], loops[a], reach[a])) return EngulfedBody{b, a, *place};
+    if (const auto place = deep_vertex(loops[a], loops[b], reach[b]))
+      return EngulfedBody{a, b, *place};
+    if (const auto place = deep_vertex(loops[b], loops[a], reach[a]))
+      return EngulfedBody{b, a, *place};
   }
   return {};
 }

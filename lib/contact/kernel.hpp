@@ -13,9 +13,9 @@
 #include "geometry/spatial/boxes.hpp"
 #include "lib/contact/law/contact.hpp"
 #include "lib/contact/law/dashpots.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
@@ -39,23 +39,23 @@ struct PairPeak {
 /// Sums and maxima over all contacts of a kernel.
 struct ContactSummary {
   int count = 0;
-  double deepest = 0;  ///< upper bound of all penetrations, m
-  double share = 0;    ///< largest Contact::relative_depth
+  double deepest = 0;         ///< upper bound of all penetrations, m
+  double relative_depth = 0;  ///< largest Contact::relative_depth
   /// Upper bound of the penetration over the inradius of one of the two bodies; HUGE_VAL if it is
   /// not known.
-  double relative = HUGE_VAL;
+  double inradius_ratio = HUGE_VAL;
 
   void include(double depth, double inradius, double of_range) {
     ++count;
     deepest = std::max(deepest, depth);
-    share = std::max(share, of_range);
-    relative = std::max(relative, depth / inradius);
+    relative_depth = std::max(relative_depth, of_range);
+    inradius_ratio = std::max(inradius_ratio, depth / inradius);
   }
   void include(const ContactSummary& other) {
     count += other.count;
     deepest = std::max(deepest, other.deepest);
-    share = std::max(share, other.share);
-    relative = std::max(relative, other.relative);
+    relative_depth = std::max(relative_depth, other.relative_depth);
+    inradius_ratio = std::max(inradius_ratio, other.inradius_ratio);
   }
 };
 
@@ -67,7 +67,7 @@ class Kernel {
 
   /// Sets the pairs that this kernel serves, after a search. A body that may touch itself is a pair
   /// with itself.
-  virtual void take(std::span<const BoxPair> pairs) = 0;
+  virtual void set_pairs(std::span<const BoxPair> pairs) = 0;
   /// Finds the contacts of all pairs and the normal forces in them. The result has the same bits
   /// for any number of threads. Memory is allocated only if there are more contacts than ever
   /// before.
@@ -88,22 +88,24 @@ class Kernel {
   /// Updates the friction springs at the end of a step of dt (s), with half-step velocities. With
   /// dt = 0 the springs keep their forces. Returns the work on the bodies since the last call, J,
   /// of those springs whose losses the kernel does not book itself.
-  virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
+  virtual double update_friction(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
   /// Undoes the last friction update. The caller undoes the same step of the memory.
   virtual void undo_friction() {}
   /// Recomputes the friction forces that the next update needs, after the memory has been restored.
-  virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
+  virtual void refresh(const Kinematics& now, FrictionMemory& memory) {
+    update_friction(now, 0, memory);
+  }
   /// Adds all forces except those of dashpots, the normal forces first.
   virtual void add_forces(const ForceViews& forces) = 0;
   /// Adds the dashpots of the contacts of the last friction update.
-  virtual void add_dashpots(const Kinematics& now, Dashpots& to) = 0;
+  virtual void add_dashpots(const Kinematics& now, Dashpots& dashpots) = 0;
   /// Stores the forces that the dashpots have been found to exert. The dashpots of this kernel
   /// begin at the index `next`, which is advanced to the first one of the next kernel.
-  virtual void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) = 0;
+  virtual void keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) = 0;
   /// Finds the impulses that velocity Verlet misses because contacts have begun or ended in the
   /// drift of dt (s) that ends now (law/event_impulse.hpp). Returns true if there is one.
-  virtual bool find_event_impulses(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
-                           FrictionMemory& /*memory*/) {
+  virtual bool find_event_impulses(const Kinematics& /*now*/, const Dynamics& /*dynamics*/,
+                                   double /*dt*/, FrictionMemory& /*memory*/) {
     return false;
   }
   /// Adds these impulses divided by dt and multiplied by `scale` to the forces.

@@ -61,14 +61,14 @@ MeshInertia inertia_of(const DeformableBody& body, const DegreesOfFreedom& dofs)
     for (const size_t axis : {0, 1}) {
       if (dofs.is_held(c + axis)) inertia.inverse_mass[axis] = inertia.inverse_mass[2] = 0;
     }
-    inertia.shares.push_back(dofs.mass(c));
+    inertia.mass_fractions.push_back(dofs.mass(c));
     mass += dofs.mass(c);
     centre += dofs.mass(c) * nodes[i];
   }
   centre /= mass;
   for (size_t i = 0; i < nodes.size(); ++i) {
-    moment += inertia.shares[i] * (nodes[i] - centre).squaredNorm();
-    inertia.shares[i] /= mass;
+    moment += inertia.mass_fractions[i] * (nodes[i] - centre).squaredNorm();
+    inertia.mass_fractions[i] /= mass;
   }
   for (const size_t axis : {0, 1}) inertia.inverse_mass[axis] /= mass;
   inertia.inverse_mass[2] /= moment;
@@ -244,7 +244,7 @@ void ContactTerm::add_forces(const Evaluation& now) {
   if (now.trial) {
     contacts_.try_friction(kinematics, now.dt);
   } else {
-    contacts_.slide(kinematics, now.dt);
+    contacts_.update_friction(kinematics, now.dt);
   }
   now.clock.lap(Phase::contact);
   contacts_.add_forces({state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda,

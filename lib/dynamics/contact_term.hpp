@@ -38,8 +38,8 @@ class ContactTerm final : public Term {
   /// Likewise: finds the impulses that the two ends of the step do not tell of, because a contact
   /// has begun or ended in between. True if there is one.
   bool find_event_impulses(const State& state, std::span<const double> before, double dt) {
-    return contacts_.find_event_impulses(state.kinematics(state.v),
-                                 {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
+    return contacts_.find_event_impulses(
+        state.kinematics(state.v), {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
   /// Adds these impulses as a force over the second half of the step.
   void add_event_impulses(State& state) const { add_event_impulses(state.layout, state.f); }
@@ -83,7 +83,7 @@ class ContactTerm final : public Term {
   void set_absent(const std::vector<std::uint8_t>& absent) { contacts_.set_absent(absent); }
 
   /// See Simulation::inherit.
-  void inherit(const FrictionMemory& memory) { contacts_.inherit(memory); }
+  void inherit(const FrictionMemory& memory) { contacts_.set_memory(memory); }
 
   /// What was wrong with the contact of a body with itself in one of the last looks, in words.
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
@@ -113,7 +113,7 @@ class ContactTerm final : public Term {
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
   StrideWatch strides_;
-  std::vector<double> with_event_impulses_;            // all forces but those of dashpots
+  std::vector<double> with_event_impulses_;    // all forces but those of dashpots
   std::vector<Dashpots::Motion::Rail> rails_;  // servo walls
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;

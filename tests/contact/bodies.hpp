@@ -138,8 +138,8 @@ struct Bodies {
     lambda.assign(pose.size() / 3, 0);
     contacts->add_forces({rigid_force, node_force, lambda});
   }
-  void slide(double dt) {
-    contacts->slide(kinematics(), dt);
+  void update_friction(double dt) {
+    contacts->update_friction(kinematics(), dt);
     find_forces();
     if (contacts->damped() && dt > 0) add_dashpots(dt);
   }
@@ -178,7 +178,7 @@ struct Bodies {
 /// The largest share of the depth at which a potential ends; 1 is beyond its end.
 inline double deepest_share(const Contacts& contacts) {
   double share = 0;
-  for (const Contact& c : contacts.contacts()) share = std::max(share, c.share);
+  for (const Contact& c : contacts.contacts()) share = std::max(share, c.relative_depth);
   return share;
 }
 

@@ -34,7 +34,7 @@ struct OutlinePair : Bodies {
     add_ring(b, r_b, material[1]);
     join();
     evaluate();
-    slide(0);
+    update_friction(0);
   }
   /// Force on a body and moment about the origin, by its nodes.
   [[nodiscard]] Resultant on(BodyIndex body) const {
@@ -73,7 +73,7 @@ inline double roof_share(const OutlinePair& pair, const std::vector<double>& fir
   const OutlineSurfaces& o = pair.contacts->surfaces().outlines();
   double share = 0;
   for (const Contact& c : pair.contacts->contacts()) {
-    const double depth = c.share * o.depth[c.b];
+    const double depth = c.relative_depth * o.depth[c.b];
     share = std::max(share, depth / std::min(o.depth[c.b], first[c.b]));
   }
   return share;

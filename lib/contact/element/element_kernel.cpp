@@ -20,7 +20,7 @@ ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
   tangential_.clear(static_cast<size_t>(surfaces.body_count()));
 }
 
-void ElementKernel::take(std::span<const BoxPair> pairs) { pairs_.take(pairs); }
+void ElementKernel::set_pairs(std::span<const BoxPair> pairs) { pairs_.set_pairs(pairs); }
 
 std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
   if (surfaces_.is_rigid(i)) return {};
@@ -45,7 +45,8 @@ void ElementKernel::evaluate() {
     // boundary, so it gives no bounds of the penetration.
     contact.depth = 0, contact.at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
-      contact.share = 1;  // the following pairs are not evaluated, as the state is out of range
+      // The following pairs are not evaluated, as the state is out of range.
+      contact.relative_depth = 1;
       return;
     }
     add_touch(pair);
@@ -59,7 +60,7 @@ ContactSummary ElementKernel::summary() const {
   ContactSummary summary{.count = static_cast<int>(contacts_.size())};
   for (const Contact& contact : contacts_) {
     summary.deepest = HUGE_VAL;
-    if (!(contact.share < 1)) summary.share = 1;  // a NaN counts as out of range
+    if (!(contact.relative_depth < 1)) summary.relative_depth = 1;  // a NaN counts as out of range
   }
   return summary;
 }
@@ -110,13 +111,13 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
                                        Depths& work) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   contact_patches(shapes.view(a), shapes.view(b), surfaces_.between(a, b), work.workspace,
-                  work.runs, work.patches);
+                  work.segments, work.patches);
   const Vec2 place = surfaces_.reference(a);
   const auto deepest = [&](bool of_a) {
     double most = floor;
-    for (const BoundarySegment& run : work.runs) {
-      if (run.of_a != of_a || !outer(of_a ? a : b, run.edge)) continue;
-      most = work.boundary.largest(place + run.start, place + run.end, most);
+    for (const BoundarySegment& segment : work.segments) {
+      if (segment.of_a != of_a || !outer(of_a ? a : b, segment.edge)) continue;
+      most = work.boundary.largest(place + segment.start, place + segment.end, most);
     }
     return most;
   };
@@ -141,9 +142,9 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
 
 ContactFault ElementKernel::fault(const Contact& c) const {
   const bool bent = !convex(c.a) || !convex(c.b);
-  const SurfaceIndex at = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
+  const SurfaceIndex place = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
   return {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element, surfaces_.body(c.a),
-          surfaces_.body(c.b), surfaces_.reference(at)};
+          surfaces_.body(c.b), surfaces_.reference(place)};
 }
 
 void ElementKernel::add_touch(const PairInTouch& result) {
@@ -160,8 +161,8 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
   touches_.push_back({a, b, force, point, offset, k * pair.weight});
-  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
-    find_corners(i, at, of_a_);
+  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& place) {
+    find_corners(i, place, of_a_);
     distribute(of_a_, f, normal_);
   };
   if (distribution_ == ForceDistribution::resultant) {
@@ -170,10 +171,10 @@ void ElementKernel::add_touch(const PairInTouch& result) {
     return;
   }
   const PlacedShapes& shapes = surfaces_.shapes();
-  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
-  for (const BoundarySegment& run : runs_) {
-    add(a, k * run.force, run.centre);
-    add(b, -k * run.force, run.centre + offset);
+  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, segments_, patches_);
+  for (const BoundarySegment& segment : segments_) {
+    add(a, k * segment.force, segment.centre);
+    add(b, -k * segment.force, segment.centre + offset);
   }
 }
 
@@ -189,9 +190,9 @@ void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& cor
   interpolation_weights(corners.ring, corners.weights);
 }
 
-void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& to) {
+void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& sum) {
   for (size_t k = 0; k < corners.nodes.size(); ++k) {
-    to.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
+    sum.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
   }
 }
 
@@ -210,7 +211,7 @@ Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners
   return sum;
 }
 
-double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+double ElementKernel::update_friction(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!table_.rough()) return 0;
   const double power_before = power(tangential_, now);
   ContactWalk<const Spring> walk = memory.before(element_kernel);
@@ -235,14 +236,15 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
     memory.keep({key, t.spring, spring.stiffness, tangent, old.push});
     t.friction = t.spring * tangent;
-    const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+    const auto add_friction = [&](SurfaceIndex i, const Vec2& f, const Vec2& point,
+                                  const Corners& corners) {
       Resultant& sum = tangential_.sums[surfaces_.body(i)];
       sum.force += f;
       if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
-      distribute(at, f, tangential_);
+      distribute(corners, f, tangential_);
     };
-    on(t.a, t.friction, t.point, of_a_);
-    on(t.b, -t.friction, point_b, of_b_);
+    add_friction(t.a, t.friction, t.point, of_a_);
+    add_friction(t.b, -t.friction, point_b, of_b_);
   }
   return dt / 2 * (power_before + power(tangential_, now));
 }
@@ -252,14 +254,14 @@ void ElementKernel::find_damped_pairs() {
   damped_pairs_.clear();
   pair_of_.resize(touches_.size());
   std::pair<BodyIndex, BodyIndex> last(-1, -1);
-  for (const BodyTouch& of : body_touches_) {
-    if (const std::pair bodies(of.a, of.b); bodies != last) {
+  for (const BodyTouch& body_touch : body_touches_) {
+    if (const std::pair bodies(body_touch.a, body_touch.b); bodies != last) {
       damped_pairs_.emplace_back();
       last = bodies;
     }
     DampedPair& pair = damped_pairs_.back();
-    const Touch& t = touches_[static_cast<size_t>(of.touch)];
-    pair_of_[static_cast<size_t>(of.touch)] = damped_pairs_.size() - 1;
+    const Touch& t = touches_[static_cast<size_t>(body_touch.touch)];
+    pair_of_[static_cast<size_t>(body_touch.touch)] = damped_pairs_.size() - 1;
     pair.resistance += t.stiffness, pair.stiffness += t.spring_stiffness;
     pair.force += t.force;
     pair.sizes += t.force.norm();
@@ -269,7 +271,7 @@ void ElementKernel::find_damped_pairs() {
 
 // The ratio of critical damping refers to the two bodies as rigid ones, with the stiffness of all
 // touches between them.
-void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
+void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& dashpots) {
   find_damped_pairs();
   for (const Touch& t : touches_) {
     const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
@@ -285,21 +287,22 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
                               surfaces_.mobility(body_b, now, place, along));
     };
     const Vec2 normal = t.force / size, across(-normal.y(), normal.x());
-    to.add({body_a,
-            body_b,
-            normal,
-            {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction),
-                             size, size / t.stiffness}},
-            t.spring_stiffness *
-                time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
-            t.spring,
-            law.friction.coefficient});
+    dashpots.add(
+        {body_a,
+         body_b,
+         normal,
+         {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction), size,
+                          size / t.stiffness}},
+         t.spring_stiffness *
+             time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
+         t.spring,
+         law.friction.coefficient});
     const auto add_side = [&](SurfaceIndex i, const Vec2& point, double sign) {
-      if (surfaces_.is_rigid(i)) return to.add_point(i, point, sign * normal, sign * across);
+      if (surfaces_.is_rigid(i)) return dashpots.add_point(i, point, sign * normal, sign * across);
       find_corners(i, point, of_a_);
       for (size_t k = 0; k < of_a_.nodes.size(); ++k) {
-        const double share = sign * of_a_.weights[k];
-        to.add_node(of_a_.nodes[k], share * normal, share * across);
+        const double weight = sign * of_a_.weights[k];
+        dashpots.add_node(of_a_.nodes[k], weight * normal, weight * across);
       }
     };
     add_side(t.a, t.point, 1);
@@ -307,17 +310,17 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
   }
 }
 
-void ElementKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) {
+void ElementKernel::keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) {
   auto spring = memory.springs_of(element_kernel).begin();
   for (Touch& t : touches_) {
     const PairLaw& law = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
     if (!law.damped() || !has_direction(t) || !(t.stiffness > 0)) continue;
     const Vec2 normal = t.force / t.force.norm();
-    t.push = from.normal_force(next) * normal;
-    t.drag = from.tangential_force(next) * Vec2(-normal.y(), normal.x());
+    t.push = dashpots.normal_force(next) * normal;
+    t.drag = dashpots.tangential_force(next) * Vec2(-normal.y(), normal.x());
     if (law.rough()) {
       while (std::pair(spring->key.a, spring->key.b) < std::pair(t.a, t.b)) ++spring;
-      spring->push = from.normal_force(next);
+      spring->push = dashpots.normal_force(next);
     }
     ++next;
   }
@@ -332,8 +335,8 @@ double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   }
   for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
     const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
-    const Resultant& on = forces.sums[i];
-    sum += on.force.x() * v[0] + on.force.y() * v[1] + on.moment * v[2];
+    const Resultant& resultant = forces.sums[i];
+    sum += resultant.force.x() * v[0] + resultant.force.y() * v[1] + resultant.moment * v[2];
   }
   return sum;
 }
@@ -375,7 +378,7 @@ double ElementKernel::rate(std::span<const double> node_mass) const {
     }
   }
   double worst = 0;
-  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+  for (const auto& [node, body, length] : surfaces_.elements().tributary_lengths()) {
     const double mass = node_mass[node];
     if (!(mass > 0) || other[body] == 0) continue;
     worst = std::max(

@@ -30,16 +30,16 @@ class ElementKernel final : public Kernel {
   ElementKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 double thickness, int threads);
 
-  void take(std::span<const BoxPair> pairs) override;
+  void set_pairs(std::span<const BoxPair> pairs) override;
   void evaluate() override;
   [[nodiscard]] ContactSummary summary() const override;
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
-  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  double update_friction(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void add_forces(const ForceViews& forces) override;
-  void add_dashpots(const Kinematics& now, Dashpots& to) override;
-  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
+  void add_dashpots(const Kinematics& now, Dashpots& dashpots) override;
+  void keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) override;
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override { return thickness_ * pairs_.energy(table_); }
@@ -90,7 +90,7 @@ class ElementKernel final : public Kernel {
   void find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const;
   [[nodiscard]] Vec2 velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
                                  const Kinematics& now) const;
-  static void distribute(const Corners& corners, const Vec2& force, Forces& to);
+  static void distribute(const Corners& corners, const Vec2& force, Forces& sum);
   /// k_n times the thickness, N/m.
   [[nodiscard]] double stiffness(SurfaceIndex a, SurfaceIndex b) const {
     return table_.between(surfaces_.body(a), surfaces_.body(b)).normal_stiffness * thickness_;
@@ -101,7 +101,7 @@ class ElementKernel final : public Kernel {
   /// Memory of find_penetration.
   struct Depths {
     PatchWorkspace workspace;
-    std::vector<BoundarySegment> runs;
+    std::vector<BoundarySegment> segments;
     std::vector<PairIntegral> patches;
     BoundaryDistance boundary;
   };
@@ -142,7 +142,7 @@ class ElementKernel final : public Kernel {
   PairPeak largest_force_;
   Forces normal_, tangential_;
   PatchWorkspace workspace_;
-  std::vector<BoundarySegment> runs_;
+  std::vector<BoundarySegment> segments_;
   std::vector<PairIntegral> patches_;
   Depths depths_;
   Corners of_a_, of_b_;

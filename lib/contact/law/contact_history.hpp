@@ -44,10 +44,10 @@ std::span<Record> records_between(std::span<Record> records, const ContactKey& f
   const auto before = [](const ContactKey& one, const ContactKey& other) {
     return is_before(one, other);
   };
-  const auto at = [&](const ContactKey& key) {
+  const auto position_of = [&](const ContactKey& key) {
     return std::ranges::lower_bound(records, key, before, &Record::key);
   };
-  return {at(first), at(end)};
+  return {position_of(first), position_of(end)};
 }
 /// The records of the pair of a key.
 template <class Record>
@@ -154,7 +154,7 @@ class ContactHistory {
   [[nodiscard]] std::span<const Record> before() const { return before_.all(); }
 
   /// Replaces the records of this step, at a restart.
-  void inherit(std::vector<Record> records) {
+  void restore(std::vector<Record> records) {
     now_.records = std::move(records);
     now_.size = now_.records.size();
   }

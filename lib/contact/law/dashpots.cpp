@@ -154,7 +154,7 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
 // closed.
 void Dashpots::find_rates(double dt) {
   for (size_t i = 0; i < dashpots_.size(); ++i) {
-    const Dashpot& of = dashpots_[i];
+    const Dashpot& dashpot = dashpots_[i];
     Solved& solved = solved_[i];
     std::array<double, 3> before{}, kick{};
     for (const Entry& e : entries(i)) {
@@ -164,17 +164,18 @@ void Dashpots::find_rates(double dt) {
         before[k] += e.part[k] * v;
       }
     }
-    const auto share_of = [&](double approach, const Dashpot::Normal& normal) {
+    const auto closed_fraction = [&](double approach, const Dashpot::Normal& normal) {
       return approach * dt > normal.depth ? normal.mean * normal.depth / (approach * dt) : .5;
     };
-    double share = 0;  // larger fraction of the step for which one end of the contact is closed
+    double fraction = 0;  // larger fraction of the step for which one end of the contact is closed
     for (size_t k = 0; k < 2; ++k) {
-      const Dashpot::Normal& across = of.across[k];
-      const double both = share_of(-before[k], across) + share_of(before[k] + kick[k], across);
-      if (across.rate > 0) share = std::max(share, both);
+      const Dashpot::Normal& across = dashpot.across[k];
+      const double both =
+          closed_fraction(-before[k], across) + closed_fraction(before[k] + kick[k], across);
+      if (across.rate > 0) fraction = std::max(fraction, both);
       solved.along[k] = {0, across.rate * both * dt, before[k]};
     }
-    solved.along[2] = {0, of.tangential_rate * share * dt, before[2]};
+    solved.along[2] = {0, dashpot.tangential_rate * fraction * dt, before[2]};
     for (const Entry& e : entries(i)) {
       double& reach = moved_[e.moved].reach;
       for (size_t k = 0; k < 3; ++k) reach += solved.along[k].gain * std::abs(e.part[k]);
@@ -209,7 +210,7 @@ void Dashpots::find_gains() {
 // Solves for the dashpots of one contact with all others fixed. Returns the largest change of an
 // impulse, N s.
 double Dashpots::relax(size_t i, double dt) {
-  const Dashpot& of = dashpots_[i];
+  const Dashpot& dashpot = dashpots_[i];
   Solved& solved = solved_[i];
   std::array<double, 3> rate{};
   for (const Entry& e : entries(i)) {
@@ -224,11 +225,11 @@ double Dashpots::relax(size_t i, double dt) {
     change[k] = next - along.impulse;
     along.impulse = next;
   };
-  follow(0, rate[0], -of.across[0].pressed * dt, HUGE_VAL);
-  follow(1, rate[1] + solved.d01 * change[0], -of.across[1].pressed * dt, HUGE_VAL);
-  const double pressed = (of.across[0].pressed + of.across[1].pressed) * dt +
+  follow(0, rate[0], -dashpot.across[0].pressed * dt, HUGE_VAL);
+  follow(1, rate[1] + solved.d01 * change[0], -dashpot.across[1].pressed * dt, HUGE_VAL);
+  const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
                          solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = friction_limit(of.coefficient, pressed), spring = of.spring * dt;
+  const double limit = friction_limit(dashpot.coefficient, pressed), spring = dashpot.spring * dt;
   follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
          limit - spring);
   for (const Entry& e : entries(i)) {
@@ -245,8 +246,8 @@ void Dashpots::solve(const Motion& motion, double dt) {
   find_rates(dt);
   find_gains();
   double pressed = 0;
-  for (const Dashpot& of : dashpots_) {
-    pressed = std::max(pressed, of.across[0].pressed + of.across[1].pressed);
+  for (const Dashpot& dashpot : dashpots_) {
+    pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0, largest = pressed * dt;
@@ -288,9 +289,9 @@ void Dashpots::sum_forces(const Motion& motion, double dt) {
   lost_ = -dt / 2 * power;
 }
 
-void Dashpots::add_forces(std::span<double> to) const {
+void Dashpots::add_forces(std::span<double> forces) const {
   for (const Moved& moved : moved_) {
-    if (moved.coordinate < to.size()) to[moved.coordinate] += moved.force;
+    if (moved.coordinate < forces.size()) forces[moved.coordinate] += moved.force;
   }
 }
 

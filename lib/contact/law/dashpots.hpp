@@ -115,7 +115,7 @@ class Dashpots {
   }
   [[nodiscard]] Vec2 force_on_a(size_t i) const;
   /// Adds the dashpot forces to the first forces.size() coordinates, N and N m.
-  void add_forces(std::span<double> to) const;
+  void add_forces(std::span<double> forces) const;
   /// The energy that the dashpots remove from the bodies, J: in the second half of the last step,
   /// and in the first half of the next one with the velocities `velocity`.
   [[nodiscard]] double lost_before() const { return lost_; }

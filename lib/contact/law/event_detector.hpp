@@ -22,7 +22,7 @@ struct TouchingPair {
   double length;
   double size, moment;  ///< normal force, N, and its moment over a length of the bodies, N; 0 if
                         ///< they are not known
-  bool deep = false;
+  bool is_saturated = false;
 
   [[nodiscard]] bool same_pair(const TouchingPair& other) const {
     return a == other.a && b == other.b;
@@ -43,7 +43,7 @@ struct TouchingPair {
   }
   void fields(Archive& archive) {
     archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
-    archive("size", size)("moment", moment)("deep", deep);
+    archive("size", size)("moment", moment)("deep", is_saturated);
   }
 };
 
@@ -76,7 +76,7 @@ class EventDetector {
     auto old = before_.begin();
     const auto judge = [&](const TouchingPair& pair, bool same, double change, bool is_now,
                            bool was_before) {
-      if (pair.deep) return;
+      if (pair.is_saturated) return;
       PairChange found{pair.a, pair.b, 1, is_now ? static_cast<int>(&pair - now_.data()) : -1,
                        was_before ? static_cast<int>(old - before_.begin()) : -1};
       if (change > sudden(pair.a, pair.b)) {
@@ -91,7 +91,7 @@ class EventDetector {
         judge(*old, false, old->length, false, true);
       }
       const bool known = old != before_.end() && old->same_pair(pair);
-      if (!known || (!old->deep && !old->same_force(pair))) {
+      if (!known || (!old->is_saturated && !old->same_force(pair))) {
         judge(pair, known && old->same_vertices(pair),
               std::abs(pair.length - (known ? old->length : 0)), true, known);
       }

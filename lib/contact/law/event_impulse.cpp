@@ -26,7 +26,7 @@ double bounded_ratio(double x, double y) {
 
 }  // namespace
 
-int find_event_samples(std::span<const double> events, int panels,
+int find_event_samples(std::span<const double> kinks, int panels,
                        std::vector<EventSample>& samples) {
   samples.assign(1, {0});
   double from = 0, last_part = 0;
@@ -42,7 +42,7 @@ int find_event_samples(std::span<const double> events, int panels,
     }
     from = samples.back().theta = until;
   };
-  for (const double event : events) integrate_until(event);
+  for (const double kink : kinks) integrate_until(kink);
   integrate_until(1);
   const size_t count = samples.size();
 
@@ -50,7 +50,7 @@ int find_event_samples(std::span<const double> events, int panels,
   // A kink exactly at the start, as where two bodies just touch at first, counts to this step, as
   // one exactly at the end does; so this step and the one before use the same slope. With many
   // panels the force may bend at once, and the slopes use samples of their own.
-  const double first_part = (events.empty() ? 1 : events.front()) / panels;
+  const double first_part = (kinks.empty() ? 1 : kinks.front()) / panels;
   const bool own = panels >= kManyPanels;
   for (size_t k = 0; k < 5; ++k) {
     const double theta = static_cast<double>(k) * kShortest / 4;
@@ -82,7 +82,7 @@ double Dynamics::lost_in_bend(double dt) const {
 }
 
 void EventResidual::add(const EventForces& f, const ImpulseParts& parts, const OtherForces& others,
-                    double inverse_mass, double velocity) {
+                        double inverse_mass, double velocity) {
   const double first = f.first + others.first;
   const double last = f.last + others.last;
   const double p0 = -dt_ * first / 2;
@@ -134,7 +134,7 @@ double EventResidual::End::energy() const {
   return -bounded_ratio(aside, along) / 12 + bounded_ratio(pull, along) / 48;
 }
 
-double EventResidual::share() const {
+double EventResidual::correction() const {
   const double energy = this->energy();
   // Where the motion is about to reverse, no impulse along the force changes the energy.
   const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);

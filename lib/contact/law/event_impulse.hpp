@@ -57,7 +57,7 @@ inline constexpr int kFewPanels = 2, kManyPanels = 4;
 /// order 4 on that side of the nearest kink that has none. The samples of the slopes may lie
 /// slightly beyond the step; the others come first, from theta = 0 to 1. Returns the number of the
 /// latter.
-int find_event_samples(std::span<const double> events, int panels,
+int find_event_samples(std::span<const double> kinks, int panels,
                        std::vector<EventSample>& samples);
 
 /// The force of a pair on one coordinate in a step.
@@ -130,7 +130,7 @@ class EventResidual {
   /// The residual R, J.
   [[nodiscard]] double energy() const { return energy_ + dt_ * (last_.energy() - first_.energy()); }
   /// The impulse over h that removes the residual, as a multiple of the mean force.
-  [[nodiscard]] double share() const;
+  [[nodiscard]] double correction() const;
 
  private:
   /// Sums at one end of the step.

@@ -84,10 +84,10 @@ class FrictionMemory {
                                                  const ContactKey& end) const {
     return ContactWalk(records_between(springs_.before(), first, end));
   }
-  void add(const PairLedger& book) {
-    energy_ += book.energy;
-    loss_ += book.loss;
-    damping_loss_ += book.damping_loss;
+  void add(const PairLedger& ledger) {
+    energy_ += ledger.energy;
+    loss_ += ledger.loss;
+    damping_loss_ += ledger.damping_loss;
   }
   /// Stores a spring for the next step. Springs come in ascending order of their keys.
   void keep(const Spring& spring) {
@@ -119,8 +119,8 @@ class FrictionMemory {
   [[nodiscard]] std::span<Spring> springs_of(int law) {
     return records_of_law(springs_.now(), law);
   }
-  [[nodiscard]] ContactHistory<PatchSegment>& runs() { return runs_; }
-  [[nodiscard]] const ContactHistory<PatchSegment>& runs() const { return runs_; }
+  [[nodiscard]] ContactHistory<PatchSegment>& segments() { return segments_; }
+  [[nodiscard]] const ContactHistory<PatchSegment>& segments() const { return segments_; }
   /// Elastic energy of the springs, J.
   [[nodiscard]] double energy() const { return energy_; }
   /// Energy dissipated by friction since the start, J.
@@ -129,20 +129,20 @@ class FrictionMemory {
   void damp(double energy) { damping_loss_ += energy; }
   [[nodiscard]] double damping_loss() const { return damping_loss_; }
   /// Replaces the springs and boundary segments, in ascending order of their keys, at a restart.
-  void inherit(std::vector<Spring> springs, std::vector<PatchSegment> runs);
+  void restore(std::vector<Spring> springs, std::vector<PatchSegment> segments);
   /// Sets the dissipated energies to zero.
   void start_ledger() { loss_ = damping_loss_ = 0; }
 
   void fields(Archive& archive) {
     springs_.fields(archive, "springs");
-    runs_.fields(archive, "runs");
+    segments_.fields(archive, "runs");
     archive("energy", energy_)("balanced_energy", balanced_)("friction_loss", loss_)("damping_loss",
                                                                                      damping_loss_);
   }
 
  private:
   ContactHistory<Spring> springs_;
-  ContactHistory<PatchSegment> runs_;
+  ContactHistory<PatchSegment> segments_;
   double energy_ = 0;                          // energy of all springs, J
   double balanced_ = 0, balanced_before_ = 0;  // energy of the springs whose losses no law books, J
   double loss_ = 0, damping_loss_ = 0;         // J

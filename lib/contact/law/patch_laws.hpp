@@ -85,7 +85,7 @@ struct PatchFriction {
   Real spring = Real(0.), lost = Real(0.);  ///< force of the spring, N; energy that it loses, J
   Real stiffness = Real(0.);                ///< of the spring, N/m
   VectorOf<Real> tangent;  ///< direction of the force; zero if the normal force has no direction
-  BodyStiffnessOf<Real> held_a, held_b;  ///< stiffness of the spring for each body
+  BodyStiffnessOf<Real> body_stiffness_a, body_stiffness_b;  ///< of the spring for each body
 };
 
 /// Updates the friction spring of a patch, which acts at right angles to the normal force (Eqs.
@@ -112,8 +112,8 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   const Real power_before = p.friction_before.power(p.rate);
   const Real slip_before = select(p.spring * p.spring > Real(0.), power_before / p.spring, slip);
   const Real kept = select(k < p.stiffness_before, k / p.stiffness_before, Real(1.)) * p.spring;
-  const Real share = closed_fraction(p, dt) * Real(dt);
-  const Real next = spring.after(kept, Real(.5) * (slip + slip_before) * share);
+  const Real duration = closed_fraction(p, dt) * Real(dt);
+  const Real next = spring.after(kept, Real(.5) * (slip + slip_before) * duration);
   friction.spring = select(p.has_direction, next, Real(0.));
   friction.stiffness = k;
   // The spring loses the energy that it takes from the bodies and does not store.
@@ -122,10 +122,11 @@ APOTHEM_INLINE void rub(const PatchStep<Real>& p, double dt, PatchFriction<Real>
   friction.tangent = {select(p.has_direction, tangent.x, Real(0.)),
                       select(p.has_direction, tangent.y, Real(0.))};
   friction.force = p.force_at_point(friction.spring * tangent).where(p.has_direction);
-  friction.held_a.add(k, friction.tangent.x, friction.tangent.y,
-                      select(p.has_direction, p.point.cross(tangent), Real(0.)));
-  friction.held_b.add(k, friction.tangent.x, friction.tangent.y,
-                      select(p.has_direction, (p.point + p.between).cross(tangent), Real(0.)));
+  friction.body_stiffness_a.add(k, friction.tangent.x, friction.tangent.y,
+                                select(p.has_direction, p.point.cross(tangent), Real(0.)));
+  friction.body_stiffness_b.add(
+      k, friction.tangent.x, friction.tangent.y,
+      select(p.has_direction, (p.point + p.between).cross(tangent), Real(0.)));
 }
 
 }  // namespace apothem

@@ -64,8 +64,8 @@ double rate_bound_of(const BodyStiffness& stiffness, const std::array<double, 3>
 /// the tributary length `tributary_length` (m; half of the edges at it) that touches potentials
 /// whose slopes 1/r_c and 1/r_t have the sum `slopes`, 1/m (docs/theory.md, Step). `stiffness` is
 /// k_n times the thickness, N/m. With a mass of 1 the result is a stiffness in N/m.
-inline double node_rate(double stiffness, double slopes, double share, double mass = 1) {
-  return 2 * stiffness * slopes * share / mass;
+inline double node_rate(double stiffness, double slopes, double tributary_length, double mass = 1) {
+  return 2 * stiffness * slopes * tributary_length / mass;
 }
 
 }  // namespace apothem

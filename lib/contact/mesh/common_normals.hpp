@@ -54,29 +54,29 @@ class CommonNormals {
 
  private:
   /// The place of a spring along its closed line.
-  struct Place {
+  struct SpringPlace {
     std::int32_t loop;
     BodyIndex other;
-    double at;  // position along the line, m
+    double arc_length;  // position along the line, m
     std::int32_t spring;
     double depth = 0;      // largest depth nearby, reduced with the distance, m
     double sizes = 0;      // sum of the magnitudes of the normal forces of the neighbourhood, N
     double cancelled = 0;  // part of the own normal force that cancels, N
-    double offered = 0;    // fraction of a neighbour's growth that this spring can supply
+    double offered_fraction = 0;  // fraction of a neighbour's growth that this spring can supply
   };
 
   void find_places(const std::vector<SpringContact>& springs);
   void find_neighbourhood(std::vector<SpringContact>& springs, size_t first, size_t end);
-  void hand_over(std::vector<SpringContact>& springs, size_t first, size_t end);
+  void transfer_forces(std::vector<SpringContact>& springs, size_t first, size_t end);
   template <class F>
   void each_neighbour(size_t first, size_t end, size_t i, const F& f) const;
 
   const OutlineSurfaces& outlines_;
-  std::vector<double> at_;              // position of each vertex along its line, m
+  std::vector<double> arc_length_;      // position of each vertex along its line, m
   std::vector<double> perimeter_;       // length of each line, m
   std::vector<std::int32_t> loop_of_;   // closed line of each vertex
   std::vector<std::uint8_t> measured_;  // whether each line has been measured in this evaluation
-  std::vector<Place> places_;
+  std::vector<SpringPlace> places_;
   std::vector<double> added_;  // forces taken over from neighbours, N
   double deepest_ = 0;         // largest depth on the present line, m
 };

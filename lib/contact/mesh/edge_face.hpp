@@ -60,9 +60,9 @@ APOTHEM_INLINE EdgeFaceForces<Real> edge_face_forces(const Piece& p, const Real&
 /// squeezed to less than its collar. `regular_depth` is that of the face, `depth` that of the
 /// collar, m.
 template <class Real>
-APOTHEM_INLINE Real sure_depth(const Real& plain, const Real& depth) {
+APOTHEM_INLINE Real sure_depth(const Real& regular_depth, const Real& depth) {
   const Real half = Real(.5) * depth;
-  return select(half < plain, half, plain);
+  return select(half < regular_depth, half, regular_depth);
 }
 
 }  // namespace apothem

@@ -40,7 +40,8 @@ EdgeFaceBlocks::Key EdgeFaceBlocks::key_of(const EdgeFace& c) const {
   return {c.edge, o.bodies[o.body[c.edge]].is_rigid() ? c.face : o.body[c.face]};
 }
 
-void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws) {
+void EdgeFaceBlocks::set_candidates(std::span<const EdgeFace> candidates,
+                                    std::span<const EdgeFaceLaw> laws) {
   units_.clear(), blocks_.clear(), groups_.clear(), laws_.clear();
   most_blocks_ = 0;
   number_of_law_.assign(laws.size(), -1);
@@ -66,8 +67,8 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
   for (int worker = 0; worker < threads.count(); ++worker) {
     for (int u = threads.first_of(units, worker); u < threads.first_of(units, worker + 1); ++u) {
       for (std::int32_t i = units_[u].first; i < units_[u].end; ++i) {
-        for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
-          for (const std::int32_t v : *of) {
+        for (const EdgeFaceBlock::Vertices* list : vertices(blocks_[i])) {
+          for (const std::int32_t v : *list) {
             int& owner = owners_[static_cast<size_t>(v)];
             owner = owner == kNobody || owner == worker ? worker : kSeveral;
           }
@@ -76,8 +77,8 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
     }
   }
   for (size_t i = 0; i < blocks_.size(); ++i) {
-    for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
-      if (std::ranges::any_of(*of, [&](std::int32_t v) { return is_shared(v); }))
+    for (const EdgeFaceBlock::Vertices* list : vertices(blocks_[i])) {
+      if (std::ranges::any_of(*list, [&](std::int32_t v) { return is_shared(v); }))
         has_shared_[i] = 1;
     }
   }
@@ -86,7 +87,7 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
 void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                               std::span<const EdgeFaceLaw> laws) {
   const OutlineSurfaces& o = outlines_;
-  const auto size = [](const auto& of) { return static_cast<std::int32_t>(of.size()); };
+  const auto size = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
   EdgeFaceUnit unit{};
   unit.first = size(blocks_), unit.first_law = size(laws_), unit.first_group = size(groups_);
   unit.first_candidate = first, unit.candidates = size(candidates);

@@ -73,7 +73,7 @@ class EdgeFaceBlocks {
   explicit EdgeFaceBlocks(const OutlineSurfaces& outlines);
 
   /// Sets the candidates, which ascend. EdgeFace::pair is an index of `laws`.
-  void take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws);
+  void set_candidates(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws);
   /// Finds the vertices that belong to units of several threads, if these divide the units.
   void divide(const Threads& threads);
 

@@ -21,10 +21,10 @@ using EdgeFacePushes = std::array<FourOf<double>, kBlock>;
 
 /// The forces on the two ends of an edge.
 using EndForces = std::array<double, 2>;
-APOTHEM_INLINE void add(const EndForces& force, EndForces& to) {
-  using Pair = double __attribute__((vector_size(16)));
-  const Pair sum = Pair{to[0], to[1]} + Pair{force[0], force[1]};
-  to[0] = sum[0], to[1] = sum[1];
+APOTHEM_INLINE void add(const EndForces& force, EndForces& sum) {
+  using TwoNumbers = double __attribute__((vector_size(16)));
+  const TwoNumbers both = TwoNumbers{sum[0], sum[1]} + TwoNumbers{force[0], force[1]};
+  sum[0] = both[0], sum[1] = both[1];
 }
 
 /// Calls f(edge, EndForces) for the edges of a block and the bases of its faces.
@@ -44,18 +44,18 @@ namespace edge_face_detail {
 using Pack = PackOf<kBlock>;
 
 /// Evaluates one candidate that may reach the saturated region of the collar.
-inline void find_deep(const OutlineSurfaces& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
-                      unsigned& met, EdgeFacePushes& pushes, double& deepest,
-                      EdgeFaceCrossings& crossings) {
+inline void find_general(const OutlineSurfaces& o, const EdgeFaceBlock& block, size_t l,
+                         EdgeFaceTouch& touch, unsigned& met, EdgeFacePushes& pushes,
+                         double& deepest, EdgeFaceCrossings& all_crossings) {
   const std::int32_t p = block.p[l], q = block.q[l], a = block.a[l];
   const CollarFace<double> face = o.face(a);
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  if (!general_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
+  CollarCrossings<double> crossings;
+  if (!general_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, crossings)) return;
   const EdgeFaceForces<double> f =
       edge_face_forces(piece, block.slope[l], o.length[p], 1 / face.length);
   pushes[l] = {f.edge_start, f.edge_end, f.face_start, f.face_end};
-  if (top.count > 0) crossings.emplace_back(EdgeFace{p, a}, top);
+  if (crossings.count > 0) all_crossings.emplace_back(EdgeFace{p, a}, crossings);
   if (piece.deepest <= block.nothing[l]) return;
   met |= 1U << l;
   touch.from[l] = piece.from, touch.to[l] = piece.to;
@@ -75,29 +75,37 @@ APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all,
   using Vertices = EdgeFaceBlock::Vertices;
   const Pack zero(0.), one(1.);
   Pack deepest(0.);  // squares of upper bounds
-  double deep_deepest = 0;
+  double general_deepest = 0;
   int touching = 0;
   for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.forces()[i].setZero();
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     const EdgeFaceBlock& block = all.blocks()[i];
-    const auto at = [](const std::vector<double>& of, const Vertices& v) APOTHEM_LAMBDA {
+    const auto gathered = [](const std::vector<double>& values, const Vertices& v) APOTHEM_LAMBDA {
       return pack_of<kBlock>([&](size_t l)
-                                 APOTHEM_LAMBDA { return of[static_cast<size_t>(v[l])]; });
+                                 APOTHEM_LAMBDA { return values[static_cast<size_t>(v[l])]; });
     };
-    const CollarFace<Pack> face{at(o.x, block.a),      at(o.y, block.a),  at(o.x, block.b),
-                                at(o.y, block.b),      at(o.tx, block.a), at(o.ty, block.a),
-                                at(o.length, block.a), at(o.mx, block.a), at(o.my, block.a),
-                                at(o.mx, block.b),     at(o.my, block.b), at(o.depth, block.a),
-                                at(o.plain, block.a)};
-    const Pack px = at(o.x, block.p), py = at(o.y, block.p);
-    const Pack qx = at(o.x, block.q), qy = at(o.y, block.q);
+    const CollarFace<Pack> face{gathered(o.x, block.a),
+                                gathered(o.y, block.a),
+                                gathered(o.x, block.b),
+                                gathered(o.y, block.b),
+                                gathered(o.tx, block.a),
+                                gathered(o.ty, block.a),
+                                gathered(o.length, block.a),
+                                gathered(o.mx, block.a),
+                                gathered(o.my, block.a),
+                                gathered(o.mx, block.b),
+                                gathered(o.my, block.b),
+                                gathered(o.depth, block.a),
+                                gathered(o.regular_depth, block.a)};
+    const Pack px = gathered(o.x, block.p), py = gathered(o.y, block.p);
+    const Pack qx = gathered(o.x, block.q), qy = gathered(o.y, block.q);
     const CollarPieces<Pack> piece = collar_pieces(face, px, py, qx, qy);
-    unsigned deep = bits(piece.deep) & block.lanes;
+    unsigned general = bits(piece.general) & block.lanes;
     std::uint8_t& met = all.met()[i];
     met = 0;
-    if ((bits(piece.met) | deep) == 0) continue;
+    if ((bits(piece.met) | general) == 0) continue;
 
-    const Pack edge_length = at(o.length, block.p), scale = one / face.length;
+    const Pack edge_length = gathered(o.length, block.p), scale = one / face.length;
     const EdgeFaceForces<Pack> force =
         edge_face_forces(piece, Pack::load(block.slope.data()), edge_length, scale);
     const auto where = [&](const auto& mask, const Pack& x)
@@ -109,8 +117,8 @@ APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all,
 
     const auto contact = piece.met & !(piece.deepest <= Pack::load(block.nothing.data()));
     EdgeFaceTouch& touch = all.touches()[i];
-    const auto put = [&](EdgeFaceTouch::Numbers& to, const Pack& x)
-                         APOTHEM_LAMBDA { x.store(to.data()); };
+    const auto put = [&](EdgeFaceTouch::Numbers& numbers, const Pack& x)
+                         APOTHEM_LAMBDA { x.store(numbers.data()); };
     put(touch.from, where(contact, piece.from)), put(touch.to, where(contact, piece.to));
     put(touch.sum, where(contact, piece.sum)), put(touch.first, where(contact, piece.first));
     put(touch.deepest, where(contact, piece.deepest));
@@ -139,9 +147,9 @@ APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all,
     put(lower_y, select(at_edge, ex, face.tx) * lower);
 
     unsigned found = bits(contact);
-    for (; deep != 0; deep &= deep - 1) {
-      const auto l = static_cast<size_t>(std::countr_zero(deep));
-      edge_face_detail::find_deep(o, block, l, touch, found, pushes, deep_deepest, crossings);
+    for (; general != 0; general &= general - 1) {
+      const auto l = static_cast<size_t>(std::countr_zero(general));
+      edge_face_detail::find_general(o, block, l, touch, found, pushes, general_deepest, crossings);
       const bool edge = block.edge_is_lower[l] > 0;
       const std::int32_t line = edge ? block.p[l] : block.a[l];
       const double sum = edge ? pushes[l][0] + pushes[l][1] : pushes[l][2] + pushes[l][3];
@@ -161,8 +169,8 @@ APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all,
     push(i, pushes);
   }
   unit.touching = touching;
-  for (size_t l = 0; l < kBlock; ++l) deep_deepest = std::max(deep_deepest, deepest.v[l]);
-  unit.deepest = deep_deepest;
+  for (size_t l = 0; l < kBlock; ++l) general_deepest = std::max(general_deepest, deepest.v[l]);
+  unit.deepest = general_deepest;
 }
 
 }  // namespace apothem

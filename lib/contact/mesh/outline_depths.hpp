@@ -24,7 +24,7 @@ class OutlineDepths {
   [[nodiscard]] double of_piece(int edge, int face, const CollarPiece<double>& piece, double floor);
   /// The largest depth of all parts of an edge that lie inside a body, m, or `floor` if it is not
   /// larger.
-  [[nodiscard]] double of_edge(int edge, BodyIndex in, double floor);
+  [[nodiscard]] double of_edge(int edge, BodyIndex body, double floor);
 
  private:
   BoundaryDistance& boundary(BodyIndex body);

@@ -27,7 +27,7 @@ void join_neighbours(std::vector<TouchingPair>& list) {
     if (list[i].same_pair(list[last])) {
       list[last].inside_a += list[i].inside_a;
       list[last].length += list[i].length;
-      list[last].deep = list[last].deep || list[i].deep;
+      list[last].is_saturated = list[last].is_saturated || list[i].is_saturated;
     } else {
       list[++last] = list[i];
     }
@@ -40,47 +40,50 @@ void join_neighbours(std::vector<TouchingPair>& list) {
 // Lists the pairs that touch: first one entry for each sequence of contacts of a pair within a
 // unit, then one for each pair. Units do not depend on the number of threads, nor do sums over the
 // contacts of a unit.
-void OutlineEvents::find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& plateaus,
-                                 bool at_first) {
+void OutlineEvents::find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& saturated,
+                                  bool at_first) {
   const OutlineSurfaces& o = outlines_;
-  const auto add_unit = [&](const EdgeFaceUnit& unit, std::vector<TouchingPair>& runs) {
-    const size_t before = runs.size();
+  const auto add_unit = [&](const EdgeFaceUnit& unit, std::vector<TouchingPair>& sequences) {
+    const size_t before = sequences.size();
     blocks.each_contact(unit, [&](size_t i, size_t lane) {
       const EdgeFaceTouch& touch = blocks.touches()[i];
       const int edge = blocks.blocks()[i].p[lane], face = blocks.blocks()[i].a[lane];
       if (at_first && touch.deepest[lane] < kRoundOff * o.length[edge]) return;
       const auto [a, b] = std::minmax({o.body[edge], o.body[face]});
       const TouchingPair pair{a, b, 0, 0, 0, 0, 0};
-      if (runs.size() == before || !runs.back().same_pair(pair)) runs.push_back(pair);
-      if (touch.from[lane] == 0) runs.back().inside_a += scrambled(edge);
-      runs.back().length += (touch.to[lane] - touch.from[lane]) * o.length[edge];
+      if (sequences.size() == before || !sequences.back().same_pair(pair))
+        sequences.push_back(pair);
+      if (touch.from[lane] == 0) sequences.back().inside_a += scrambled(edge);
+      sequences.back().length += (touch.to[lane] - touch.from[lane]) * o.length[edge];
     });
   };
-  runs_.begin(threads_);
+  sequences_.begin(threads_);
   const std::span<const EdgeFaceUnit> units = blocks.units();
   threads_.chunks(static_cast<int>(units.size()), kUnitTime, [&](int first, int end, int worker) {
-    for (int u = first; u < end; ++u) add_unit(units[static_cast<size_t>(u)], runs_.of(worker));
+    for (int u = first; u < end; ++u)
+      add_unit(units[static_cast<size_t>(u)], sequences_.of(worker));
   });
   std::vector<TouchingPair>& list = watch_.begin_step();
-  runs_.join(list);
+  sequences_.join(list);
   join_neighbours(list);
-  const auto add_deep = [&](int own, BodyIndex in) {
-    const auto [a, b] = std::minmax(o.body[own], in);
+  const auto add_saturated = [&](int own, BodyIndex other) {
+    const auto [a, b] = std::minmax(o.body[own], other);
     const TouchingPair pair{a, b, 0, 0, 0, 0, 0, true};
-    if (list.empty() || !list.back().same_pair(pair) || !list.back().deep) list.push_back(pair);
+    if (list.empty() || !list.back().same_pair(pair) || !list.back().is_saturated)
+      list.push_back(pair);
   };
-  for (const SaturatedEdge& on : plateaus.edges()) add_deep(on.edge, on.in);
-  for (const SaturatedFace& on : plateaus.faces()) add_deep(on.face, on.in);
+  for (const SaturatedEdge& region : saturated.edges()) add_saturated(region.edge, region.body);
+  for (const SaturatedFace& region : saturated.faces()) add_saturated(region.face, region.body);
   std::ranges::sort(list, std::less<>());
   join_neighbours(list);
 }
 
 bool OutlineEvents::find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
-                        const SaturatedRegions& plateaus, const Kinematics& now,
-                        const Dynamics& dynamics, double dt) {
-  find_touching(blocks, plateaus, !(dt > 0));
+                         const SaturatedRegions& saturated, const Kinematics& now,
+                         const Dynamics& dynamics, double dt) {
+  find_touching(blocks, saturated, !(dt > 0));
   changed_.clear();
-  for (Worker& worker : workers_) worker.on_nodes.clear(), worker.on_rigid.clear();
+  for (PathWorkspace& worker : workers_) worker.on_nodes.clear(), worker.on_rigid.clear();
   if (!(dt > 0)) return false;
   const std::vector<OutlineSurfaces::Body>& bodies = outlines_.bodies;
   watch_.compare(
@@ -92,19 +95,19 @@ bool OutlineEvents::find(std::span<const EdgeFace> candidates, const EdgeFaceBlo
       });
   threads_.chunks(static_cast<int>(changed_.size()), kPathTime,
                   [&](int first, int end, int number) {
-                    Worker& worker = workers_[static_cast<size_t>(number)];
+                    PathWorkspace& worker = workers_[static_cast<size_t>(number)];
                     for (int i = first; i < end; ++i) {
                       const auto& [a, b, panels] = changed_[static_cast<size_t>(i)];
                       worker.path.find(a, b, panels, candidates, {now, dynamics, dt},
                                        worker.on_nodes, worker.on_rigid);
                     }
                   });
-  return std::ranges::any_of(workers_, [](const Worker& w) { return !w.on_nodes.empty(); });
+  return std::ranges::any_of(workers_, [](const PathWorkspace& w) { return !w.on_nodes.empty(); });
 }
 
 void OutlineEvents::add(double scale, const ForceViews& forces) const {
   // Impulses are added in the order of the pairs, as if one thread had worked on all of them.
-  for (const Worker& worker : workers_) {
+  for (const PathWorkspace& worker : workers_) {
     for (const auto& [i, mean] : worker.on_nodes) forces.nodes[i] += scale * mean;
     for (const auto& [i, mean] : worker.on_rigid) forces.rigid[i] += scale * mean;
   }

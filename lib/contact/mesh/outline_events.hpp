@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/law/event_detector.hpp"
+#include "lib/contact/law/event_impulse.hpp"
+#include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/mesh/outline_path.hpp"
-#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/execution/worker_lists.hpp"
 
@@ -33,7 +33,7 @@ class OutlineEvents {
   /// an impulse. With dt = 0, at the start, there is none, and pairs that touch then are new in the
   /// first step. Pairs that reach into saturated regions get no correction.
   bool find(std::span<const EdgeFace> candidates, const EdgeFaceBlocks& blocks,
-            const SaturatedRegions& plateaus, const Kinematics& now, const Dynamics& dynamics,
+            const SaturatedRegions& saturated, const Kinematics& now, const Dynamics& dynamics,
             double dt);
   /// Adds J / dt of the last `find`, multiplied by `scale`.
   void add(double scale, const ForceViews& forces) const;
@@ -41,24 +41,25 @@ class OutlineEvents {
   void fields(Archive& archive) { watch_.fields(archive); }
 
  private:
-  struct Changed {
+  struct ChangedPair {
     BodyIndex a, b;
     int panels;
   };
   /// Memory and results of a thread.
-  struct Worker {
+  struct PathWorkspace {
     OutlinePath path;
     std::vector<OutlinePath::Impulse> on_nodes, on_rigid;
   };
 
-  void find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& plateaus, bool at_first);
+  void find_touching(const EdgeFaceBlocks& blocks, const SaturatedRegions& saturated,
+                     bool at_first);
 
   const OutlineSurfaces& outlines_;
   Threads threads_;
   EventDetector watch_;
-  WorkerLists<TouchingPair> runs_;
-  std::vector<Changed> changed_;
-  std::vector<Worker> workers_;
+  WorkerLists<TouchingPair> sequences_;
+  std::vector<ChangedPair> changed_;
+  std::vector<PathWorkspace> workers_;
 };
 
 }  // namespace apothem

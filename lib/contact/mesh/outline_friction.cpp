@@ -120,7 +120,7 @@ void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> wa
 
 // The fraction of a long step for which a new contact was closed; motion before that is no slip.
 double OutlineFriction::closed_fraction(const Step& step, const EdgeFaceUnit& unit,
-                                     const EdgeFaceGroup& group, const SpringContact& contact) {
+                                        const EdgeFaceGroup& group, const SpringContact& contact) {
   double width = 0, depth = 0;
   step.blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
     const EdgeFaceTouch& touch = step.blocks.touches()[i];
@@ -133,7 +133,8 @@ double OutlineFriction::closed_fraction(const Step& step, const EdgeFaceUnit& un
 }
 
 // Updates the springs of a unit and finds their forces. Returns their energy, J.
-double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) {
+double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
+                               FrictionWorkspace& worker) {
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
   double energy = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
@@ -167,7 +168,7 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
 
 // Adds the forces of a unit's springs to the vertices. Returns their power, W.
 APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit& unit,
-                                            Worker& worker, bool divided) {
+                                            FrictionWorkspace& worker, bool divided) {
   double power = 0;
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
@@ -182,7 +183,7 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
     each_drag(step.blocks.blocks()[i], forces,
               [&](std::int32_t vertex, double x, double y) APOTHEM_LAMBDA {
                 if (shared && step.blocks.is_shared(vertex)) {
-                  worker.late.push_back({vertex, {x, y}});
+                  worker.deferred.push_back({vertex, {x, y}});
                   return;
                 }
                 VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
@@ -194,9 +195,10 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
 
 // Updates the springs of a unit. If `divided`, several threads work, and forces on vertices that
 // two of them share are deferred.
-void OutlineFriction::update_unit(const Step& step, size_t index, Worker& worker, bool divided) {
+void OutlineFriction::update_unit(const Step& step, size_t index, FrictionWorkspace& worker,
+                                  bool divided) {
   const EdgeFaceUnit& unit = step.blocks.units()[index];
-  Unit& found = units_[index] = {};
+  UnitResult& found = units_[index] = {};
   if (unit.touching == 0) return;
   // The last block may have padding, which has no spring.
   const auto last = static_cast<size_t>(unit.end - unit.first) - 1;
@@ -208,8 +210,8 @@ void OutlineFriction::update_unit(const Step& step, size_t index, Worker& worker
   });
 }
 
-double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
-                              FrictionMemory& memory) {
+double OutlineFriction::update_friction(const EdgeFaceBlocks& blocks, const Kinematics& now,
+                                        double dt, FrictionMemory& memory) {
   const OutlineSurfaces& o = outlines_;
   const Step step{blocks, dt, now.finite, !now.restored};
   const auto n = static_cast<size_t>(o.size());
@@ -229,10 +231,10 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   units_.resize(blocks.units().size());
   slips_.resize(blocks.blocks().size());
   contacts_.resize(blocks.group_count());
-  for (Worker& worker : workers_) {
+  for (FrictionWorkspace& worker : workers_) {
     const auto most = static_cast<size_t>(blocks.most_blocks());
     if (worker.pulls.size() < most) worker.pulls.resize(most);
-    worker.springs.clear(), worker.late.clear();
+    worker.springs.clear(), worker.deferred.clear();
   }
   const auto units = static_cast<int>(blocks.units().size());
   const double per_unit = static_cast<double>(blocks.blocks().size()) / std::max(units, 1);
@@ -243,24 +245,24 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   normals_.find(contacts_);
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
-    Worker& worker = workers_[static_cast<size_t>(number)];
+    FrictionWorkspace& worker = workers_[static_cast<size_t>(number)];
     for (int i = first; i < end; ++i) update_unit(step, static_cast<size_t>(i), worker, divided);
   });
   // Deferred forces are added in the order of the units, as if one thread had worked on all of
   // them.
-  for (const Worker& worker : workers_) {
-    for (const auto& [vertex, force] : worker.late) {
+  for (const FrictionWorkspace& worker : workers_) {
+    for (const auto& [vertex, force] : worker.deferred) {
       VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
       drag[0] += force[0], drag[1] += force[1];
     }
   }
   double power = 0, energy = 0;
   for (const double of_body : body_powers_) power += of_body;
-  for (const Unit& unit : units_) {
+  for (const UnitResult& unit : units_) {
     power += unit.power;
     energy += unit.energy;
   }
-  for (Worker& worker : workers_) {
+  for (FrictionWorkspace& worker : workers_) {
     memory.keep(worker.springs, energy);
     energy = 0;
   }
@@ -328,35 +330,35 @@ void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
 }
 
 void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now,
-                                   Dashpots& to) {
+                                   Dashpots& dashpots) {
   find_pairs(blocks, now);
   each_dashpot(blocks, [&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, const PairLaw& law,
                            const SpringContact& contact) {
     const PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[group.law].pair)];
-    to.add({outlines_.body[contact.edge],
-            contact.other,
-            Vec2(contact.nx, contact.ny),
-            {Dashpot::Normal::of(pair.normal_time * contact.resistance, contact.pressed,
-                                 contact.resistance, contact.deepest)},
-            pair.tangential_time * contact.stiffness,
-            contact.friction,
-            law.friction.coefficient});
-    add_coordinates(blocks, unit, group, contact, to);
+    dashpots.add({outlines_.body[contact.edge],
+                  contact.other,
+                  Vec2(contact.nx, contact.ny),
+                  {Dashpot::Normal::of(pair.normal_time * contact.resistance, contact.pressed,
+                                       contact.resistance, contact.deepest)},
+                  pair.tangential_time * contact.stiffness,
+                  contact.friction,
+                  law.friction.coefficient});
+    add_coordinates(blocks, unit, group, contact, dashpots);
   });
 }
 
 // Adds the contributions of the vertices to the rates along the normal and the tangent.
 void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                                       const EdgeFaceGroup& group, const SpringContact& contact,
-                                      Dashpots& to) const {
+                                      Dashpots& dashpots) const {
   const OutlineSurfaces& o = outlines_;
   const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
   const auto add = [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
     const OutlineSurfaces::Body& body = o.bodies[o.body[vertex]];
     if (body.is_rigid()) {
-      to.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
+      dashpots.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
     } else {
-      to.add_node(o.node[vertex], normal, tangential);
+      dashpots.add_node(o.node[vertex], normal, tangential);
     }
   };
   blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
@@ -377,13 +379,13 @@ void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFa
   });
 }
 
-void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& from, size_t& next,
-                                  FrictionMemory& memory) {
+void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots,
+                                  size_t& next, FrictionMemory& memory) {
   auto spring = memory.springs_of(outline_kernel).begin();
   each_dashpot(blocks, [&](const EdgeFaceUnit&, const EdgeFaceGroup& group, const PairLaw& law,
                            SpringContact& contact) {
-    contact.push = from.normal_force(next);
-    contact.drag = from.tangential_force(next);
+    contact.push = dashpots.normal_force(next);
+    contact.drag = dashpots.tangential_force(next);
     ++next;
     if (!law.rough()) return;
     while (is_before(spring->key, key_of(group))) ++spring;
@@ -401,11 +403,11 @@ void OutlineFriction::add_to(const EdgeFaceBlocks& blocks,
       const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
       const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
       blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
-        EdgeFaceContact& of = *next++;
+        EdgeFaceContact& result = *next++;
         if (!(contact.normal > 0)) return;
-        const double share = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
-        of.drag = share * (contact.friction + contact.drag) * t;
-        of.push = share * contact.push * n;
+        const double fraction = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
+        result.drag = fraction * (contact.friction + contact.drag) * t;
+        result.push = fraction * contact.push * n;
       });
     }
   }

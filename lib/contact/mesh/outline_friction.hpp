@@ -26,7 +26,7 @@ class OutlineFriction {
   OutlineFriction(const Surfaces& surfaces, const PairTable& table, int threads);
 
   /// Sets the number of pairs of bodies that may touch, after a search.
-  void take(size_t pairs) {
+  void set_pair_count(size_t pairs) {
     pairs_.resize(pairs);
     everywhere_ = kBothVectors;
   }
@@ -34,8 +34,8 @@ class OutlineFriction {
   /// Updates the springs by one step, see Kernel::update_friction. Where slip is spread over more
   /// contact its force is kept, and springs of contact that has ended are lost: friction never adds
   /// energy.
-  double slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
-               FrictionMemory& memory);
+  double update_friction(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
+                         FrictionMemory& memory);
 
   /// Undoes the last update, in a scene without damping.
   void undo_friction() {
@@ -43,8 +43,8 @@ class OutlineFriction {
     everywhere_ = kBothVectors;
   }
   /// Adds the dashpots of the contacts of the last update, and stores their forces: see Kernel.
-  void add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now, Dashpots& to);
-  void keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& from, size_t& next,
+  void add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now, Dashpots& dashpots);
+  void keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots, size_t& next,
                    FrictionMemory& memory);
 
   /// The force of the springs on a vertex, N.
@@ -64,32 +64,33 @@ class OutlineFriction {
     bool limited;  ///< if false, springs keep forces above their limits
   };
   /// The results of a unit.
-  struct Unit {
+  struct UnitResult {
     double power = 0;   ///< power of its springs on the bodies, W
     double energy = 0;  ///< J
   };
   /// Memory of a thread.
-  struct Worker {
+  struct FrictionWorkspace {
     std::vector<SlipPull> pulls;  // entry for each block of the present unit
     std::vector<Spring> springs;  // springs of all its units, ascending
     /// Forces on vertices that other threads work on as well, which are added afterwards.
-    std::vector<std::pair<std::int32_t, VertexDrag>> late;
+    std::vector<std::pair<std::int32_t, VertexDrag>> deferred;
   };
 
   [[nodiscard]] double begin(BodyIndex body, const Kinematics& now, const Step& step);
   void find_contacts(const Step& step, const EdgeFaceUnit& unit);
   void find_before(const Step& step, ContactWalk<const Spring> walk);
-  void update_unit(const Step& step, size_t index, Worker& worker, bool divided);
+  void update_unit(const Step& step, size_t index, FrictionWorkspace& worker, bool divided);
   [[nodiscard]] static double closed_fraction(const Step& step, const EdgeFaceUnit& unit,
-                                           const EdgeFaceGroup& group,
-                                           const SpringContact& contact);
-  [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker);
-  [[nodiscard]] double pull(const Step& step, const EdgeFaceUnit& unit, Worker& worker,
+                                              const EdgeFaceGroup& group,
+                                              const SpringContact& contact);
+  [[nodiscard]] double follow(const Step& step, const EdgeFaceUnit& unit,
+                              FrictionWorkspace& worker);
+  [[nodiscard]] double pull(const Step& step, const EdgeFaceUnit& unit, FrictionWorkspace& worker,
                             bool divided);
   void find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now);
   void add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                        const EdgeFaceGroup& group, const SpringContact& contact,
-                       Dashpots& to) const;
+                       Dashpots& dashpots) const;
   template <class F>
   void each_dashpot(const EdgeFaceBlocks& blocks, const F& f);
 
@@ -108,7 +109,7 @@ class OutlineFriction {
   std::vector<OutlineSlip> slips_;                // slip of each block
   std::vector<SpringContact> contacts_;           // one entry for each group
   std::vector<double> body_powers_;  // power of the forces of the step before on each body, W
-  std::vector<Unit> units_;
+  std::vector<UnitResult> units_;
   /// Sums over all contacts of two bodies, treated as rigid, for their dashpots.
   struct PairSum {
     BodyIndex a = -1, b = -1;
@@ -120,7 +121,7 @@ class OutlineFriction {
     double normal_time = 0, tangential_time = 0;  // s
   };
   std::vector<PairSum> pairs_;
-  std::vector<Worker> workers_;
+  std::vector<FrictionWorkspace> workers_;
 };
 
 }  // namespace apothem

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMeetTime = 80, kForceTime = 4;  // ns
 // Relative depth of a contact inside a saturated region, which is not with a face.
-constexpr double kInsideTop = 2;
+constexpr double kSaturated = 2;
 constexpr double kAbove = 1 + 1e-9;  // factor that makes bounds safe against round-off
 
 }  // namespace
@@ -25,29 +25,29 @@ OutlineKernel::OutlineKernel(const Surfaces& surfaces, double thickness, const P
       threads_(threads),
       blocks_(outlines_),
       workers_(static_cast<size_t>(threads_.count())),
-      plateaus_(outlines_),
+      saturated_(outlines_),
       depths_(outlines_),
-      onset_(outlines_, slopes_, threads) {
+      events_(outlines_, slopes_, threads) {
   ends_.resize(static_cast<size_t>(outlines_.size()));
   if (table.rough() || table.damped()) friction_.emplace(surfaces, table, threads);
 }
 
-void OutlineKernel::take(std::span<const BoxPair> pairs) {
-  if (friction_) friction_->take(pairs.size());
+void OutlineKernel::set_pairs(std::span<const BoxPair> pairs) {
+  if (friction_) friction_->set_pair_count(pairs.size());
   candidates_.clear();
   laws_.clear();
   pair_forces_.clear();
   for (const BoxPair& pair : pairs) pair_forces_.push_back({pair, Vec2::Zero()});
-  std::ranges::sort(pair_forces_, {}, &PairForce::bodies);
+  std::ranges::sort(pair_forces_, {}, &BodyPairForce::bodies);
   std::fill(ends_.begin(), ends_.end(), EndForces{0, 0});
   for (const auto& [a, b] : pairs) {
     find_candidates(a, b);
     if (a != b) find_candidates(b, a);
   }
   std::sort(candidates_.begin(), candidates_.end());
-  blocks_.take(candidates_, laws_);
+  blocks_.set_candidates(candidates_, laws_);
   blocks_.divide(threads_);
-  plateaus_.take(pairs);
+  saturated_.set_pairs(pairs);
 }
 
 EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
@@ -57,16 +57,16 @@ EdgeFaceLaw OutlineKernel::law_of(BodyIndex edges, BodyIndex faces) const {
 
 std::int32_t OutlineKernel::pair_number(BodyIndex a, BodyIndex b) const {
   const auto [low, high] = std::minmax(a, b);
-  const auto at =
-      std::ranges::lower_bound(pair_forces_, BoxPair{low, high}, {}, &PairForce::bodies);
-  return static_cast<std::int32_t>(at - pair_forces_.begin());
+  const auto position =
+      std::ranges::lower_bound(pair_forces_, BoxPair{low, high}, {}, &BodyPairForce::bodies);
+  return static_cast<std::int32_t>(position - pair_forces_.begin());
 }
 
 // The force of a pair is summed over the edges and faces of the body with the lower number. The
 // force of a body on itself does not count.
 void OutlineKernel::find_largest_force() {
   const OutlineSurfaces& o = outlines_;
-  for (PairForce& pair : pair_forces_) pair.force = Vec2::Zero();
+  for (BodyPairForce& pair : pair_forces_) pair.force = Vec2::Zero();
   const std::span<const EdgeFaceLaw> laws = blocks_.laws();
   for (size_t i = 0; i < laws.size(); ++i) {
     pair_forces_[static_cast<size_t>(laws[i].pair)].force += blocks_.forces()[i];
@@ -76,12 +76,14 @@ void OutlineKernel::find_largest_force() {
     pair_forces_[static_cast<size_t>(pair_number(o.body[line], other))].force +=
         force * Vec2(-o.ty[line], o.tx[line]);
   };
-  for (const SaturatedEdge& on : plateaus_.edges()) {
-    add(on.edge, on.in,
-        slopes_(on.in, o.body[on.edge]) * o.bodies[on.in].depth * on.sum * o.length[on.edge]);
+  for (const SaturatedEdge& saturated : saturated_.edges()) {
+    add(saturated.edge, saturated.body,
+        slopes_(saturated.body, o.body[saturated.edge]) * o.bodies[saturated.body].depth *
+            saturated.sum * o.length[saturated.edge]);
   }
-  for (const SaturatedFace& on : plateaus_.faces()) {
-    add(on.face, on.in, slopes_(o.body[on.face], on.in) * on.moment.area);
+  for (const SaturatedFace& saturated : saturated_.faces()) {
+    add(saturated.face, saturated.body,
+        slopes_(o.body[saturated.face], saturated.body) * saturated.moment.area);
   }
   largest_force_ = {};
   for (const auto& [bodies, force] : pair_forces_) {
@@ -97,8 +99,8 @@ bool OutlineKernel::are_neighbours(int edge, int face) const {
   const OutlineSurfaces& o = outlines_;
   if (edge == face) return true;
   if (o.next[edge] != face && o.previous[edge] != face) return false;
-  const Vec2 top = o.top(o.next[face]) - o.top(face);
-  return o.tx[face] * top.x() + o.ty[face] * top.y() > 2 * o.growth();
+  const Vec2 offset_edge = o.offset_point(o.next[face]) - o.offset_point(face);
+  return o.tx[face] * offset_edge.x() + o.ty[face] * offset_edge.y() > 2 * o.growth();
 }
 
 // Finds the candidates of the edges of a and the faces of b, by a sweep along the longer side of
@@ -147,15 +149,15 @@ void OutlineKernel::evaluate() {
   listed_ = false;
   depths_.forget();
   o.each_active_vertex([&](int i) { ends_[i] = {0, 0}; });
-  plateaus_.begin();
-  for (Worker& worker : workers_) worker.crossings.clear(), worker.late.clear();
+  saturated_.begin();
+  for (EvaluationWorkspace& worker : workers_) worker.crossings.clear(), worker.deferred.clear();
   const std::span<EdgeFaceUnit> units = blocks_.units();
   const auto count = static_cast<int>(units.size());
   const double of_unit =
       kMeetTime * static_cast<double>(blocks_.blocks().size()) / std::max(count, 1);
   const bool divided = threads_.worth(count, of_unit);
   threads_.chunks(count, of_unit, [&](int first, int end, int number) {
-    Worker& worker = workers_[static_cast<size_t>(number)];
+    EvaluationWorkspace& worker = workers_[static_cast<size_t>(number)];
     const auto push = [&](std::int32_t i, const EdgeFacePushes& pushes) APOTHEM_LAMBDA {
       const EdgeFaceBlock& block = blocks_.blocks()[i];
       const auto add_at_once = [&](std::int32_t edge, const EndForces& force)
@@ -166,7 +168,7 @@ void OutlineKernel::evaluate() {
       }
       each_push(block, pushes, [&](std::int32_t edge, const EndForces& force) APOTHEM_LAMBDA {
         if (blocks_.is_shared(edge)) {
-          worker.late.emplace_back(edge, force);
+          worker.deferred.emplace_back(edge, force);
         } else {
           add_at_once(edge, force);
         }
@@ -181,43 +183,43 @@ void OutlineKernel::evaluate() {
   });
   // Deferred forces are added in the order of the units, as if one thread had worked on all of
   // them.
-  for (const Worker& worker : workers_) {
-    for (const auto& [edge, force] : worker.late) add(force, ends_[edge]);
-    for (const auto& [pair, top] : worker.crossings) plateaus_.add(pair, top);
+  for (const EvaluationWorkspace& worker : workers_) {
+    for (const auto& [edge, force] : worker.deferred) add(force, ends_[edge]);
+    for (const auto& [pair, crossings] : worker.crossings) saturated_.add(pair, crossings);
   }
-  add_plateaus();
+  add_saturated();
   find_largest_force();
 }
 
 // Adds the forces of saturated regions. An edge inside the saturated region of a body is a contact
 // with that body.
-void OutlineKernel::add_plateaus() {
+void OutlineKernel::add_saturated() {
   const OutlineSurfaces& o = outlines_;
-  plateaus_.evaluate();
-  for (const SaturatedEdge& on : plateaus_.edges()) {
-    const OutlineSurfaces::Body& in = o.bodies[on.in];
-    const BodyIndex own = o.body[on.edge];
-    const double force = slopes_(on.in, own) * in.depth * o.length[on.edge];
-    ends_[on.edge][0] += force * (on.sum - on.first);
-    ends_[on.edge][1] += force * on.first;
+  saturated_.evaluate();
+  for (const SaturatedEdge& saturated : saturated_.edges()) {
+    const OutlineSurfaces::Body& other = o.bodies[saturated.body];
+    const BodyIndex own = o.body[saturated.edge];
+    const double force = slopes_(saturated.body, own) * other.depth * o.length[saturated.edge];
+    ends_[saturated.edge][0] += force * (saturated.sum - saturated.first);
+    ends_[saturated.edge][1] += force * saturated.first;
   }
-  for (const SaturatedFace& on : plateaus_.faces()) {
-    const double slope = slopes_(o.body[on.face], on.in);
-    const double end = slope * on.moment.along / o.length[on.face];
-    ends_[on.face][0] += slope * on.moment.area - end;
-    ends_[on.face][1] += end;
+  for (const SaturatedFace& saturated : saturated_.faces()) {
+    const double slope = slopes_(o.body[saturated.face], saturated.body);
+    const double end = slope * saturated.moment.along / o.length[saturated.face];
+    ends_[saturated.face][0] += slope * saturated.moment.area - end;
+    ends_[saturated.face][1] += end;
   }
 }
 
 // Contacts of outlines are never out of range.
 ContactSummary OutlineKernel::summary() const {
-  size_t count = plateaus_.edges().size() + plateaus_.faces().size();
+  size_t count = saturated_.edges().size() + saturated_.faces().size();
   double square = 0;
   for (const EdgeFaceUnit& unit : blocks_.units()) {
     count += static_cast<size_t>(unit.touching);
     square = std::max(square, unit.deepest);
   }
-  const double deepest = plateaus_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
+  const double deepest = saturated_.edges().empty() ? kAbove * std::sqrt(square) : HUGE_VAL;
   return {.count = static_cast<int>(count), .deepest = deepest};
 }
 
@@ -230,23 +232,24 @@ void OutlineKernel::visit_contacts(double least, const ContactVisitor& visit) co
     const EdgeFaceTouch& touch = blocks_.touches()[i];
     const std::int32_t edge = block.p[lane], a = block.a[lane];
     const CollarFace<double> face = o.face(a);
-    const double deepest = touch.deepest[lane], share = deepest / face.depth;
-    const double surely = deepest <= sure_depth(face.plain, face.depth) ? deepest : 0;
+    const double deepest = touch.deepest[lane], relative_depth = deepest / face.depth;
+    const double surely = deepest <= sure_depth(face.regular_depth, face.depth) ? deepest : 0;
     // Where a face reaches beyond the end of its edge, at a reflex vertex, the distance from the
     // boundary may exceed the height in the face. This factor bounds their ratio.
     const double beyond = std::max(0., std::max(-face.alpha(), face.beta()));
     const bool known = o.body[edge] == o.body[a] && surely > 0;
     const double at_most = known ? surely : deepest * std::sqrt(1 + beyond * beyond);
     if (at_most <= least) return;
-    visit({outline_kernel, edge, a, surely, at_most, std::min(share, 1.),
+    visit({outline_kernel, edge, a, surely, at_most, std::min(relative_depth, 1.),
            block.slope[lane] * o.length[edge] * (touch.to[lane] - touch.from[lane])});
   });
-  for (const SaturatedEdge& on : plateaus_.edges()) {
-    visit({outline_kernel, on.edge, o.bodies[on.in].first, 0, HUGE_VAL, kInsideTop, 0});
+  for (const SaturatedEdge& saturated : saturated_.edges()) {
+    visit({outline_kernel, saturated.edge, o.bodies[saturated.body].first, 0, HUGE_VAL, kSaturated,
+           0});
   }
   if (least >= 0) return;  // contacts of saturated faces have no depth
-  for (const SaturatedFace& on : plateaus_.faces()) {
-    visit({outline_kernel, o.bodies[on.in].first, on.face, 0, 0, kInsideTop, 0});
+  for (const SaturatedFace& saturated : saturated_.faces()) {
+    visit({outline_kernel, o.bodies[saturated.body].first, saturated.face, 0, 0, kSaturated, 0});
   }
 }
 
@@ -259,8 +262,8 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
     const EdgeFaceBlock& block = blocks_.blocks()[i];
     const std::int32_t p = block.p[lane], q = block.q[lane], a = block.a[lane];
     CollarPiece<double> piece;
-    CollarCrossings<double> top;
-    collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, top);
+    CollarCrossings<double> crossings;
+    collar_piece(o.face(a), o.x[p], o.y[p], o.x[q], o.y[q], piece, crossings);
     edge_faces_.push_back({p, a, block.slope[lane], piece});
   });
   if (friction_) friction_->add_to(blocks_, edge_faces_);
@@ -270,17 +273,17 @@ const std::vector<EdgeFaceContact>& OutlineKernel::edge_faces() const {
 
 double OutlineKernel::penetration(const Contact& c, double floor) {
   const OutlineSurfaces& o = outlines_;
-  if (c.share > 1) return depths_.of_edge(c.a, o.body[c.b], floor);
+  if (c.relative_depth > 1) return depths_.of_edge(c.a, o.body[c.b], floor);
   const int q = o.next[c.a];
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  collar_piece(o.face(c.b), o.x[c.a], o.y[c.a], o.x[q], o.y[q], piece, top);
+  CollarCrossings<double> crossings;
+  collar_piece(o.face(c.b), o.x[c.a], o.y[c.a], o.x[q], o.y[q], piece, crossings);
   return depths_.of_piece(c.a, c.b, piece, floor);
 }
 
-double OutlineKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+double OutlineKernel::update_friction(const Kinematics& now, double dt, FrictionMemory& memory) {
   listed_ = false;
-  return friction_ ? friction_->slide(blocks_, now, dt, memory) : 0;
+  return friction_ ? friction_->update_friction(blocks_, now, dt, memory) : 0;
 }
 
 Vec2 OutlineKernel::normal_force(int i) const {
@@ -304,18 +307,18 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
                     for (int k = first; k < end; ++k) {
                       const OutlineSurfaces::Body& body = o.bodies[active[k]];
                       if (body.is_rigid()) {
-                        const Resultant on = resultant(active[k]);
+                        const Resultant sum = resultant(active[k]);
                         double* const f = &forces.rigid[3 * static_cast<size_t>(body.rigid)];
-                        f[0] += on.force.x();
-                        f[1] += on.force.y();
-                        f[2] += on.moment;
+                        f[0] += sum.force.x();
+                        f[1] += sum.force.y();
+                        f[2] += sum.moment;
                         continue;
                       }
                       for (int i = body.first; i < body.end; ++i) {
-                        const Vec2 on = force(i);
+                        const Vec2 vertex_force = force(i);
                         double* const f = &forces.nodes[2 * static_cast<size_t>(o.node[i])];
-                        f[0] += on.x();
-                        f[1] += on.y();
+                        f[0] += vertex_force.x();
+                        f[1] += vertex_force.y();
                       }
                     }
                   });
@@ -324,13 +327,13 @@ void OutlineKernel::add_forces(const ForceViews& forces) {
 Resultant OutlineKernel::resultant(BodyIndex b) const {
   const OutlineSurfaces& o = outlines_;
   const OutlineSurfaces::Body& body = o.bodies[b];
-  Resultant on;
+  Resultant sum;
   for (int i = body.first; i < body.end; ++i) {
     const Vec2 f = force(i);
-    on.force += f;
-    on.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
+    sum.force += f;
+    sum.moment += (o.x[i] - body.cx) * f.y() - (o.y[i] - body.cy) * f.x();
   }
-  return on;
+  return sum;
 }
 
 void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
@@ -344,12 +347,13 @@ void OutlineKernel::add_force_sizes(std::span<double> of_bodies) const {
 double OutlineKernel::energy() const {
   double sum = 0;
   for (const EdgeFaceContact& c : edge_faces()) sum += c.slope * c.piece.height;
-  for (const SaturatedEdge& on : plateaus_.edges()) {
-    sum += slopes_(on.in, outlines_.body[on.edge]) * outlines_.bodies[on.in].depth * on.swept;
+  for (const SaturatedEdge& saturated : saturated_.edges()) {
+    sum += slopes_(saturated.body, outlines_.body[saturated.edge]) *
+           outlines_.bodies[saturated.body].depth * saturated.swept;
   }
-  for (const SaturatedFace& on : plateaus_.faces()) {
-    sum += slopes_(outlines_.body[on.face], on.in) *
-           (on.moment.height + outlines_.depth[on.face] * on.swept);
+  for (const SaturatedFace& saturated : saturated_.faces()) {
+    sum += slopes_(outlines_.body[saturated.face], saturated.body) *
+           (saturated.moment.height + outlines_.depth[saturated.face] * saturated.swept);
   }
   return sum;
 }
@@ -375,7 +379,8 @@ double OutlineKernel::rate(std::span<const double> node_mass) const {
     const BodyIndex b = o.body[i];
     const double other = b == steepest && !table_.self() ? second : first;
     if (!(mass > 0) || other == 0) continue;
-    worst = std::max(worst, node_rate(stiffness, o.bodies[b].slope() + other, o.share(i), mass));
+    worst = std::max(
+        worst, node_rate(stiffness, o.bodies[b].slope() + other, o.tributary_length(i), mass));
   }
   return worst;
 }
@@ -402,7 +407,7 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
   }
   // Friction springs act along the contact, potentials across it.
   const auto of_vertex = [&](int i) {
-    return node_rate(normal[i] + tangential[i], slope[i], o.share(i));
+    return node_rate(normal[i] + tangential[i], slope[i], o.tributary_length(i));
   };
   for (int i = 0; i < o.size(); ++i) {
     if (o.node[i] >= 0) nodes[o.node[i]] += of_vertex(i);

@@ -18,11 +18,11 @@
 #include "lib/contact/mesh/edge_face_blocks.hpp"
 #include "lib/contact/mesh/edge_face_pack.hpp"
 #include "lib/contact/mesh/outline_depths.hpp"
-#include "lib/contact/mesh/outline_friction.hpp"
 #include "lib/contact/mesh/outline_events.hpp"
-#include "lib/contact/mesh/saturated_regions.hpp"
+#include "lib/contact/mesh/outline_friction.hpp"
 #include "lib/contact/mesh/outline_records.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/execution/parallel.hpp"
 
 namespace apothem {
@@ -32,33 +32,33 @@ class OutlineKernel final : public Kernel {
   /// `thickness` is in m. All arguments must outlive this object.
   OutlineKernel(const Surfaces& surfaces, double thickness, const PairTable& table, int threads);
 
-  void take(std::span<const BoxPair> pairs) override;
+  void set_pairs(std::span<const BoxPair> pairs) override;
   /// The contacts are first those of edges with faces, then those of edges in saturated regions,
   /// then those of faces whose saturated region lies in another body.
   void evaluate() override;
   [[nodiscard]] ContactSummary summary() const override;
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
-  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  double update_friction(const Kinematics& now, double dt, FrictionMemory& memory) override;
   void undo_friction() override {
     if (friction_) friction_->undo_friction();
   }
   void add_forces(const ForceViews& forces) override;
-  void add_dashpots(const Kinematics& now, Dashpots& to) override {
-    if (friction_) friction_->add_dashpots(blocks_, now, to);
+  void add_dashpots(const Kinematics& now, Dashpots& dashpots) override {
+    if (friction_) friction_->add_dashpots(blocks_, now, dashpots);
   }
-  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override {
+  void keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) override {
     listed_ = false;
-    if (friction_) friction_->keep_pushes(blocks_, from, next, memory);
+    if (friction_) friction_->keep_pushes(blocks_, dashpots, next, memory);
   }
   bool find_event_impulses(const Kinematics& now, const Dynamics& dynamics, double dt,
-                   FrictionMemory& /*memory*/) override {
-    return onset_.find(candidates_, blocks_, plateaus_, now, dynamics, dt);
+                           FrictionMemory& /*memory*/) override {
+    return events_.find(candidates_, blocks_, saturated_, now, dynamics, dt);
   }
   void add_event_impulses(double scale, const ForceViews& forces) const override {
-    onset_.add(scale, forces);
+    events_.add(scale, forces);
   }
-  void fields(Archive& archive) override { archive("outline_onset", onset_); }
+  void fields(Archive& archive) override { archive("outline_onset", events_); }
 
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
   [[nodiscard]] double energy() const override;
@@ -86,10 +86,10 @@ class OutlineKernel final : public Kernel {
   [[nodiscard]] std::int32_t pair_number(BodyIndex a, BodyIndex b) const;
   void find_largest_force();
   [[nodiscard]] bool are_neighbours(int edge, int face) const;
-  void add_plateaus();
+  void add_saturated();
   [[nodiscard]] Vec2 normal_force(int vertex) const;
   [[nodiscard]] Vec2 force(int vertex) const;
-  [[nodiscard]] OutlineState state() const { return {slopes_, edge_faces(), plateaus_}; }
+  [[nodiscard]] OutlineState state() const { return {slopes_, edge_faces(), saturated_}; }
 
   const OutlineSurfaces& outlines_;
   double thickness_;
@@ -100,26 +100,26 @@ class OutlineKernel final : public Kernel {
   std::vector<EdgeFace> candidates_;
   std::vector<EdgeFaceLaw> laws_;  // laws of the candidates
   /// Two bodies, the one with the lower number first, and the normal force on that one, N.
-  struct PairForce {
+  struct BodyPairForce {
     BoxPair bodies;
     Vec2 force;
   };
-  std::vector<PairForce> pair_forces_;  // one entry per pair, ascending
+  std::vector<BodyPairForce> pair_forces_;  // one entry per pair, ascending
   PairPeak largest_force_;
   std::vector<int> near_edges_, near_faces_;
   EdgeFaceBlocks blocks_;  // the candidates in blocks
   /// The results of a thread. Its forces on edges that other threads work on as well are deferred.
-  struct Worker {
+  struct EvaluationWorkspace {
     EdgeFaceCrossings crossings;
-    std::vector<std::pair<std::int32_t, EndForces>> late;
+    std::vector<std::pair<std::int32_t, EndForces>> deferred;
   };
-  std::vector<Worker> workers_;
+  std::vector<EvaluationWorkspace> workers_;
   mutable std::vector<EdgeFaceContact> edge_faces_;  // contacts, found when they are asked for
   mutable bool listed_ = false;                      // true if edge_faces_ is up to date
   std::vector<EndForces> ends_;  // forces on the two ends of each edge, along its inward normal, N
-  SaturatedRegions plateaus_;
+  SaturatedRegions saturated_;
   OutlineDepths depths_;
-  OutlineEvents onset_;
+  OutlineEvents events_;
 };
 
 }  // namespace apothem

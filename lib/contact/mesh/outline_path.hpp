@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/integrals/collar.hpp"
-#include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/law/event_impulse.hpp"
+#include "lib/contact/law/kinematics.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
 #include "lib/contact/surface/outline_surfaces.hpp"
@@ -52,54 +52,55 @@ class OutlinePath {
   };
   /// One of the two bodies, with its ranges in ends_ and corners_ and its first index in
   /// coordinates_.
-  struct Side {
+  struct PathBody {
     BodyIndex body;
     size_t first_end, end, first_corner, last_corner, coordinates;
   };
   /// A face of a collar, given by the corners of its base and the corners before and after them.
-  struct Face {
+  struct PathFace {
     size_t before, a, b, after;
     double depth;
     bool placed = false;
-    CollarFace<Pack> at = {};
+    CollarFace<Pack> collar_face = {};
   };
   /// A candidate, given by the corners of its edge and by its face.
-  struct Near {
+  struct PathEdge {
     size_t p, q, face;
     double slope;
   };
-  struct Corners {
+  struct CornerValues {
     std::vector<Pack> x, y;    // m
     std::vector<Pack> fx, fy;  // N
   };
 
-  void take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);
-  Side take_side(BodyIndex body, const Step& step);
-  void find_events(const Step& step);
+  void list_candidates(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates);
+  PathBody add_side(BodyIndex body, const Step& step);
+  void find_kinks(const Step& step);
   void find_loads(const Step& step, size_t first, size_t count, size_t inside);
-  void place(const Side& side, const Step& step, const Pack& theta);
-  void place(Face& face) const;
+  void place(const PathBody& side, const Step& step, const Pack& theta);
+  void place(PathFace& face) const;
   void find_forces();
-  void add_deep(const Near& near, const Face& face, size_t lane);
-  void add_forces(const Side& side, const Step& step, const Pack& theta);
+  void add_general(const PathEdge& near, const PathFace& face, size_t lane);
+  void add_forces(const PathBody& side, const Step& step, const Pack& theta);
   void balance();
-  [[nodiscard]] double moment(const Side& side) const;
-  void turn(const Side& side, double moment);
-  void keep(const Side& side, std::vector<Impulse>& on_nodes, std::vector<Impulse>& on_rigid) const;
+  [[nodiscard]] double moment(const PathBody& side) const;
+  void turn(const PathBody& side, double moment);
+  void keep(const PathBody& side, std::vector<Impulse>& on_nodes,
+            std::vector<Impulse>& on_rigid) const;
 
   const OutlineSurfaces& outlines_;
   const OutlineSlopes& slopes_;
-  std::vector<Side> sides_;
+  std::vector<PathBody> sides_;
   std::vector<EdgeFace> candidates_;
   std::vector<int> ends_;     // vertices of the near edges and of the bases of the near faces
   std::vector<int> corners_;  // these vertices and those that determine the bisectors
   std::vector<size_t> corner_of_end_;
-  std::vector<int> corner_of_;  // corner of each vertex, or -1; all are -1 between two pairs
-  std::vector<int> face_at_;    // face that begins at each corner, or -1
-  std::vector<Near> near_;
-  std::vector<Face> faces_;
-  Corners at_;  // positions and forces at the present samples
-  std::vector<double> events_;
+  std::vector<int> corner_of_;       // corner of each vertex, or -1; all are -1 between two pairs
+  std::vector<int> face_of_corner_;  // face that begins at each corner, or -1
+  std::vector<PathEdge> edges_;
+  std::vector<PathFace> faces_;
+  CornerValues corner_values_;  // positions and forces at the present samples
+  std::vector<double> kinks_;
   std::vector<EventSample> samples_;
   std::vector<Pack> forces_;             // force on each coordinate at these samples, N or N m
   std::vector<Coordinate> coordinates_;  // coordinates of body a, then of b; three for a rigid body

@@ -50,12 +50,12 @@ class PatchGroups {
   explicit PatchGroups(const OutlineState& state)
       : o_(state.outlines()),
         contacts_(state.contacts),
-        edges_(state.plateaus.edges()),
-        faces_(state.plateaus.faces()),
+        edges_(state.saturated.edges()),
+        faces_(state.saturated.faces()),
         first_face_(contacts_.size() + edges_.size()),
         groups_(first_face_ + faces_.size()) {
     for (size_t i = 0; i < contacts_.size(); ++i) join_contact(i);
-    join_plateaus();
+    join_saturated();
   }
   /// The patch number of each contact. The numbers ascend with the pairs of bodies.
   std::vector<int> numbers() { return groups_.numbers(keys_); }
@@ -71,10 +71,11 @@ class PatchGroups {
   }
   // Calls f(index) for the contacts of an edge with the faces of a body.
   template <class F>
-  void each(int edge, BodyIndex in, const F& f) const {
-    const OutlineSurfaces::Body& body = o_.bodies[in];
-    for (size_t k = from(edge, body.first);
-         k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < body.end; ++k) {
+  void each(int edge, BodyIndex body, const F& f) const {
+    const OutlineSurfaces::Body& vertices = o_.bodies[body];
+    for (size_t k = from(edge, vertices.first);
+         k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < vertices.end;
+         ++k) {
       f(k);
     }
   }
@@ -103,29 +104,29 @@ class PatchGroups {
 
   // Joins edges and faces of saturated regions by their numbers and by the body whose saturated
   // region they are in.
-  void join_plateaus() {
+  void join_saturated() {
     std::map<std::pair<int, BodyIndex>, size_t> edge_at, face_at;
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const SaturatedEdge& on = edges_[k];
-      keys_.push_back(std::minmax(o_.body[on.edge], on.in));
-      const size_t i = edge_at[{on.edge, on.in}] = contacts_.size() + k;
-      each(on.edge, on.in, [&](size_t contact) { join(i, contact); });
+      const SaturatedEdge& saturated = edges_[k];
+      keys_.push_back(std::minmax(o_.body[saturated.edge], saturated.body));
+      const size_t i = edge_at[{saturated.edge, saturated.body}] = contacts_.size() + k;
+      each(saturated.edge, saturated.body, [&](size_t contact) { join(i, contact); });
     }
     for (size_t k = 0; k < faces_.size(); ++k) {
-      const SaturatedFace& on = faces_[k];
-      keys_.push_back(std::minmax(o_.body[on.face], on.in));
-      face_at[{on.face, on.in}] = first_face_ + k;
+      const SaturatedFace& saturated = faces_[k];
+      keys_.push_back(std::minmax(o_.body[saturated.face], saturated.body));
+      face_at[{saturated.face, saturated.body}] = first_face_ + k;
     }
-    const auto join_at = [&](const auto& at, size_t i, int number, BodyIndex in) {
-      if (const auto it = at.find({number, in}); it != at.end()) join(i, it->second);
+    const auto join_at = [&](const auto& numbers, size_t i, int number, BodyIndex body) {
+      if (const auto it = numbers.find({number, body}); it != numbers.end()) join(i, it->second);
     };
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const SaturatedEdge& on = edges_[k];
-      join_at(edge_at, contacts_.size() + k, o_.next[on.edge], on.in);
-      join_at(face_at, contacts_.size() + k, on.edge, on.in);
+      const SaturatedEdge& saturated = edges_[k];
+      join_at(edge_at, contacts_.size() + k, o_.next[saturated.edge], saturated.body);
+      join_at(face_at, contacts_.size() + k, saturated.edge, saturated.body);
     }
     for (size_t k = 0; k < faces_.size(); ++k) {
-      join_at(face_at, first_face_ + k, o_.next[faces_[k].face], faces_[k].in);
+      join_at(face_at, first_face_ + k, o_.next[faces_[k].face], faces_[k].body);
     }
     if (face_at.empty()) return;
     for (size_t i = 0; i < contacts_.size(); ++i) {
@@ -145,7 +146,8 @@ class PatchGroups {
 // The number of edges between two vertices of a closed line.
 int steps_between(const OutlineSurfaces& outlines, int vertex, int other) {
   const std::vector<OutlineSurfaces::Loop>& loops = outlines.loops;
-  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &OutlineSurfaces::Loop::first));
+  const auto loop =
+      std::prev(std::ranges::upper_bound(loops, vertex, {}, &OutlineSurfaces::Loop::first));
   if (other < loop->first || other >= loop->end) return std::numeric_limits<int>::max() / 2;
   const int steps = std::abs(vertex - other);
   return std::min(steps, loop->end - loop->first - steps);
@@ -189,23 +191,27 @@ class PatchSums {
     sum.record.damping += own_is_a ? push : Vec2(-push);
   }
 
-  void add(int patch, const SaturatedEdge& on) {
-    PatchSum& sum = of(patch, o_.body[on.edge], on.in, on.edge, -1);
-    const double depth = o_.bodies[on.in].depth;
-    const double force = slopes_(on.in, o_.body[on.edge]) * depth * on.sum * o_.length[on.edge];
-    const Vec2 on_edge = point_of(o_, on.edge, on.sum > 0 ? on.first / on.sum : 0);
-    if (is_a(o_, sum, on.edge)) sum.add(on_edge, force * inward(on.edge));
+  void add(int patch, const SaturatedEdge& saturated) {
+    PatchSum& sum = of(patch, o_.body[saturated.edge], saturated.body, saturated.edge, -1);
+    const double depth = o_.bodies[saturated.body].depth;
+    const double force = slopes_(saturated.body, o_.body[saturated.edge]) * depth * saturated.sum *
+                         o_.length[saturated.edge];
+    const Vec2 on_edge =
+        point_of(o_, saturated.edge, saturated.sum > 0 ? saturated.first / saturated.sum : 0);
+    if (is_a(o_, sum, saturated.edge)) sum.add(on_edge, force * inward(saturated.edge));
     sum.press(on_edge, force, depth);
-    sum.record.penetration = depths_.of_edge(on.edge, on.in, sum.record.penetration);
+    sum.record.penetration =
+        depths_.of_edge(saturated.edge, saturated.body, sum.record.penetration);
   }
 
-  void add(int patch, const SaturatedFace& on) {
+  void add(int patch, const SaturatedFace& saturated) {
     PatchSum& sum = found_[static_cast<size_t>(patch)];
-    std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[on.face], on.in);
-    if (!is_a(o_, sum, on.face)) return;
-    const double area = on.moment.area;
-    sum.add(point_of(o_, on.face, area > 0 ? on.moment.along / (area * o_.length[on.face]) : 0),
-            slopes_(o_.body[on.face], on.in) * area * inward(on.face));
+    std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[saturated.face], saturated.body);
+    if (!is_a(o_, sum, saturated.face)) return;
+    const double area = saturated.moment.area;
+    sum.add(point_of(o_, saturated.face,
+                     area > 0 ? saturated.moment.along / (area * o_.length[saturated.face]) : 0),
+            slopes_(o_.body[saturated.face], saturated.body) * area * inward(saturated.face));
   }
 
   void finish(std::vector<ContactRecord>& records) {
@@ -239,8 +245,8 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   PatchSums sums(state, patch.empty() ? 0 : *std::ranges::max_element(patch) + 1);
   auto next = patch.begin();
   for (const EdgeFaceContact& contact : state.contacts) sums.add(*next++, contact);
-  for (const SaturatedEdge& on : state.plateaus.edges()) sums.add(*next++, on);
-  for (const SaturatedFace& on : state.plateaus.faces()) sums.add(*next++, on);
+  for (const SaturatedEdge& saturated : state.saturated.edges()) sums.add(*next++, saturated);
+  for (const SaturatedFace& saturated : state.saturated.faces()) sums.add(*next++, saturated);
   sums.finish(records);
 }
 
@@ -258,13 +264,15 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
       record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }
-  for (const SaturatedEdge& on : state.plateaus.edges()) {
-    const double slope = slopes(on.in, o.body[on.edge]);
-    record[on.edge].pressure += slope * o.bodies[on.in].depth / thickness * on.sum;
+  for (const SaturatedEdge& saturated : state.saturated.edges()) {
+    const double slope = slopes(saturated.body, o.body[saturated.edge]);
+    record[saturated.edge].pressure +=
+        slope * o.bodies[saturated.body].depth / thickness * saturated.sum;
   }
-  for (const SaturatedFace& on : state.plateaus.faces()) {
-    const double slope = slopes(o.body[on.face], on.in);
-    record[on.face].pressure += slope / thickness * on.moment.area / o.length[on.face];
+  for (const SaturatedFace& saturated : state.saturated.faces()) {
+    const double slope = slopes(o.body[saturated.face], saturated.body);
+    record[saturated.face].pressure +=
+        slope / thickness * saturated.moment.area / o.length[saturated.face];
   }
 }
 

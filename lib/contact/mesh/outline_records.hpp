@@ -5,8 +5,8 @@
 
 #include "lib/contact/law/contact.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/mesh/saturated_regions.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 
 namespace apothem {
 
@@ -14,7 +14,7 @@ namespace apothem {
 struct OutlineState {
   const OutlineSlopes& slopes;
   const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
-  const SaturatedRegions& plateaus;
+  const SaturatedRegions& saturated;
   [[nodiscard]] const OutlineSurfaces& outlines() const { return slopes.outlines; }
 };
 

@@ -37,14 +37,16 @@ APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& t
     Pack x, y;
   };
   const auto velocity = [&](const EdgeFaceBlock::Vertices& i) APOTHEM_LAMBDA {
-    using Pair = double __attribute__((vector_size(16)));
-    const auto of = [&](size_t l) APOTHEM_LAMBDA {
-      Pair v;
+    using TwoNumbers = double __attribute__((vector_size(16)));
+    const auto vertex_velocity = [&](size_t l) APOTHEM_LAMBDA {
+      TwoNumbers v;
       std::memcpy(&v, &velocities[2 * static_cast<size_t>(i[l])], sizeof v);
       return v;
     };
-    const Pack::Vector low = __builtin_shufflevector(of(0), of(1), 0, 1, 2, 3);
-    const Pack::Vector high = __builtin_shufflevector(of(2), of(3), 0, 1, 2, 3);
+    const Pack::Vector low =
+        __builtin_shufflevector(vertex_velocity(0), vertex_velocity(1), 0, 1, 2, 3);
+    const Pack::Vector high =
+        __builtin_shufflevector(vertex_velocity(2), vertex_velocity(3), 0, 1, 2, 3);
     return Velocity{Pack(__builtin_shufflevector(low, high, 0, 2, 4, 6)),
                     Pack(__builtin_shufflevector(low, high, 1, 3, 5, 7))};
   };

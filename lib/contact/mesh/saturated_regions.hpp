@@ -13,34 +13,35 @@
 
 namespace apothem {
 
+/// An edge of one outline inside the saturated region of a body.
+struct SaturatedEdge {
+  int edge;
+  BodyIndex body;     ///< the body with the saturated region
+  double sum, first;  ///< INT W du and INT W u du, with the winding number W of the offset curve
+  double swept;       ///< contribution to the area inside both, m^2
+};
+
+/// A face whose side of the offset curve lies in another body.
+struct SaturatedFace {
+  int face;
+  BodyIndex body;                ///< the other body
+  CollarMoments<double> moment;  ///< terms that collar_piece leaves out
+  double swept;                  ///< contribution to the area inside both, m^2
+};
+
 class SaturatedRegions {
  public:
-  /// An edge of one outline inside the saturated region of a body.
-  struct Edge {
-    int edge;
-    BodyIndex in;       ///< the body with the saturated region
-    double sum, first;  ///< INT W du and INT W u du, with the winding number W of the offset curve
-    double swept;       ///< contribution to the area inside both, m^2
-  };
-  /// A face whose side of the offset curve lies in another body.
-  struct Face {
-    int face;
-    BodyIndex in;                  ///< the other body
-    CollarMoments<double> moment;  ///< terms that collar_piece leaves out
-    double swept;                  ///< contribution to the area inside both, m^2
-  };
-
   explicit SaturatedRegions(const OutlineSurfaces& outlines) : outlines_(outlines) {}
 
   /// Sets the pairs of bodies after a search; each body of a pair provides the edges in turn. A
   /// body that may touch itself is a pair with itself. Its outline encloses its own offset curve
   /// once by nature, and this does not count.
-  void take(std::span<const BoxPair> pairs);
+  void set_pairs(std::span<const BoxPair> pairs);
   /// Removes the crossings.
   void begin() { crossings_.clear(); }
-  void add(const EdgeFace& pair, const CollarCrossings<double>& top) {
-    for (int i = 0; i < top.count; ++i) {
-      crossings_.push_back({pair.edge, pair.face, top.at[static_cast<size_t>(i)]});
+  void add(const EdgeFace& pair, const CollarCrossings<double>& crossings) {
+    for (int i = 0; i < crossings.count; ++i) {
+      crossings_.push_back({pair.edge, pair.face, crossings.list[static_cast<size_t>(i)]});
     }
   }
   /// Finds the edges and faces at the present positions of the outlines. The crossings of all
@@ -49,45 +50,45 @@ class SaturatedRegions {
 
   /// The results in ascending order of the pairs of bodies (the body of the edges first), then
   /// along the closed lines.
-  [[nodiscard]] const std::vector<Edge>& edges() const { return edges_; }
-  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] const std::vector<SaturatedEdge>& edges() const { return edges_; }
+  [[nodiscard]] const std::vector<SaturatedFace>& faces() const { return faces_; }
 
  private:
   struct Crossing {
     int edge, face;
-    CollarCrossing<double> at;
+    CollarCrossing<double> crossing;
   };
   /// One vertex of a closed line and its winding number: a vertex of an outline in an offset curve,
   /// or of an offset curve in an outline.
   struct Base {
     int loop, vertex;
     int winding;
-    bool top;
+    bool of_offset_curve;
     bool settled;  ///< true if the winding number holds until the next search
   };
   /// The edges of one body, the faces of another one, and the range of their bases: first those of
   /// the loops of the edges.
-  struct Pair {
+  struct EdgeFacePair {
     BodyIndex edges, faces;
     size_t first, end;
   };
 
   void add_pair(BodyIndex edges, BodyIndex faces);
-  [[nodiscard]] Base base_of(int loop, BodyIndex other, bool top) const;
+  [[nodiscard]] Base base_of(int loop, BodyIndex other, bool of_offset_curve) const;
   void settle(Base& base, BodyIndex other) const;
-  [[nodiscard]] int winding(const Vec2& place, int loop, BodyIndex other, bool top,
+  [[nodiscard]] int winding(const Vec2& place, int loop, BodyIndex other, bool of_offset_curve,
                             bool* clear = nullptr) const;
-  void find_edges(const Pair& pair, std::span<const Crossing> crossings);
-  void find_faces(const Pair& pair, std::span<Crossing> crossings);
+  void find_edges(const EdgeFacePair& pair, std::span<const Crossing> crossings);
+  void find_faces(const EdgeFacePair& pair, std::span<Crossing> crossings);
 
   const OutlineSurfaces& outlines_;
-  std::vector<Pair> pairs_;  ///< pairs, ascending
+  std::vector<EdgeFacePair> pairs_;  ///< pairs, ascending
   std::vector<Base> bases_;
   bool quiet_ = true;  ///< true if all bases are settled and none of them is inside
   std::vector<Crossing> crossings_;
-  std::vector<int> at_;  ///< first crossing of each edge or face, or -1
-  std::vector<Edge> edges_;
-  std::vector<Face> faces_;
+  std::vector<int> first_crossing_;  ///< first crossing of each edge or face, or -1
+  std::vector<SaturatedEdge> edges_;
+  std::vector<SaturatedFace> faces_;
 };
 
 }  // namespace apothem

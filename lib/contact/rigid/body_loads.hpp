@@ -23,14 +23,15 @@ class BodyLoads {
   BodyLoads(const Surfaces& surfaces, int threads);
 
   /// Sets the pairs that may touch, which ascend.
-  void take(std::span<const BoxPair> pairs);
+  void set_pairs(std::span<const BoxPair> pairs);
   /// Begins the work of one thread in a step. `first` is the first body of its first pair, or -1 if
   /// no other thread has earlier pairs.
-  void begin(int worker, RigidIndex first) { parts_[static_cast<size_t>(worker)].begin(first); }
+  void begin(int worker, RigidIndex first) { workers_[static_cast<size_t>(worker)].begin(first); }
   void add(int worker, RigidIndex body, const BodyLoad& load) {
-    Part& part = parts_[static_cast<size_t>(worker)];
-    if (part.first >= 0 && first_partner_[static_cast<size_t>(body)] <= part.first) {
-      part.late.push_back({load, body});
+    DeferredLoads& deferred_loads = workers_[static_cast<size_t>(worker)];
+    if (deferred_loads.first >= 0 &&
+        first_partner_[static_cast<size_t>(body)] <= deferred_loads.first) {
+      deferred_loads.deferred.push_back({load, body});
     } else {
       sums_[static_cast<size_t>(body)].add(load);
     }
@@ -46,12 +47,12 @@ class BodyLoads {
     RigidIndex body;
   };
   // The loads that one thread has deferred.
-  struct Part {
+  struct DeferredLoads {
     RigidIndex first = -1;
-    std::vector<DeferredLoad> late;
+    std::vector<DeferredLoad> deferred;
     void begin(RigidIndex body) {
       first = body;
-      late.clear();
+      deferred.clear();
     }
   };
 
@@ -71,7 +72,7 @@ class BodyLoads {
   std::vector<BodyLoad> sums_;             // sum of the loads of each rigid body
   std::vector<RigidIndex> first_partner_;  // for each body, the lowest number among itself and the
                                            // bodies that it may touch
-  std::vector<Part> parts_;
+  std::vector<DeferredLoads> workers_;
   std::vector<Rate> rates_;      // rates of each rigid body
   std::vector<double> fastest_;  // largest rate found by each thread
 };

@@ -16,22 +16,22 @@ constexpr double kNarrow = 1e-9;
 
 // Reads one number for each lane; a single number is that of the first lane.
 template <class F>
-APOTHEM_INLINE void read_lanes(double& number, const F& of) {
-  number = of(0);
+APOTHEM_INLINE void read_lanes(double& number, const F& value) {
+  number = value(0);
 }
 template <int lanes, class F>
-APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
-  pack = pack_of<lanes>(of);
+APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& value) {
+  pack = pack_of<lanes>(value);
 }
 // Reads one truth value for each lane, from 1 or 0.
 template <class F>
-APOTHEM_INLINE void read_lanes(bool& truth, const F& of) {
-  truth = of(0) > 0;
+APOTHEM_INLINE void read_lanes(bool& truth, const F& value) {
+  truth = value(0) > 0;
 }
 template <int lanes, class F>
-APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& of) {
+APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& value) {
   PackOf<lanes> number;
-  read_lanes(number, of);
+  read_lanes(number, value);
   mask = number > PackOf<lanes>(0.);
 }
 
@@ -51,11 +51,11 @@ template <class Real>
 APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<Real>& p) {
   bool same = true;
   for (int k = 1; k < lanes_of<Real>; ++k) same = same && work[k].law == work[0].law;
-  const auto number = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+  const auto number = [&](Real& result, const auto& value) APOTHEM_LAMBDA {
     if (same) {
-      to = Real(of(*work[0].law));
+      result = Real(value(*work[0].law));
     } else {
-      read_lanes(to, [&](int k) APOTHEM_LAMBDA { return of(*work[k].law); });
+      read_lanes(result, [&](int k) APOTHEM_LAMBDA { return value(*work[k].law); });
     }
   };
   number(p.normal_stiffness,
@@ -111,10 +111,11 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
     return scene.surfaces.rigid(work[k].a).radius + scene.surfaces.rigid(work[k].b).radius;
   });
   p.force_error = Real(kForceError * std::numeric_limits<double>::epsilon()) * radii * p.slopes;
-  const auto rate = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+  const auto rate = [&](Real& result, const auto& value) APOTHEM_LAMBDA {
     const double* const all = scene.now->pose_rate.data();
-    read_lanes(to, [&](int k) APOTHEM_LAMBDA {
-      return of(all + 3 * static_cast<size_t>(work[k].a), all + 3 * static_cast<size_t>(work[k].b));
+    read_lanes(result, [&](int k) APOTHEM_LAMBDA {
+      return value(all + 3 * static_cast<size_t>(work[k].a),
+                   all + 3 * static_cast<size_t>(work[k].b));
     });
   };
   rate(p.rate.x, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[0] - b[0]; });
@@ -131,14 +132,14 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
 }
 
 template <class Real>
-APOTHEM_INLINE void hold(const PairWork* work, const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
-                         BodyStiffnessOf<Real>& b) {
+APOTHEM_INLINE void add_strip_stiffness(const PairWork* work, const PatchStep<Real>& p,
+                                        BodyStiffnessOf<Real>& a, BodyStiffnessOf<Real>& b) {
   FourOf<Real> four;
   read_rows([&](int k)
                 APOTHEM_LAMBDA { return integral_numbers(*work[k].integral) + kBreadthNumbers; },
             four);
   const ContactStrip<Real> strip{four[0], four[1]};
-  strip.hold(p, a, b);
+  strip.add_stiffness(p, a, b);
 }
 
 // Force and moments of a pair, including those of friction.
@@ -150,18 +151,18 @@ APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
 }
 
 // The numbers of a load are contiguous, so that they can be written as rows.
-static_assert(offsetof(BodyLoad, held) == 3 * sizeof(double) &&
+static_assert(offsetof(BodyLoad, stiffness) == 3 * sizeof(double) &&
               sizeof(BodyLoad) == 12 * sizeof(double));
 template <int lanes, class F>
 APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
                                const PackOf<lanes>& moment,
-                               const BodyStiffnessOf<PackOf<lanes>>& held,
-                               const std::array<PackOf<lanes>, 3>& beside, const F& to) {
-  write_rows({x, y, moment, held.xx}, [&](int k) APOTHEM_LAMBDA { return &to(k).x; });
-  write_rows({held.xy, held.yy, held.xt, held.yt},
-             [&](int k) APOTHEM_LAMBDA { return &to(k).held.xy; });
-  write_rows({held.tt, beside[0], beside[1], beside[2]},
-             [&](int k) APOTHEM_LAMBDA { return &to(k).held.tt; });
+                               const BodyStiffnessOf<PackOf<lanes>>& stiffness,
+                               const std::array<PackOf<lanes>, 3>& beside, const F& load) {
+  write_rows({x, y, moment, stiffness.xx}, [&](int k) APOTHEM_LAMBDA { return &load(k).x; });
+  write_rows({stiffness.xy, stiffness.yy, stiffness.xt, stiffness.yt},
+             [&](int k) APOTHEM_LAMBDA { return &load(k).stiffness.xy; });
+  write_rows({stiffness.tt, beside[0], beside[1], beside[2]},
+             [&](int k) APOTHEM_LAMBDA { return &load(k).stiffness.tt; });
 }
 
 }  // namespace
@@ -189,7 +190,7 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
 }
 
 bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
-                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to) {
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& dashpots) {
   const RigidIndex a = bodies.first, b = bodies.second;
   PatchStep<double> p;
   const PairWork work{.a = a, .b = b, .integral = &patch, .law = &law, .load = nullptr};
@@ -215,26 +216,26 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
   // distributed one does.
   const double apart = patch.breadth / std::sqrt(12.), off = point.dot(across) - patch.middle;
   const bool both = apart > kNarrow * pressed / stiffness;
-  const double share = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
+  const double weight = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
   const std::array<double, 2> along{both ? -off - apart : 0, both ? apart - off : 0};
-  const std::array<double, 2> shares{1 - share, share};
+  const std::array<double, 2> weights{1 - weight, weight};
   for (const size_t k : {0, 1}) {
-    const double part = both ? .5 : shares[k];  // fraction of the stiffness
-    dashpot.across[k] =
-        Dashpot::Normal::of(part * normal_rate, shares[k] * pressed, part * stiffness, patch.depth);
+    const double part = both ? .5 : weights[k];  // fraction of the stiffness
+    dashpot.across[k] = Dashpot::Normal::of(part * normal_rate, weights[k] * pressed,
+                                            part * stiffness, patch.depth);
   }
-  to.add(dashpot);
-  to.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);
-  to.add_rigid(b, -1, {behind + along[0] * across, behind + along[1] * across}, behind);
+  dashpots.add(dashpot);
+  dashpots.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);
+  dashpots.add_rigid(b, -1, {behind + along[0] * across, behind + along[1] * across}, behind);
   return true;
 }
 
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
-               const BodyStiffness& held_a, const BodyStiffness& held_b) {
+               const BodyStiffness& body_stiffness_a, const BodyStiffness& body_stiffness_b) {
   PatchStep<double> p;
   read_pair(scene, &work, p);
-  BodyStiffness a = held_a, b = held_b;
-  hold(&work, p, a, b);
+  BodyStiffness a = body_stiffness_a, b = body_stiffness_b;
+  add_strip_stiffness(&work, p, a, b);
   const PairForce f = whole_force(p, friction);
   *work.load = {{f.x, f.y, f.a, a, {friction.x, friction.y, friction.a}},
                 {-f.x, -f.y, f.b, b, {-friction.x, -friction.y, friction.b}},
@@ -260,16 +261,16 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
       now(k).stiffness = friction.stiffness.v[k];
       now(k).tangent = {friction.tangent.x.v[k], friction.tangent.y.v[k]};
       now(k).push = p.push.v[k];
-      work[k].book->energy = energy.v[k];
-      work[k].book->loss = friction.lost.v[k];
+      work[k].ledger->energy = energy.v[k];
+      work[k].ledger->loss = friction.lost.v[k];
     }
   }
-  hold(work, p, friction.held_a, friction.held_b);
+  add_strip_stiffness(work, p, friction.body_stiffness_a, friction.body_stiffness_b);
   const PairVectorOf<Pack>& beside = friction.force;
   const PairVectorOf<Pack> f = whole_force(p, beside);
-  write_load(f.x, f.y, f.a, friction.held_a, {beside.x, beside.y, beside.a},
+  write_load(f.x, f.y, f.a, friction.body_stiffness_a, {beside.x, beside.y, beside.a},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_a; });
-  write_load(-f.x, -f.y, f.b, friction.held_b, {-beside.x, -beside.y, beside.b},
+  write_load(-f.x, -f.y, f.b, friction.body_stiffness_b, {-beside.x, -beside.y, beside.b},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_b; });
   const Pack normal = p.normal_stiffness * p.size;
   for (int k = 0; k < kAtOnce; ++k) {
@@ -282,11 +283,11 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
 void PairBatch::flush(const PairScene& scene) {
   if (count_ == 0) return;
   // The remaining lanes are padding: they repeat the last pair, and their results are not used.
-  PairWork again = work_[static_cast<size_t>(count_ - 1)];
-  again.load = &spare_.load;
-  again.now = &spare_.now;
-  again.book = &spare_.book;
-  std::fill(work_.begin() + count_, work_.end(), again);
+  PairWork padding = work_[static_cast<size_t>(count_ - 1)];
+  padding.load = &padding_.load;
+  padding.now = &padding_.now;
+  padding.ledger = &padding_.ledger;
+  std::fill(work_.begin() + count_, work_.end(), padding);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     step(scene);
     return 0.;

@@ -41,8 +41,8 @@ struct PairWork {
   PairLoad* load;
   const Spring* before = &kNoSpring;  ///< the spring in the step before
   bool begins = true;                 ///< true if the pair had no patch in the step before
-  Spring* now = nullptr;     ///< the spring of this step, without its key; null without friction
-  PairLedger* book = nullptr;  ///< null without friction
+  Spring* now = nullptr;  ///< the spring of this step, without its key; null without friction
+  PairLedger* ledger = nullptr;  ///< null without friction
 };
 
 /// Finds the friction of work.size() contact patches, at most kComparedLanes. The results that
@@ -52,11 +52,11 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
 /// Adds the dashpots of a contact patch of two bodies. Returns false if it has none, because its
 /// force has no direction. `spring` is the force of the friction spring in the patch, N.
 bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
-                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to);
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& dashpots);
 /// Finds the load of a pair from its normal force and the given friction. The last two arguments
 /// are the stiffnesses of its friction springs for the two bodies.
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
-               const BodyStiffness& held_a, const BodyStiffness& held_b);
+               const BodyStiffness& body_stiffness_a, const BodyStiffness& body_stiffness_b);
 
 /// Pairs with at most one contact patch, collected until a pack of them is full.
 class PairBatch {
@@ -81,8 +81,8 @@ class PairBatch {
   struct {
     PairLoad load;
     Spring now;
-    PairLedger book;
-  } spare_ = {};
+    PairLedger ledger;
+  } padding_ = {};
 };
 
 }  // namespace apothem

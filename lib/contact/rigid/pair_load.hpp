@@ -15,14 +15,14 @@ namespace apothem {
 /// stiffness of the contacts, and the parts of force and moment due to friction and damping.
 struct BodyLoad {
   double x = 0, y = 0, moment = 0;
-  BodyStiffness held;
+  BodyStiffness stiffness;
   std::array<double, 3> beside = {};
 
   void add(const BodyLoad& other) {
     x += other.x;
     y += other.y;
     moment += other.moment;
-    held.add(other.held, 1);
+    stiffness.add(other.stiffness, 1);
     for (size_t k = 0; k < 3; ++k) beside[k] += other.beside[k];
   }
 };
@@ -40,14 +40,14 @@ struct ContactStrip {
   Real breadth, middle;  // extent across the force and its middle, see PairIntegral
 
   /// Adds the stiffness of the contact to the stiffnesses of both bodies.
-  APOTHEM_INLINE void hold(const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
-                           BodyStiffnessOf<Real>& b) const {
+  APOTHEM_INLINE void add_stiffness(const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
+                                    BodyStiffnessOf<Real>& b) const {
     const Real zero(0.), one(1.);
     const Real stiffness = p.normal_stiffness * p.slopes;  // see Contact::stiffness
     // The resultant over the sum of the magnitudes of the edges' forces: 1 if all have the same
     // direction.
-    const Real share = p.size / p.weight;
-    const Real aligned = select(share < one, share, one);
+    const Real alignment = p.size / p.weight;
+    const Real aligned = select(alignment < one, alignment, one);
     const Real aside = square_root(one - aligned * aligned);
     const Real across = aside * aside * stiffness;
     // Each edge contributes with the cosine of its angle to the force, so that flanks contribute
@@ -58,7 +58,7 @@ struct ContactStrip {
     const VectorOf<Real> tangent = normal.turned();
     // The strip is centred at the middle of the extent and not at the loading point: boundary that
     // is hardly inside is as stiff as any other.
-    const VectorOf<Real> at = middle * tangent;
+    const VectorOf<Real> middle_point = middle * tangent;
     const Real spread = along * breadth * breadth / Real(12.);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
@@ -68,8 +68,8 @@ struct ContactStrip {
       sum.tt = sum.tt + spread;
       springs.add(sum, one);
     };
-    body(a, at, p.centre);
-    body(b, at + p.between, p.centre + p.between);
+    body(a, middle_point, p.centre);
+    body(b, middle_point + p.between, p.centre + p.between);
   }
 };
 

@@ -34,8 +34,8 @@ class PatchTangential {
   void begin_step(const Kinematics& now, double dt);
   /// Updates the friction of the touching pairs from `first` to `end`, in blocks of kBlock pairs,
   /// and passes the loads of each block to take(loads).
-  template <class Take>
-  void step(int first, int end, int worker, const Take& take);
+  template <class Consume>
+  void step(int first, int end, int worker, const Consume& consume);
   /// Books the losses of friction.
   void end_step();
 
@@ -43,10 +43,10 @@ class PatchTangential {
   /// with several patches, where it is not known. It is too slow for every pair.
   [[nodiscard]] std::optional<PairForce> friction(RigidIndex a, RigidIndex b) const {
     const FrictionMemory& memory = memory_;
-    return friction_of(a, b, memory.springs(), memory.runs().now());
+    return friction_of(a, b, memory.springs(), memory.segments().now());
   }
   [[nodiscard]] std::optional<PairForce> friction_before(RigidIndex a, RigidIndex b) const {
-    return friction_of(a, b, memory_.springs_before(), memory_.runs().before());
+    return friction_of(a, b, memory_.springs_before(), memory_.segments().before());
   }
   /// The force of the spring in a patch, N.
   [[nodiscard]] double spring_in(const PairInTouch& pair, size_t patch) const;
@@ -55,7 +55,7 @@ class PatchTangential {
 
   /// Adds friction to the records of a pair, one for each patch. The law per_edge needs the
   /// boundary segments of the pair.
-  void add_to(std::span<ContactRecord> patches, std::span<const BoundarySegment> runs,
+  void add_to(std::span<ContactRecord> patches, std::span<const BoundarySegment> segments,
               const PairInTouch& pair) const;
 
   /// The number of pairs in a block. The sums of a block are booked together, so that they do not
@@ -64,8 +64,8 @@ class PatchTangential {
 
  private:
   // The indices of the first spring and of the first segment of a touching pair.
-  struct Place {
-    size_t spring = 0, run = 0;
+  struct ListOffsets {
+    size_t spring = 0, segment = 0;
   };
 
   // The pairs that one thread works on.
@@ -74,7 +74,7 @@ class PatchTangential {
     explicit Range(PatchTangential& all) : all_(all) {}
 
     void begin(size_t first, size_t end);
-    void step_block(size_t first, size_t end, PairLedger& book);
+    void step_block(size_t first, size_t end, PairLedger& ledger);
     void finish();
 
     std::vector<PairLoad> loads;  // loads of the block
@@ -85,28 +85,29 @@ class PatchTangential {
     struct Sum {
       PairRate rate;
       PairForce force = {};
-      BodyStiffness held_a = {}, held_b = {};  // stiffness of its friction springs
+      BodyStiffness body_stiffness_a = {}, body_stiffness_b = {};  // of its friction springs
     };
-    void step_pair(size_t number, PairLoad& load, PairLedger& book);
+    void step_pair(size_t number, PairLoad& load, PairLedger& ledger);
     void step_patches(const PairInTouch& touching, const PairWork& pair);
     void step_springs(const PairWork& pair, Sum& sum);
-    void keep_runs(const ContactKey& pair, size_t number) const;
-    void find_shares(const ContactKey& pair);
-    void inherit();
+    void keep_segments(const ContactKey& pair, size_t number) const;
+    void match_patches(const ContactKey& pair);
+    void transfer_springs();
     [[nodiscard]] double lost_by_balance(const PairWork& pair, const Sum& sum) const;
-    void per_edge(const PairWork& pair, std::span<const BoundarySegment> runs, Sum& sum);
+    void per_edge(const PairWork& pair, std::span<const BoundarySegment> segments, Sum& sum);
 
     PatchTangential& all_;
     PairBatch batch_;
-    std::vector<PairLedger> books_;  // ledgers of the pairs of the block
+    std::vector<PairLedger> ledgers_;  // ledgers of the pairs of the block
     ContactWalk<const Spring> walk_;
     // The present pair.
-    std::span<const SegmentPlace> runs_;
+    std::span<const SegmentPlace> segments_;
     std::span<const PairIntegral> patches_;
     std::span<const Spring> before_;
     std::span<Spring> now_;
-    std::vector<SegmentPlace> runs_before_;
-    std::vector<double> shares_;  // fraction of each earlier patch that goes to each present patch
+    std::vector<SegmentPlace> segments_before_;
+    // The fraction of each earlier patch that goes to each present patch.
+    std::vector<double> fractions_;
     std::vector<Spring> patch_springs_;
     std::vector<PatchFriction<double>> friction_;  // friction of each patch
   };
@@ -114,10 +115,10 @@ class PatchTangential {
   void make_room();
   [[nodiscard]] std::optional<PairForce> friction_of(RigidIndex a, RigidIndex b,
                                                      std::span<const Spring> springs,
-                                                     std::span<const PatchSegment> runs) const;
+                                                     std::span<const PatchSegment> segments) const;
   [[nodiscard]] double lost_at_end(std::span<const Spring> springs) const;
-  [[nodiscard]] Place place_of(size_t number) const {
-    return places_.empty() ? Place{number, 0} : places_[number];
+  [[nodiscard]] ListOffsets offsets_of(size_t number) const {
+    return offsets_.empty() ? ListOffsets{number, 0} : offsets_[number];
   }
   [[nodiscard]] std::span<Spring> springs_of(const PairInTouch& pair) const;
   void fetch(const PairInTouch& pair) const;
@@ -132,21 +133,21 @@ class PatchTangential {
   // The present step.
   Kinematics kinematics_;
   PairScene scene_;
-  std::vector<PairLedger> books_;  // ledger of each block
+  std::vector<PairLedger> ledgers_;  // ledger of each block
   // Offsets of each touching pair, and of the end; empty if each pair has one spring.
-  std::vector<Place> places_;
+  std::vector<ListOffsets> offsets_;
   std::span<Spring> springs_;
-  std::span<PatchSegment> runs_;
+  std::span<PatchSegment> segments_;
 };
 
-template <class Take>
-void PatchTangential::step(int first, int end, int worker, const Take& take) {
+template <class Consume>
+void PatchTangential::step(int first, int end, int worker, const Consume& consume) {
   Range& range = ranges_[static_cast<size_t>(worker)];
   range.begin(static_cast<size_t>(first), static_cast<size_t>(end));
   for (int i = first; i < end; i += kBlock) {
     range.step_block(static_cast<size_t>(i), static_cast<size_t>(std::min(i + kBlock, end)),
-                     books_[static_cast<size_t>(i / kBlock)]);
-    take(std::span<const PairLoad>(range.loads));
+                     ledgers_[static_cast<size_t>(i / kBlock)]);
+    consume(std::span<const PairLoad>(range.loads));
   }
   range.finish();
 }

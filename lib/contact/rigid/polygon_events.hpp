@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/law/event_detector.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/law/pair_table.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/contact/rigid/patch_tangential.hpp"
@@ -51,8 +51,8 @@ class PolygonEvents {
   /// The positions of the two polygons of a pair within a step.
   struct Path;
   /// Memory of a thread.
-  struct Worker {
-    std::vector<double> events;
+  struct SampleWorkspace {
+    std::vector<double> kinks;
     std::vector<EventSample> samples;
     std::vector<Load> loads;  // loads at the samples
     PlacedShapes::Turned start_a, start_b;
@@ -62,16 +62,17 @@ class PolygonEvents {
   };
 
   [[nodiscard]] Impulse find_pair(const PairChange& pair, const Kinematics& now,
-                                  const Dynamics& dynamics, double dt, Worker& worker) const;
-  bool find_events(const Path& path, Worker& worker) const;
+                                  const Dynamics& dynamics, double dt,
+                                  SampleWorkspace& worker) const;
+  bool find_kinks(const Path& path, SampleWorkspace& worker) const;
   static void find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
                              const PlacedPotential& y0, const PlacedPotential& y1,
-                             const Vec2& offset0, const Vec2& offset1, std::vector<double>& events);
-  void find_loads(const Path& path, Worker& worker) const;
+                             const Vec2& offset0, const Vec2& offset1, std::vector<double>& kinks);
+  void find_loads(const Path& path, SampleWorkspace& worker) const;
   /// The missing friction of a pair with one patch, N and N m.
-  [[nodiscard]] Load find_friction(const PairChange& pair, const Worker& worker,
+  [[nodiscard]] Load find_friction(const PairChange& pair, const SampleWorkspace& worker,
                                    size_t inside) const;
-  void book_loss(const Kinematics& now, const Dynamics& dynamics, double dt);
+  void find_friction_loss(const Kinematics& now, const Dynamics& dynamics, double dt);
 
   const Surfaces& surfaces_;
   const PairTable& table_;
@@ -85,7 +86,7 @@ class PolygonEvents {
   // Forces of all impulses on each coordinate, and their parts of friction. Both are 0 except while
   // find_friction_loss works.
   std::vector<double> all_, parts_;
-  std::vector<Worker> workers_;
+  std::vector<SampleWorkspace> workers_;
 };
 
 }  // namespace apothem

@@ -7,10 +7,10 @@
 #include "geometry/integrals/penetration.hpp"
 #include "lib/contact/kernel.hpp"
 #include "lib/contact/rigid/body_loads.hpp"
-#include "lib/contact/rigid/polygon_events.hpp"
 #include "lib/contact/rigid/pair_batch.hpp"
 #include "lib/contact/rigid/pair_integrals.hpp"
 #include "lib/contact/rigid/patch_tangential.hpp"
+#include "lib/contact/rigid/polygon_events.hpp"
 #include "lib/execution/parallel.hpp"
 
 namespace apothem {
@@ -21,27 +21,27 @@ class PolygonKernel final : public Kernel {
   PolygonKernel(const Surfaces& surfaces, const ContactLaw& law, const PairTable& table,
                 FrictionMemory& memory, double thickness, int threads);
 
-  void take(std::span<const BoxPair> pairs) override;
+  void set_pairs(std::span<const BoxPair> pairs) override;
   void evaluate() override;
   [[nodiscard]] ContactSummary summary() const override { return summary_; }
   void visit_contacts(double least, const ContactVisitor& visit) const override;
   [[nodiscard]] double penetration(const Contact& contact, double floor) override;
   [[nodiscard]] ContactFault fault(const Contact& contact) const override;
-  double slide(const Kinematics& now, double dt, FrictionMemory& memory) override;
+  double update_friction(const Kinematics& now, double dt, FrictionMemory& memory) override;
   /// Nothing is to be done: all that the next update needs is in the memory.
   void refresh(const Kinematics& /*now*/, FrictionMemory& /*memory*/) override {}
   void add_forces(const ForceViews& forces) override;
-  void add_dashpots(const Kinematics& now, Dashpots& to) override;
-  void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) override;
+  void add_dashpots(const Kinematics& now, Dashpots& dashpots) override;
+  void keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) override;
   bool find_event_impulses(const Kinematics& now, const Dynamics& dynamics, double dt,
-                   FrictionMemory& memory) override {
+                           FrictionMemory& memory) override {
     const bool found =
-        onset_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
-    if (found) memory.lose(onset_.loss());
+        events_.find(pairs_, tangential_ ? &*tangential_ : nullptr, now, dynamics, dt);
+    if (found) memory.lose(events_.loss());
     return found;
   }
   void add_event_impulses(double scale, const ForceViews& forces) const override {
-    onset_.add(scale, forces.rigid);
+    events_.add(scale, forces.rigid);
   }
   [[nodiscard]] PairPeak largest_force() const override { return largest_force_; }
 
@@ -50,7 +50,7 @@ class PolygonKernel final : public Kernel {
   void add_force_sizes(std::span<double> of_bodies) const override;
   void add_records(std::vector<ContactRecord>& records) const override;
   void fields(Archive& archive) override {
-    archive("onset", onset_);
+    archive("onset", events_);
     if (table_.damped()) archive("pushes", pushes_)("drags", drags_);
   }
 
@@ -78,7 +78,7 @@ class PolygonKernel final : public Kernel {
   const PairTable& table_;
   double thickness_;  // m
   PairIntegrals pairs_;
-  PolygonEvents onset_;
+  PolygonEvents events_;
   std::optional<PatchTangential> tangential_;  // empty without friction
   Threads threads_;
   std::vector<Found> found_;  // results of each thread
@@ -88,7 +88,7 @@ class PolygonKernel final : public Kernel {
   // Memory for penetrations.
   PatchWorkspace patch_workspace_;
   PenetrationWorkspace penetration_workspace_;
-  std::vector<BoundarySegment> runs_;
+  std::vector<BoundarySegment> segments_;
   std::vector<PairIntegral> patches_;
   std::vector<double> deepest_;  // penetration of each patch, m
   std::vector<char> damped_;     // for each patch of damped pairs, whether it has dashpots

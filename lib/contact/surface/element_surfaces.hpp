@@ -45,12 +45,14 @@ class ElementSurfaces {
   }
 
   /// The tributary length of a boundary node, m: half the length of the boundary edges at it.
-  struct Share {
+  struct TributaryLength {
     NodeIndex node;
     BodyIndex body;
     double length;
   };
-  [[nodiscard]] const std::vector<Share>& shares() const { return shares_; }
+  [[nodiscard]] const std::vector<TributaryLength>& tributary_lengths() const {
+    return tributary_lengths_;
+  }
 
  private:
   struct Element {
@@ -62,7 +64,7 @@ class ElementSurfaces {
   std::vector<NodeIndex> nodes_;
   std::vector<Vec2> start_;  // positions of the corners in the undeformed mesh, m
   std::vector<char> outer_;
-  std::vector<Share> shares_;
+  std::vector<TributaryLength> tributary_lengths_;
   std::vector<Vec2> ring_;
 };
 

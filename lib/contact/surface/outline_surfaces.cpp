@@ -31,18 +31,18 @@ APOTHEM_INLINE Number load(const double* from) {
     return Number::load(from);
   }
 }
-APOTHEM_INLINE void store(double value, double* to) { *to = value; }
+APOTHEM_INLINE void store(double value, double* target) { *target = value; }
 template <int lanes>
-APOTHEM_INLINE void store(const PackOf<lanes>& value, double* to) {
-  value.store(to);
+APOTHEM_INLINE void store(const PackOf<lanes>& value, double* target) {
+  value.store(target);
 }
 template <class Number>
 APOTHEM_INLINE Number loaded(const std::vector<double>& from, int i) {
   return load<Number>(from.data() + i);
 }
 template <class Number>
-APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
-  store(value, to.data() + i);
+APOTHEM_INLINE void store(const Number& value, std::vector<double>& list, int i) {
+  store(value, list.data() + i);
 }
 
 // Computes tangents, bisectors and regular depths of outlines. Each member function treats one edge
@@ -69,22 +69,22 @@ struct EdgeGeometry {
     store(m.y, o.my, i);
   }
   template <class Number>
-  APOTHEM_INLINE void plain(int i, int next) const {
+  APOTHEM_INLINE void find_regular_depth(int i, int next) const {
     const Number tx = loaded<Number>(o.tx, i), ty = loaded<Number>(o.ty, i);
     const Number alpha = loaded<Number>(o.mx, i) * tx + loaded<Number>(o.my, i) * ty;
     const Number beta = loaded<Number>(o.mx, next) * tx + loaded<Number>(o.my, next) * ty;
     const Number event = edge_event_height(loaded<Number>(o.length, i), alpha, beta);
-    store(regular_depth(loaded<Number>(o.depth, i), event), o.plain, i);
+    store(regular_depth_of(loaded<Number>(o.depth, i), event), o.regular_depth, i);
   }
   /// Raises `farthest` to the distance of a vertex of the offset curve from a given position.
   template <class Number>
-  APOTHEM_INLINE void stray(int i, const std::vector<double>& top_x,
-                            const std::vector<double>& top_y, double* farthest) const {
+  APOTHEM_INLINE void stray(int i, const std::vector<double>& offset_x,
+                            const std::vector<double>& offset_y, double* farthest) const {
     const Number h = loaded<Number>(o.depth, i);
     const Number x = loaded<Number>(o.x, i) + h * loaded<Number>(o.mx, i);
     const Number y = loaded<Number>(o.y, i) + h * loaded<Number>(o.my, i);
-    const Number dx = magnitude(x - loaded<Number>(top_x, i));
-    const Number dy = magnitude(y - loaded<Number>(top_y, i));
+    const Number dx = magnitude(x - loaded<Number>(offset_x, i));
+    const Number dy = magnitude(y - loaded<Number>(offset_y, i));
     Number most = load<Number>(farthest);
     most = select(dx > most, dx, most);
     most = select(dy > most, dy, most);
@@ -131,7 +131,7 @@ double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
 }  // namespace
 
 void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
-                        std::optional<double> reference) {
+                               std::optional<double> reference) {
   const int first = size();
   std::vector<Vec2> places;
   std::vector<NodeIndex> nodes;
@@ -155,7 +155,8 @@ void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeI
   close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
 }
 
-void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
+void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid,
+                                double reference) {
   const int first = size();
   add_loop(vertices, {});
   close_body({first, size(), rigid, reference,
@@ -183,14 +184,15 @@ void OutlineSurfaces::close_body(const Body& added) {
   bodies.back().first_loop = first_loop;
   bodies.back().end_loop = static_cast<int>(loops.size());
   const size_t n = x.size();
-  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
+  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &regular_depth}) v->resize(n);
   depth.resize(n, added.depth);
   active_.push_back(static_cast<BodyIndex>(bodies.size()) - 1);
   is_active_.push_back(1);
   forget();
 }
 
-void OutlineSurfaces::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+void OutlineSurfaces::place(const Kinematics& now, const PlacedShapes& polygons,
+                            const Threads& threads) {
   std::atomic<bool> strayed = kept_.x.empty();
   const int count = static_cast<int>(bodies.size());
   // Mean number of vertices of a body.
@@ -201,7 +203,7 @@ void OutlineSurfaces::place(const Kinematics& now, const PlacedShapes& polygons,
     }
     const std::span<const BodyIndex> part = active(first, end);
     find_edges(part);
-    if (!strayed && have_tops_strayed(part)) strayed = true;
+    if (!strayed && have_offset_curves_strayed(part)) strayed = true;
   };
   threads.chunks(count, (kMoveTime + kEdgeTime) * vertices, [&](int first, int end, int) {
     for (int b = first; b < end; b += kTogether) place_some(b, std::min(b + kTogether, end));
@@ -254,32 +256,31 @@ void OutlineSurfaces::require_finite() const {
 }
 
 // The edges of a body are consecutive, except for those that close a line.
-void OutlineSurfaces::find_edges(std::span<const BodyIndex> of) {
+void OutlineSurfaces::find_edges(std::span<const BodyIndex> among) {
   const EdgeGeometry<> g{*this};
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
-    for (const BodyIndex b : of) {
-      const Body& at = bodies[static_cast<size_t>(b)];
-      const std::span<const Loop> lines = std::span(loops).subspan(
-          static_cast<size_t>(at.first_loop), static_cast<size_t>(at.end_loop - at.first_loop));
+    for (const BodyIndex b : among) {
+      const Body& vertices = bodies[static_cast<size_t>(b)];
+      const std::span<const Loop> lines =
+          std::span(loops).subspan(static_cast<size_t>(vertices.first_loop),
+                                   static_cast<size_t>(vertices.end_loop - vertices.first_loop));
       each_pack<lanes>(
-          at.first,
-          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.tangent<N>(i, i + 1);
-          });
+          vertices.first, vertices.end - 1,
+          [&]<class N>(std::type_identity<N>, int i)
+              __attribute__((always_inline)) { g.tangent<N>(i, i + 1); });
       for (const Loop& l : lines) g.tangent<double>(l.end - 1, l.first);
       each_pack<lanes>(
-          at.first + 1,
-          at.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+          vertices.first + 1,
+          vertices.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
             g.bisector<N>(i, i - 1);
           });
       for (const Loop& l : lines) g.bisector<double>(l.first, l.end - 1);
       each_pack<lanes>(
-          at.first,
-          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.plain<N>(i, i + 1);
-          });
-      for (const Loop& l : lines) g.plain<double>(l.end - 1, l.first);
+          vertices.first, vertices.end - 1,
+          [&]<class N>(std::type_identity<N>, int i)
+              __attribute__((always_inline)) { g.find_regular_depth<N>(i, i + 1); });
+      for (const Loop& l : lines) g.find_regular_depth<double>(l.end - 1, l.first);
     }
     return 0.;
   });
@@ -294,25 +295,26 @@ void OutlineSurfaces::find_boxes(double growth) {
     box.include(x[i], y[i]);
     box.include(x[j], y[j]);
     edge_boxes[i] = box.grown(growth);
-    for (const Vec2& corner : {top(i), top(j)}) box.include(corner.x(), corner.y());
+    for (const Vec2& corner : {offset_point(i), offset_point(j)})
+      box.include(corner.x(), corner.y());
     face_boxes[i] = box.grown(growth);
   }
 }
 
 // Bodies do not overlap as long as their vertices are in separate boxes. For bodies that are not
 // active this is known without their faces.
-bool OutlineSurfaces::have_tops_strayed(std::span<const BodyIndex> among) const {
+bool OutlineSurfaces::have_offset_curves_strayed(std::span<const BodyIndex> among) const {
   const EdgeGeometry<const OutlineSurfaces> g{*this};
   const double limit = growth();
   const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
     for (const BodyIndex b : among) {
-      const Body& of = bodies[static_cast<size_t>(b)];
+      const Body& vertices = bodies[static_cast<size_t>(b)];
       std::array<double, lanes> farthest{};
       each_pack<lanes>(
-          of.first,
-          of.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.template stray<N>(i, kept_.top_x, kept_.top_y, farthest.data());
+          vertices.first,
+          vertices.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.template stray<N>(i, kept_.offset_x, kept_.offset_y, farthest.data());
           });
       if (!(*std::ranges::max_element(farthest) <= limit)) return 1.;
     }
@@ -340,16 +342,17 @@ void OutlineSurfaces::prepare_search() {
   find_boxes(growth());
   strayed_ = false;
   kept_.x = x, kept_.y = y;
-  kept_.top_x.resize(x.size()), kept_.top_y.resize(x.size());
+  kept_.offset_x.resize(x.size()), kept_.offset_y.resize(x.size());
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
-    kept_.top_x[i] = top(i).x(), kept_.top_y[i] = top(i).y();
+    kept_.offset_x[i] = offset_point(i).x(), kept_.offset_y[i] = offset_point(i).y();
     include(body_boxes[body[i]], edge_boxes[i]);
     include(body_boxes[body[i]], face_boxes[i]);
   }
 }
 
-void OutlineSurfaces::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
+void OutlineSurfaces::prepare_search_at(const std::vector<double>& px,
+                                        const std::vector<double>& py) {
   x = px, y = py;
   find_edges(active_);
   prepare_search();
@@ -365,22 +368,22 @@ std::optional<OutlineSurfaces::Notch> OutlineSurfaces::closed_notch() const {
     if (node[i] < 0 || !(square > longest)) return;
     const int before = previous[i];
     const bool reflex = tx[before] * ty[i] - ty[before] * tx[i] < 0;
-    if (!reflex || winding(top(i), body[i]) > 0) return;
+    if (!reflex || winding(offset_point(i), body[i]) > 0) return;
     longest = square;
     found = {i, 2 * std::asin(1 / std::sqrt(square))};
   });
   return found;
 }
 
-int OutlineSurfaces::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+int OutlineSurfaces::winding(const Vec2& p, BodyIndex b, bool of_offset_curve, bool* clear) const {
   int sum = 0;
   for (int i = bodies[b].first; i < bodies[b].end; ++i) {
-    const Vec2 from = (of_top ? top(i) : point(i)) - p;
-    const Vec2 to = (of_top ? top(next[i]) : point(next[i])) - p;
-    const bool up = to.y() > 0;
-    if ((from.y() > 0) == up) continue;
-    const double side = cross(from, to);
-    if (clear && std::abs(side) < kClear * depth[i] * (to - from).norm()) *clear = false;
+    const Vec2 start = (of_offset_curve ? offset_point(i) : point(i)) - p;
+    const Vec2 end = (of_offset_curve ? offset_point(next[i]) : point(next[i])) - p;
+    const bool up = end.y() > 0;
+    if ((start.y() > 0) == up) continue;
+    const double side = cross(start, end);
+    if (clear && std::abs(side) < kClear * depth[i] * (end - start).norm()) *clear = false;
     if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
   }
   return sum;

@@ -48,13 +48,14 @@ class OutlineSurfaces {
     int first, end;
     BodyIndex body;
   };
-  std::vector<Loop> loops;      ///< closed lines, ascending
-  std::vector<double> x, y;     ///< present position of each vertex, m
-  std::vector<double> mx, my;   ///< direction of the bisector at each vertex
-  std::vector<double> tx, ty;   ///< unit tangent of each edge
-  std::vector<double> length;   ///< length of each edge, m
-  std::vector<double> depth;    ///< depth of the collar at each edge, which is that of the body, m
-  std::vector<double> plain;    ///< regular depth of each face (geometry/integrals/collar.hpp), m
+  std::vector<Loop> loops;     ///< closed lines, ascending
+  std::vector<double> x, y;    ///< present position of each vertex, m
+  std::vector<double> mx, my;  ///< direction of the bisector at each vertex
+  std::vector<double> tx, ty;  ///< unit tangent of each edge
+  std::vector<double> length;  ///< length of each edge, m
+  std::vector<double> depth;   ///< depth of the collar at each edge, which is that of the body, m
+  std::vector<double>
+      regular_depth;            ///< regular depth of each face (geometry/integrals/collar.hpp), m
   std::vector<Box> edge_boxes;  ///< boxes of the edges at the last search, grown by half the skin
   std::vector<Box> face_boxes;  ///< boxes of the faces, grown likewise
   std::vector<Box> body_boxes;  ///< boxes of the edges and faces of each body, grown likewise
@@ -108,7 +109,7 @@ class OutlineSurfaces {
 
   /// The winding number of the outline of a body, or of the offset curve of its collar, about a
   /// point. `clear`, if given, becomes false where round-off might decide.
-  [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_top = false,
+  [[nodiscard]] int winding(const Vec2& point, BodyIndex body, bool of_offset_curve = false,
                             bool* clear = nullptr) const;
 
   /// A reflex corner of an active body with a mesh that is so sharp that the collar reaches out of
@@ -123,7 +124,7 @@ class OutlineSurfaces {
 
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
   /// The tributary length of a vertex, m: half the length of the two edges at it.
-  [[nodiscard]] double share(int vertex) const {
+  [[nodiscard]] double tributary_length(int vertex) const {
     return ((point(next[vertex]) - point(vertex)).norm() +
             (point(vertex) - point(previous[vertex])).norm()) /
            2;
@@ -135,13 +136,15 @@ class OutlineSurfaces {
   [[nodiscard]] Vec2 point(int vertex) const { return {x[vertex], y[vertex]}; }
   [[nodiscard]] CollarFace<double> face(int i) const {
     const int j = next[i];
-    return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],   length[i],
-            mx[i], my[i], mx[j], my[j], depth[i], plain[i]};
+    return {x[i],  y[i],  x[j],  y[j],  tx[i],    ty[i],           length[i],
+            mx[i], my[i], mx[j], my[j], depth[i], regular_depth[i]};
   }
   /// The distance by which the boxes are grown, m.
   [[nodiscard]] double growth() const { return skin_ / 2; }
   /// The vertex of the offset curve that belongs to vertex i.
-  [[nodiscard]] Vec2 top(int i) const { return {x[i] + depth[i] * mx[i], y[i] + depth[i] * my[i]}; }
+  [[nodiscard]] Vec2 offset_point(int i) const {
+    return {x[i] + depth[i] * mx[i], y[i] + depth[i] * my[i]};
+  }
 
  private:
   void add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes);
@@ -149,15 +152,15 @@ class OutlineSurfaces {
   bool move(Body& body, const Kinematics& now, const PlacedShapes& polygons);
   [[nodiscard]] std::span<const BodyIndex> active(BodyIndex first, BodyIndex end) const;
   void require_finite() const;
-  void find_edges(std::span<const BodyIndex> of);
-  [[nodiscard]] bool have_tops_strayed(std::span<const BodyIndex> among) const;
+  void find_edges(std::span<const BodyIndex> among);
+  [[nodiscard]] bool have_offset_curves_strayed(std::span<const BodyIndex> among) const;
   void find_boxes(double growth);
 
   double skin_;
   std::vector<double> x0_, y0_;  // undeformed position of each vertex, m
   /// The vertices of the outlines and of their offset curves at the last search.
   struct Kept {
-    std::vector<double> x, y, top_x, top_y;
+    std::vector<double> x, y, offset_x, offset_y;
   };
   Kept kept_;
   bool strayed_ = true;

@@ -27,7 +27,7 @@ enum class SurfaceKind : unsigned char { polygon, element, outline };
 /// The inertia of a body with a mesh, treated as rigid.
 struct MeshInertia {
   std::array<double, 3> inverse_mass{};  ///< 1/m, 1/m, 1/I; 0 where supports prevent the motion
-  std::vector<double> shares;            ///< fraction of the mass at each node
+  std::vector<double> mass_fractions;    ///< fraction of the mass at each node
 };
 
 /// The acceleration of a rigid body along a unit vector, per force of 1 N along that vector at

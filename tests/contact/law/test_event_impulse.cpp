@@ -54,19 +54,19 @@ TEST_CASE("a smooth step misses no impulse", "[onset]") {
 // the spring and v^2 without it. The energies agree if the first is multiplied by a constant, which
 // is 1 + (w h)^2/6 to the order h^2.
 TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[onset]") {
-  const auto error = [](double h, double share) {
+  const auto error = [](double h, double fraction) {
     const double w2 = 1, speed = 1;
     // Onset: free until 1 - share of the step.
-    double v = speed, x = share * h * v;
+    double v = speed, x = fraction * h * v;
     const auto spring = [&](double place) { return place > 0 ? -w2 * place : 0; };
     const auto step = [&](double from, double velocity, double event) {
       const EventForces f =
           sampled({event}, 1, [&](double t) { return spring(from + t * h * velocity); });
       EventResidual rest(h);
       rest.add(f, {f.missing()}, {0, 0}, 1, velocity);
-      return h * (f.last / 2 + f.missing() + rest.share() * f.mean);
+      return h * (f.last / 2 + f.missing() + rest.correction() * f.mean);
     };
-    v += step(x - h * v, v, 1 - share);
+    v += step(x - h * v, v, 1 - fraction);
     double fx = spring(x);
     // The whole contact, and its release.
     for (int i = 0; i < 100000; ++i) {
@@ -79,9 +79,9 @@ TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[
     }
     return std::abs(v * v / (speed * speed) - 1);
   };
-  for (const double share : {.1, .37, .62, .9}) {
-    CAPTURE(share);
-    const double coarse = error(.4, share), fine = error(.1, share);
+  for (const double fraction : {.1, .37, .62, .9}) {
+    CAPTURE(fraction);
+    const double coarse = error(.4, fraction), fine = error(.1, fraction);
     CHECK(coarse < 3e-5);
     CHECK(fine < 1e-8);
   }

@@ -19,7 +19,7 @@ std::set<std::pair<int, int>> touching(const Contacts& contacts) {
   std::set<std::pair<int, int>> pairs;
   for (const Contact& c : contacts.contacts()) {
     REQUIRE(c.kernel == outline_kernel);
-    if (c.share > 1) continue;  // inside a top
+    if (c.relative_depth > 1) continue;  // inside a top
     pairs.emplace(c.a, c.b);
   }
   return pairs;
@@ -33,9 +33,10 @@ std::set<std::pair<int, int>> touching_of_all(const OutlineSurfaces& o) {
       const bool rigid = o.bodies[o.body[e]].is_rigid() && o.bodies[o.body[f]].is_rigid();
       if (o.body[e] == o.body[f] || rigid) continue;
       CollarPiece<double> piece;
-      CollarCrossings<double> top;
+      CollarCrossings<double> crossings;
       const int q = o.next[e];
-      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, top) && piece.deepest > 0)
+      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, crossings) &&
+          piece.deepest > 0)
         pairs.emplace(e, f);
     }
   }
@@ -143,7 +144,7 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
     for (const double h : first_nodes(b.vertices())) first.push_back(h);
     const OutlineSurfaces& o = bodies.contacts->surfaces().outlines();
     if (std::ranges::any_of(bodies.contacts->contacts(), [&](const Contact& c) {
-          return c.share * o.depth[c.b] > first[c.b];
+          return c.relative_depth * o.depth[c.b] > first[c.b];
         })) {
       continue;
     }
@@ -207,11 +208,11 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   const double expected = 2 * .5 * d * d * slope * (1 / .125 + std::sin(std::atan(slope)) / .15);
   CHECK(on_tip.force.y() == Approx(expected).epsilon(1e-10));
   const std::vector<Contact> contacts = bodies.contacts->contacts();
-  const auto worst =
-      std::max_element(contacts.begin(), contacts.end(),
-                       [](const Contact& p, const Contact& q) { return p.share < q.share; });
+  const auto worst = std::max_element(
+      contacts.begin(), contacts.end(),
+      [](const Contact& p, const Contact& q) { return p.relative_depth < q.relative_depth; });
   const double limit = bodies.contacts->surfaces().outlines().depth[worst->b];
-  CHECK(worst->share == Approx(d / limit).epsilon(1e-9));
+  CHECK(worst->relative_depth == Approx(d / limit).epsilon(1e-9));
 
   // A corner node carries half of two edges.
   std::vector<double> mass(mesh.nodes.size() + 3, 1e9);
@@ -345,7 +346,7 @@ Slid slide_strips(int threads, bool search_often) {
     }
     if (search_often) bodies.contacts->forget_search();
     bodies.evaluate();
-    bodies.slide(.01);
+    bodies.update_friction(.01);
   }
   Slid found{bodies.node_force,
              bodies.rigid_force,
@@ -518,7 +519,7 @@ TEST_CASE("what bodies that are near nothing leave out changes no bit",
     searched->contacts->forget_search();  // as Contacts::refresh does
     searched->contacts->search_if_stale();
     searched->contacts->evaluate();
-    for (Bodies* b : {bodies.get(), searched.get()}) b->slide(dt);
+    for (Bodies* b : {bodies.get(), searched.get()}) b->update_friction(dt);
 
     const size_t active = bodies->contacts->surfaces().outlines().active().size();
     least = std::min(least, active), most = std::max(most, active);

@@ -56,9 +56,10 @@ bool outlines_touch(const OutlineSurfaces& o, BodyIndex a, BodyIndex b) {
     for (int e = o.bodies[p].first; e < o.bodies[p].end; ++e) {
       for (int f = o.bodies[q].first; f < o.bodies[q].end; ++f) {
         CollarPiece<double> piece;
-        CollarCrossings<double> top;
+        CollarCrossings<double> crossings;
         const Vec2 from = o.point(e), to = o.point(o.next[e]);
-        if (collar_piece(o.face(f), from.x(), from.y(), to.x(), to.y(), piece, top)) return true;
+        if (collar_piece(o.face(f), from.x(), from.y(), to.x(), to.y(), piece, crossings))
+          return true;
       }
     }
   }

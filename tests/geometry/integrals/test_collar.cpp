@@ -45,9 +45,9 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, double depth) {
             .with_regular_depth();
     for (size_t e = 0; e < m; ++e) {
       CollarPiece<Complex> piece;
-      CollarCrossings<Complex> top;
+      CollarCrossings<Complex> crossings;
       const size_t g = (e + 1) % m;
-      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, top)) sum += piece.height;
+      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, crossings)) sum += piece.height;
     }
   }
   return sum;
@@ -262,7 +262,7 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
     // other; what remains may be small against them.
     const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     if (std::ranges::any_of(pair->contacts->contacts(), [&](const Contact& c) {
-          return c.share * o.depth[c.b] > o.plain[c.b];
+          return c.relative_depth * o.depth[c.b] > o.regular_depth[c.b];
         })) {
       continue;
     }
@@ -292,11 +292,11 @@ TEST_CASE("NaN is never a miss", "[collar]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .4};
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  CHECK(collar_piece(face, nan, .1, .5, .1, piece, top));
-  CHECK(collar_piece(face, .5, .1, .5, nan, piece, top));
+  CollarCrossings<double> crossings;
+  CHECK(collar_piece(face, nan, .1, .5, .1, piece, crossings));
+  CHECK(collar_piece(face, .5, .1, .5, nan, piece, crossings));
   CHECK(std::isnan(piece.sum));
-  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, top));
+  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, crossings));
 }
 
 namespace {
@@ -345,11 +345,12 @@ void compare_packs(int count) {
       return each([&](const EdgeAndFace& e) { return e.face.*number; });
     };
     using Face = CollarFace<double>;
-    const CollarFace<Pack> faces{of_face(&Face::ax),     of_face(&Face::ay),  of_face(&Face::bx),
-                                 of_face(&Face::by),     of_face(&Face::tx),  of_face(&Face::ty),
-                                 of_face(&Face::length), of_face(&Face::max), of_face(&Face::may),
-                                 of_face(&Face::mbx),    of_face(&Face::mby), of_face(&Face::depth),
-                                 of_face(&Face::plain)};
+    const CollarFace<Pack> faces{
+        of_face(&Face::ax),           of_face(&Face::ay),  of_face(&Face::bx),
+        of_face(&Face::by),           of_face(&Face::tx),  of_face(&Face::ty),
+        of_face(&Face::length),       of_face(&Face::max), of_face(&Face::may),
+        of_face(&Face::mbx),          of_face(&Face::mby), of_face(&Face::depth),
+        of_face(&Face::regular_depth)};
     const CollarPieces<Pack> found =
         collar_pieces(faces, each([](const EdgeAndFace& e) { return e.p.x(); }),
                       each([](const EdgeAndFace& e) { return e.p.y(); }),
@@ -358,19 +359,20 @@ void compare_packs(int count) {
     for (int l = 0; l < lanes; ++l) {
       const EdgeAndFace& e = all[static_cast<size_t>(l)];
       CollarPiece<double> piece;
-      CollarCrossings<double> top;
-      const bool meets = collar_piece(e.face, e.p.x(), e.p.y(), e.q.x(), e.q.y(), piece, top);
-      if (found.deep.m[l] != 0) {
+      CollarCrossings<double> crossings;
+      const bool meets = collar_piece(e.face, e.p.x(), e.p.y(), e.q.x(), e.q.y(), piece, crossings);
+      if (found.general.m[l] != 0) {
         ++deep;
         REQUIRE(found.met.m[l] == 0);
         continue;
       }
-      REQUIRE(top.count == 0);
+      REQUIRE(crossings.count == 0);
       REQUIRE(meets == (found.met.m[l] != 0));
       if (!meets) continue;
       ++met;
       const Vec2 along(e.face.tx, e.face.ty), start(e.face.ax, e.face.ay);
-      leaving += std::max(cross(along, e.p - start), cross(along, e.q - start)) > e.face.plain;
+      leaving +=
+          std::max(cross(along, e.p - start), cross(along, e.q - start)) > e.face.regular_depth;
       const std::array of_pack{found.from.v[l],   found.to.v[l],     found.sum.v[l],
                                found.first.v[l],  found.area.v[l],   found.along.v[l],
                                found.height.v[l], found.deepest.v[l]};

@@ -74,23 +74,25 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
       Touching t(potential, random, std::pow(10, random.uniform(-7, -1)));
       const PlacedPotential a = t.placed.view(0), b = t.placed.view(1);
       PatchResult alone, found;
-      const PairIntegral whole = contact_patches(a, b, t.offset, memory, alone.runs, alone.patches);
+      const PairIntegral whole =
+          contact_patches(a, b, t.offset, memory, alone.segments, alone.patches);
       const PairIntegral pair =
-          contact_patches(a, b, t.offset, memory, found.runs, found.patches, t.near);
+          contact_patches(a, b, t.offset, memory, found.segments, found.patches, t.near);
       REQUIRE(same(pair, whole));
       REQUIRE(same(pair_integral(a, b, t.offset, memory.edge, t.near), whole));
       REQUIRE(found.patches.size() == alone.patches.size());
       for (size_t p = 0; p < alone.patches.size(); ++p) {
         REQUIRE(same(found.patches[p], alone.patches[p]));
       }
-      REQUIRE(found.runs.size() == alone.runs.size());
-      for (size_t r = 0; r < alone.runs.size(); ++r) REQUIRE(same(found.runs[r], alone.runs[r]));
-      if (!memory.edge.pair.find(a, b, t.offset, t.near)) continue;
+      REQUIRE(found.segments.size() == alone.segments.size());
+      for (size_t r = 0; r < alone.segments.size(); ++r)
+        REQUIRE(same(found.segments[r], alone.segments[r]));
+      if (!memory.edge.layer_pair.find(a, b, t.offset, t.near)) continue;
       ++by_pair;
       split += alone.patches.size() > 1;
       // Runs that go on from one cell to the next.
-      for (const LayerPair::Run& run : memory.edge.pair.runs()) {
-        across += run.edge0 >= 0 && run.edge1 >= 0 && run.edge0 != run.edge1;
+      for (const LayerPair::PairSegment& segment : memory.edge.layer_pair.segments()) {
+        across += segment.edge0 >= 0 && segment.edge1 >= 0 && segment.edge0 != segment.edge1;
       }
     }
     CAPTURE(by_pair, across, split);
@@ -114,8 +116,8 @@ TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
     PlacedPotential b = t.placed.view(1);
     CHECK_FALSE(pair.find(a, b, t.offset, {}));
     if (!pair.find(a, b, t.offset, t.near)) continue;
-    BoundaryLayer cells = *b.cells;
-    b.cells = &cells;
+    BoundaryLayer cells = *b.layer;
+    b.layer = &cells;
     for (double& depth : cells.depth) depth = 1e-6;
     deep += !pair.find(a, b, t.offset, t.near);
     for (double& depth : cells.depth) depth = 0;

@@ -33,8 +33,8 @@ Total total(const PlacedEdge& edge, double s0, double s1, const SegmentMoments<d
 // lengths may count or not.
 double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2& offset,
                   EdgeWorkspace& workspace, int& shallow, bool with_lengths) {
-  LayerTrace& collar = workspace.collar;
-  collar.find(x, y, offset.x(), offset.y(), kAll, kAll);
+  LayerTrace& trace = workspace.trace;
+  trace.find(x, y, offset.x(), offset.y(), kAll, kAll);
   if (y.roof) workspace.nodes.place(y);
   double worst = 0;
   size_t r = 0, listed = 0;
@@ -52,13 +52,13 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
           add(all, s0, s1, moments);
         });
     bool deep = false;
-    if (listed < collar.edges().size() && collar.edges()[listed].index == e) {
-      const LayerTrace::Edge& found = collar.edges()[listed++];
-      deep = found.deep;
-      if (!deep) shallow += found.runs_end > r;
-      for (; r < found.runs_end; ++r) {
-        const LayerTrace::Run& run = collar.runs()[r];
-        add(here, run.s0, run.s1, run.moments);
+    if (listed < trace.edges().size() && trace.edges()[listed].index == e) {
+      const LayerEdge& found = trace.edges()[listed++];
+      deep = found.beyond_layer;
+      if (!deep) shallow += found.segments_end > r;
+      for (; r < found.segments_end; ++r) {
+        const LayerSegment& segment = trace.segments()[r];
+        add(here, segment.s0, segment.s1, segment.moments);
       }
     }
     if (deep) continue;
@@ -119,7 +119,7 @@ TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
 TEST_CASE("cells of a cross", "[collar]") {
   const Polygon cross = samples::cross_of_squares();
   for (const Field field : {Field::roof, Field::distance}) {
-    const BoundaryLayer cells = *make_potential(cross, {.field = field}).cells;
+    const BoundaryLayer cells = *make_potential(cross, {.field = field}).layer;
     int reflex = 0;
     for (int i = 0; i < cross.size(); ++i) {
       reflex += cells.reflex(i);
@@ -137,9 +137,9 @@ TEST_CASE("cells at vertices that are almost straight are not used", "[collar]")
   ring.insert(ring.begin() + 1, middle);
   const Polygon polygon(ring);
   const Potential potential = make_potential(polygon, {.field = Field::distance});
-  CHECK(potential.cells->depth[0] == 0);
-  CHECK(potential.cells->depth[1] == 0);
-  CHECK(potential.cells->depth[3] > 0);
+  CHECK(potential.layer->depth[0] == 0);
+  CHECK(potential.layer->depth[1] == 0);
+  CHECK(potential.layer->depth[3] > 0);
   // Contact there is found all the same.
   PlacedShapes placed;
   placed.place(placed.add(potential), 0, 0, 0);
@@ -164,7 +164,7 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
       const double turn_x = random.uniform(0, 6), turn_y = random.uniform(0, 6);
       const double direction = random.uniform(0, 6);
       const Vec2 between = random.uniform(2, 2.6) * Vec2(std::cos(direction), std::sin(direction));
-      std::vector<LayerTrace::Run> first;
+      std::vector<LayerSegment> first;
       for (int shift = 0; shift < 12; ++shift) {
         std::vector<Vec2> turned = ring;
         std::rotate(turned.begin(), turned.begin() + shift, turned.end());
@@ -175,12 +175,12 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
         PlacedShapes placed;
         placed.place(placed.add(other), 0, 0, turn_x);
         placed.place(placed.add(potential), 0, 0, turn_y);
-        LayerTrace collar;
-        collar.find(placed.view(0), placed.view(1), between.x(), between.y(), kAll, kAll);
-        if (shift == 0) first = collar.runs();
-        REQUIRE(collar.runs().size() == first.size());
+        LayerTrace trace;
+        trace.find(placed.view(0), placed.view(1), between.x(), between.y(), kAll, kAll);
+        if (shift == 0) first = trace.segments();
+        REQUIRE(trace.segments().size() == first.size());
         for (size_t r = 0; r < first.size(); ++r) {
-          const LayerTrace::Run &p = first[r], &q = collar.runs()[r];
+          const LayerSegment &p = first[r], &q = trace.segments()[r];
           REQUIRE((p.s0 == q.s0 && p.s1 == q.s1 && p.moments.sum == q.moments.sum &&
                    p.moments.first == q.moments.first && p.moments.largest == q.moments.largest));
         }
