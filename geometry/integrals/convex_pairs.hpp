@@ -116,8 +116,8 @@ class ConvexPairs {
   bool uneven_ = false;  // true if a last group has to be padded
   int most_sides_ = 0, room_ = 0;
   std::vector<Numbers> rows_, copies_;
-  std::array<std::vector<ConvexEdge>, kGroups>
-      edges_;  // edges, by the number of groups of the other polygon
+  // Edges, by the number of groups of the other polygon.
+  std::array<std::vector<ConvexEdge>, kGroups> edges_;
   std::array<int, kGroups> listed_{};
   std::vector<EdgePart> parts_;
   int found_ = 0;  // number of parts

@@ -45,8 +45,8 @@ class Potentials {
 
   std::vector<const Polygon*> polygons_;
   PotentialChoice choice_;
-  std::vector<std::optional<Source>>
-      sources_;  // source of each polygon whose potential needs a skeleton
+  // Source of each polygon whose potential needs a skeleton.
+  std::vector<std::optional<Source>> sources_;
   std::vector<SkeletonOrFailure> skeletons_;  // skeletons of the originals
 };
 

@@ -62,8 +62,8 @@ class Dashpots {
  public:
   /// Velocities and forces of every coordinate, in the order of a state.
   struct Motion {
-    std::span<const double>
-        inverse_mass;  ///< 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate
+    /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
+    std::span<const double> inverse_mass;
     std::span<const double> velocity;  ///< velocities half a step before
     /// All forces except those of dashpots, in the second half of the last step and in the first
     /// half of the next one, N.

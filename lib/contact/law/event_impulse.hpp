@@ -87,8 +87,8 @@ struct OtherForces {
 
 /// Masses and forces in a step, for every coordinate in the order of a state, rigid bodies first.
 struct Dynamics {
-  std::span<const double>
-      inverse_mass;  ///< 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate
+  /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
+  std::span<const double> inverse_mass;
   std::span<const double> before, after;  ///< all forces at the start and at the end, N and N m
   std::span<const double> weight;         ///< weight, in addition to these forces; may be empty
   /// The parts of the forces due to friction and damping, for the first coordinates; the others

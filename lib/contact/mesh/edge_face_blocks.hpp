@@ -154,8 +154,8 @@ class EdgeFaceBlocks {
   static constexpr int kNobody = -1, kSeveral = -2;
   std::vector<int> owners_;               // thread that each vertex belongs to
   std::vector<std::uint8_t> has_shared_;  // whether each block has a shared vertex
-  std::vector<std::int32_t>
-      number_of_law_;  // index in laws_ of each given law, in the present unit
+  // Index in laws_ of each given law, in the present unit.
+  std::vector<std::int32_t> number_of_law_;
   int most_blocks_ = 0;
 };
 

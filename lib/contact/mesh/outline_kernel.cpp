@@ -390,8 +390,8 @@ void OutlineKernel::add_stiffness(std::span<double> nodes, std::span<double> rig
   std::vector<double> slope(o.size(), 0);       // largest 1/r_c + 1/r_t at each vertex
   std::vector<double> normal(o.size(), 0);      // largest k_n thickness, N/m
   std::vector<double> tangential(o.size(), 0);  // largest k_s thickness, N/m
-  std::vector<std::pair<BodyIndex, int>>
-      met;  // pairs of a rigid body and a vertex of a mesh near it
+  // Pairs of a rigid body and a vertex of a mesh near it.
+  std::vector<std::pair<BodyIndex, int>> met;
   for (const EdgeFace& c : candidates_) {
     const BodyIndex own = o.body[c.edge], other = o.body[c.face];
     const double both = o.bodies[own].slope() + o.bodies[other].slope();

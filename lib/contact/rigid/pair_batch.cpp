@@ -173,7 +173,7 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
   std::array<PairWork, kComparedLanes> all;
   std::array<PatchFriction<double>, kComparedLanes> friction_of;
   std::ranges::copy(work, all.begin());
-  std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // for nobody
+  std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // padding
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     PatchStep<Pack> p;
     PatchFriction<Pack> found;

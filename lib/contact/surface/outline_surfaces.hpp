@@ -54,8 +54,8 @@ class OutlineSurfaces {
   std::vector<double> tx, ty;  ///< unit tangent of each edge
   std::vector<double> length;  ///< length of each edge, m
   std::vector<double> depth;   ///< depth of the collar at each edge, which is that of the body, m
-  std::vector<double>
-      regular_depth;            ///< regular depth of each face (geometry/integrals/collar.hpp), m
+  /// Regular depth of each face (geometry/integrals/collar.hpp), m.
+  std::vector<double> regular_depth;
   std::vector<Box> edge_boxes;  ///< boxes of the edges at the last search, grown by half the skin
   std::vector<Box> face_boxes;  ///< boxes of the faces, grown likewise
   std::vector<Box> body_boxes;  ///< boxes of the edges and faces of each body, grown likewise
