@@ -131,7 +131,7 @@ struct Bodies {
     place();
     contacts->evaluate();
   }
-  /// Needs a call of slide() since the last evaluation if there is friction.
+  /// Needs a call of update_friction() since the last evaluation if there is friction.
   void find_forces() {
     rigid_force.assign(pose.size(), 0);
     node_force.assign(displacement.size(), 0);
@@ -175,7 +175,7 @@ struct Bodies {
   }
 };
 
-/// The largest share of the depth at which a potential ends; 1 is beyond its end.
+/// The largest relative depth of all contacts; a potential ends at 1.
 inline double deepest_share(const Contacts& contacts) {
   double share = 0;
   for (const Contact& c : contacts.contacts()) share = std::max(share, c.relative_depth);

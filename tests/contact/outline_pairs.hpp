@@ -67,7 +67,7 @@ inline std::vector<double> first_nodes(const std::vector<Vec2>& ring) {
   return first;
 }
 
-/// The largest share of the depth up to which the collar of a face is the roof; less than 1 where
+/// The largest ratio to the depth up to which the collar of a face is the roof; less than 1 where
 /// all contact is of this kind. `first`: of both outlines.
 inline double roof_share(const OutlinePair& pair, const std::vector<double>& first) {
   const OutlineSurfaces& o = pair.contacts->surfaces().outlines();

@@ -44,7 +44,7 @@ struct Heap : Bodies {
   }
 };
 
-// A block dragged over a row of cells of 1 m, at a depth as a share of half a cell, k = 1: mean of
+// A block dragged over a row of cells of 1 m, at a depth relative to half a cell, k = 1: mean of
 // the friction over mu times the normal force, after the first four cells.
 struct Drag {
   double mu, tangential_stiffness, depth;

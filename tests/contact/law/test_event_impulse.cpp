@@ -56,7 +56,7 @@ TEST_CASE("a smooth step misses no impulse", "[onset]") {
 TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[onset]") {
   const auto error = [](double h, double fraction) {
     const double w2 = 1, speed = 1;
-    // Onset: free until 1 - share of the step.
+    // The contact begins at 1 - fraction of the step.
     double v = speed, x = fraction * h * v;
     const auto spring = [&](double place) { return place > 0 ? -w2 * place : 0; };
     const auto step = [&](double from, double velocity, double event) {

@@ -19,7 +19,7 @@ std::set<std::pair<int, int>> touching(const Contacts& contacts) {
   std::set<std::pair<int, int>> pairs;
   for (const Contact& c : contacts.contacts()) {
     REQUIRE(c.kernel == outline_kernel);
-    if (c.relative_depth > 1) continue;  // inside a top
+    if (c.relative_depth > 1) continue;  // inside a saturated region
     pairs.emplace(c.a, c.b);
   }
   return pairs;
@@ -188,7 +188,7 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   const Mesh mesh = rectangle_mesh({2, 1}, {4, 4}, {0, 0}, ElementShape::quadrilateral);
   CHECK(boundary_inradius(mesh, boundary(mesh)) == Approx(.125));
   Bodies bodies(law_of(2), .01, .5);
-  // 1 mm into the top.
+  // 1 mm into the upper side.
   const Polygon tip({{0, 0}, {.2, 1}, {-.2, 1}});
   bodies.add_rigid(about_origin(tip, length_choice(.15)), {1.1, .999, 0});
   bodies.add_mesh(mesh, {}, 0, 3);

@@ -43,7 +43,8 @@ struct Sum {
   }
 };
 
-// Every run in exactly one patch, every patch the sum of its runs, and all together the pair.
+// Checks that every segment is in one patch, that every patch is the sum of its segments, and that
+// all patches together are the pair.
 // Returns the largest difference in units of round-off: eps (size/r) own length, and size.
 double worst_sum(const PatchResult& split, const PairIntegral& pair, double size, double steepest) {
   const double length = pair.own_length_a + pair.own_length_b;
@@ -51,7 +52,7 @@ double worst_sum(const PatchResult& split, const PairIntegral& pair, double size
   double worst = 0;
   Sum all;
   double own_a = 0, own_b = 0;
-  std::vector<Sum> by_run(split.patches.size());
+  std::vector<Sum> by_segment(split.patches.size());
   for (const BoundarySegment& segment : split.segments) {
     REQUIRE(segment.patch >= 0);
     REQUIRE(segment.patch < static_cast<int>(split.patches.size()));
@@ -59,7 +60,7 @@ double worst_sum(const PatchResult& split, const PairIntegral& pair, double size
     REQUIRE(segment.from <= segment.to);
     REQUIRE(segment.to <= 1);
     REQUIRE(is_finite(segment.start + segment.end + segment.force + segment.centre));
-    by_run[segment.patch].add(segment);
+    by_segment[segment.patch].add(segment);
     (segment.of_a ? own_a : own_b) += segment.length;
   }
   for (size_t i = 0; i < split.patches.size(); ++i) {
@@ -69,7 +70,7 @@ double worst_sum(const PatchResult& split, const PairIntegral& pair, double size
     Sum alone;
     alone.add(p);
     all.add(p);
-    worst = std::max(worst, alone.difference(by_run[i]));
+    worst = std::max(worst, alone.difference(by_segment[i]));
   }
   Sum expected;
   expected.add(pair);
@@ -394,20 +395,20 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
         ++changes;
         continue;
       }
-      // As many as before: each goes on as one, and is still about where it was.
+      // Every patch continues as one patch, which is near its earlier position.
       for (int i = 0; i < before; ++i) {
-        int heirs = 0, parents = 0;
+        int successors = 0, predecessors = 0;
         for (int j = 0; j < after; ++j) {
-          heirs += table[i * after + j] > 0;
-          parents += table[j * after + i] > 0;
+          successors += table[i * after + j] > 0;
+          predecessors += table[j * after + i] > 0;
           if (table[i * after + j] > 0) {
             ++kept;
             CHECK((last.patches[i].centre - now.patches[j].centre).norm() < .1);
           }
         }
         INFO("step " << step << ", patch " << i << " of " << before);
-        CHECK(heirs == 1);
-        CHECK(parents == 1);
+        CHECK(successors == 1);
+        CHECK(predecessors == 1);
       }
     }
     CHECK(most > 1);
@@ -491,7 +492,7 @@ TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][ne
     NearEdgesWorkspace near_memory;
     NearEdges near = near_edges(placed.view(0), placed.view(1), offset, skin, near_memory);
     REQUIRE(near.skin > 0);
-    // Bodies move by less than the margin.
+    // Bodies move by less than the skin.
     const double moves = .99 * near.skin / 3;
     const double direction = random.uniform(0, 6);
     offset += moves * Vec2(std::cos(direction), std::sin(direction));

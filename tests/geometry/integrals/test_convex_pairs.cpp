@@ -127,7 +127,7 @@ TEST_CASE("the margin of convex pairs is a bound of their distance", "[convex]")
     pairs.add(shapes.view(0), shapes.view(1), c.offset, near);
     if (pairs.evaluate()[0].touching() || near.skin == 0) continue;
     ++apart;
-    // Moved by almost the margin, whatever the direction, they still do not touch.
+    // Polygons that are moved by almost the skin in any direction still do not touch.
     for (int k = 0; k < 8; ++k) {
       const double direction = k * M_PI / 4;
       const Vec2 moved =

@@ -1,4 +1,4 @@
-// Pairs of which few edges are near each other, against the runs of each edge by itself.
+// Pairs of polygons with few near edges, against the segments of each edge alone.
 #include <catch2/catch.hpp>
 #include <cmath>
 
