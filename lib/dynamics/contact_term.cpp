@@ -146,11 +146,11 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
   } catch (const NotFinite& error) {
     throw Unrunnable(error.what(), "bodies", -1);
   }
-  if (touches_meshes(model)) refuse_buried(state);
+  if (touches_meshes(model)) refuse_engulfed(state);
 }
 
 // Contact of meshes is felt near surfaces only: a body deep inside another one would feel nothing.
-void ContactTerm::refuse_buried(const State& state) const {
+void ContactTerm::refuse_engulfed(const State& state) const {
   OutlineSurfaces outlines;
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     const Potential& potential = model_.bodies[i].potential;

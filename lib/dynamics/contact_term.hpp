@@ -101,7 +101,7 @@ class ContactTerm final : public Term {
   void add_event_impulses(const Layout& layout, std::vector<double>& forces) const {
     contacts_.add_event_impulses(2, {layout.of_rigid(forces), layout.of_nodes(forces), {}});
   }
-  void refuse_buried(const State& state) const;
+  void refuse_engulfed(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
   void refuse_passage(const State& state);

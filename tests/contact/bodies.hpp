@@ -176,10 +176,10 @@ struct Bodies {
 };
 
 /// The largest relative depth of all contacts; a potential ends at 1.
-inline double deepest_share(const Contacts& contacts) {
-  double share = 0;
-  for (const Contact& c : contacts.contacts()) share = std::max(share, c.relative_depth);
-  return share;
+inline double largest_relative_depth(const Contacts& contacts) {
+  double largest = 0;
+  for (const Contact& c : contacts.contacts()) largest = std::max(largest, c.relative_depth);
+  return largest;
 }
 
 /// The largest penetration of a pair of bodies, m.

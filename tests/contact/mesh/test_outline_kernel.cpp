@@ -109,7 +109,7 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
     REQUIRE(touching(*bodies.contacts) == touching(*fresh.contacts));
     REQUIRE(bodies.contacts->energy() == fresh.contacts->energy());
     REQUIRE((bodies.node_force == fresh.node_force));
-    deep += deepest_share(*fresh.contacts) > 1;
+    deep += largest_relative_depth(*fresh.contacts) > 1;
     (fresh.contacts->contacts().empty() ? apart : touched)++;
   }
   CHECK(touched > 200);
@@ -137,7 +137,7 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
     bodies.add_ring(b.vertices(), r_b);
     bodies.join();
     bodies.evaluate();
-    const double share = deepest_share(*bodies.contacts);
+    const double share = largest_relative_depth(*bodies.contacts);
     if (!(share > .02) || share > .98) continue;
     // Only where the collars are the roofs.
     std::vector<double> first = first_nodes(a.vertices());
@@ -268,7 +268,7 @@ TEST_CASE("a body pushed through the collar meets a constant pressure there",
   for (const double d : {.1, .2, .4, .7}) {
     const OutlinePair pair(bar, split(samples::block(-.8, -d, .7, 2).vertices(), 4), .125, .125);
     CAPTURE(d);
-    CHECK((deepest_share(*pair.contacts) > 1) == (d > .125));
+    CHECK((largest_relative_depth(*pair.contacts) > 1) == (d > .125));
     CHECK_FALSE(pair.contacts->fault());
     // On the stamp, and on the bar, whose edges go into the sides of the stamp as well.
     const double h = std::min(d, .125);
@@ -449,7 +449,7 @@ TEST_CASE("energy of a bounce of two soft bodies converges with the step squared
       for (const double w : v) energy += w * w / 2;
       if (start < 0) start = energy;
       worst = std::max(worst, std::abs(energy - start) / start);
-      deepest = std::max(deepest, deepest_share(*pair.contacts));
+      deepest = std::max(deepest, largest_relative_depth(*pair.contacts));
     }
     for (int i = 0; i < 2 * n; ++i) {
       spin += cross(x0[i] + Vec2(u[2 * i], u[2 * i + 1]), Vec2(v[2 * i], v[2 * i + 1]));

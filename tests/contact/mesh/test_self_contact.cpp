@@ -101,7 +101,7 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
     const double size = body.largest_force();
     if (!(size > 1e-9)) continue;
     ++touch;
-    deep += deepest_share(*body.contacts) > 1;
+    deep += largest_relative_depth(*body.contacts) > 1;
     NumberRing<Complex> ring(body.ring);
     size_t k = 0;
     for (size_t j = 0; j < ring.size(); ++j) {

@@ -401,7 +401,7 @@ TEST_CASE("polygons deep in each other are noticed before their potentials fall 
       CHECK(std::abs(fault->place.x()) < 1e-9);
       CHECK(fault->depth > 0);
     }
-    CHECK((deepest_share(*bodies.contacts) >= 1) == fault.has_value());
+    CHECK((largest_relative_depth(*bodies.contacts) >= 1) == fault.has_value());
     return fault ? std::optional(fault->kind) : std::nullopt;
   };
   using Kind = ContactFault::Kind;

@@ -193,7 +193,7 @@ TEST_CASE("a tip dragged over a flat row of edges meets no tangential force", "[
       const OutlinePair pair(split(samples::block(-1, -.5, 1, 0).vertices(), parts), tip, .02, .02);
       const Vec2 force = pair.on(1).force;
       REQUIRE(force.y() > 0);
-      REQUIRE(deepest_share(*pair.contacts) < 1);
+      REQUIRE(largest_relative_depth(*pair.contacts) < 1);
       worst = std::max(worst, std::abs(force.x() / force.y()));
       // Apex on flat.
       CHECK(force.y() == Approx(d * d * (1 + std::sqrt(.5)) / .02).epsilon(1e-11));
@@ -217,8 +217,8 @@ TEST_CASE("convex and reflex corners of many angles", "[collar]") {
                                 {.01 - std::sin(1.1 * tilt), -.06 + std::cos(1.1 * tilt)}};
     const OutlinePair pair(notch, tip, .5, .3);
     CAPTURE(opening);
-    REQUIRE(deepest_share(*pair.contacts) > 0);
-    REQUIRE(roof_share(pair) < 1);
+    REQUIRE(largest_relative_depth(*pair.contacts) > 0);
+    REQUIRE(roof_ratio(pair) < 1);
     CHECK(gradient_error(pair) < 1e-12);
     const Polygon a(notch), b(tip);
     const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
@@ -254,9 +254,9 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
       std::vector<Vec2> moved = b;
       for (Vec2& v : moved) v += k * grid * step;
       pair.emplace(a, moved, .3, .4);
-      if (deepest_share(*pair->contacts) > 1e-6) break;
+      if (largest_relative_depth(*pair->contacts) > 1e-6) break;
     }
-    if (!pair || deepest_share(*pair->contacts) < 1e-6 || deepest_share(*pair->contacts) >= 1)
+    if (!pair || largest_relative_depth(*pair->contacts) < 1e-6 || largest_relative_depth(*pair->contacts) >= 1)
       continue;
     // Overlapping parts of faces beyond the heights at which they shrink to a point cancel each
     // other; what remains may be small against them.
@@ -271,7 +271,7 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
     const double size = pair->largest_force();
     worst = std::max({worst, (on_a.force + on_b.force).norm() / size,
                       std::abs(on_a.moment + on_b.moment) / size});
-    if (i % 20 != 0 || !(roof_share(*pair) < 1)) continue;
+    if (i % 20 != 0 || !(roof_ratio(*pair) < 1)) continue;
     try {
       const Polygon first(pair->a), second(pair->b);
       const PairResult exact = overlap_method(first, make_potential(first, length_choice(.3)),
