@@ -69,7 +69,7 @@ struct EdgeAndFace {
     const CollarFace<Number> face{0, 0, 1, 0, 1, 0, 1, alpha, 1, beta, 1, .5, .4};
     CollarCrossings<Number> crossings;
     return collar_piece(face, Number(p.x()), Number(p.y()), Number(q.x()), Number(q.y()), piece,
-                        top);
+                        crossings);
   }
 };
 

@@ -87,7 +87,7 @@ Number closed_form(const NumberRing<Number>& c, const NumberRing<Number>& t, dou
       if (!collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, crossings)) continue;
       sum += piece.height;
       for (int k = 0; k < crossings.count; ++k) {
-        const auto& [u, tau, sign] = crossings.at[static_cast<size_t>(k)];
+        const auto& [u, tau, sign] = crossings.list[static_cast<size_t>(k)];
         const double s = sign;
         const Number x = c.x[e] + u * (c.x[g] - c.x[e]), y = c.y[e] + u * (c.y[g] - c.y[e]);
         sum -= s * (collar_rest(face, tau).height + depth * swept(x, y, top.x[q], top.y[q]));

@@ -28,12 +28,12 @@ Total total(const PlacedEdge& edge, double s0, double s1, const SegmentMoments<d
   return {moments.sum, moments.first, (s1 - s0) * std::hypot(edge.ex, edge.ey), moments.largest};
 }
 
-// The largest difference of an edge's integrals in the collar from those by all of the potential;
-// `shallow` counts the edges that have some in the collar. Where edges lie on each other, their
-// lengths may count or not.
+// The largest difference of an edge's integrals by the boundary layer from those by the whole
+// potential; `shallow` counts the edges with segments in the layer. Where edges lie on each other,
+// their lengths may count or not.
 double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2& offset,
                   EdgeWorkspace& workspace, int& shallow, bool with_lengths) {
-  LayerTrace& trace = workspace.trace;
+  LayerTrace& trace = workspace.layer_trace;
   trace.find(x, y, offset.x(), offset.y(), kAll, kAll);
   if (y.roof) workspace.nodes.place(y);
   double worst = 0;
