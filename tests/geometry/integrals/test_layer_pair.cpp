@@ -61,7 +61,7 @@ bool same(const BoundarySegment& r, const BoundarySegment& s) {
 
 }  // namespace
 
-TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", "[collar][near]") {
+TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", "[layer][near]") {
   samples::Random random(7);
   PatchWorkspace memory;
   for (const Field field : {Field::roof, Field::distance}) {
@@ -103,7 +103,7 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
 }
 
 // A cell that is not to be used, an edge that is deeper than its cell, and too many edges.
-TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
+TEST_CASE("pairs that boundary layers of few edges do not decide", "[layer][near]") {
   samples::Random random(8);
   const Polygon cross = samples::cross_of_squares();
   const Potential potential =

@@ -1,4 +1,4 @@
-// phi along edges in the collar of a polygon, against all of its roof or of its distance field.
+// phi along edges in the boundary layer of a polygon, against its whole roof or distance field.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -69,7 +69,7 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
   return worst;
 }
 
-TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
+TEST_CASE("phi in the boundary layer is that of the whole potential", "[layer]") {
   samples::Random random(17);
   EdgeWorkspace workspace;
   int shallow = 0;
@@ -94,7 +94,7 @@ TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
 }
 
 // Edges on edges, vertices on edges and on vertices.
-TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
+TEST_CASE("phi in the boundary layer where polygons lie on each other", "[layer]") {
   EdgeWorkspace workspace;
   int shallow = 0;
   const Polygon cross = samples::cross_of_squares(), l = samples::l_shape();
@@ -116,7 +116,7 @@ TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
   CHECK(shallow > 1000);
 }
 
-TEST_CASE("cells of a cross", "[collar]") {
+TEST_CASE("cells of a cross", "[layer]") {
   const Polygon cross = samples::cross_of_squares();
   for (const Field field : {Field::roof, Field::distance}) {
     const BoundaryLayer cells = *make_potential(cross, {.field = field}).layer;
@@ -131,7 +131,7 @@ TEST_CASE("cells of a cross", "[collar]") {
   }
 }
 
-TEST_CASE("cells at vertices that are almost straight are not used", "[collar]") {
+TEST_CASE("cells at vertices that are almost straight are not used", "[layer]") {
   std::vector<Vec2> ring = samples::l_shape().vertices();
   const Vec2 middle = (ring[0] + ring[1]) / 2;
   ring.insert(ring.begin() + 1, middle);
@@ -155,7 +155,7 @@ TEST_CASE("cells at vertices that are almost straight are not used", "[collar]")
 }
 
 // With other numbers of its vertices a cell is another lane of another pack.
-TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
+TEST_CASE("the bits of a cell do not depend on its lane", "[layer]") {
   const std::vector<Vec2> ring = samples::cross_of_squares().vertices();
   samples::Random random(18);
   const Potential other = make_potential(samples::cross_of_squares());
