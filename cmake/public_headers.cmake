@@ -28,8 +28,8 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/exact/overlap.hpp
   geometry/exact/pair_methods.hpp
   geometry/integrals/cell_parts.hpp
-  geometry/integrals/collar_pair.hpp
-  geometry/integrals/collar_trace.hpp
+  geometry/integrals/layer_pair.hpp
+  geometry/integrals/layer_trace.hpp
   geometry/integrals/edge_sums.hpp
   geometry/integrals/contact_patches.hpp
   geometry/integrals/convex_pairs.hpp
@@ -52,7 +52,7 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/progress.hpp
   geometry/polygon/segment_moments.hpp
   geometry/polygon/triangulation.hpp
-  geometry/potential/collar_cells.hpp
+  geometry/potential/boundary_layer.hpp
   geometry/potential/distance_field.hpp
   geometry/potential/inscribed_circle.hpp
   geometry/potential/piecewise_minimum.hpp

@@ -67,9 +67,9 @@ struct EdgeAndFace {
   template <class Number>
   bool meet(CollarPiece<Number>& piece) const {
     const CollarFace<Number> face{0, 0, 1, 0, 1, 0, 1, alpha, 1, beta, 1, .5, .4};
-    CollarCrossings<Number> top;
+    CollarCrossings<Number> crossings;
     return collar_piece(face, Number(p.x()), Number(p.y()), Number(q.x()), Number(q.y()), piece,
-                        top);
+                        crossings);
   }
 };
 
@@ -125,7 +125,7 @@ Work evaluation(int cells) {
 Work friction(int cells) {
   const auto bars = std::make_shared<Interface>(cells, law_of({.5, .6}));
   return {.once = [bars, cells] {
-    bars->contacts.slide(bars->now, 1e-3);
+    bars->contacts.update_friction(bars->now, 1e-3);
     return static_cast<double>(cells);
   }};
 }

@@ -150,7 +150,7 @@ struct Crosses {
   std::vector<Vec2> offsets;
   EdgeWorkspace edges;
   PatchWorkspace for_patches;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> segments;
   std::vector<PairIntegral> patches;
 };
 
@@ -171,7 +171,7 @@ Work cross_patches(PotentialChoice::Field field) {
     size_t patches = 0;
     for (int k = 0; k < Crosses::kPairs; ++k) {
       contact_patches(c->shapes.view(2 * k), c->shapes.view(2 * k + 1), c->offsets[k],
-                      c->for_patches, c->runs, c->patches);
+                      c->for_patches, c->segments, c->patches);
       patches += c->patches.size();
     }
     return static_cast<double>(patches);

@@ -1,5 +1,6 @@
-// The part of an edge of one polygon in a cell of another one's collar (collar_cells.hpp), for four
-// pairs of an edge and a cell at a time. This header is private to the integrals.
+// The part of an edge of one polygon in a cell of the boundary layer of another one
+// (boundary_layer.hpp), for four pairs of an edge and a cell at a time. This header is private to
+// the integrals.
 #pragma once
 
 #include <cstdint>
@@ -8,25 +9,26 @@
 
 namespace apothem::edge_detail {
 
-/// Where the part of an edge in a cell ends: on the cell's own edge, with the edge itself, at the
-/// border to the cell before or after, or at the depth of the cell.
-enum CellEnd { kOwn, kEdge, kBorderBefore, kBorderAfter, kTop };
+/// What ends the part of an edge in a cell: the cell's own edge, the end of the edge itself, the
+/// border to the cell before or after, or the depth of the cell.
+enum CellEnd { kOwn, kEdge, kBorderBefore, kBorderAfter, kDepthLimit };
 
 using CellPack = PackOf<kComparedLanes>;
 
-/// What tells where a point is: its heights (phi) over the edges of the cells, those before and
-/// those after; of a distance field also its foot from the start and from the end of the edges.
+/// The position of a point relative to cells: its heights (phi) over the edges of the cells, and
+/// over the edges before and after them. For a distance field also the positions of its foot from
+/// the start and from the end of the edges.
 struct CellHeights {
   CellPack own, before, after, foot, foot_from_end;
 };
 
-/// A line of edges: their starts and gradients.
+/// Lines of edges: the starts and gradients of the edges.
 struct CellLine {
   CellPack x, y, gx, gy;
 };
 
-/// The heights of points over cells. line(0) are the edges of the cells, line(-1) and line(1) those
-/// before and after.
+/// The heights of points over cells. line(0) has the edges of the cells, line(-1) and line(1) those
+/// before and after them.
 template <class Line>
 APOTHEM_INLINE CellHeights cell_heights(const Line& line, const CellPack& px, const CellPack& py,
                                         bool distance) {
@@ -49,32 +51,36 @@ APOTHEM_INLINE CellPack::Mask listed_lanes(unsigned bits) {
   return {(lane & static_cast<std::int64_t>(bits)) == lane};
 }
 
-/// Cells: their depths, and the sides of the vertices at their starts and ends.
+/// The depths of cells, and the sides (BoundaryLayer::side) of the vertices at their starts and
+/// ends.
 struct CellShapes {
   CellPack depth, side_before, side_after;
 };
 
-/// Parts of edges: where they are, the ends, phi there, and which CellEnd these are.
+/// The parts of edges in cells: the lanes that have one, its ends s0 and s1, phi at the ends, and
+/// the CellEnd of each end.
 struct CellParts {
   CellPack::Mask there;
   CellPack s0{0.}, s1{1.}, v0, v1, end0{double(kEdge)}, end1{double(kEdge)};
 
-  /// Keeps what is inside; a linear function is `a` at the start of the edge and `b` at its end.
+  /// Restricts the parts to where a linear function is inside its bound. The function is `a` at the
+  /// start of the edge and `b` at its end.
   APOTHEM_INLINE void cut(const CellPack& a, const CellPack& b, const CellPack::Mask& a_inside,
-                          const CellPack::Mask& b_inside, CellEnd by) {
+                          const CellPack::Mask& b_inside, CellEnd cause) {
     there = there & (a_inside | b_inside);
     const CellPack s = a / (a - b);
     const CellPack::Mask ends = a_inside & (!b_inside) & (s < s1);
     const CellPack::Mask begins = (!a_inside) & b_inside & (s > s0);
     s1 = select(ends, s, s1);
-    end1 = select(ends, CellPack(double(by)), end1);
+    end1 = select(ends, CellPack(double(cause)), end1);
     s0 = select(begins, s, s0);
-    end0 = select(begins, CellPack(double(by)), end0);
+    end0 = select(begins, CellPack(double(cause)), end0);
   }
 };
 
-/// Finds the parts of edges, whose ends are at `from` and `to`, in those cells that are `listed`.
-/// False if there is none. The depths of listed cells are positive.
+/// Finds the parts of edges in those cells that are `listed`. `from` and `to` are the heights of
+/// the ends of the edges. Returns false if there is no part. The depths of listed cells are
+/// positive.
 APOTHEM_INLINE bool find_parts(const CellHeights& from, const CellHeights& to,
                                const CellShapes& cells, const CellPack::Mask& listed, bool distance,
                                CellParts& parts) {
@@ -99,7 +105,7 @@ APOTHEM_INLINE bool find_parts(const CellHeights& from, const CellHeights& to,
   if (!any(parts.there)) return false;
   const CellPack::Mask a_below = a < cells.depth, b_below = b < cells.depth;
   if (any(parts.there & !(a_below & b_below))) {
-    parts.cut(cells.depth - a, cells.depth - b, a_below, b_below, kTop);
+    parts.cut(cells.depth - a, cells.depth - b, a_below, b_below, kDepthLimit);
     parts.there = parts.there & (parts.s0 < parts.s1);
     if (!any(parts.there)) return false;
   }

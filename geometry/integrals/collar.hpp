@@ -1,18 +1,20 @@
-// The collar of an outline: its roof near the surface, as a function of the outline's vertices. One
-// edge of another outline against one cell of the collar, in closed form (docs/theory.md, Contact).
+// The collar of an outline is its roof near the surface, as a function of the outline's vertices.
+// This header evaluates one edge of another outline against one face of the collar, in closed form
+// (docs/theory.md, Contact).
 //
-// A cell belongs to the edge a->b, with the inside on its left. In its coordinates tau along the
-// edge and h inwards it lies in 0 <= h <= depth between the bisectors {v + h m} at its ends. Above
-// the height at which these cross, the cell counts negatively. The upper sides of all cells form
-// the top of the collar, a closed line. With the sign s of each cell and the winding number w of
-// the top, the depth below the surface is
+// A face belongs to the edge a->b, with the inside on its left. In the coordinates tau along the
+// edge and h inwards it is the region 0 <= h <= depth between the bisectors {v + h m} at the ends
+// of the edge. Above the height at which the bisectors cross, the face counts negatively. The upper
+// sides of all faces form the offset curve of the outline, a closed line; inside it is the
+// saturated region. With the sign s of each face and the winding number w of the offset curve, the
+// depth below the surface is
 //
 //   SUM s h + depth w,
 //
-// which is continuous everywhere and the depth of the plateau inside the top.
+// which is continuous everywhere and equals `depth` in the saturated region.
 //
-// For any number type. Comparisons look at the real part, so that a complex step gives derivatives;
-// with packs several edges go at once, each against one cell.
+// The functions are templates for any number type. Comparisons use the real part, so that a complex
+// step gives derivatives. With packs several edges are treated at once, each against one face.
 #pragma once
 
 #include <algorithm>
@@ -33,12 +35,12 @@ template <int lanes>
 APOTHEM_INLINE PackOf<lanes> real_part(const PackOf<lanes>& x) {
   return x;
 }
-/// What the numbers of a type are compared by.
+/// The type by which the numbers of a type are compared.
 template <class Number>
 using RealPart = std::decay_t<decltype(real_part(std::declval<const Number&>()))>;
 
-/// Direction m of the bisector at a vertex between edges with the unit tangents p (before) and q:
-/// m . n = 1 for the inward normals n of both.
+/// The direction m of the bisector at a vertex between edges with the unit tangents p (before) and
+/// q (after), with m . n = 1 for the inward normals n of both edges.
 template <class Number>
 struct Mitre {
   Number x, y;
@@ -50,35 +52,36 @@ struct Mitre {
   }
 };
 
-/// Height at which a face between bisectors of these slopes shrinks to a point. Of numbers or
-/// packs.
+/// The height of the edge event, at which a face between bisectors of these slopes shrinks to a
+/// point. `Real` is a number or a pack.
 template <class Real>
-APOTHEM_INLINE Real collar_event(const Real& length, const Real& alpha, const Real& beta) {
+APOTHEM_INLINE Real edge_event_height(const Real& length, const Real& alpha, const Real& beta) {
   return select(alpha > beta, length / (alpha - beta),
                 Real(std::numeric_limits<double>::infinity()));
 }
 
-/// The height up to which an edge needs no look at the top of a cell or at its negative part.
+/// The regular depth of a face: up to this height an edge neither reaches the saturated region nor
+/// the part of the face that counts negatively.
 template <class Real>
-APOTHEM_INLINE Real plain_depth(const Real& depth, const Real& event) {
+APOTHEM_INLINE Real regular_depth_of(const Real& depth, const Real& event) {
   return select(event < depth, event, depth) * Real(1 - 1e-9);
 }
 
 template <class Number>
 struct CollarFace {
   Number ax, ay, bx, by;
-  Number tx, ty;           ///< unit tangent
-  Number length;           ///< of the edge
-  Number max, may;         ///< bisector at a
-  Number mbx, mby;         ///< bisector at b
-  RealPart<Number> depth;  ///< of the collar
-  RealPart<Number> plain;  ///< up to here, and a little more, the cell is positive: see plain_depth
+  Number tx, ty;                   ///< unit tangent of the edge
+  Number length;                   ///< length of the edge
+  Number max, may;                 ///< direction of the bisector at a
+  Number mbx, mby;                 ///< direction of the bisector at b
+  RealPart<Number> depth;          ///< depth of the collar
+  RealPart<Number> regular_depth;  ///< see regular_depth_of()
 
-  /// The same face with its plain part.
-  [[nodiscard]] APOTHEM_INLINE CollarFace with_plain() const {
+  /// The same face with its regular depth.
+  [[nodiscard]] APOTHEM_INLINE CollarFace with_regular_depth() const {
     CollarFace face = *this;
-    face.plain =
-        plain_depth(depth, collar_event(real_part(length), real_part(alpha()), real_part(beta())));
+    face.regular_depth = regular_depth_of(
+        depth, edge_event_height(real_part(length), real_part(alpha()), real_part(beta())));
     return face;
   }
 
@@ -87,48 +90,49 @@ struct CollarFace {
   [[nodiscard]] APOTHEM_INLINE Number beta() const { return mbx * tx + mby * ty; }
 };
 
-/// What the edge P->Q = {P + u (Q - P)} contributes.
+/// The contribution of the edge P->Q = {P + u (Q - P)}.
 template <class Number>
 struct CollarPiece {
-  Number from, to;    ///< the part of the edge in the cell, in u
+  Number from, to;    ///< the part of the edge in the face, as an interval of u
   Number sum, first;  ///< INT s h du and INT s h u du over it
-  /// Parts of INT s dA, INT s tau dA and INT s h dA over the cell inside the outline of P->Q, as
-  /// far as that outline does not contain the top.
+  /// Contributions to INT s dA, INT s tau dA and INT s h dA over the part of the face inside the
+  /// outline of P->Q, without the terms along the offset curve.
   Number area, along, height;
   RealPart<Number> deepest;  ///< largest h, m
 };
 
-/// Pieces, and which of them there are.
+/// Pieces of several edges, and which of them exist.
 template <class Number>
 struct CollarPieces : CollarPiece<Number> {
-  Truth<RealPart<Number>> met;   ///< the edge meets its cell
-  Truth<RealPart<Number>> deep;  ///< only deep_collar_piece tells whether it does; it is not met
+  Truth<RealPart<Number>> met;      ///< the edge meets its face
+  Truth<RealPart<Number>> general;  ///< only general_collar_piece can decide; `met` is false then
 };
 
-/// Where an edge crosses the top of a cell.
+/// A place where an edge crosses the offset curve.
 template <class Number>
 struct CollarCrossing {
-  Number u;    ///< on the edge
-  Number tau;  ///< on the top
-  /// The winding number of the top changes by this along the edge, and that of the edge's outline
-  /// by the opposite along the top.
+  Number u;    ///< position on the edge
+  Number tau;  ///< position along the side of the offset curve
+  /// The change of the winding number of the offset curve along the edge; that of the edge's
+  /// outline changes by the opposite along the offset curve.
   int sign;
 };
 template <class Number>
 struct CollarCrossings {
   int count = 0;
-  std::array<CollarCrossing<Number>, 2> at;
+  std::array<CollarCrossing<Number>, 2> list;
 };
 
 namespace detail {
 
-constexpr double kThird = 1. / 3, kSixth = 1. / 6;  // a division takes as long as ten products
+// Factors in place of divisions, which take as long as ten products.
+constexpr double kThird = 1. / 3, kSixth = 1. / 6;
 
-// Signs and heights that an edge has in a cell: at its ends P and Q, against the lines of the base
-// and of the bisectors at a and b.
+// The heights of the ends P and Q of an edge over the base of a face, and their sides of the
+// bisectors at a and b.
 template <class Number>
 struct CollarSides {
-  Number pax, pay, pbx, pby;  // P relative to a and to b
+  Number pax, pay, pbx, pby;  // P relative to a and relative to b
   Number hp, hq, ap, aq, bp, bq;
 
   APOTHEM_INLINE CollarSides(const CollarFace<Number>& f, const Number& px, const Number& py,
@@ -139,12 +143,12 @@ struct CollarSides {
     ap = pax * f.may - pay * f.max, aq = qax * f.may - qay * f.max;
     bp = pbx * f.mby - pby * f.mbx, bq = qbx * f.mby - qby * f.mbx;
   }
-  // NaN if one of them is not finite.
+  // A sum that is NaN if one of the numbers is not finite.
   [[nodiscard]] APOTHEM_INLINE Number all() const { return hp + hq + ap + aq + bp + bq; }
 };
 
-// What the part of an edge between heights h1 and h2 contributes, by Green's theorem. tau is `tp`
-// at P and changes by `dt` along the edge.
+// The contribution of the part of an edge from u = lo to hi, where its heights are h1 and h2, by
+// Green's theorem. tau is `tp` at P and changes by `dt` along the edge.
 template <class Number>
 APOTHEM_INLINE CollarPiece<Number> collar_part(const Number& tp, const Number& dt, const Number& lo,
                                                const Number& hi, const Number& h1,
@@ -161,8 +165,8 @@ APOTHEM_INLINE CollarPiece<Number> collar_part(const Number& tp, const Number& d
           select(r1 < r2, r2, r1)};
 }
 
-// What the way along a bisector, at a or else at b, from the base up to the height h contributes,
-// or down: where an edge enters a cell (sign -1) or leaves it (sign 1).
+// The contribution of the path along a bisector, at a or else at b, between the base and the height
+// h, where an edge enters a face (sign -1) or leaves it (sign 1).
 template <class Number>
 struct AlongBisector {
   Number area, along, height;
@@ -175,7 +179,7 @@ struct AlongBisector {
     along = select(at_a, third, Number(s * (f.length * .5 + third)));
     height = s * h * kSixth;
   }
-  // Adds it to a piece.
+  // Adds the contribution to a piece.
   APOTHEM_INLINE void add_to(CollarPiece<Number>& piece,
                              const Truth<RealPart<Number>>& there) const {
     piece.area = select(there, Number(piece.area + area), piece.area);
@@ -186,13 +190,14 @@ struct AlongBisector {
 
 }  // namespace detail
 
-/// An edge that may cross the top of the cell or its negative part. All decisions are signs that
-/// neighbouring cells and edges share to the last bit, so that the crossings of a closed line with
-/// the top add up to nothing. Arguments and result are those of collar_piece.
+/// Evaluates an edge that may reach the saturated region or the negative part of the face. All
+/// decisions are signs that neighbouring faces and edges share to the last bit, so that the
+/// crossings of a closed line with the offset curve add up to zero. Arguments and result are those
+/// of collar_piece.
 template <class Number>
-inline bool deep_collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
-                              const Number& qx, const Number& qy, CollarPiece<Number>& piece,
-                              CollarCrossings<Number>& top) {
+inline bool general_collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
+                                 const Number& qx, const Number& qy, CollarPiece<Number>& piece,
+                                 CollarCrossings<Number>& crossings) {
   struct Cut {
     Number u, h;
     bool above, below;
@@ -219,8 +224,8 @@ inline bool deep_collar_piece(const CollarFace<Number>& f, const Number& px, con
     piece.area = piece.along = piece.height = all;
     piece.deepest = real_part(all);
   }
-  // On a bisector the height is that of the crossing, for both cells the same, and between those of
-  // the feet of P and Q.
+  // The height at a bisector is that of the crossing, which is the same for both faces, and lies
+  // between those of the feet of P and Q.
   const auto on_bisector = [&](const Number& x, const Number& y, const Number& mx,
                                const Number& my) -> Number {
     const Number h = (x * ey - y * ex) / (mx * ey - my * ex);
@@ -233,15 +238,18 @@ inline bool deep_collar_piece(const CollarFace<Number>& f, const Number& px, con
   const auto part = [&](const Cut& start, const Cut& end, int sign) {
     if (sign == 0 || (start.above && end.above) || (start.below && end.below)) return;
     const Number d = end.u - start.u, dh = end.h - start.h;
-    const auto at = [&](double level) -> Number { return start.u + d * ((level - start.h) / dh); };
+    const auto fraction_at = [&](double level) -> Number {
+      return start.u + d * ((level - start.h) / dh);
+    };
     Number lo = start.u, hi = end.u, h1 = start.h, h2 = end.h;
     const auto cross = [&](const Number& u, int change) {
-      if (top.count < 2) top.at[static_cast<size_t>(top.count++)] = {u, tp + u * dt, change};
+      if (crossings.count < 2)
+        crossings.list[static_cast<size_t>(crossings.count++)] = {u, tp + u * dt, change};
     };
-    if (start.below) lo = at(0), h1 = 0;
-    if (end.below) hi = at(0), h2 = 0;
-    if (start.above) lo = at(f.depth), h1 = f.depth, cross(lo, -sign);
-    if (end.above) hi = at(f.depth), h2 = f.depth, cross(hi, sign);
+    if (start.below) lo = fraction_at(0), h1 = 0;
+    if (end.below) hi = fraction_at(0), h2 = 0;
+    if (start.above) lo = fraction_at(f.depth), h1 = f.depth, cross(lo, -sign);
+    if (end.above) hi = fraction_at(f.depth), h2 = f.depth, cross(hi, sign);
     if (!found || real_part(lo) < real_part(piece.from)) piece.from = lo;
     if (!found || real_part(hi) > real_part(piece.to)) piece.to = hi;
     found = true;
@@ -284,7 +292,7 @@ inline bool deep_collar_piece(const CollarFace<Number>& f, const Number& px, con
   return found;
 }
 
-/// Edges, each against one cell, but for what deep_collar_piece has to tell.
+/// Evaluates several edges, each against one face, except those that need general_collar_piece.
 template <class Number>
 APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, const Number& px,
                                                   const Number& py, const Number& qx,
@@ -293,17 +301,17 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   using Mask = Truth<Real>;
   const auto negative = [](const Number& x)
                             APOTHEM_LAMBDA -> Mask { return real_part(x) < Real(0.); };
-  const auto is_plain = [&](const Number& p, const Number& q) APOTHEM_LAMBDA -> Mask {
-    return (real_part(p) <= f.plain) & (real_part(q) <= f.plain);
+  const auto is_regular = [&](const Number& p, const Number& q) APOTHEM_LAMBDA -> Mask {
+    return (real_part(p) <= f.regular_depth) & (real_part(q) <= f.regular_depth);
   };
   const detail::CollarSides<Number> side(f, px, py, qx, qy);
   const auto& [pax, pay, pbx, pby, hp, hq, ap, aq, bp, bq] = side;
   const Mask out_ap = negative(ap), out_aq = negative(aq);
   const Mask out_bp = !negative(bp), out_bq = !negative(bq);
   const Mask under = negative(hp) & negative(hq);
-  const Mask plain = is_plain(hp, hq);
-  // Edges that are beyond one bisector only, and all of them, miss the cell, unless a number is not
-  // finite.
+  const Mask regular = is_regular(hp, hq);
+  // Edges that are entirely beyond one bisector and not beyond the other one miss the face, unless
+  // a number is not finite.
   const Real all = real_part(side.all());
   const Mask beside =
       ((out_ap & out_aq & (!(out_bp | out_bq))) | ((!(out_ap | out_aq)) & out_bp & out_bq)) &
@@ -311,7 +319,7 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   const Mask missed =
       under | (out_ap & out_aq) | ((real_part(bp) >= Real(0.)) & (real_part(bq) >= Real(0.)));
 
-  // The part inside: it begins or ends at the edge's end, at the base, or at a bisector.
+  // The part inside begins or ends at an end of the edge, at the base, or at a bisector.
   Number lo(0.), hi(1.);
   const auto clip = [&](const Number& p, const Number& q, const Mask& p_out, const Mask& q_out,
                         Mask& starts, Mask& ends) APOTHEM_LAMBDA {
@@ -328,17 +336,19 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   in_a = in_a & (!in_b);
   out_a = out_a & (!out_b);
 
-  // On a bisector the height is that of the crossing, for both cells the same.
+  // The height at a bisector is that of the crossing, which is the same for both faces.
   const Number dh = hq - hp, ex = qx - px, ey = qy - py;
   const Number on_a = (pax * ey - pay * ex) / (f.max * ey - f.may * ex);
   const Number on_b = (pbx * ey - pby * ex) / (f.mbx * ey - f.mby * ex);
   const Number h1 = select(in_a, on_a, select(in_b, on_b, Number(hp + lo * dh)));
   const Number h2 = select(out_a, on_a, select(out_b, on_b, Number(hp + hi * dh)));
-  // An edge that is nowhere beyond both bisectors does not meet the negative part of the cell, and
-  // what lies between the bisectors may be plain although the edge goes on to larger heights. A
-  // piece without length still crosses a bisector. Written so that NaN is never a miss.
+  // An edge that is nowhere beyond both bisectors does not meet the negative part of the face, and
+  // the part between the bisectors may be regular although the edge continues to larger heights. A
+  // piece of zero length still crosses a bisector. The conditions are written so that NaN never
+  // counts as a miss.
   const Mask reversed = real_part(lo) > real_part(hi);
-  const Mask easy = plain | !((out_ap & out_bp) | (out_aq & out_bq) | reversed | !is_plain(h1, h2));
+  const Mask easy =
+      regular | !((out_ap & out_bp) | (out_aq & out_bq) | reversed | !is_regular(h1, h2));
   CollarPieces<Number> piece{detail::collar_part(Number(f.tx * pax + f.ty * pay),
                                                  Number(f.tx * ex + f.ty * ey), lo, hi, h1, h2),
                              Mask(easy & !(missed | reversed)), !(easy | under | beside)};
@@ -347,26 +357,27 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   return piece;
 }
 
-/// False if the edge misses the cell. Both cells at a bisector see the same sign and the same
-/// crossing of it, to the last bit: an edge near a bisector, or on it, is in one of them only.
-/// Crossings of the top are appended to `top`.
+/// Evaluates an edge against a face. Returns false if the edge misses the face. Both faces at a
+/// bisector see the same sign and the same crossing of it, to the last bit, so that an edge near a
+/// bisector, or on it, is in one of them only. Crossings of the offset curve are appended to
+/// `crossings`.
 template <class Number>
 inline bool collar_piece(const CollarFace<Number>& f, const Number& px, const Number& py,
                          const Number& qx, const Number& qy, CollarPiece<Number>& piece,
-                         CollarCrossings<Number>& top) {
+                         CollarCrossings<Number>& crossings) {
   const CollarPieces<Number> found = collar_pieces(f, px, py, qx, qy);
-  if (found.deep) return deep_collar_piece(f, px, py, qx, qy, piece, top);
+  if (found.general) return general_collar_piece(f, px, py, qx, qy, piece, crossings);
   if (found.met) piece = found;
   return found.met;
 }
 
-/// Where an outline contains the top of a cell, Green's theorem goes along it as well. INT s dA,
-/// INT s tau dA and INT s h dA
+/// The terms of Green's theorem along the offset curve, where an outline contains the face's side
+/// of it: INT s dA, INT s tau dA and INT s h dA.
 template <class Number>
 struct CollarMoments {
   Number area, along, height;
 };
-/// over the whole cell, for an outline around all of it,
+/// The moments of the whole face, for an outline around all of it.
 template <class Number>
 inline CollarMoments<Number> collar_cell(const CollarFace<Number>& f) {
   const Number a = f.alpha(), b = f.beta(), &l = f.length;
@@ -374,8 +385,8 @@ inline CollarMoments<Number> collar_cell(const CollarFace<Number>& f) {
   return {h * (l + (b - a) * h / 2.), h * (l * (l + b * h) + (b - a) * (b + a) * h * h / 3.) / 2.,
           h * h * (l / 2. + (b - a) * h / 3.)};
 }
-/// and, of the way along the top from tau to the end at b and down the bisector there, for an
-/// outline that contains this part of the top.
+/// The moments of the path along the offset curve from tau to the end at b and down the bisector
+/// there, for an outline that contains this part of the offset curve.
 template <class Number>
 inline CollarMoments<Number> collar_rest(const CollarFace<Number>& f, const Number& tau) {
   const Number b = f.beta(), &l = f.length;

@@ -14,43 +14,48 @@ using namespace edge_detail;
 
 namespace {
 
-// Splits a pair into runs and patches. An end of a run has the number 2 run if it is the start and
-// 2 run + 1 if it is the end.
+// Splits a pair into boundary segments and patches. The start of the segment i has the number 2 i,
+// and its end 2 i + 1.
 class Splitter {
  public:
   Splitter(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-           PatchWorkspace& workspace, std::vector<BoundaryRun>& runs)
-      : a_(a), b_(b), offset_(offset), arm_(arm(a, b, offset)), work_(workspace), runs_(runs) {}
+           PatchWorkspace& workspace, std::vector<BoundarySegment>& segments)
+      : a_(a),
+        b_(b),
+        offset_(offset),
+        arm_(arm(a, b, offset)),
+        work_(workspace),
+        segments_(segments) {}
 
-  /// Finds all runs and returns what pair_integral returns.
-  PairIntegral find_runs(NearEdges& near) {
+  /// Finds all segments and returns what pair_integral returns.
+  PairIntegral find_segments(NearEdges& near) {
     const auto begin = [&] {
-      runs_.clear();
+      segments_.clear();
       work_.halves.clear();
       work_.crossed.clear();
       of_a_ = 0;
     };
     begin();
-    return integrate_pair<true>(
-        a_, b_, offset_, near, work_.edge, begin,
-        [&](bool of_a, int e, const auto& edge, const RunSpan& span, const EdgeSums<double>& sums) {
-          work_.halves.push_back(sums);
-          add_run(of_a, e, edge, span, sums);
-          work_.crossed.push_back(span.edge0);
-          work_.crossed.push_back(span.edge1);
-          if (of_a) of_a_ = size();
-        });
+    return integrate_pair<true>(a_, b_, offset_, near, work_.edge, begin,
+                                [&](bool of_a, int e, const auto& edge, const SegmentSpan& span,
+                                    const EdgeSums<double>& sums) {
+                                  work_.halves.push_back(sums);
+                                  add_segment(of_a, e, edge, span, sums);
+                                  work_.crossed.push_back(span.edge0);
+                                  work_.crossed.push_back(span.edge1);
+                                  if (of_a) of_a_ = size();
+                                });
   }
 
-  [[nodiscard]] int size() const { return static_cast<int>(runs_.size()); }
+  [[nodiscard]] int size() const { return static_cast<int>(segments_.size()); }
 
-  /// Joins the runs to patches.
+  /// Joins the segments to patches.
   void group() {
     const auto grow = [](auto& list, size_t least) {
       if (list.size() < least) list.resize(2 * least);
     };
-    grow(work_.joined, 2 * runs_.size());
-    work_.sets.reset(runs_.size());
+    grow(work_.joined, 2 * segments_.size());
+    work_.sets.reset(segments_.size());
     std::fill_n(work_.joined.begin(), 2 * size(), char{0});
     loose_ = 2 * size();
     join_at_vertices(0, of_a_, a_.size);
@@ -59,22 +64,23 @@ class Splitter {
     if (loose_ > 0) join_loose_ends();
   }
 
-  /// Numbers the patches in the order of their first run and returns how many there are.
+  /// Numbers the patches in the order of their first segment and returns their number.
   int number() {
     int count = 0;
     for (int r = 0; r < size(); ++r) {
       const int first = work_.sets.find(r);
-      runs_[r].patch = first == r ? count++ : runs_[first].patch;
+      segments_[r].patch = first == r ? count++ : segments_[first].patch;
     }
     return count;
   }
 
-  /// Sums the integrals of the runs over each of the `count` patches. The list is empty before.
+  /// Sums the integrals of the segments over each of the `count` patches, and appends them to the
+  /// empty list.
   void sum(int count, std::vector<PairIntegral>& patches) {
     work_.of_a.assign(count, {});
     work_.of_b.assign(count, {});
     for (int r = 0; r < size(); ++r) {
-      (runs_[r].of_a ? work_.of_a : work_.of_b)[runs_[r].patch].add(work_.halves[r]);
+      (segments_[r].of_a ? work_.of_a : work_.of_b)[segments_[r].patch].add(work_.halves[r]);
     }
     for (int p = 0; p < count; ++p) {
       patches.push_back(combine(work_.of_a[p], work_.of_b[p], arm_));
@@ -84,10 +90,10 @@ class Splitter {
   }
 
  private:
-  // The integrals are those that `combine` makes of one run.
+  // Appends a segment. Its integrals are those that `combine` would give for it alone.
   template <class Edge>
-  void add_run(bool of_a, int e, const Edge& edge, const RunSpan& span,
-               const EdgeSums<double>& half) {
+  void add_segment(bool of_a, int e, const Edge& edge, const SegmentSpan& span,
+                   const EdgeSums<double>& half) {
     const double turn = arm_.x() * half.fy - arm_.y() * half.fx;
     const double shift_x = of_a ? arm_.x() : 0, shift_y = of_a ? arm_.y() : 0;
     const double x = edge.qx - shift_x, y = edge.qy - shift_y;  // about a's reference point
@@ -96,19 +102,19 @@ class Splitter {
       centre = {(half.wx - shift_x * half.weight) / half.weight,
                 (half.wy - shift_y * half.weight) / half.weight};
     }
-    runs_.push_back({{of_a, e, 0, edge.share(span.s0), edge.share(span.s1), half.length},
-                     {x + span.s0 * edge.ex, y + span.s0 * edge.ey},
-                     {x + span.s1 * edge.ex, y + span.s1 * edge.ey},
-                     of_a ? Vec2(-half.fx, -half.fy) : Vec2(half.fx, half.fy),
-                     of_a ? turn - half.moment : half.moment,
-                     of_a ? half.moment : -half.moment - turn,
-                     half.weight,
-                     centre,
-                     half.largest});
+    segments_.push_back({{of_a, e, 0, edge.fraction(span.s0), edge.fraction(span.s1), half.length},
+                         {x + span.s0 * edge.ex, y + span.s0 * edge.ey},
+                         {x + span.s1 * edge.ex, y + span.s1 * edge.ey},
+                         of_a ? Vec2(-half.fx, -half.fy) : Vec2(half.fx, half.fy),
+                         of_a ? turn - half.moment : half.moment,
+                         of_a ? half.moment : -half.moment - turn,
+                         half.weight,
+                         centre,
+                         half.largest});
   }
 
-  // Joins two ends. The smaller root becomes the root of the union, because it is the first run of
-  // the patch.
+  // Joins two ends. The smaller root becomes the root of the union, because it is the first segment
+  // of the patch.
   void join(int end, int other) {
     work_.joined[end] = work_.joined[other] = 1;
     loose_ -= 2;
@@ -117,31 +123,33 @@ class Splitter {
     work_.sets.join(second, first);
   }
 
-  // Joins runs that follow each other at a vertex. The runs first to last - 1 belong to one polygon
-  // and are in the order of its edges, whose number is `edges`.
+  // Joins segments that follow each other at a vertex. The segments first to last - 1 belong to one
+  // polygon and are in the order of its edges, whose number is `edges`.
   void join_at_vertices(int first, int last, int edges) {
     for (int r = first; r < last; ++r) {
       const int next = r + 1 < last ? r + 1 : first;
-      const int edge = runs_[r].edge + 1 < edges ? runs_[r].edge + 1 : 0;
+      const int edge = segments_[r].edge + 1 < edges ? segments_[r].edge + 1 : 0;
       const int end = 2 * r + 1, start = 2 * next;
-      if (runs_[next].edge == edge && work_.crossed[end] < 0 && work_.crossed[start] < 0) {
+      if (segments_[next].edge == edge && work_.crossed[end] < 0 && work_.crossed[start] < 0) {
         join(end, start);
       }
     }
   }
 
-  // Joins runs where edge i of a crosses edge j of b. They are found by (i, j) and not by position.
+  // Joins segments where edge i of a crosses edge j of b. They are found by (i, j) and not by
+  // position.
   void join_at_crossings() {
-    const auto end_of_a = runs_.begin() + of_a_;
+    const auto end_of_a = segments_.begin() + of_a_;
     for (int end = 2 * of_a_; end < 2 * size(); ++end) {
       const int i = work_.crossed[end];
       if (i < 0) continue;
-      auto run = std::lower_bound(runs_.begin(), end_of_a, i,
-                                  [](const BoundaryRun& r, int edge) { return r.edge < edge; });
-      for (; run != end_of_a && run->edge == i && !work_.joined[end]; ++run) {
-        const int first = 2 * static_cast<int>(run - runs_.begin());
+      auto segment =
+          std::lower_bound(segments_.begin(), end_of_a, i,
+                           [](const BoundarySegment& r, int edge) { return r.edge < edge; });
+      for (; segment != end_of_a && segment->edge == i && !work_.joined[end]; ++segment) {
+        const int first = 2 * static_cast<int>(segment - segments_.begin());
         for (const int other : {first, first + 1}) {
-          if (work_.crossed[other] != runs_[end / 2].edge || work_.joined[other]) continue;
+          if (work_.crossed[other] != segments_[end / 2].edge || work_.joined[other]) continue;
           join(end, other);
           break;
         }
@@ -150,11 +158,11 @@ class Splitter {
   }
 
   // Joins the ends that are still loose. The part of the boundary that round-off has lost between
-  // the end of a run and the start of the next one lies on both boundaries up to round-off: either
-  // the straight line between them does, or one of the two boundaries stays near the other all the
-  // way. Neither is true between ends of different patches. The length of the lost part decides
-  // only between candidates that are equally near. Two starts, or two ends, are joined only if they
-  // are at the same place; their cost is their distance.
+  // the end of a segment and the start of the next one lies on both boundaries up to round-off:
+  // either the straight line between them does, or one of the two boundaries stays near the other
+  // all the way. Neither is true between ends of different patches. The length of the lost part
+  // decides only between candidates that are equally near. Two starts, or two ends, are joined only
+  // if they are at the same place; their cost is their distance.
   void join_loose_ends() {
     auto& bridges = work_.bridges;
     bridges.clear();
@@ -180,7 +188,7 @@ class Splitter {
   }
 
   [[nodiscard]] const Vec2& point(int end) const {
-    return end % 2 == 0 ? runs_[end / 2].start : runs_[end / 2].end;
+    return end % 2 == 0 ? segments_[end / 2].start : segments_[end / 2].end;
   }
 
   // The square of the largest distance from both boundaries of the part that may be lost between an
@@ -194,13 +202,13 @@ class Splitter {
     return walk2(b_, shift_b(), a_, shift_a(), end, start, along_a);
   }
 
-  // The same if the lost part is the boundary of x from `end` to `start`, or `most` if that is
-  // smaller.
+  // The square of the gap if the lost part is the boundary of x from `end` to `start`, or `most` if
+  // that is smaller.
   static double walk2(const PlacedPotential& x, const Vec2& shift_x, const PlacedPotential& y,
                       const Vec2& shift_y, const Vec2& end, const Vec2& start, double most) {
-    const Place from = nearest(x, shift_x, end);
-    const Place to = nearest(x, shift_x, start);
-    if (from.edge == to.edge && from.share <= to.share) return most;  // no vertex between
+    const NearestPoint from = nearest(x, shift_x, end);
+    const NearestPoint to = nearest(x, shift_x, start);
+    if (from.edge == to.edge && from.fraction <= to.fraction) return most;  // no vertex between
     Vec2 last = end;
     double length = 0, worst = 0;
     const auto go_to = [&](const Vec2& next) {
@@ -220,26 +228,26 @@ class Splitter {
     return std::min(worst, most);
   }
 
-  // A point on a boundary: `share` is its position along the edge, from 0 to 1, and `distance2` its
-  // squared distance from the point that was asked for, m^2.
-  struct Place {
+  // The point on a boundary that is nearest to a given point: `fraction` is its position along the
+  // edge, from 0 to 1, and `distance2` its squared distance from the given point, m^2.
+  struct NearestPoint {
     int edge;
-    double share, distance2;
+    double fraction, distance2;
   };
   // The point of the boundary of p that is nearest to `point`. Like all points here, `point` is
   // relative to a's reference point; `shift` moves it to the frame of p.
-  static Place nearest(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
-    Place place{0, 0, std::numeric_limits<double>::infinity()};
+  static NearestPoint nearest(const PlacedPotential& p, const Vec2& shift, const Vec2& point) {
+    NearestPoint place{0, 0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i < p.size; ++i) {
       const Vec2 from = point + shift - Vec2(p.x[i], p.y[i]);
       const Vec2 edge(p.x[i + 1] - p.x[i], p.y[i + 1] - p.y[i]);
-      const auto [share, distance2] = nearest_on_segment(from, edge);
-      if (distance2 < place.distance2) place = {i, share, distance2};
+      const auto [fraction, distance2] = nearest_on_segment(from, edge);
+      if (distance2 < place.distance2) place = {i, fraction, distance2};
     }
     return place;
   }
 
-  // From a's reference point to the origins of the frames of a and b.
+  // The vectors from a's reference point to the origins of the frames of a and b.
   [[nodiscard]] Vec2 shift_a() const { return a_.reference; }
   [[nodiscard]] Vec2 shift_b() const { return arm_ + b_.reference; }
 
@@ -247,12 +255,12 @@ class Splitter {
   void add_extents(std::vector<PairIntegral>& patches) {
     auto& extents = work_.extents;
     extents.assign(patches.size(), {});
-    for (const BoundaryRun& run : runs_) {
-      const Vec2& force = patches[run.patch].force;
+    for (const BoundarySegment& segment : segments_) {
+      const Vec2& force = patches[segment.patch].force;
       const double size = force.norm();
       if (!(size > 0)) continue;
-      for (const Vec2& p : {run.start, run.end}) {
-        extents[run.patch].include(cross(force, p) / size);
+      for (const Vec2& p : {segment.start, segment.end}) {
+        extents[segment.patch].include(cross(force, p) / size);
       }
     }
     for (size_t i = 0; i < patches.size(); ++i) {
@@ -268,21 +276,21 @@ class Splitter {
   const PlacedPotential& b_;
   const Vec2 offset_, arm_;
   PatchWorkspace& work_;
-  std::vector<BoundaryRun>& runs_;
-  int of_a_ = 0;   // number of runs on edges of a, which come first
+  std::vector<BoundarySegment>& segments_;
+  int of_a_ = 0;   // number of segments on edges of a, which come first
   int loose_ = 0;  // number of ends that are not joined
 };
 
 }  // namespace
 
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& segments,
                              std::vector<PairIntegral>& patches, NearEdges& near) {
   patches.clear();
-  Splitter splitter(a, b, offset, workspace, runs);
-  PairIntegral whole = splitter.find_runs(near);
+  Splitter splitter(a, b, offset, workspace, segments);
+  PairIntegral whole = splitter.find_segments(near);
   const bool finite = !std::isnan(whole.weight);
-  if (!finite || !whole.touching()) runs.clear();
+  if (!finite || !whole.touching()) segments.clear();
   if (!whole.touching()) return whole;
   if (!finite || (a.convex() && b.convex())) {
     patches.push_back(whole);
@@ -299,32 +307,32 @@ PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b,
 }
 
 PairIntegral contact_patches(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                             PatchWorkspace& workspace, std::vector<BoundaryRun>& runs,
+                             PatchWorkspace& workspace, std::vector<BoundarySegment>& segments,
                              std::vector<PairIntegral>& patches) {
   NearEdges all;
-  return contact_patches(a, b, offset, workspace, runs, patches, all);
+  return contact_patches(a, b, offset, workspace, segments, patches, all);
 }
 
-void shared_length(std::span<const RunPlace> before, int patches_before,
-                   std::span<const RunPlace> now, int patches_now, std::vector<double>& table) {
+void shared_length(std::span<const SegmentPlace> before, int patches_before,
+                   std::span<const SegmentPlace> now, int patches_now, std::vector<double>& table) {
   table.assign(static_cast<size_t>(patches_before) * patches_now, 0.0);
   // True if r is on an earlier edge than s.
-  const auto behind = [](const RunPlace& r, const RunPlace& s) {
+  const auto behind = [](const SegmentPlace& r, const SegmentPlace& s) {
     return r.of_a != s.of_a ? r.of_a : r.edge < s.edge;
   };
-  size_t first = 0;  // first run of `now` on the edge of `old` or after it
-  for (const RunPlace& old : before) {
+  size_t first = 0;  // first segment of `now` on the edge of `old` or after it
+  for (const SegmentPlace& old : before) {
     while (first < now.size() && behind(now[first], old)) ++first;
     for (size_t i = first; i < now.size() && !behind(old, now[i]); ++i) {
-      const RunPlace& run = now[i];
-      const double overlap = std::min(old.to, run.to) - std::max(old.from, run.from);
+      const SegmentPlace& segment = now[i];
+      const double overlap = std::min(old.to, segment.to) - std::max(old.from, segment.from);
       if (!(overlap >= 0)) continue;
-      const RunPlace& longer = old.to - old.from > run.to - run.from ? old : run;
-      const double share = longer.to - longer.from;
-      double& entry = table[static_cast<size_t>(old.patch) * patches_now + run.patch];
+      const SegmentPlace& longer = old.to - old.from > segment.to - segment.from ? old : segment;
+      const double fraction = longer.to - longer.from;
+      double& entry = table[static_cast<size_t>(old.patch) * patches_now + segment.patch];
       if (overlap > 0) {
-        entry += overlap / share * longer.length;
-      } else if (old.from == old.to || run.from == run.to) {
+        entry += overlap / fraction * longer.length;
+      } else if (old.from == old.to || segment.from == segment.to) {
         entry += std::numeric_limits<double>::min();
       }
     }

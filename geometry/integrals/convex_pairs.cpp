@@ -26,46 +26,47 @@ APOTHEM_INLINE double largest(const Four& p) {
 }
 
 // Above this ratio of the sizes of two polygons edges may have to be shortened, and heights at
-// their ends are not exact enough to leave them out: an edge is at most twice as long as the
+// their ends are not accurate enough to exclude them. An edge is at most twice as long as the
 // radius.
 constexpr double kSimilar = 3.99;
 bool is_long(double radius, double of_other) { return !(radius < kSimilar * of_other); }
 
 }  // namespace
 
-// Makes room for the largest number of pairs of polygons with so many sides.
+// Makes room for kAtOnce pairs of polygons with at most most_sides_ sides.
 void ConvexPairs::make_room() {
   const auto sides = static_cast<size_t>(most_sides_), groups = (sides + kLanes - 1) / kLanes;
   const size_t edges = 2 * sides * kAtOnce;
-  rows_.resize(2 * (sides + 1 + 2 * sides) * groups * kAtOnce);  // some edges may be shortened
+  rows_.resize(2 * (sides + 1 + 2 * sides) * groups *
+               kAtOnce);  // two more rows for each edge that is shortened
   copies_.resize(8 * groups * kAtOnce);
   parts_.resize(edges + 1);
   for (size_t g = 0; g < groups; ++g) edges_[g].resize(edges + kLanes);
   room_ = most_sides_;
 }
 
-void ConvexPairs::fill_up(Side& side, Numbers*& to) {
+void ConvexPairs::fill_up(Side& side, Numbers*& memory) {
   const int all = kLanes * side.groups;
   if (side.size == all) return;
   for (const double** numbers : {&side.start_x, &side.start_y, &side.gx, &side.gy}) {
-    double* const copy = to->v.data();
+    double* const copy = memory->v.data();
     std::copy(*numbers, *numbers + side.size, copy);
     std::fill(copy + side.size, copy + all, copy[0]);
     *numbers = copy;
-    to += side.groups;
+    memory += side.groups;
   }
 }
 
-// Writes the heights of the vertices of x, at (dx, dy), over the edges of y: a row for each vertex
-// and the first one again. Returns how far outside one edge of y all of x lies, in the unit of the
-// heights; 0 if there is no such edge. `edges` become those of x that are not wholly beyond one
-// edge of y by more than `margin`, by bits.
+// Writes the heights of the vertices of x, moved by (dx, dy), over the edges of y: one row for each
+// vertex and the first row again. Returns how far outside one edge of y all of x lies, in the unit
+// of the heights, or 0 if there is no such edge. Sets in `edges` the bits of those edges of x that
+// are not entirely beyond one edge of y by more than `margin`.
 template <bool quads>
 APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, double dx, double dy,
                                                 double margin, Numbers* rows, unsigned& edges) {
   const int size = quads ? 4 : x.size, groups = quads ? 1 : y.groups;
   const Four least(-margin);
-  std::array<unsigned, kMostSides + 1> beyond;  // edges of y that a vertex is beyond, by bits
+  std::array<unsigned, kMostSides + 1> beyond;  // bits of the edges of y that each vertex is beyond
   unsigned beyond_all = ~0U;
   const auto height = [&](int v, int g) APOTHEM_LAMBDA {
     const int first = kLanes * g;
@@ -90,7 +91,7 @@ APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, do
     edges |= unsigned{(beyond[k] & beyond[k + 1]) == 0} << v;
   }
   if (beyond_all == 0) return 0;
-  // A number that is not finite keeps the polygons together.
+  // If a number is not finite, the polygons do not count as apart.
   Four all(0.);
   double gap = -HUGE_VAL;
   for (int g = 0; g < groups; ++g) {
@@ -106,7 +107,7 @@ APOTHEM_INLINE double ConvexPairs::find_heights(const Side& x, const Side& y, do
 }
 
 // Finds the edges of both polygons that may enter the other one.
-APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
+APOTHEM_INLINE void ConvexPairs::find(ConvexPair& pair, Numbers*& rows) {
   const Side &a = pair.a, &b = pair.b;
   const bool a_is_long = is_long(a.radius, b.radius), b_is_long = is_long(b.radius, a.radius);
   pair.first = found_;
@@ -118,7 +119,7 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
                              : find_heights<false>(x, y, dx, dy, margin, heights, edges);
     if (!(gap > 0)) return false;
     const double steepest = y.steepest;
-    if (pair.near->margin == 0 && steepest > 0) {
+    if (pair.near->skin == 0 && steepest > 0) {
       const double round_off = kRoundOff * (a.radius + b.radius);
       const double apart_by = gap / steepest - round_off;
       if (apart_by > round_off) *pair.near = {0, 0, apart_by};
@@ -141,17 +142,17 @@ APOTHEM_INLINE void ConvexPairs::find(Pair& pair, Numbers*& rows) {
   list_edges(b, a, -pair.dx, -pair.dy, edges_b, of_b, b_is_long, rows);
 }
 
-// Lists edges of x. If x is much larger than y, edges are shortened: see BasicEdge.
+// Lists edges of x. If x is much larger than y, edges are shortened, see BasicEdge.
 APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double dx, double dy,
                                             unsigned edges, const Numbers* heights, bool is_long,
                                             Numbers*& rows) {
   const auto group = static_cast<size_t>(y.groups - 1);
-  Edge* const first = edges_[group].data() + listed_[group];
-  Edge* next = first;
+  ConvexEdge* const first = edges_[group].data() + listed_[group];
+  ConvexEdge* next = first;
   const auto put = [&](int e) APOTHEM_LAMBDA {
     next->from = heights + std::ptrdiff_t{e} * y.groups;
     next->until = next->from + y.groups;
-    // Written at once, as it will be read.
+    // The frame is written as one pack, as it will be read.
     Four(Four::Vector{x.x[e] + dx - y.reference_x, x.y[e] + dy - y.reference_y, x.x[e + 1] - x.x[e],
                       x.y[e + 1] - x.y[e]})
         .store(&next->frame.qx);
@@ -159,7 +160,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
     next->number = e;
     next->whole = true;
   };
-  // Most have one edge or two: these are written without a branch.
+  // Most polygons have one edge or two here, which are written without a branch.
   const int count = std::popcount(edges);
   for (int k = 0; k < 2; ++k, ++next) {
     put(std::countr_zero(edges | 1U << (x.size - 1)));
@@ -180,7 +181,7 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
                                  .capped = false,
                                  .reference = {y.reference_x, y.reference_y},
                                  .radius = y.radius};
-  for (Edge* edge = first; edge != next; ++edge) {
+  for (ConvexEdge* edge = first; edge != next; ++edge) {
     const PlacedEdge part(placed_x, placed_y, edge->number, dx, dy);
     if (!part.shortened) continue;
     height_row(placed_y, part.px, part.py, rows->v.data());
@@ -192,15 +193,15 @@ APOTHEM_INLINE void ConvexPairs::list_edges(const Side& x, const Side& y, double
   }
 }
 
-// Four edges over polygons with so many groups of edges: their parts inside, and phi along
-// these.
+// Integrates four edges over polygons with `groups` groups of edges: finds their parts inside, and
+// phi along these.
 template <bool one_group>
-APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
+APOTHEM_INLINE void ConvexPairs::integrate(const ConvexEdge* edges, int groups) {
   std::array<Four, one_group ? 4 : kMostSides> from, until;
   FourOf<Four> rows;
   for (int g = 0; g < (one_group ? 1 : groups); ++g) {
-    const auto put = [&](auto& to) APOTHEM_LAMBDA {
-      for (size_t i = 0; i < 4; ++i) to[static_cast<size_t>(kLanes * g) + i] = rows[i];
+    const auto put = [&](auto& list) APOTHEM_LAMBDA {
+      for (size_t i = 0; i < 4; ++i) list[static_cast<size_t>(kLanes * g) + i] = rows[i];
     };
     read_rows([&](int k) APOTHEM_LAMBDA { return edges[k].from[g].v.data(); }, rows);
     put(from);
@@ -216,9 +217,9 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
   const Four::Mask inside = clip(row, s0, s1);
   const SegmentMoments<Four> moments = any(inside)
                                            ? envelope_moments(row, s0, s1, inside)
-                                           : SegmentMoments<Four>();  // 0 where nothing lies inside
+                                           : SegmentMoments<Four>();  // 0 where no part lies inside
   const Four zero(0.), nowhere(std::numeric_limits<double>::quiet_NaN());
-  const auto part = [&](int k) APOTHEM_LAMBDA -> Part& {
+  const auto part = [&](int k) APOTHEM_LAMBDA -> EdgePart& {
     return parts_[static_cast<size_t>(edges[k].part)];
   };
   scatter(
@@ -231,31 +232,33 @@ APOTHEM_INLINE void ConvexPairs::integrate(const Edge* edges, int groups) {
              [&](int k) APOTHEM_LAMBDA { return part(k).ends.v.data(); });
   const unsigned enter = bits(inside & (s0 == zero));
   for (int k = 0; k < kLanes; ++k) {
-    Part& to = part(k);
-    to.number = edges[k].number;
-    to.enters = edges[k].whole & ((enter >> k & 1U) != 0);
+    EdgePart& result = part(k);
+    result.number = edges[k].number;
+    result.enters = edges[k].whole & ((enter >> k & 1U) != 0);
   }
 }
 
-// Calls f(part) for all of them. Most polygons have one or two: these go without a branch, with
-// what changes no sum and no extent in the place of a missing one.
+// Calls f(part) for the parts of a polygon. Most polygons have one or two parts. These calls have
+// no branch; a missing part is replaced by one that changes no sum and no extent.
 template <class F>
-APOTHEM_INLINE void ConvexPairs::each_part(const Part* from, const Part* until, const F& f) {
+APOTHEM_INLINE void ConvexPairs::each_part(const EdgePart* from, const EdgePart* until,
+                                           const F& f) {
   static constexpr double kNoEnd = std::numeric_limits<double>::quiet_NaN();
-  static constexpr Part kNone{{}, {kNoEnd, kNoEnd, kNoEnd, kNoEnd}, 0, false};
+  static constexpr EdgePart kNone{{}, {kNoEnd, kNoEnd, kNoEnd, kNoEnd}, 0, false};
   const auto count = until - from;
   f(count > 0 ? *from : kNone);
   f(count > 1 ? from[1] : kNone);
   for (auto k = std::ptrdiff_t{2}; k < count; ++k) f(from[k]);
 }
 
-// The results of `count` pairs from `first` on, up to four. The formulas are those of `join`.
+// Sums the results of `count` pairs from `first` on, at most four. The formulas are those of
+// `join`.
 APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
   FourOf<Four> linear_a, others_a, linear_b, others_b;
   std::array<std::uint64_t, kLanes> inside_a, inside_b;
   const Four::Mask last{Four::Mask::Vector{0, 0, 0, -1}};
-  // Lanes that are left over do the last pair again.
-  const auto pair = [&](size_t k) APOTHEM_LAMBDA -> const Pair& {
+  // The remaining lanes are padding, which repeats the last pair.
+  const auto pair = [&](size_t k) APOTHEM_LAMBDA -> const ConvexPair& {
     return pairs_[first + std::min(k, count - 1)];
   };
   int parts = 0;
@@ -264,11 +267,11 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
     std::fill_n(results_.begin() + static_cast<std::ptrdiff_t>(first), count, PairIntegral());
     return;
   }
-  const auto sum = [&](const Part* from, const Part* until, Four& all_linear, Four& all_others,
-                       std::uint64_t& inside) APOTHEM_LAMBDA {
+  const auto sum = [&](const EdgePart* from, const EdgePart* until, Four& all_linear,
+                       Four& all_others, std::uint64_t& inside) APOTHEM_LAMBDA {
     Four linear(0.), others(0.), most(0.);
     inside = 0;
-    each_part(from, until, [&](const Part& part) APOTHEM_LAMBDA {
+    each_part(from, until, [&](const EdgePart& part) APOTHEM_LAMBDA {
       const Four more = Four::load(&part.sums.wx);
       linear += Four::load(&part.sums.fx);
       others += more;
@@ -279,8 +282,8 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
     all_others = select(last, most, others);
   };
   for (size_t k = 0; k < kLanes; ++k) {
-    const Part* const of_a = parts_.data() + pair(k).first;
-    const Part* const of_b = of_a + pair(k).of_a;
+    const EdgePart* const of_a = parts_.data() + pair(k).first;
+    const EdgePart* const of_b = of_a + pair(k).of_a;
     sum(of_a, of_b, linear_a[k], others_a[k], inside_a[k]);
     sum(of_b, of_b + pair(k).of_b, linear_b[k], others_b[k], inside_b[k]);
   }
@@ -292,14 +295,15 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
   const auto& [fx_b, fy_b, turn_b, weight_b] = linear_b;
   const auto& [wx_a, wy_a, length_a, most_a] = others_a;
   const auto& [wx_b, wy_b, length_b, most_b] = others_b;
-  const auto lanes = [&](const auto& of) APOTHEM_LAMBDA {
-    return pack_of<kLanes>([&](int k) APOTHEM_LAMBDA { return of(pair(static_cast<size_t>(k))); });
+  const auto lanes = [&](const auto& value) APOTHEM_LAMBDA {
+    return pack_of<kLanes>([&](int k)
+                               APOTHEM_LAMBDA { return value(pair(static_cast<size_t>(k))); });
   };
   const Four zero(0.);
-  const Four rx =
-      lanes([](const Pair& p) APOTHEM_LAMBDA { return p.a.reference_x - p.b.reference_x + p.dx; });
-  const Four ry =
-      lanes([](const Pair& p) APOTHEM_LAMBDA { return p.a.reference_y - p.b.reference_y + p.dy; });
+  const Four rx = lanes([](const ConvexPair& p)
+                            APOTHEM_LAMBDA { return p.a.reference_x - p.b.reference_x + p.dx; });
+  const Four ry = lanes([](const ConvexPair& p)
+                            APOTHEM_LAMBDA { return p.a.reference_y - p.b.reference_y + p.dy; });
   const Four fx = fx_b - fx_a, fy = fy_b - fy_a;
   const Four moment_a = turn_b - (turn_a - (rx * fy_a - ry * fx_a));
   const Four moment_b = turn_a - (turn_b + (rx * fy_b - ry * fx_b));
@@ -307,8 +311,8 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
   const Four::Mask none = weight == zero;
   const Four centre_x = select(none, zero, (wx_b + (wx_a - rx * weight_a)) / weight);
   const Four centre_y = select(none, zero, (wy_b + (wy_a - ry * weight_a)) / weight);
-  const Four steepest_a = lanes([](const Pair& p) APOTHEM_LAMBDA { return p.a.steepest; });
-  const Four steepest_b = lanes([](const Pair& p) APOTHEM_LAMBDA { return p.b.steepest; });
+  const Four steepest_a = lanes([](const ConvexPair& p) APOTHEM_LAMBDA { return p.a.steepest; });
+  const Four steepest_b = lanes([](const ConvexPair& p) APOTHEM_LAMBDA { return p.b.steepest; });
   const Four depth_a = most_a / steepest_b, depth_b = most_b / steepest_a;
   const Four depth =
       select((steepest_a > zero) & (steepest_b > zero), larger(depth_a, depth_b), zero);
@@ -317,20 +321,21 @@ APOTHEM_INLINE void ConvexPairs::add_up(size_t first, size_t count) {
   std::array<double, kLanes> low, high;
   for (size_t k = 0; k < kLanes; ++k) {
     using Two = double __attribute__((vector_size(16)));
-    const Part* const of_a = parts_.data() + pair(k).first;
-    const Part* const of_b = of_a + pair(k).of_a;
+    const EdgePart* const of_a = parts_.data() + pair(k).first;
+    const EdgePart* const of_b = of_a + pair(k).of_a;
     const Two x_of = -Two{ny.v[k], ny.v[k]}, y_of{nx.v[k], nx.v[k]};
     Two lowest{HUGE_VAL, HUGE_VAL}, highest = -lowest;
-    const auto include = [&](const Part* from, const Part* until, double own) APOTHEM_LAMBDA {
-      each_part(from, until, [&](const Part& part) APOTHEM_LAMBDA {
-        Two x, y;
-        std::memcpy(&x, &part.ends.v[0], sizeof x);
-        std::memcpy(&y, &part.ends.v[2], sizeof y);
-        const Two along = y_of * y + x_of * x + Two{own, own};
-        lowest = along < lowest ? along : lowest;
-        highest = along > highest ? along : highest;
-      });
-    };
+    const auto include = [&](const EdgePart* from, const EdgePart* until, double own)
+                             APOTHEM_LAMBDA {
+                               each_part(from, until, [&](const EdgePart& part) APOTHEM_LAMBDA {
+                                 Two x, y;
+                                 std::memcpy(&x, &part.ends.v[0], sizeof x);
+                                 std::memcpy(&y, &part.ends.v[2], sizeof y);
+                                 const Two along = y_of * y + x_of * x + Two{own, own};
+                                 lowest = along < lowest ? along : lowest;
+                                 highest = along > highest ? along : highest;
+                               });
+                             };
     include(of_a, of_b, 0);
     include(of_b, of_b + pair(k).of_b, shift.v[k]);
     low[k] = std::min(lowest[0], lowest[1]), high[k] = std::max(highest[0], highest[1]);
@@ -362,7 +367,7 @@ std::span<const PairIntegral> ConvexPairs::evaluate() {
   const std::span pairs(pairs_.data(), static_cast<size_t>(count_));
   if (uneven_) {
     Numbers* copies = copies_.data();
-    for (Pair& pair : pairs) {
+    for (ConvexPair& pair : pairs) {
       fill_up(pair.a, copies);
       fill_up(pair.b, copies);
     }
@@ -371,11 +376,11 @@ std::span<const PairIntegral> ConvexPairs::evaluate() {
     Numbers* rows = rows_.data();
     found_ = 0;
     listed_ = {};
-    for (Pair& pair : pairs) find(pair, rows);
+    for (ConvexPair& pair : pairs) find(pair, rows);
     for (int groups = 1; groups <= kGroups; ++groups) {
-      Edge* const edges = edges_[static_cast<size_t>(groups - 1)].data();
+      ConvexEdge* const edges = edges_[static_cast<size_t>(groups - 1)].data();
       const int count = listed_[static_cast<size_t>(groups - 1)];
-      // Lanes that are left over do the last edge again, for nobody.
+      // The remaining lanes are padding: they repeat the last edge, and their results are not used.
       for (int k = count; k % kLanes != 0; ++k) {
         edges[k] = edges[count - 1];
         edges[k].part = found_;

@@ -40,7 +40,7 @@ class DistanceVolume {
     if (!(finite == 0)) return finite;
     outline_.load(field);
     capped_ = field.capped;
-    top_ = 1 / field.slope;
+    reference_ = 1 / field.slope;
     ring_.clear();
     for (size_t i = 0; i < x.size(); ++i) ring_.push_back({x[i], y[i]});
     Real volume = 0;
@@ -132,7 +132,7 @@ class DistanceVolume {
 
   // INT_0^h min(r, h') dh', or without the minimum if phi is not limited to 1.
   [[nodiscard]] Real column(const Real& h) const {
-    return capped_ && h > top_ ? Real(top_ * (h - top_ / 2)) : Real(h * h / 2);
+    return capped_ && h > reference_ ? Real(reference_ * (h - reference_ / 2)) : Real(h * h / 2);
   }
 
   // Adds the volume between the foot of an edge's cell, of the given length, and a segment.
@@ -154,8 +154,8 @@ class DistanceVolume {
       add_cut(tau1 - h1 / rate);
       add_cuts(ceiling, line);
       if (capped_) {
-        add_cut(tau1 + (top_ - h1) / rate);
-        add_cuts(ceiling, {0, {top_, 0, 0}, 0});
+        add_cut(tau1 + (reference_ - h1) / rate);
+        add_cuts(ceiling, {0, {reference_, 0, 0}, 0});
       }
       between_cuts([&](const Real& a, const Real& b) {
         const Real h = line.mean(a, b);
@@ -313,7 +313,7 @@ class DistanceVolume {
   [[nodiscard]] Real sector(const Reach& reach, const Real& t1, const Real& t2) const {
     using std::sqrt;
     const Real half_angle = arc_tangent(Real(t2 - t1), Real(1 + t1 * t2));
-    const Real cone = top_ * top_ * top_ / 3;
+    const Real cone = reference_ * reference_ * reference_ / 3;
     const Real& d = reach.d;
     if (reach.parabola) {
       const auto denominator = [&](const Real& t) { return Real(reach.ec + reach.es * t); };
@@ -322,8 +322,9 @@ class DistanceVolume {
       };
       if (!(denominator(t1) * denominator(t2) > 0)) return 0;  // narrower than round-off
       const Real y1 = y(t1), y2 = y(t2);
-      if (capped_ && d * (1 + mean_square(y1, y2)) > 2 * top_) {
-        return d * d / 4 * top_ * gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
+      if (capped_ && d * (1 + mean_square(y1, y2)) > 2 * reference_) {
+        return d * d / 4 * reference_ *
+                   gauss(y1, y2, [](const Real& s) { return Real(1 + s * s); }) -
                cone * half_angle;
       }
       return d * d * d / 12 *
@@ -342,15 +343,15 @@ class DistanceVolume {
     const Real w = D * (n.x * 2 * t1 - n.y * (1 - t1 * t1)) / c1;
     const Real step = 2 * D * (t2 - t1) * (1 + t1 * t2) / (c1 * c2);
     const Real t_squared = mean_square(t1, t2);
-    if (capped_ && D * (1 + t_squared) > top_ * across((t1 + t2) / 2, t_squared)) {
-      return D * step / 2 * top_ - cone * half_angle;
+    if (capped_ && D * (1 + t_squared) > reference_ * across((t1 + t2) / 2, t_squared)) {
+      return D * step / 2 * reference_ - cone * half_angle;
     }
     return D / 3 * root_moments<Real>(D * D, w, step)[0];
   }
 
   // Adds the cuts at rho = r, where phi reaches its limit.
   void add_cap_cuts(const Quadratic& inverse, const Real& factor) {
-    const Real limit = -factor / top_;
+    const Real limit = -factor / reference_;
     if (capped_) add_cuts(inverse, {0, {limit, 0, limit}, 0});
   }
 
@@ -385,7 +386,7 @@ class DistanceVolume {
   }
 
   bool capped_ = false;
-  Real top_{};  // the reference length r
+  Real reference_{};  // the reference length r
   DistanceOutline<Real> outline_;
   std::vector<Point> ring_;
   std::vector<Real> cuts_;

@@ -61,7 +61,8 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
                     const Parts& parts) {
   std::vector<lower_envelope::Line<double>> planes = lines(p, shift);
   if (p.roof) {
-    // Parts reach beyond their polygon; faces that it does not meet need not be summed up to 0.
+    // Convex parts may reach beyond their polygon. Faces that the polygon does not meet are
+    // skipped, because their sum would be 0.
     const lower_envelope::Bounds<double> reach(other);
     std::vector<Ring> faces;
     std::vector<lower_envelope::Line<double>> of_faces;
@@ -85,8 +86,8 @@ double volume_under(const PlacedPotential& p, const Vec2& shift, const Ring& oth
   return volume;
 }
 
-// The same if p has a distance field. `shift` moves the coordinates of the other polygon to the
-// frame of p.
+// INT phi_p dA over the overlap if p has a distance field. `shift` moves the coordinates of the
+// other polygon to the frame of p.
 double volume_under_distance(const PlacedPotential& p, const PlacedPotential& other,
                              const Vec2& shift) {
   std::vector<double> x, y;
@@ -195,26 +196,26 @@ class FineLines {
 
 // The integrals of phi of y along the edges of x in long double, for polygons at their given
 // positions.
-Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnds& ends) {
+Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, SegmentEnds& ends) {
   const FineLines lines(y);
   Half half;
   for (int e = 0; e < x.size; ++e) {
     const BasicEdge<Fine> edge(x, y, e, 0, 0);
-    const std::vector<Fine> from = lines.at(edge.px, edge.py);
-    const std::vector<Fine> to = lines.at(edge.px + edge.ex, edge.py + edge.ey);
-    const Row<Fine> row{from.data(), to.data(), y.size, static_cast<int>(from.size())};
+    const std::vector<Fine> start = lines.at(edge.px, edge.py);
+    const std::vector<Fine> end = lines.at(edge.px + edge.ex, edge.py + edge.ey);
+    const Row<Fine> row{start.data(), end.data(), y.size, static_cast<int>(start.size())};
     Fine s0, s1;
     if (!clip(row, s0, s1)) continue;
-    const Fine share = s1 - s0;
+    const Fine fraction = s1 - s0;
     SegmentMoments<Fine> moments;  // along the part of the edge inside y
     walk_envelope(row, s0, s1, true, [&](bool there, Fine u1, Fine v1, Fine u2, Fine v2) {
-      moments.add(there, (u1 - s0) / share, v1, (u2 - s0) / share, v2);
+      moments.add(there, (u1 - s0) / fraction, v1, (u2 - s0) / fraction, v2);
     });
     PlacedEdge part(x, y, e, 0, 0);
     part.qx = static_cast<double>(edge.qx + s0 * edge.ex);
     part.qy = static_cast<double>(edge.qy + s0 * edge.ey);
-    part.ex = static_cast<double>(share * edge.ex);
-    part.ey = static_cast<double>(share * edge.ey);
+    part.ex = static_cast<double>(fraction * edge.ex);
+    part.ey = static_cast<double>(fraction * edge.ey);
     const SegmentMoments<double> rounded{static_cast<double>(moments.sum),
                                          static_cast<double>(moments.first),
                                          static_cast<double>(moments.largest)};
@@ -226,7 +227,7 @@ Half integrate_needle(const PlacedPotential& x, const PlacedPotential& y, RunEnd
 
 PairIntegral needle_integral(const PlacedPotential& a, const PlacedPotential& b,
                              EdgeWorkspace& workspace) {
-  RunEnds ends(workspace.ends);
+  SegmentEnds ends(workspace.ends);
   const Half of_a = integrate_needle(a, b, ends);
   const size_t middle = ends.used();
   const Half of_b = integrate_needle(b, a, ends);

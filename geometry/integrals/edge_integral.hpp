@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/integrals/collar_pair.hpp"
-#include "geometry/integrals/collar_trace.hpp"
 #include "geometry/integrals/convex_pairs.hpp"
+#include "geometry/integrals/layer_pair.hpp"
+#include "geometry/integrals/layer_trace.hpp"
 #include "geometry/integrals/near_edges.hpp"
 #include "geometry/integrals/pair_integral.hpp"
 #include "geometry/integrals/placed_potential.hpp"
@@ -29,21 +29,21 @@
 
 namespace apothem {
 
-/// Memory that the kernel works in. Keep one per thread.
+/// Memory of the kernel. Keep one per thread.
 struct EdgeWorkspace {
   std::vector<double> values;  ///< heights of the vertices of both polygons over the other's edges
   std::vector<double> ends;    ///< ends of the parts of edges inside the other polygon
   RoofTrace<double> roof;      ///< memory for polygons with a roof
   RoofNodes nodes;             ///< the nodes of a roof
   DistanceTrace<double> distance;  ///< memory for polygons with a distance field
-  CollarTrace collar;              ///< memory for both
-  CollarPair pair;                 ///< memory for pairs with few near edges
+  LayerTrace layer_trace;          ///< memory for the boundary layers of both
+  LayerPair layer_pair;            ///< memory for pairs with few near edges
   ConvexPairs convex;              ///< memory for pairs of convex polygons with few sides
 };
 
-/// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if
-/// that is known (near_edges.hpp); the result does not depend on it. If nothing is known and both
-/// polygons are convex and apart, it gets the margin by which they are. `offset` is the origin of
+/// Computes the integrals of a pair. `near` are the edges that may enter the other polygon, if that
+/// is known (near_edges.hpp); the result does not depend on them. If nothing is known and both
+/// polygons are convex and apart, `near` gets their distance as its skin. `offset` is the origin of
 /// a's frame minus the origin of b's frame, m. If a coordinate is not finite, the result is not
 /// finite either. Nothing is allocated after the first calls with polygons of a given size.
 PairIntegral pair_integral(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
@@ -63,7 +63,7 @@ PairVolume pair_volume(const PlacedPotential& a, const PlacedPotential& b, const
 /// The energy of PairVolume alone.
 double pair_energy(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset);
 
-/// Below this share of the weight the line of action of a force is determined by round-off only.
+/// Below this fraction of the weight the line of action of a force is determined by round-off only.
 inline constexpr double kNoLineOfAction = 1e-12;
 
 /// Returns the loading point of the resultant force, relative to a's reference point, m. It is the

@@ -25,18 +25,18 @@ struct EdgeSums {
 template <class Real>
 struct EdgeFrame {
   Real qx, qy, ex, ey;
-  // As of BasicEdge: it is the whole edge.
-  [[nodiscard]] Real share(const Real& s) const { return s; }
+  // As in BasicEdge, for an edge that is not shortened.
+  [[nodiscard]] Real fraction(const Real& s) const { return s; }
 };
 
 // The integrals along one edge. `m` has the moments of phi over the parameter of the edge, and
-// `inside` is the share of the edge that lies inside the other polygon.
+// `inside` is the fraction of the edge that lies inside the other polygon.
 template <class Edge, class Real>
 APOTHEM_INLINE EdgeSums<Real> along_edge(const Edge& edge, const SegmentMoments<Real>& m,
                                          const Real& inside) {
   const Real &qx = edge.qx, &qy = edge.qy, &ex = edge.ex, &ey = edge.ey;
   const Real length2 = ex * ex + ey * ey, length = square_root(length2);
-  const Real zero(0.);  // so that no number is -0
+  const Real zero(0.);  // added so that no result is -0
   return {.fx = zero + ey * m.sum,
           .fy = zero - ex * m.sum,
           .moment = zero - ((qx * ex + qy * ey) * m.sum + length2 * m.first),
@@ -49,7 +49,7 @@ APOTHEM_INLINE EdgeSums<Real> along_edge(const Edge& edge, const SegmentMoments<
 
 // The sums over all edges of a polygon.
 struct Half : EdgeSums<double> {
-  std::uint64_t inside = 0;  // vertices of x inside y: see PairIntegral
+  std::uint64_t inside = 0;  // bits of the vertices of x inside y, see PairIntegral
 
   // Counts vertex i as inside.
   void enter(int i) { inside ^= std::uint64_t{1} << (i % 64); }

@@ -1,6 +1,6 @@
 // The potential phi of one polygon along the edges of another one, and the sums that give the
-// integrals of a pair. This header is private to edge_integral.cpp and contact_patches.cpp;
-// contact_patches.hpp includes it for the types of its workspace.
+// integrals of a pair. This header is private to geometry/integrals; contact_patches.hpp includes
+// it for the types of its workspace.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace apothem::edge_detail {
 // phi along an edge as the minimum of the linear functions a_i + s (b_i - a_i), s in [0, 1]. a_i
 // and b_i are the heights of the two ends of the edge over edge i of the other polygon, divided by
 // the reference length. The limit phi <= 1 is one more function, with a_i = b_i = 1. A row of packs
-// is of several edges.
+// belongs to several edges.
 template <class Real>
 struct Row {
   const Real* a;
@@ -117,9 +117,9 @@ APOTHEM_INLINE SegmentMoments<Real> envelope_moments(const Row<Real>& row, const
   return moments;
 }
 
-// Growth of a box, relative to its extent, beyond which rounding lets nothing reach into it.
+// Growth of a box, relative to its extent, so that rounding lets no point outside reach into it.
 inline constexpr double kFarAway = 1e-9;
-// Error of a distance between two polygons, relative to their sizes; amply.
+// Generous bound of the error of a distance between two polygons, relative to their sizes.
 inline constexpr double kRoundOff = 1e-12;
 
 // Heights of a point over the edges of y divided by the reference length, and 1 if phi is limited.
@@ -169,22 +169,22 @@ inline void add_capped(double u1, double v1, double u2, double v2,
 }
 
 /// The heights of the ends of edge e of x over the edges of y. They are taken from the `rows` that
-/// `heights` has written, or computed in `spare`, which has room for two rows, if the edge has been
-/// shortened.
+/// `heights` has written, or, if the edge has been shortened, computed in `scratch`, which has room
+/// for two rows.
 inline Row<double> row_of(const PlacedEdge& edge, int e, const PlacedPotential& y,
-                          const double* rows, double* spare) {
+                          const double* rows, double* scratch) {
   const int width = y.size + (y.capped ? 1 : 0);
   if (!edge.shortened) return {rows + e * width, rows + (e + 1) * width, y.size, width};
-  height_row(y, edge.px, edge.py, spare);
-  height_row(y, edge.px + edge.ex, edge.py + edge.ey, spare + width);
-  return {spare, spare + width, y.size, width};
+  height_row(y, edge.px, edge.py, scratch);
+  height_row(y, edge.px + edge.ex, edge.py + edge.ey, scratch + width);
+  return {scratch, scratch + width, y.size, width};
 }
 
 /// Memory for heights of the vertices of both polygons over the edges of the other one.
 struct HeightRows {
-  double* of_a;   ///< rows for the vertices of a
-  double* of_b;   ///< rows for the vertices of b
-  double* spare;  ///< two rows for a shortened edge
+  double* of_a;     ///< rows for the vertices of a
+  double* of_b;     ///< rows for the vertices of b
+  double* scratch;  ///< two rows for a shortened edge
 };
 
 /// Takes the memory from `buffer`, which grows if necessary.
@@ -192,8 +192,8 @@ inline HeightRows height_rows(const PlacedPotential& a, const PlacedPotential& b
                               std::vector<double>& buffer) {
   const size_t rows_a = static_cast<size_t>(a.size + 1) * (b.size + 1);
   const size_t rows_b = static_cast<size_t>(b.size + 1) * (a.size + 1);
-  const size_t spare = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
-  if (buffer.size() < rows_a + rows_b + spare) buffer.resize(rows_a + rows_b + spare);
+  const size_t scratch = 2 * (static_cast<size_t>(std::max(a.size, b.size)) + 1);
+  if (buffer.size() < rows_a + rows_b + scratch) buffer.resize(rows_a + rows_b + scratch);
   return {buffer.data(), buffer.data() + rows_a, buffer.data() + rows_a + rows_b};
 }
 
@@ -265,70 +265,74 @@ inline int clipped_by(const Row<double>& row, double s, bool entering) {
   return -1;
 }
 
-/// Calls run(s0, edge0, s1, edge1, moments) for the runs of an edge in y, which is not convex, by
-/// all of its roof or of its distance field. The nodes of a roof are placed in the workspace.
-template <class Run>
-void walk_deep(const PlacedPotential& y, const PlacedEdge& edge, EdgeWorkspace& workspace,
-               const Run& run) {
+/// Calls segment(s0, edge0, s1, edge1, moments) for the segments of an edge in y, which is not
+/// convex, by its whole roof or distance field. The nodes of a roof must have been placed in the
+/// workspace.
+template <class Segment>
+void walk_whole_potential(const PlacedPotential& y, const PlacedEdge& edge,
+                          EdgeWorkspace& workspace, const Segment& segment) {
   SegmentMoments<double> moments;
   const auto end = [&](double s0, int edge0, double s1, int edge1) {
-    run(s0, edge0, s1, edge1, moments);
+    segment(s0, edge0, s1, edge1, moments);
     moments = {};
   };
   if (y.distance) {
-    workspace.distance.runs(placed_distance(y), edge.px, edge.py, edge.ex, edge.ey, moments, end);
+    workspace.distance.segments(placed_distance(y), edge.px, edge.py, edge.ex, edge.ey, moments,
+                                end);
     return;
   }
   workspace.roof.cross(placed_roof(y, workspace.nodes), edge.px, edge.py, edge.ex, edge.ey);
-  workspace.roof.runs(
+  workspace.roof.segments(
       [&](double u1, double v1, double u2, double v2) { add_piece(y, u1, v1, u2, v2, moments); },
       end);
 }
 
-/// Finds the runs of x: the maximal parts of its edges that lie inside y. Calls run(e, edge, s0,
-/// edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of phi of y
-/// along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y that x
-/// crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and `near_y`
-/// those of y that may enter x. `collars` tells whether edges in the collar of y go by it alone.
-/// Returns 0, or NaN without any call if y is not convex and a coordinate is not finite.
-template <bool crossings, class Run>
-double walk_runs(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                 std::uint64_t near, std::uint64_t near_y, const double* rows, double* spare,
-                 EdgeWorkspace& workspace, bool collars, const Run& run) {
+/// Finds the segments of x: the maximal parts of its edges that lie inside y. Calls segment(e,
+/// edge, s0, edge0, s1, edge1, moments) for the part from s0 to s1 of edge e, with the integrals of
+/// phi of y along it, in ascending order of e. With `crossings`, edge0 and edge1 are the edges of y
+/// that x crosses there, or -1 at an end of the edge. `near` are the edges that may enter y, and
+/// `near_y` those of y that may enter x. With `use_layer`, edges that stay in the boundary layer of
+/// y are evaluated by it alone. Returns 0, or NaN without any call if y is not convex and a
+/// coordinate is not finite.
+template <bool crossings, class Segment>
+double walk_segments(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                     std::uint64_t near, std::uint64_t near_y, const double* rows, double* scratch,
+                     EdgeWorkspace& workspace, bool use_layer, const Segment& segment) {
   if (!y.convex()) {
     // If edges are known to be near each other, all coordinates are finite.
     if (near == NearEdges::kAll || near_y == NearEdges::kAll) {
       if (const double finite = all_finite(x, y, dx, dy); !(finite == 0)) return finite;
     }
-    CollarTrace& collar = workspace.collar;
-    collar.find(x, y, dx, dy, near, near_y, collars);
+    LayerTrace& trace = workspace.layer_trace;
+    trace.find(x, y, dx, dy, near, near_y, use_layer);
     size_t r = 0;
-    bool nodes = false;  // whether they are placed
-    for (const CollarTrace::Edge& edge : collar.edges()) {
-      for (; r < edge.runs_end; ++r) {
-        if (edge.deep) continue;
-        const CollarTrace::Run& part = collar.runs()[r];
-        run(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
+    bool nodes = false;  // whether the nodes of the roof are placed
+    for (const LayerEdge& edge : trace.edges()) {
+      for (; r < edge.segments_end; ++r) {
+        if (edge.beyond_layer) continue;
+        const LayerSegment& part = trace.segments()[r];
+        segment(edge.index, edge.placed, part.s0, part.edge0, part.s1, part.edge1, part.moments);
       }
-      if (!edge.deep) continue;
+      if (!edge.beyond_layer) continue;
       if (y.roof && !nodes) workspace.nodes.place(y), nodes = true;
-      walk_deep(y, edge.placed, workspace,
-                [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
-                  run(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
-                });
+      walk_whole_potential(
+          y, edge.placed, workspace,
+          [&](double s0, int edge0, double s1, int edge1, const SegmentMoments<double>& sum) {
+            segment(edge.index, edge.placed, s0, edge0, s1, edge1, sum);
+          });
     }
     return 0;
   }
   for_each_edge(near, x.size, [&](int e) {
     const PlacedEdge edge(x, y, e, dx, dy);
-    const Row<double> row = row_of(edge, e, y, rows, spare);
+    const Row<double> row = row_of(edge, e, y, rows, scratch);
     double s0, s1;
     if (!clip(row, s0, s1)) return;
     const SegmentMoments<double> moments = envelope_moments(row, s0, s1, true);
     if constexpr (crossings) {
-      run(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
+      segment(e, edge, s0, clipped_by(row, s0, true), s1, clipped_by(row, s1, false), moments);
     } else {
-      run(e, edge, s0, -1, s1, -1, moments);
+      segment(e, edge, s0, -1, s1, -1, moments);
     }
   });
   return 0;
@@ -340,10 +344,10 @@ struct Extent {
   void include(double t) { low = std::min(low, t), high = std::max(high, t); }
 };
 
-/// The ends of runs, in a buffer that never shrinks.
-class RunEnds {
+/// The ends of segments, in a buffer that never shrinks.
+class SegmentEnds {
  public:
-  explicit RunEnds(std::vector<double>& buffer) : buffer_(buffer) {}
+  explicit SegmentEnds(std::vector<double>& buffer) : buffer_(buffer) {}
   template <class Edge>
   void add(const Edge& e, double s0, double s1) {
     if (buffer_.size() < used_ + 4) buffer_.resize(2 * (used_ + 4));
@@ -355,10 +359,11 @@ class RunEnds {
   /// Number of coordinates.
   [[nodiscard]] size_t used() const { return used_; }
   void clear() { used_ = 0; }
-  /// True if the runs are the sides of closed polygons, as the boundary of an overlap is, so that
-  /// none is missing. Runs that lie on each other may count twice; then it is false.
+  /// True if the segments are the sides of closed polygons, as the boundary of an overlap is, so
+  /// that none is missing. Segments that lie on each other may count twice; then the result is
+  /// false.
   [[nodiscard]] bool closed() const {
-    constexpr double kOpen = 1e-9;  // of the length of all runs
+    constexpr double kOpen = 1e-9;  // tolerance relative to the length of all segments
     double x = 0, y = 0, length = 0;
     for (size_t i = 0; i < used_; i += 4) {
       const double ex = buffer_[i + 2] - buffer_[i], ey = buffer_[i + 3] - buffer_[i + 1];
@@ -377,7 +382,8 @@ class RunEnds {
 /// Combines the integrals along the edges of a and of b to those of the pair. The first `middle`
 /// coordinates of `ends` belong to edges of a. `offset` is that of pair_integral.
 inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                         const Half& of_a, const Half& of_b, const RunEnds& ends, size_t middle) {
+                         const Half& of_a, const Half& of_b, const SegmentEnds& ends,
+                         size_t middle) {
   const Vec2 r = arm(a, b, offset);
   PairIntegral pair = combine(of_a, of_b, r);
   pair.depth = depth(a, b, of_a, of_b);
@@ -400,21 +406,21 @@ inline PairIntegral join(const PlacedPotential& a, const PlacedPotential& b, con
   return pair;
 }
 
-/// True if both polygons are convex and apart; then `near` gets the margin, if it is not known.
+/// True if the polygons are apart. If both are convex, `near` gets their distance as its skin,
+/// unless it has one.
 APOTHEM_INLINE bool separated(double gap, const PlacedPotential& a, const PlacedPotential& b,
                               double steepest, NearEdges& near) {
   if (!(gap > 0)) return false;
-  if (near.margin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 &&
-      b.radius > 0) {
-    const double margin = gap / steepest - kRoundOff * (a.radius + b.radius);
-    if (margin > kRoundOff * (a.radius + b.radius)) near = {0, 0, margin};
+  if (near.skin == 0 && a.convex() && b.convex() && steepest > 0 && a.radius > 0 && b.radius > 0) {
+    const double skin = gap / steepest - kRoundOff * (a.radius + b.radius);
+    if (skin > kRoundOff * (a.radius + b.radius)) near = {0, 0, skin};
   }
   return true;
 }
 
-/// The ends of a run along its edge, and the edges of the other polygon that it crosses there, as
-/// of walk_runs.
-struct RunSpan {
+/// The ends of a segment along its edge, and the edges of the other polygon that it crosses there,
+/// as in walk_segments.
+struct SegmentSpan {
   double s0;
   int edge0;
   double s1;
@@ -422,16 +428,16 @@ struct RunSpan {
 };
 
 /// Computes the integrals of a pair. Arguments and result are those of pair_integral. Calls
-/// run(of_a, e, edge, span, sums) for every run of edge e of a, and then of b; before the first one
-/// it calls begin().
+/// segment(of_a, e, edge, span, sums) for every segment of edge e of a, and then of b; before the
+/// first one it calls begin().
 ///
-/// The runs are found by those ways that are known, the fastest first. If they are not closed,
-/// features of the polygons coincide up to round-off, and the next way is taken: of a few near
-/// edges CollarPair; collars; at last the whole potentials.
-template <bool crossings, class Begin, class Run>
+/// The segments are found by several methods, the fastest first: LayerPair for a few near edges,
+/// then the boundary layers, then the whole potentials. If the segments are not closed, features of
+/// the polygons coincide up to round-off, and the next method is used.
+template <bool crossings, class Begin, class Segment>
 PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
                             NearEdges& near, EdgeWorkspace& workspace, const Begin& begin,
-                            const Run& run) {
+                            const Segment& segment) {
   const double dx = offset.x(), dy = offset.y();
   const HeightRows height = height_rows(a, b, workspace.values);
   if (b.convex() && separated(heights(a, b, dx, dy, height.of_a), a, b, b.steepest, near)) {
@@ -440,7 +446,7 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
   if (a.convex() && separated(heights(b, a, -dx, -dy, height.of_b), a, b, a.steepest, near)) {
     return {};
   }
-  RunEnds ends(workspace.ends);
+  SegmentEnds ends(workspace.ends);
   Half half_a, half_b;
   size_t middle = 0;
   const auto start = [&] {
@@ -449,24 +455,24 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
     middle = 0;
     begin();
   };
-  const auto take = [&](bool of_a, int e, const auto& edge, const RunSpan& span,
+  const auto take = [&](bool of_a, int e, const auto& edge, const SegmentSpan& span,
                         const EdgeSums<double>& sums) {
     Half& half = of_a ? half_a : half_b;
     half.add(sums);
-    if (edge.share(span.s0) == 0) half.enter(e);
+    if (edge.fraction(span.s0) == 0) half.enter(e);
     ends.add(edge, span.s0, span.s1);
     if (of_a) middle = ends.used();
-    run(of_a, e, edge, span, sums);
+    segment(of_a, e, edge, span, sums);
   };
   const auto pair = [&] { return join(a, b, offset, half_a, half_b, ends, middle); };
-  if (workspace.pair.find(a, b, offset, near)) {
+  if (workspace.layer_pair.find(a, b, offset, near)) {
     start();
-    for (const CollarPair::Run& r : workspace.pair.runs()) {
+    for (const LayerPair::PairSegment& r : workspace.layer_pair.segments()) {
       take(r.of_a, r.edge, *r.placed, {r.s0, r.edge0, r.s1, r.edge1}, *r.integrals);
     }
     if (ends.closed()) return pair();
   }
-  for (const bool collars : {true, false}) {
+  for (const bool use_layer : {true, false}) {
     start();
     const auto walk = [&](bool of_a) {
       return [&, of_a](int e, const PlacedEdge& edge, double s0, int edge0, double s1, int edge1,
@@ -475,10 +481,10 @@ PairIntegral integrate_pair(const PlacedPotential& a, const PlacedPotential& b, 
       };
     };
     // A NaN is added to the weight, so that it is never taken for "no contact".
-    half_a.weight += walk_runs<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
-                                          height.spare, workspace, collars, walk(true));
-    half_b.weight += walk_runs<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
-                                          height.spare, workspace, collars, walk(false));
+    half_a.weight += walk_segments<crossings>(a, b, dx, dy, near.of_a, near.of_b, height.of_a,
+                                              height.scratch, workspace, use_layer, walk(true));
+    half_b.weight += walk_segments<crossings>(b, a, -dx, -dy, near.of_b, near.of_a, height.of_b,
+                                              height.scratch, workspace, use_layer, walk(false));
     if (ends.closed() || std::isnan(half_a.weight + half_b.weight) || (a.convex() && b.convex())) {
       break;
     }

@@ -1,6 +1,6 @@
-// Which edges of two polygons are near the other polygon. Bodies move little in a step, so it is
-// found once in many steps; the contact kernel then looks at these edges only. Most pairs of
-// polygons whose boxes overlap have none.
+// A Verlet list of the edges of two polygons that are near the other polygon. Bodies move little in
+// a step, so a list with a skin serves for many steps, and the contact kernel considers only these
+// edges. Most pairs of polygons whose boxes overlap have none.
 #pragma once
 
 #include <bit>
@@ -13,20 +13,20 @@ namespace apothem {
 
 struct PlacedPotential;
 
-/// The edges of a pair of polygons that may be nearer than `margin` to the other polygon, its
-/// interior included. Bit i mod 64 of a set stands for all edges i with that remainder. All others
-/// are farther away than the margin, and remain outside as long as the polygons have moved by
-/// less than it.
+/// The edges of a pair of polygons that may be nearer than `skin` to the other polygon, its
+/// interior included. Bit i mod 64 of a set stands for all edges i with that remainder. All other
+/// edges are farther away than the skin, and remain outside as long as the polygons have moved
+/// relative to each other by less than the skin.
 struct NearEdges {
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
   std::uint64_t of_a = kAll;  ///< edges of a
   std::uint64_t of_b = kAll;  ///< edges of b
-  double margin = 0;          ///< m; 0 if nothing is known
-  /// True if the polygons are apart by the margin.
+  double skin = 0;            ///< m; 0 if nothing is known
+  /// True if the polygons are apart by the skin.
   [[nodiscard]] bool none() const { return of_a == 0 && of_b == 0; }
 };
 
-/// Memory for near_edges. One for each thread, used again for many pairs.
+/// Memory of near_edges. Keep one per thread.
 struct NearEdgesWorkspace {
   /// An edge of a polygon in the frame of b.
   struct Segment {
@@ -38,12 +38,12 @@ struct NearEdgesWorkspace {
   std::vector<Segment> of_a, of_b;
 };
 
-/// Finds the edges of two polygons that are nearer than `margin` (m) to the other one. If there are
-/// none, the margin of the result is larger, and is a lower bound of the distance of the polygons.
-/// The arguments a, b and offset are those of pair_integral. A coordinate that is not finite makes
-/// all edges near and the margin 0.
+/// Finds the edges of two polygons that are nearer than `skin` (m) to the other one. If there are
+/// none, the skin of the result is larger, and is a lower bound of the distance of the polygons.
+/// The arguments a, b and offset are those of pair_integral. If a coordinate is not finite, all
+/// edges are near and the skin is 0.
 NearEdges near_edges(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                     double margin, NearEdgesWorkspace& workspace);
+                     double skin, NearEdgesWorkspace& workspace);
 
 /// Calls f(edge) for the edges of a polygon with `size` edges that a set stands for, in ascending
 /// order.

@@ -1,4 +1,4 @@
-// What the contact kernel finds of a pair of polygons.
+// The integrals that the contact kernel computes for a pair of polygons.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace apothem {
 /// reference points of the two polygons; positions are relative to the reference point of a.
 ///
 /// The own length of a polygon is the length of the parts of its boundary that have points of the
-/// other polygon immediately on their inner side. It is the polygon's share of the boundary of the
-/// overlap. Where edges of both polygons lie on each other, they count for both if the polygons lie
-/// on the same side, and for neither if they lie on opposite sides and only touch. edge_method,
-/// overlap_method and exact_method agree about it. pair_integral and contact_patches round all
-/// heights; for edges that lie on each other they may take either.
+/// other polygon immediately on their inner side. It is the length of the polygon's part of the
+/// boundary of the overlap. Where edges of both polygons lie on each other, they count for both if
+/// the polygons lie on the same side, and for neither if they lie on opposite sides and only touch.
+/// edge_method, overlap_method and exact_method agree about it. pair_integral and contact_patches
+/// round all heights; for edges that lie on each other they may take either.
 struct PairIntegral {
   Vec2 force = Vec2::Zero();   ///< force on a, m
   double moment_a = 0;         ///< moment on a about its reference point, m^2
@@ -31,20 +31,20 @@ struct PairIntegral {
   /// the steepest slope, m; 0 if the slopes are not known. It is the distance from the boundary for
   /// the distance potential of convex polygons, and never more (see penetration.hpp).
   double depth = 0;
-  /// Extent of the overlap along the tangent (-n_y, n_x), n the direction of the force, m.
+  /// Extent of the overlap along the tangent (-n_y, n_x), where n is the direction of the force, m.
   double breadth = 0;
   double middle = 0;  ///< the middle of this extent, along the tangent, m
-  /// Which vertices of a lie inside b, and of b inside a: bit i mod 64 counts the vertices i,
-  /// modulo 2. Needles leave them out.
+  /// The vertices of a that lie inside b, and those of b inside a: bit i mod 64 is the number of
+  /// such vertices i, modulo 2. Not set for needles.
   std::uint64_t inside_a = 0, inside_b = 0;
 
   /// True if the polygons touch, and also if the weight is NaN.
   [[nodiscard]] bool touching() const { return !(weight <= 0); }
 };
 
-/// The numbers of an integral come in fours, for packs that read or write several of them: force
-/// and moments; weight, one that means nothing, and centre; both own lengths, largest phi and
-/// depth; breadth, middle and two that are no numbers.
+/// The numbers of an integral are in groups of four, for packs that read or write several
+/// integrals: force and moments; weight, an unused number, and centre; both own lengths, largest
+/// phi and depth; breadth, middle and two words that are not floating-point numbers.
 inline constexpr int kForceNumbers = 0, kCentreNumbers = 4, kLengthNumbers = 8,
                      kBreadthNumbers = 12;
 static_assert(offsetof(PairIntegral, moment_a) == 2 * sizeof(double) &&

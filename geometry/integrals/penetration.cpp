@@ -12,8 +12,9 @@ namespace apothem {
 
 namespace {
 
-constexpr double kAccuracy = 1e-12;  // of a largest distance, relative
-constexpr double kShortest = 1e-14;  // interval that is not divided, share of the segment
+constexpr double kAccuracy = 1e-12;  // relative accuracy of a largest distance
+// Shortest interval to be divided, as a fraction of the segment.
+constexpr double kShortest = 1e-14;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -24,8 +25,8 @@ void BoundaryDistance::add(const Vec2& from, const Vec2& to) {
 
 double BoundaryDistance::Segment::distance(const Vec2& point) const {
   const Vec2 arm = point - from;
-  const double share = arm.dot(along) * inverse_length * inverse_length;
-  if (share > 0 && share < 1) return std::abs(cross(along, arm)) * inverse_length;
+  const double fraction = arm.dot(along) * inverse_length * inverse_length;
+  if (fraction > 0 && fraction < 1) return std::abs(cross(along, arm)) * inverse_length;
   return std::sqrt(std::min(arm.squaredNorm(), (arm - along).squaredNorm()));
 }
 
@@ -65,9 +66,9 @@ double BoundaryDistance::largest(const Vec2& p, const Vec2& q, double floor) {
     if (bound <= best * (1 + kAccuracy) || i.to - i.from < kShortest) continue;
     const double rise = last.there - first.here;
     const double fall = first.there - last.here;
-    const double share = rise / (rise + fall);
-    const bool chords = i.level % 3 < 2 && share > 0 && share < 1;
-    const double middle = i.from + (chords ? share : .5) * (i.to - i.from);
+    const double fraction = rise / (rise + fall);
+    const bool chords = i.level % 3 < 2 && fraction > 0 && fraction < 1;
+    const double middle = i.from + (chords ? fraction : .5) * (i.to - i.from);
     open_.push_back({i.from, middle, i.level + 1});
     open_.push_back({middle, i.to, i.level + 1});
   }
@@ -75,7 +76,7 @@ double BoundaryDistance::largest(const Vec2& p, const Vec2& q, double floor) {
 }
 
 void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                       std::span<const BoundaryRun> runs, PenetrationWorkspace& workspace,
+                       std::span<const BoundarySegment> segments, PenetrationWorkspace& workspace,
                        std::span<double> deepest) {
   const auto place = [](const PlacedPotential& p, const Vec2& origin, BoundaryDistance& boundary) {
     boundary.clear();
@@ -83,12 +84,12 @@ void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const
       boundary.add(Vec2(p.x[i], p.y[i]) - origin, Vec2(p.x[i + 1], p.y[i + 1]) - origin);
     }
   };
-  // The points of runs are relative to the reference point of a.
+  // The points of segments are relative to the reference point of a.
   place(a, a.reference, workspace.a);
   place(b, edge_detail::arm(a, b, offset) + b.reference, workspace.b);
-  for (const BoundaryRun& run : runs) {
-    double& deep = deepest[static_cast<size_t>(run.patch)];
-    deep = (run.of_a ? workspace.b : workspace.a).largest(run.start, run.end, deep);
+  for (const BoundarySegment& segment : segments) {
+    double& deep = deepest[static_cast<size_t>(segment.patch)];
+    deep = (segment.of_a ? workspace.b : workspace.a).largest(segment.start, segment.end, deep);
   }
 }
 
@@ -100,12 +101,12 @@ double penetration(const Polygon& a, const Polygon& b) {
   const Potential potential_b = make_potential(b, any);
   const PlacedPair placed(a, potential_a, b, potential_b);
   PatchWorkspace patch_workspace;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> segments;
   std::vector<PairIntegral> patches;
-  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), patch_workspace, runs, patches);
+  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), patch_workspace, segments, patches);
   std::vector<double> deepest(patches.size());
   PenetrationWorkspace workspace;
-  find_penetrations(placed.a.view, placed.b.view, Vec2::Zero(), runs, workspace, deepest);
+  find_penetrations(placed.a.view, placed.b.view, Vec2::Zero(), segments, workspace, deepest);
   return deepest.empty() ? 0 : *std::max_element(deepest.begin(), deepest.end());
 }
 

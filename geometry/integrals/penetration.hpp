@@ -35,8 +35,8 @@ class BoundaryDistance {
     [[nodiscard]] double distance(const Vec2& point) const;
   };
   struct Interval {
-    double from, to;  // of the segment p q, from 0 to 1
-    int level;        // how often it has been divided
+    double from, to;  // interval of the segment p q, from 0 to 1
+    int level;        // number of divisions so far
   };
   std::vector<Segment> segments_;
   std::vector<Interval> open_;
@@ -48,9 +48,9 @@ struct PenetrationWorkspace {
 };
 
 /// Raises the entry of `deepest` of every patch, m, to the patch's penetration if that is larger.
-/// `runs` are those that contact_patches has found for the same arguments.
+/// `segments` are those that contact_patches has found for the same arguments.
 void find_penetrations(const PlacedPotential& a, const PlacedPotential& b, const Vec2& offset,
-                       std::span<const BoundaryRun> runs, PenetrationWorkspace& workspace,
+                       std::span<const BoundarySegment> segments, PenetrationWorkspace& workspace,
                        std::span<double> deepest);
 
 /// The largest penetration of two polygons at their given positions, m; 0 if they do not touch. It

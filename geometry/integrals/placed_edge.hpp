@@ -26,7 +26,7 @@ struct BasicEdge {
   bool shortened = false;    // whether it is less than the whole edge
 
   /// Position on the whole edge, from 0 to 1, of the parameter s of the represented part.
-  [[nodiscard]] Real share(Real s) const { return first + s * (last - first); }
+  [[nodiscard]] Real fraction(Real s) const { return first + s * (last - first); }
 
  private:
   // Reduces an edge that is much longer than y to the part around the foot of the perpendicular

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/skeleton/roof.hpp"
 
@@ -12,9 +12,9 @@ namespace apothem {
 /// A potential at a position in the plane: pointers to arrays of coordinates relative to some
 /// frame. x and y have size + 1 entries, because the first vertex is repeated; gx and gy have
 /// `size`. A polygon that is not convex has either a roof or a distance field. Its arrays have one
-/// entry more at both ends, at -1 and behind the last one, with which they go round the polygon,
-/// and kReadBehind numbers behind. If `radius` is 0, it is not known, and long edges of the other
-/// polygon are not shortened.
+/// more entry at both ends, at -1 and after the last one, which repeat the other end of the
+/// polygon, and kReadBehind more numbers after that. If `radius` is 0, it is not known, and long
+/// edges of the other polygon are not shortened.
 struct PlacedPotential {
   const double* x;                          ///< x coordinates of the vertices, m
   const double* y;                          ///< y coordinates of the vertices, m
@@ -25,11 +25,11 @@ struct PlacedPotential {
   const Roof* roof = nullptr;               ///< roof, or null
   const DistanceField* distance = nullptr;  ///< distance field, or null
   Vec2 reference = Vec2::Zero();            ///< reference point of the moments, in the frame, m
-  double radius = 0;                   ///< largest distance of a vertex from `reference`, m, or 0
-  double steepest = 0;                 ///< largest |g_i|, 1/m, or 0 if it is not known
-  const CollarCells* cells = nullptr;  ///< of its edges, if it is not convex
-  /// The nodes of the roof that are no vertices, in the frame: turned by the angle with this cosine
-  /// and sine, and then moved by `shift`, m.
+  double radius = 0;                     ///< largest distance of a vertex from `reference`, m, or 0
+  double steepest = 0;                   ///< largest |g_i|, 1/m, or 0 if it is not known
+  const BoundaryLayer* layer = nullptr;  ///< boundary layer, if it is not convex
+  /// Position of the inner nodes of the roof in the frame: they are rotated by the angle with this
+  /// cosine and sine, and then moved by `shift`, m.
   double cosine = 1, sine = 0;
   Vec2 shift = Vec2::Zero();
 
@@ -65,8 +65,8 @@ inline double all_finite(const PlacedPotential& x, const PlacedPotential& y, dou
   return finite;
 }
 
-/// The nodes of a roof at its present position, m. They are made where a contact is so deep that
-/// they are needed.
+/// The nodes of a roof at its present position, m. They are computed only if a contact is deep
+/// enough to need them.
 struct RoofNodes {
   std::vector<double> x, y;
 

@@ -9,8 +9,8 @@
 namespace apothem {
 namespace {
 
-// A point in the frame of the edge from `v` to `w`: its components along and across, over the
-// length of the edge.
+// A point in the frame of the edge from `v` to `w`: its components along and across the edge,
+// divided by the length of the edge.
 Vec2 by_edge(const Vec2& point, const Vec2& v, const Vec2& w) {
   const Vec2 edge = w - v, from = point - v;
   return Vec2(edge.dot(from), cross(edge, from)) / edge.squaredNorm();
@@ -27,7 +27,7 @@ void PlacedShapes::reserve(size_t shapes, size_t vertices) {
 
 int PlacedShapes::add(const Potential& potential) {
   const int n = potential.size();
-  const bool convex = !potential.cells;
+  const bool convex = !potential.layer;
   const int before = convex ? 0 : 1;
   Shape shape{
       .placed = placed_.size() + static_cast<size_t>(before),
@@ -37,7 +37,7 @@ int PlacedShapes::add(const Potential& potential) {
       .slope = potential.steepest,
       .roof = potential.roof ? &*potential.roof : nullptr,
       .distance = potential.distance ? &*potential.distance : nullptr,
-      .cells = convex ? nullptr : &*potential.cells,
+      .layer = convex ? nullptr : &*potential.layer,
       .capped = potential.capped(),
       .depth_ratio = apothem::depth_ratio(potential),
       .top_radius = potential.top_points.front().norm(),
@@ -55,7 +55,8 @@ int PlacedShapes::add(const Potential& potential) {
   return size() - 1;
 }
 
-Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const {
+Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle,
+                         const Coordinates& target) const {
   const double s = angle.sine, c = angle.cosine;
   const int n = shape.size;
   const auto turn = [&](const double* from, double* to_x, double* to_y) {
@@ -65,15 +66,15 @@ Box PlacedShapes::rotate(const Shape& shape, const SineCosine& angle, const Coor
     }
     to_x[n] = to_x[0];
     to_y[n] = to_y[0];
-    if (!shape.cells) return;
+    if (!shape.layer) return;
     to_x[-1] = to_x[n - 1];
     to_y[-1] = to_y[n - 1];
   };
   const double* const body = body_.data() + 4 * shape.edges;
-  turn(body, to.x, to.y);
-  turn(body + std::ptrdiff_t{2} * n, to.gx, to.gy);
+  turn(body, target.x, target.y);
+  turn(body + std::ptrdiff_t{2} * n, target.gx, target.gy);
   Box box;
-  for (int k = 0; k < n; ++k) box.include(to.x[k], to.y[k]);
+  for (int k = 0; k < n; ++k) box.include(target.x[k], target.y[k]);
   return box;
 }
 
@@ -88,21 +89,21 @@ PlacedPotential PlacedShapes::turn(int i, const SineCosine& angle, Turned& turne
   const Shape& shape = shapes_[i];
   const size_t size = 1 + 4 * static_cast<size_t>(shape.stride) + kReadBehind;
   if (turned.numbers.size() < size) turned.numbers.resize(size);
-  const Coordinates to = coordinates(turned.numbers.data() + 1, shape.stride);
-  rotate(shape, angle, to);
+  const Coordinates target = coordinates(turned.numbers.data() + 1, shape.stride);
+  rotate(shape, angle, target);
   PlacedPotential result = view(i);
-  result.x = to.x, result.y = to.y;
-  result.gx = to.gx, result.gy = to.gy;
+  result.x = target.x, result.y = target.y;
+  result.gx = target.gx, result.gy = target.gy;
   result.cosine = angle.cosine, result.sine = angle.sine;
   return result;
 }
 
 int PlacedShapes::add_deforming(const Potential& potential) {
   const int i = add(potential);
-  // Its inradius may grow beyond the length that it had at first, and its size is not known.
+  // The inradius may grow beyond its initial value, and the size is not known.
   shapes_[i].capped = true;
   shapes_[i].radius = 0;
-  inverse_length_.resize(shapes_[i].edges);  // without those of shapes that do not deform
+  inverse_length_.resize(shapes_[i].edges);  // entries of shapes that do not deform are not used
   for (const Vec2& g : potential.gradients) inverse_length_.push_back(g.norm());
   return i;
 }

@@ -1,4 +1,4 @@
-// The shapes of all bodies where they are now: contiguous arrays for the contact kernel.
+// The shapes of all bodies at their present positions, in contiguous arrays for the contact kernel.
 #pragma once
 
 #include <cmath>
@@ -12,30 +12,30 @@ namespace apothem {
 
 class PlacedShapes {
  public:
-  /// Makes room for so many shapes with so many vertices in all, if they are convex.
+  /// Reserves memory for this number of convex shapes with this number of vertices in total.
   void reserve(size_t shapes, size_t vertices);
   /// Adds a shape given in its body frame (reference point = mass centre) and returns its index.
   /// The potential must outlive this object.
   int add(const Potential& potential);
 
-  /// Moves shape i: reference point to (x, y), rotated by `angle`.
+  /// Moves the reference point of shape i to (x, y) and rotates the shape by `angle`.
   void place(int i, double x, double y, double angle) { place(i, x, y, sine_cosine(angle)); }
   void place(int i, double x, double y, const SineCosine& angle);
 
-  /// Coordinates of one shape at another angle.
+  /// Memory for the coordinates of one shape at another angle.
   struct Turned {
     std::vector<double> numbers;
   };
   /// Shape i at an angle, in the memory of `turned`, which must live as long as the result is used.
-  /// For shapes that do not deform.
+  /// The shape must not be a deforming one.
   PlacedPotential turn(int i, const SineCosine& angle, Turned& turned) const;
 
-  /// Adds a convex shape whose vertices will move by themselves. The inverse lengths of its edges
-  /// stay those of `potential`.
+  /// Adds a convex shape that deforms. The inverse lengths of its edges remain those of
+  /// `potential`.
   int add_deforming(const Potential& potential);
 
-  /// Gives a deforming shape its vertices, relative to the reference point (x, y). False, with a
-  /// shape that must not be used, if it is no longer strictly convex and counter-clockwise.
+  /// Sets the vertices of a deforming shape, relative to the reference point (x, y). Returns false
+  /// if the shape is no longer strictly convex and counter-clockwise; it must not be used then.
   bool deform(int i, double x, double y, std::span<const Vec2> vertices);
 
   [[nodiscard]] PlacedPotential view(int i) const {
@@ -52,12 +52,12 @@ class PlacedShapes {
             .reference = Vec2::Zero(),
             .radius = s.radius,
             .steepest = s.slope,
-            .cells = s.cells,
+            .layer = s.layer,
             .cosine = s.cosine,
             .sine = s.sine,
             .shift = Vec2::Zero()};
   }
-  /// Begins to bring shape i to the cache: first itself, then, when it is there, its coordinates.
+  /// Prefetches shape i: first the shape, then, when that is in the cache, its coordinates.
   void fetch(int i) const {
     __builtin_prefetch(&boxes_[i]);
     __builtin_prefetch(&shapes_[i]);
@@ -68,10 +68,10 @@ class PlacedShapes {
     const double* const first = placed_.data() + shapes_[i].placed;
     for (int k = 0; k < 4 * shapes_[i].stride; k += kLine) __builtin_prefetch(first + k);
   }
-  /// True when the top of shape i's potential (the centre of its incircle) lies inside shape j;
-  /// `offset` is i's reference point minus j's.
+  /// True if the highest point of shape i's potential (the centre of its incircle) lies inside
+  /// shape j; `offset` is i's reference point minus j's.
   [[nodiscard]] bool top_inside(int i, int j, const Vec2& offset) const;
-  /// It does not if the reference points are farther apart than this, m; it is HUGE_VAL where
+  /// top_inside is false if the reference points are farther apart than this, m; HUGE_VAL where
   /// shapes deform.
   [[nodiscard]] double top_reach(int i, int j) const {
     const Shape &own = shapes_[i], &other = shapes_[j];
@@ -90,39 +90,41 @@ class PlacedShapes {
   [[nodiscard]] double depth_ratio(int i) const { return shapes_[i].depth_ratio; }
 
  private:
-  // What every pair needs comes first.
+  // The members that every pair needs come first.
   struct Shape {
-    size_t placed;  // where x of a PlacedPotential begins; y, gx and gy follow
-    int stride;     // from one of these to the next
+    size_t placed;  // index in placed_ where x begins; y, gx and gy follow
+    int stride;     // distance from one of these arrays to the next
     int size;
     double radius;
     double slope;
-    // Of a shape that is not convex.
+    // The following are needed for shapes that are not convex.
     const Roof* roof;
     const DistanceField* distance;
-    const CollarCells* cells;
+    const BoundaryLayer* layer;
     bool capped;
     double depth_ratio;
-    double top_radius;  // distance of the top from the reference point
-    Vec2 top;           // of the potential (see by_edge); of a deforming shape the mean vertex
-    size_t edges;       // number of the first edge, among those of all shapes
-    double cosine = 1, sine = 0;  // of its angle
+    double top_radius;  // distance of the highest point from the reference point
+    Vec2 top;  // highest point of the potential (see by_edge); for a deforming shape the mean of
+               // the vertices
+    size_t edges;                 // index of the first edge among those of all shapes
+    double cosine = 1, sine = 0;  // cosine and sine of its angle
   };
   struct Coordinates {
     double *x, *y, *gx, *gy;
   };
   // Writes the coordinates of a shape at an angle and returns their box.
-  Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& to) const;
-  // Of a shape; x begins at `first`.
+  Box rotate(const Shape& shape, const SineCosine& angle, const Coordinates& target) const;
+  // The arrays of a shape whose x begins at `first`.
   static Coordinates coordinates(double* first, int stride) {
     return {first, first + stride, first + 2 * stride, first + 3 * stride};
   }
 
   std::vector<Shape> shapes_;
   std::vector<double> body_;            // x, y, gx, gy of each shape in the body frame
-  std::vector<double> inverse_length_;  // of each edge, 1/m, of deforming shapes
-  std::vector<double> placed_;          // relative to the reference point, rotated
-  std::vector<Box> boxes_;              // in the coordinates of the model
+  std::vector<double> inverse_length_;  // inverse length of each edge of deforming shapes, 1/m
+  // X, y, gx, gy of each shape, rotated, relative to the reference point.
+  std::vector<double> placed_;
+  std::vector<Box> boxes_;  // box of each shape in the coordinates of the model
 };
 
 }  // namespace apothem

@@ -26,7 +26,7 @@ struct Placement {
     double radius = 0;
     for (size_t i = 2; i < n + 2; ++i)
       radius = std::max(radius, hypotenuse(x[i] - x[1], y[i] - y[1]));
-    // Boundary nodes are the vertices exactly as given. Inner nodes are shifted from the
+    // The boundary nodes are the vertices exactly as given. The inner nodes are shifted from the
     // coordinates of the polygon.
     view = {.x = x.data() + 1,
             .y = y.data() + 1,
@@ -39,7 +39,7 @@ struct Placement {
             .reference = Vec2(x[1], y[1]),
             .radius = radius,
             .steepest = potential.steepest,
-            .cells = potential.cells ? &*potential.cells : nullptr,
+            .layer = potential.layer ? &*potential.layer : nullptr,
             .shift = polygon.origin() - origin};
   }
   Placement(const Placement&) = delete;
@@ -57,7 +57,7 @@ struct PlacedPair {
   Placement a, b;
   Vec2 centroid_a, centroid_b;  ///< centroids relative to vertex 0 of each polygon, m
 
-  /// Changes the reference points of a PairIntegral or a BoundaryRun from vertex 0 to the
+  /// Changes the reference points of a PairIntegral or a BoundarySegment from vertex 0 to the
   /// centroids.
   template <class Integrals>
   void about_centroids(Integrals& pair) const {

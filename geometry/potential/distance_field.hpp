@@ -94,18 +94,18 @@ class DistanceTrace {
   SegmentMoments<Real> integrate(const PlacedDistance<Real>& field, const Real& px, const Real& py,
                                  const Real& ex, const Real& ey, const Inside& inside) {
     SegmentMoments<Real> moments;
-    runs(field, px, py, ex, ey, moments,
-         [&](const Real& s0, int, const Real& s1, int) { inside(s0, s1); });
+    segments(field, px, py, ex, ey, moments,
+             [&](const Real& s0, int, const Real& s1, int) { inside(s0, s1); });
     return moments;
   }
 
   /// For every part of the segment p + s e, s in [0, 1], that lies inside the polygon, adds the
-  /// integrals of phi to `moments` and then calls run(s0, edge0, s1, edge1). `edge0` and `edge1`
-  /// are the polygon's edges that the segment crosses at the ends of the part, or -1 at an end of
-  /// the segment itself.
-  template <class Run>
-  void runs(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
-            const Real& ey, SegmentMoments<Real>& moments, const Run& run) {
+  /// integrals of phi to `moments` and then calls segment(s0, edge0, s1, edge1). `edge0` and
+  /// `edge1` are the polygon's edges that the segment crosses at the ends of the part, or -1 at an
+  /// end of the segment itself.
+  template <class Segment>
+  void segments(const PlacedDistance<Real>& field, const Real& px, const Real& py, const Real& ex,
+                const Real& ey, SegmentMoments<Real>& moments, const Segment& segment) {
     using std::sqrt;
     px_ = px, py_ = py, ex_ = ex, ey_ = ey;
     k_ = sqrt(ex * ex + ey * ey) * field.slope;
@@ -126,7 +126,7 @@ class DistanceTrace {
       const Real s1 = std::min(b.s, Real(1));
       trace(field, s0, s1, a.edge, b.edge);
       add_pieces(moments);
-      run(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
+      segment(s0, a.s < 0 ? -1 : a.edge, s1, b.s > 1 ? -1 : b.edge);
     }
   }
 

@@ -16,11 +16,11 @@ struct Distance {
 };
 
 /// An edge of a polygon.
-struct Edge {
+struct PolygonEdge {
   Vec2 start, end, direction;
   double length;
 
-  Edge(const Vec2& a, const Vec2& b)
+  PolygonEdge(const Vec2& a, const Vec2& b)
       : start(a), end(b), direction(b - a), length(hypotenuse(direction.x(), direction.y())) {
     direction /= length;
   }

@@ -26,8 +26,8 @@ Summit highest_point(const std::vector<Heights>& planes) {
       for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3;
         if ((side[k] < 0) == (side[l] < 0)) continue;
-        const double share = side[k] / (side[k] - side[l]);
-        ends[count++] = (1 - share) * Heights::Unit(k) + share * Heights::Unit(l);
+        const double fraction = side[k] / (side[k] - side[l]);
+        ends[count++] = (1 - fraction) * Heights::Unit(k) + fraction * Heights::Unit(l);
       }
       if (count < 2) continue;
       double low = 0;

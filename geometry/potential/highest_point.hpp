@@ -18,8 +18,8 @@ struct Summit {
 };
 
 /// Finds the highest point by Seidel's incremental linear programming, which takes time linear in
-/// the number of planes if their order is random. A plane counts as below another one only if it is
-/// so by more than round-off, so that nothing is cut off wrongly where planes coincide or nearly
+/// the number of planes if their order is random. A plane counts as below another one only if the
+/// difference exceeds round-off, so that nothing is cut off wrongly where planes coincide or nearly
 /// coincide.
 Summit highest_point(const std::vector<Heights>& planes);
 

@@ -9,7 +9,7 @@
 //   quadratic in the size of T.
 // - Lower bound: f_i is nowhere below its tangent plane at any point. A step to the highest point
 // of
-//   the tangent planes that would make f smaller is not taken; the steps converge quadratically to
+//   the tangent planes is not taken if it would make f smaller; the steps converge quadratically to
 //   a centre.
 // The result is a value of f at a point inside the polygon, so neither round-off nor a degenerate
 // position can make the radius too large. The upper bound ends the search only when no larger
@@ -43,14 +43,14 @@ namespace {
 constexpr double kNoise = 0x1p-50;        // larger than the round-off of a distance
 constexpr double kSameRadius = 1e-13;     // relative tolerance for equal radii, as in potential.cpp
 constexpr double kSmallest = 0x1p-49;     // smallest resolved radius, as in potential.cpp
-constexpr double kSamePlace = 1e-6;       // centres closer than this share of the radius are one
+constexpr double kSamePlace = 1e-6;       // centres closer than this fraction of the radius are one
 constexpr double kNearlyParallel = 1e-4;  // sine of the angle between walls of a corridor
 constexpr size_t kManyEdges = 200;  // a search for a polygon with more edges starts with its box
 constexpr size_t kCellsPerReport = 100;
 constexpr size_t kMostCells = 2000;  // per edge; then that search is given up
 constexpr size_t kLongList = 64;     // with more edges in its list, a triangle is usually halved
-constexpr double kSimilar = .7;      // unless halving leaves more than this share of the list
-constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as none
+constexpr double kSimilar = .7;      // unless halving leaves more than this fraction of the list
+constexpr double kSameSide = 1e-9;   // relative difference of distances that counts as zero
 constexpr double kInTheWay = .5;  // a circle that moves towards an edge at this rate stops at once
 constexpr double kAlongside = 1e-6;  // cosine of an angle that counts as a right one
 // Up to this number of edges of a convex polygon it is faster to clip every face by all edges.
@@ -160,7 +160,7 @@ class Search {
       if (found.height < radius_ - tolerance()) break;
       const bool known = std::any_of(centres.begin(), centres.end(), [&](const Centre& c) {
         if (c.first == c.last) return (found.point - c.first).norm() <= same;
-        return Edge(c.first, c.last).distance(found.point) <= same;
+        return PolygonEdge(c.first, c.last).distance(found.point) <= same;
       });
       if (known) continue;
       Centre centre = corridor(found.point, found.height - tolerance());
@@ -197,12 +197,12 @@ class Search {
   // Tells on which side of the edge, or of the vertex at its nearer end, a point lies: 1 inside, -1
   // outside, 0 if that cannot be told.
   [[nodiscard]] int side(int e, const Vec2& p) const {
-    const Edge& edge = edges_[e];
+    const PolygonEdge& edge = edges_[e];
     const Vec2 d = p - edge.start;
     const double along = edge.direction.dot(d);
     if (along > 0 && along < edge.length) return cross(edge.direction, d) > 0 ? 1 : -1;
     const int count = static_cast<int>(edges_.size());
-    const Edge& other = edges_[along <= 0 ? (e + count - 1) % count : (e + 1) % count];
+    const PolygonEdge& other = edges_[along <= 0 ? (e + count - 1) % count : (e + 1) % count];
     const Vec2 arm = along <= 0 ? d : p - edge.end;
     const Vec2 sum = (edge.direction + other.direction).normalized();
     const double above = cross(sum, arm);
@@ -310,15 +310,15 @@ class Search {
   // The longest segment through a centre that runs along two parallel edges which the circle
   // touches, and that keeps the distance `radius` or more from all edges.
   [[nodiscard]] Centre corridor(const Vec2& point, double radius) const {
-    std::vector<const Edge*> touched;
-    for (const Edge& edge : edges_) {
+    std::vector<const PolygonEdge*> touched;
+    for (const PolygonEdge& edge : edges_) {
       if (edge.distance(point) <= radius + 4 * tolerance()) touched.push_back(&edge);
     }
     Centre longest{point, point};
     for (size_t i = 0; i < touched.size(); ++i) {
-      const Edge& a = *touched[i];
+      const PolygonEdge& a = *touched[i];
       for (size_t j = i + 1; j < touched.size(); ++j) {
-        const Edge& b = *touched[j];
+        const PolygonEdge& b = *touched[j];
         if (a.direction.dot(b.direction) > 0 ||
             std::abs(cross(a.direction, b.direction)) > kNearlyParallel) {
           continue;
@@ -338,12 +338,13 @@ class Search {
     return longest;
   }
 
-  // True if edges that the circle at a point touches stand in its way in the directions u and -u,
-  // which is so for most pairs of edges of a round polygon.
-  static bool blocked(const std::vector<const Edge*>& touched, const Vec2& point, const Vec2& u) {
+  // True if edges that the circle at a point touches block it in the directions u and -u, which is
+  // the case for most pairs of edges of a round polygon.
+  static bool blocked(const std::vector<const PolygonEdge*>& touched, const Vec2& point,
+                      const Vec2& u) {
     bool ahead = false;
     bool behind = false;
-    for (const Edge* edge : touched) {
+    for (const PolygonEdge* edge : touched) {
       const double rate = edge->distance_and_gradient(point).gradient.dot(u);
       ahead = ahead || rate < -kInTheWay;
       behind = behind || rate > kInTheWay;
@@ -357,7 +358,7 @@ class Search {
   [[nodiscard]] Centre free_way(const Vec2& point, const Vec2& u, double radius) const {
     double ahead = HUGE_VAL;
     double behind = HUGE_VAL;
-    for (const Edge& edge : edges_) {
+    for (const PolygonEdge& edge : edges_) {
       ahead = std::min(ahead, edge.first_hit(point, u, radius));
       behind = std::min(behind, edge.first_hit(point, -u, radius));
     }
@@ -370,7 +371,7 @@ class Search {
     const auto foot = [&](const Vec2& centre) {
       double lowest = HUGE_VAL;
       Vec2 result = centre;
-      for (const Edge& edge : edges_) {
+      for (const PolygonEdge& edge : edges_) {
         const auto [value, gradient] = edge.distance_and_gradient(centre);
         if (value > radius_ + 4 * tolerance()) continue;
         if (const double side = cross(gradient, u); side < lowest) {
@@ -387,7 +388,7 @@ class Search {
   bool beyond_;          // the cells may reach beyond the polygon
   size_t examined_ = 0;  // number of cells
   std::vector<Vec2> vertices_;
-  std::vector<Edge> edges_;
+  std::vector<PolygonEdge> edges_;
   std::vector<Cell> queue_;
   std::vector<Found> found_;
   double radius_ = 0;

@@ -14,7 +14,7 @@ namespace {
 // of a rectangle's largest inscribed circles form a segment, although round-off makes the heights
 // at its ends differ.
 constexpr double kSameHeight = 1e-13;
-// A radius of the largest inscribed circle below this share of the polygon's size consists of
+// A radius of the largest inscribed circle below this fraction of the polygon's size consists of
 // round-off.
 constexpr double kThinnest = 8 * 0x1p-52;
 
@@ -138,7 +138,7 @@ Potential roof_potential(const Polygon& polygon, const PotentialChoice& choice,
   Potential potential = sloped_lines(polygon, reference);
   potential.top = choice.reference == Reference::roof ? 1 : skeleton.roof_height / reference;
   potential.roof = make_roof(skeleton, reference);
-  potential.cells = collar_cells(polygon, *potential.roof);
+  potential.layer = boundary_layer(polygon, *potential.roof);
   for (const Skeleton::Node& node : skeleton.nodes) {
     if (node.height >= skeleton.roof_height * (1 - kSameHeight)) {
       potential.top_points.push_back(node.point);
@@ -160,7 +160,7 @@ Potential field_potential(const Polygon& polygon, const PotentialChoice& choice,
   potential.top = choice.reference == Reference::inscribed_circle ? 1 : circle.radius / reference;
   potential.top_points = circle.centres;
   potential.distance = make_distance_field(polygon, reference);
-  potential.cells = collar_cells(polygon, potential.distance->slope);
+  potential.layer = boundary_layer(polygon, potential.distance->slope);
   return potential;
 }
 

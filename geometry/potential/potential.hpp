@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "geometry/polygon/polygon.hpp"
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 #include "geometry/potential/distance_field.hpp"
 #include "geometry/potential/rare.hpp"
 #include "geometry/skeleton/roof.hpp"
@@ -33,11 +33,12 @@ struct Potential {
   double steepest = 0;           ///< largest |g_i|, 1/m
   Rare<Roof> roof;               ///< roof over the straight skeleton
   Rare<DistanceField> distance;  ///< distance field
-  Rare<CollarCells> cells;       ///< of its collar, if it is not convex
+  Rare<BoundaryLayer> layer;     ///< boundary layer, if the polygon is not convex
 
   /// Number of vertices and of edges.
   [[nodiscard]] int size() const { return static_cast<int>(vertices.size()); }
-  /// True if the limit phi <= 1 has an effect. The plateau phi = 1 is the paper's singular area.
+  /// True if the limit phi <= 1 has an effect. The saturated region, where phi = 1, is the paper's
+  /// singular area.
   [[nodiscard]] bool capped() const { return top > 1; }
 };
 
@@ -83,8 +84,8 @@ Potential make_potential(const Polygon& polygon, const PotentialChoice& choice =
 /// True if a polygon that is not convex needs its straight skeleton for this potential.
 bool needs_skeleton(const PotentialChoice& choice);
 
-/// The same with a skeleton that comes from elsewhere. `skeleton` is called only if it is needed,
-/// and may throw SkeletonFailure.
+/// Returns the potential of a polygon with a given skeleton. `skeleton` is called only if it is
+/// needed, and may throw SkeletonFailure.
 Potential make_potential(const Polygon& polygon, const PotentialChoice& choice,
                          const std::function<Skeleton()>& skeleton);
 
@@ -101,7 +102,7 @@ inline constexpr std::array kPotentials{
     NamedPotential{"area", PotentialChoice::Kind::area},          // Eq. 2, triangles only
 };
 
-/// What measures the depth in a polygon that is not convex; convex ones have one field only.
+/// The measures of the depth in a polygon that is not convex; convex polygons have one field only.
 struct NamedField {
   std::string_view name;
   PotentialChoice::Field field;

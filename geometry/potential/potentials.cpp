@@ -7,7 +7,7 @@ Potentials::Potentials(std::vector<const Polygon*> polygons, const PotentialChoi
     : polygons_(std::move(polygons)), choice_(choice), sources_(polygons_.size()) {
   if (!needs_skeleton(choice_)) return;
   SimilarShapes shapes;
-  std::vector<size_t> number;  // of the skeleton of each polygon that was added to the shapes
+  std::vector<size_t> number;  // skeleton of each polygon that was added to the shapes
   std::vector<const Polygon*> originals;
   for (size_t i = 0; i < polygons_.size(); ++i) {
     if (polygons_[i]->is_convex()) continue;

@@ -1,5 +1,5 @@
-// The potentials of many polygons. What takes long to find, the straight skeleton, is found once
-// for all polygons that are copies of each other (similar_shapes.hpp, skeletons.hpp).
+// The potentials of many polygons. The straight skeleton, which takes long to compute, is computed
+// once for all polygons that are copies of each other (similar_shapes.hpp, skeletons.hpp).
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ namespace apothem {
 /// polygons by round-off only: the first one of several copies is the original.
 class Potentials {
  public:
-  /// Finds what the potentials have in common, with up to `processes` helper processes at the same
-  /// time. The polygons must outlive this object. Polygons for which there is no potential are no
-  /// error yet.
+  /// Computes the skeletons that the potentials share, with up to `processes` helper processes at
+  /// the same time. The polygons must outlive this object. Polygons for which there is no potential
+  /// cause no error yet.
   Potentials(std::vector<const Polygon*> polygons, const PotentialChoice& choice, int processes,
              const Progress& progress = {});
 
@@ -25,7 +25,7 @@ class Potentials {
   /// several threads at the same time.
   [[nodiscard]] Potential make(size_t polygon) const;
 
-  /// A polygon whose first construction of a skeleton has failed, and the one that has not.
+  /// A polygon whose first construction of a skeleton has failed, and the number of attempts.
   struct Repeated {
     size_t polygon;
     int attempts;
@@ -36,17 +36,18 @@ class Potentials {
   [[nodiscard]] size_t distinct() const { return skeletons_.size(); }
 
  private:
-  // Where the skeleton of a polygon comes from.
+  // The origin of a polygon's skeleton.
   struct Source {
     size_t skeleton;
-    std::optional<Similarity> map;  // nothing for an original
+    std::optional<Similarity> map;  // empty for an original
   };
   [[nodiscard]] Skeleton skeleton_of(size_t polygon) const;
 
   std::vector<const Polygon*> polygons_;
   PotentialChoice choice_;
-  std::vector<std::optional<Source>> sources_;  // of polygons whose potential needs a skeleton
-  std::vector<SkeletonOrFailure> skeletons_;    // of originals
+  // Source of each polygon whose potential needs a skeleton.
+  std::vector<std::optional<Source>> sources_;
+  std::vector<SkeletonOrFailure> skeletons_;  // skeletons of the originals
 };
 
 }  // namespace apothem

@@ -67,21 +67,21 @@ class RoofTrace {
   /// which phi is linear. Call cross first.
   template <class Piece>
   void pieces(const Piece& piece) const {
-    runs(piece, [](const Real&, int, const Real&, int) {});
+    segments(piece, [](const Real&, int, const Real&, int) {});
   }
 
-  /// As pieces. In addition it calls run(s, edge, s_next, edge_next) for every connected part of
-  /// the segment inside the polygon, after the last piece of that part. `edge` and `edge_next` are
-  /// the polygon's edges that the segment crosses at the ends of the part, or -1 at an end of the
-  /// segment itself.
-  template <class Piece, class Run>
-  void runs(const Piece& piece, const Run& run) const {
+  /// As pieces. In addition it calls segment(s, edge, s_next, edge_next) for every connected part
+  /// of the segment inside the polygon, after the last piece of that part. `edge` and `edge_next`
+  /// are the polygon's edges that the segment crosses at the ends of the part, or -1 at an end of
+  /// the segment itself.
+  template <class Piece, class Segment>
+  void segments(const Piece& piece, const Segment& segment) const {
     bool inside = false;
     bool open = false;
     const Crossing* first = nullptr;
     const auto close = [&](const Crossing& last) {
-      run(std::max(first->s, Real(0)), first->s < 0 ? -1 : first->edge, std::min(last.s, Real(1)),
-          last.s > 1 ? -1 : last.edge);
+      segment(std::max(first->s, Real(0)), first->s < 0 ? -1 : first->edge,
+              std::min(last.s, Real(1)), last.s > 1 ? -1 : last.edge);
       open = false;
     };
     for (size_t i = 0; i + 1 < crossings_.size(); ++i) {

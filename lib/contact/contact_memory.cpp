@@ -9,86 +9,90 @@
 namespace apothem {
 namespace {
 
-// The numbers in another scene of what belongs to bodies: -1 where there is no heir.
+// Maps the surface, vertex and body numbers of one scene to those of another scene. The result is
+// -1 for what belongs to a body that the other scene does not have.
 class Renumbering {
  public:
-  Renumbering(const ContactNumbers& from, const ContactNumbers& to,
-              std::span<const BodyIndex> heirs)
-      : from_(from), heirs_(heirs.begin(), heirs.end()) {
-    for (size_t i = 0; i < from.bodies.size(); ++i) {
-      const ContactNumbers::Body& old = from.bodies[i];
-      const ContactNumbers::Body heir =
-          heirs_[i] >= 0 ? to.bodies.at(static_cast<size_t>(heirs_[i])) : ContactNumbers::Body();
-      add(surfaces_, old.first_surface, old.surfaces, heir.first_surface, heir.surfaces);
-      add(vertices_, old.first_vertex, old.vertices, heir.first_vertex, heir.vertices);
+  Renumbering(const ContactNumbers& source, const ContactNumbers& target_scene,
+              std::span<const BodyIndex> body_map)
+      : source_(source), body_map_(body_map.begin(), body_map.end()) {
+    for (size_t i = 0; i < source.bodies.size(); ++i) {
+      const ContactNumbers::Body& old = source.bodies[i];
+      const ContactNumbers::Body target =
+          body_map_[i] >= 0 ? target_scene.bodies.at(static_cast<size_t>(body_map_[i]))
+                            : ContactNumbers::Body();
+      add(surfaces_, old.first_surface, old.surfaces, target.first_surface, target.surfaces);
+      add(vertices_, old.first_vertex, old.vertices, target.first_vertex, target.vertices);
       for (int k = 0; k < old.vertices; ++k) body_of_vertex_.push_back(static_cast<int>(i));
     }
   }
 
-  [[nodiscard]] int surface(int i) const { return at(surfaces_, i); }
-  [[nodiscard]] int vertex(int i) const { return at(vertices_, i); }
-  [[nodiscard]] int body(int i) const { return at(heirs_, i); }
+  [[nodiscard]] int surface(int i) const { return lookup(surfaces_, i); }
+  [[nodiscard]] int vertex(int i) const { return lookup(vertices_, i); }
+  [[nodiscard]] int body(int i) const { return lookup(body_map_, i); }
   [[nodiscard]] bool is_rigid_vertex(int i) const {
-    const int body = at(body_of_vertex_, i);
-    return body >= 0 && from_.bodies[static_cast<size_t>(body)].rigid;
+    const int body = lookup(body_of_vertex_, i);
+    return body >= 0 && source_.bodies[static_cast<size_t>(body)].rigid;
   }
   [[nodiscard]] int edges(int rigid) const {
-    return from_.bodies[static_cast<size_t>(rigid)].edges;
+    return source_.bodies[static_cast<size_t>(rigid)].edges;
   }
 
  private:
-  static void add(std::vector<int>& map, int first, int count, int heir_first, int heir_count) {
+  static void add(std::vector<int>& map, int first, int count, int target_first, int target_count) {
     map.resize(std::max(map.size(), static_cast<size_t>(first) + static_cast<size_t>(count)), -1);
-    for (int k = 0; k < count && count == heir_count; ++k) {
-      map[static_cast<size_t>(first) + static_cast<size_t>(k)] = heir_first + k;
+    for (int k = 0; k < count && count == target_count; ++k) {
+      map[static_cast<size_t>(first) + static_cast<size_t>(k)] = target_first + k;
     }
   }
-  static int at(const std::vector<int>& map, int i) {
+  static int lookup(const std::vector<int>& map, int i) {
     return i >= 0 && static_cast<size_t>(i) < map.size() ? map[static_cast<size_t>(i)] : -1;
   }
 
-  const ContactNumbers& from_;
-  std::vector<int> heirs_, surfaces_, vertices_, body_of_vertex_;
+  const ContactNumbers& source_;
+  std::vector<int> body_map_, surfaces_, vertices_, body_of_vertex_;
 };
 
-std::optional<ContactKey> renumbered(const ContactKey& old, const Renumbering& to) {
+std::optional<ContactKey> renumbered(const ContactKey& old, const Renumbering& numbers) {
   ContactKey key = old;
   if (key.law == outline_kernel) {
-    key.b = to.is_rigid_vertex(old.a) ? to.vertex(old.b) : to.body(old.b);
-    key.a = to.vertex(old.a);
+    key.b = numbers.is_rigid_vertex(old.a) ? numbers.vertex(old.b) : numbers.body(old.b);
+    key.a = numbers.vertex(old.a);
   } else {
-    key.a = to.surface(old.a);
-    key.b = to.surface(old.b);
+    key.a = numbers.surface(old.a);
+    key.b = numbers.surface(old.b);
   }
   if (key.a < 0 || key.b < 0) return {};
   return key;
 }
 
-// The lower number comes first, but for edges and their partners.
+// True if the two surfaces of a renumbered key are in the wrong order: the lower number comes
+// first, except in keys of an edge and its partner.
 bool is_exchanged(const ContactKey& key) { return key.law != outline_kernel && key.a > key.b; }
 
-// The force on the first body of a pair becomes that on the second one: the tangent turns round,
-// and the number along it stays.
+// The force on the first body of a pair becomes the force on the second one: the tangent is
+// reversed, and the signed force along it stays the same.
 void exchange(Spring& spring) {
   std::swap(spring.key.a, spring.key.b);
   spring.tangent = -spring.tangent;
-  const PairForce& on = spring.on_bodies;
-  spring.on_bodies = {-on.x, -on.y, on.b, on.a};
+  const PairForce& force = spring.on_bodies;
+  spring.on_bodies = {-force.x, -force.y, force.b, force.a};
 }
 
-void exchange(PatchRun& run) {
-  std::swap(run.key.a, run.key.b);
-  run.place.of_a = !run.place.of_a;
+void exchange(PatchSegment& segment) {
+  std::swap(segment.key.a, segment.key.b);
+  segment.place.of_a = !segment.place.of_a;
 }
 
-// The records of pairs that have heirs, in the order of their new numbers.
+// Returns the records of those pairs whose bodies both exist in the other scene, in the order of
+// their new keys. finish(record, old_key) completes a record whose two surfaces were exchanged.
 template <class Record>
-std::vector<Record> renumbered(std::span<const Record> records, const Renumbering& to,
+std::vector<Record> renumbered(std::span<const Record> records, const Renumbering& numbers,
                                const auto& finish) {
   std::vector<Record> result;
   for (Record record : records) {
     const ContactKey old = record.key;
-    const std::optional<ContactKey> key = renumbered(old, to);
+    const std::optional<ContactKey> key = renumbered(old, numbers);
     if (!key) continue;
     record.key = *key;
     if (is_exchanged(*key)) {
@@ -103,24 +107,25 @@ std::vector<Record> renumbered(std::span<const Record> records, const Renumberin
 
 }  // namespace
 
-FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
-                         const ContactNumbers& to, std::span<const BodyIndex> heirs) {
-  const Renumbering numbers(from, to, heirs);
-  // Edges of an overlap are numbered through both bodies.
+FrictionMemory map_memory(const FrictionMemory& memory, const ContactNumbers& source,
+                          const ContactNumbers& target, std::span<const BodyIndex> body_map) {
+  const Renumbering numbers(source, target, body_map);
+  // The law per_edge numbers the edges of an overlap through both bodies, those of the first body
+  // first.
   const auto renumber_edge = [&](Spring& spring, const ContactKey& old) {
-    if (spring.key.law != polygon_kernel || from.law != FrictionLaw::per_edge) return;
+    if (spring.key.law != polygon_kernel || source.law != FrictionLaw::per_edge) return;
     const int of_a = numbers.edges(old.a), of_b = numbers.edges(old.b);
     spring.key.part = old.part < of_a ? of_b + old.part : old.part - of_a;
   };
   std::vector<Spring> springs = renumbered(memory.springs(), numbers, renumber_edge);
-  std::vector<PatchRun> runs =
-      renumbered(memory.runs().now(), numbers, [](const PatchRun&, const ContactKey&) {});
-  if (from.law != to.law) {
+  std::vector<PatchSegment> segments =
+      renumbered(memory.segments().now(), numbers, [](const PatchSegment&, const ContactKey&) {});
+  if (source.law != target.law) {
     std::erase_if(springs, [](const Spring& s) { return s.key.law == polygon_kernel; });
-    runs.clear();
+    segments.clear();
   }
   FrictionMemory result;
-  result.inherit(std::move(springs), std::move(runs));
+  result.restore(std::move(springs), std::move(segments));
   return result;
 }
 

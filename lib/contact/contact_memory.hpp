@@ -1,4 +1,4 @@
-// What contacts remember, and how it is handed to a simulation that numbers its bodies otherwise.
+// The memory of contacts, and its mapping to a simulation that numbers its bodies differently.
 #pragma once
 
 #include <span>
@@ -11,20 +11,21 @@
 
 namespace apothem {
 
-/// The numbers by which the contacts of a scene call its bodies.
+/// The numbers by which the keys of contacts refer to the bodies of a scene.
 struct ContactNumbers {
   struct Body {
     bool rigid = false;
-    int edges = 0;                        ///< of a polygon
-    int first_surface = 0, surfaces = 0;  ///< see Surfaces
-    int first_vertex = 0, vertices = 0;   ///< see Outlines; none without outlines
+    int edges = 0;                        ///< number of edges of a rigid body's polygon
+    int first_surface = 0, surfaces = 0;  ///< range of the body's surfaces, see Surfaces
+    /// Range of the body's vertices, see OutlineSurfaces; empty without outlines.
+    int first_vertex = 0, vertices = 0;
     void fields(Archive& archive) {
       archive("rigid", rigid)("edges", edges)("first_surface", first_surface)("surfaces", surfaces)(
           "first_vertex", first_vertex)("vertices", vertices);
     }
   };
-  FrictionLaw law = FrictionLaw::resultant;  ///< of rigid bodies
-  std::vector<Body> bodies;                  ///< in the order of BodyIndex
+  FrictionLaw law = FrictionLaw::resultant;  ///< the friction law of rigid bodies
+  std::vector<Body> bodies;                  ///< one entry per body, in the order of BodyIndex
 
   void fields(Archive& archive) {
     int number = static_cast<int>(law);
@@ -33,10 +34,11 @@ struct ContactNumbers {
   }
 };
 
-/// The memory of contacts whose bodies both have an heir in another scene, by the numbers there.
-/// `heirs`: for each body of `from` its number in `to`, or -1. Springs between rigid bodies are
-/// left out if the friction laws of the two scenes differ.
-FrictionMemory hand_over(const FrictionMemory& memory, const ContactNumbers& from,
-                         const ContactNumbers& to, std::span<const BodyIndex> heirs);
+/// Maps the friction memory of one simulation to the numbering of another one (restart mapping).
+/// `body_map` gives for each body of `source` its number in `target`, or -1 if it has no
+/// counterpart; contacts of such bodies are dropped. Springs between rigid bodies are dropped if
+/// the friction laws of the two scenes differ.
+FrictionMemory map_memory(const FrictionMemory& memory, const ContactNumbers& source,
+                          const ContactNumbers& target, std::span<const BodyIndex> body_map);
 
 }  // namespace apothem

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kRoundOff = 1 - 1e-12;
 
-// No contact whose depth is at most this, m, is deeper than the floors; `shortest` of the lengths.
+// Returns a depth, m, below which no contact can exceed `floors`. `shortest` is the smallest of the
+// lengths that relative penetrations refer to, m.
 double least_of(const Penetrations& floors, double shortest) {
   return std::min(floors.largest.value, kRoundOff * floors.relative.value * shortest);
 }
@@ -53,7 +54,7 @@ bool Contacts::search_if_stale() {
   return true;
 }
 
-// To the kernels that serve them.
+// Hands the pairs of the last search to the kernels that serve them.
 void Contacts::hand_out_pairs() {
   std::array<std::vector<BoxPair>, kernel_kinds> pairs_of;
   for (const BoxPair& pair : search_.pairs()) {
@@ -65,7 +66,7 @@ void Contacts::hand_out_pairs() {
   }
   if (surfaces_.has_outlines()) surfaces_.outlines().activate(pairs_of[outline_kernel]);
   for (size_t k = 0; k < kernels_.size(); ++k) {
-    if (kernels_[k]) kernels_[k]->take(pairs_of[k]);
+    if (kernels_[k]) kernels_[k]->set_pairs(pairs_of[k]);
   }
 }
 
@@ -73,7 +74,6 @@ void Contacts::evaluate() {
   each([](Kernel& kernel) { kernel.evaluate(); });
 }
 
-// In the order of the kernels.
 void Contacts::visit(double least, const ContactVisitor& show) const {
   each([&](const Kernel& kernel) { kernel.visit_contacts(least, show); });
 }
@@ -90,10 +90,11 @@ int Contacts::count() const {
 
 std::optional<ContactFault> Contacts::fault() const {
   const auto is_out = [](const Contact& contact) {
-    return !(contact.share < 1) && contact.kernel != outline_kernel;  // also if it is NaN
+    return !(contact.relative_depth < 1) &&
+           contact.kernel != outline_kernel;  // a NaN counts as out of range
   };
   bool out = false;
-  each([&](const Kernel& kernel) { out = out || kernel.summary().share >= 1; });
+  each([&](const Kernel& kernel) { out = out || kernel.summary().relative_depth >= 1; });
   if (!out) return {};
   for (const Contact& contact : contacts()) {
     if (!is_out(contact)) continue;
@@ -104,18 +105,18 @@ std::optional<ContactFault> Contacts::fault() const {
   return {};
 }
 
-void Contacts::slide(const Kinematics& now, double dt) {
+void Contacts::update_friction(const Kinematics& now, double dt) {
   if (!tangential_) return;
   tried_ = false;
   memory_.begin_step();
   double work = 0;
-  each([&](Kernel& kernel) { work += kernel.slide(now, dt, memory_); });
+  each([&](Kernel& kernel) { work += kernel.update_friction(now, dt, memory_); });
   memory_.end_step(work);
 }
 
-void Contacts::try_slide(const Kinematics& now, double dt) {
+void Contacts::try_friction(const Kinematics& now, double dt) {
   drop_trial();
-  slide(now, dt);
+  update_friction(now, dt);
   tried_ = tangential_;
 }
 
@@ -123,7 +124,7 @@ void Contacts::drop_trial() {
   if (!tried_) return;
   tried_ = false;
   memory_.undo_step();
-  each([](Kernel& kernel) { kernel.undo_slide(); });
+  each([](Kernel& kernel) { kernel.undo_friction(); });
 }
 
 void Contacts::add_forces(ForceViews forces) {
@@ -148,7 +149,7 @@ void Contacts::add_dashpots(const Kinematics& now, const Dashpots::Motion& motio
   dashpots_.add_forces(forces);
 }
 
-void Contacts::book_bend(Dynamics dynamics, double dt) {
+void Contacts::add_bend_losses(Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   const double lost = dynamics.lost_in_bend(dt);
   if (table_.damped()) {
@@ -158,15 +159,17 @@ void Contacts::book_bend(Dynamics dynamics, double dt) {
   }
 }
 
-bool Contacts::find_onsets(const Kinematics& now, Dynamics dynamics, double dt) {
+bool Contacts::find_event_impulses(const Kinematics& now, Dynamics dynamics, double dt) {
   dynamics.beside_before = beside_before_, dynamics.beside_after = beside_;
   bool found = false;
-  each([&](Kernel& kernel) { found = kernel.find_onsets(now, dynamics, dt, memory_) || found; });
+  each([&](Kernel& kernel) {
+    found = kernel.find_event_impulses(now, dynamics, dt, memory_) || found;
+  });
   return found;
 }
 
-void Contacts::add_onsets(double scale, const ForceViews& forces) const {
-  each([&](const Kernel& kernel) { kernel.add_onsets(scale, forces); });
+void Contacts::add_event_impulses(double scale, const ForceViews& forces) const {
+  each([&](const Kernel& kernel) { kernel.add_event_impulses(scale, forces); });
 }
 
 std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
@@ -179,8 +182,9 @@ std::pair<BodyIndex, BodyIndex> Contacts::bodies(const Contact& contact) const {
 
 std::pair<BodyIndex, BodyIndex> Contacts::bodies(const ContactKey& key) const {
   if (key.law != outline_kernel) return {surfaces_.body(key.a), surfaces_.body(key.b)};
-  // The partner of an edge is a body, or a face of a mesh that slides on a rigid body.
-  const Outlines& o = surfaces_.outlines();
+  // The partner of a mesh edge is a body. The partner of an edge of a rigid body is a face of a
+  // mesh.
+  const OutlineSurfaces& o = surfaces_.outlines();
   const BodyIndex own = o.body[key.a];
   return {own, o.bodies[own].is_rigid() ? o.body[key.b] : key.b};
 }
@@ -193,7 +197,8 @@ size_t Contacts::candidates() const {
   return sum<size_t>([](const Kernel& k) { return k.candidates(); });
 }
 
-// First by what is known of the contacts; then exactly of the few that may be deeper than that.
+// The first pass uses the lower bounds that the kernels know anyway. The second pass measures only
+// those contacts exactly whose upper bounds exceed the result of the first pass.
 Penetrations Contacts::penetrations(std::span<const double> lengths,
                                     const Penetrations& floors) const {
   constexpr double kKnown = 1 + 1e-6;
@@ -212,7 +217,6 @@ Penetrations Contacts::penetrations(std::span<const double> lengths,
     raise(c, c.depth, found.largest);
     raise(c, c.depth / length(c), found.relative);
   });
-  // Those that may be deeper still are few.
   visit(least_of(found, shortest), [&](const Contact& c) {
     if (c.at_most <= kKnown * c.depth) return;
     const double known = std::min(found.largest.value, found.relative.value * length(c));
@@ -232,7 +236,7 @@ bool Contacts::may_be_deeper(const Penetrations& floors, double shortest) const 
     const ContactSummary all = kernel.summary();
     if (!(all.deepest > least)) return;
     deeper = deeper || all.deepest > floors.largest.value ||
-             all.relative > kRoundOff * floors.relative.value;
+             all.inradius_ratio > kRoundOff * floors.relative.value;
   });
   return deeper;
 }
@@ -327,7 +331,7 @@ ContactNumbers Contacts::numbers() const {
     body.rigid = true;
     body.edges = surfaces_.shapes().view(i).size;
   }
-  const std::vector<Outlines::Body>& outlines = surfaces_.outlines().bodies;
+  const std::vector<OutlineSurfaces::Body>& outlines = surfaces_.outlines().bodies;
   for (size_t i = 0; i < outlines.size(); ++i) {
     numbers.bodies[i].first_vertex = outlines[i].first;
     numbers.bodies[i].vertices = outlines[i].end - outlines[i].first;
@@ -335,7 +339,7 @@ ContactNumbers Contacts::numbers() const {
   return numbers;
 }
 
-void Contacts::inherit(const FrictionMemory& memory) {
+void Contacts::set_memory(const FrictionMemory& memory) {
   if (tangential_) memory_ = memory;
 }
 

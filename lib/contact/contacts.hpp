@@ -2,10 +2,10 @@
 //
 //   surfaces -> search -> kernels -> contacts -> friction -> forces
 //
-// Surfaces move with their bodies; the search finds pairs that are near each other; a table says
-// which kernel serves a pair (kernel.hpp); the kernels fill one list of contacts; friction follows
-// them with one memory; forces go to the degrees of freedom. A scene has the kernels that its
-// surfaces need and no others.
+// Surfaces move with their bodies. The search finds pairs of surfaces that are near each other. A
+// table says which kernel serves a pair (kernel.hpp). The kernels fill one list of contacts.
+// Friction follows the contacts with one memory, and the forces go to the degrees of freedom. A
+// scene has only those kernels that its surfaces need.
 #pragma once
 
 #include <array>
@@ -24,55 +24,60 @@
 
 namespace apothem {
 
-/// The largest penetration of a pair of bodies, m, and the largest ratio of one to the smaller of
-/// two lengths that belong to the bodies. They may be of different pairs.
+/// The largest penetration of a pair of bodies, m, and the largest ratio of a penetration to the
+/// smaller of the lengths of its two bodies. The two maxima may belong to different pairs.
 struct Penetrations {
   PairPeak largest, relative;
 };
 
 class Contacts {
  public:
-  /// `thickness` of the model in m.
+  /// `thickness` is that of the model, m.
   Contacts(const ContactLaw& law, double thickness, Surfaces surfaces, PairTable table,
            int threads);
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
-  /// Moves all surfaces, or those of bodies that can move. Throws NotFinite.
+  /// place_all moves all surfaces; place moves only those of bodies that can move. Both throw
+  /// NotFinite.
   void place_all(const Kinematics& now) { surfaces_.place_all(now); }
   void place(const Kinematics& now) { surfaces_.place(now, threads_); }
-  /// See Surfaces. Has the next step search anew.
+  /// Marks bodies as absent (see Surfaces::set_absent) and forces a new search in the next step.
   void set_absent(const std::vector<std::uint8_t>& absent) {
     surfaces_.set_absent(absent);
     forget_search();
   }
-  /// Renews the candidates if they do not serve any more; true if it did.
+  /// Searches for candidate pairs if those of the last search are no longer valid. Returns true if
+  /// it did.
   bool search_if_stale();
-  /// Contacts and normal forces where the surfaces are.
+  /// Finds the contacts and their normal forces at the present positions of the surfaces.
   void evaluate();
-  /// The first contact out of the range of its method, if there is one.
+  /// The first contact that is out of the range of its method, if there is one.
   [[nodiscard]] std::optional<ContactFault> fault() const;
-  /// Friction of a step of dt (s) that ends here, with half-step velocities (Eq. 18: the full-step
-  /// ones would pump energy in). With dt = 0 the springs keep their forces.
-  void slide(const Kinematics& now, double dt);
-  /// The same for a state that is tried: the next slide begins where this one has begun.
-  void try_slide(const Kinematics& now, double dt);
-  /// Contacts remember what they did before the last slide that was tried.
+  /// Updates the friction springs at the end of a step of dt (s). `now` must hold the half-step
+  /// velocities (Eq. 18), because full-step velocities would add energy. With dt = 0 the springs
+  /// keep their forces.
+  void update_friction(const Kinematics& now, double dt);
+  /// Updates the friction springs for a trial state. The next update starts from the same springs
+  /// as this one did.
+  void try_friction(const Kinematics& now, double dt);
+  /// Discards the last trial update of the friction springs.
   void drop_trial();
-  /// Has the next refresh() keep the candidates.
+  /// Makes the next refresh() keep the present candidates.
   void keep_search() { kept_search_ = search_.places(surfaces_); }
   void add_forces(ForceViews forces);
-  /// After the slide, when all other forces of the step of dt (s) are known: adds those of the
-  /// dashpots to the forces on every coordinate, N and N m. `first`: nothing has moved since the
-  /// last look, and no work is booked.
+  /// Adds the dashpot forces on all coordinates, N and N m. It must be called after the friction
+  /// update, when all other forces of the step of dt (s) are known. `first` means that nothing has
+  /// moved since the last evaluation, so that no work is booked.
   void add_dashpots(const Kinematics& now, const Dashpots::Motion& motion, double dt, bool first,
                     std::span<double> forces);
 
-  /// Ascending within a kernel, one kernel after the other. Not for every step.
+  /// All contacts, kernel by kernel, in ascending order within each kernel. It is too slow for
+  /// every step.
   [[nodiscard]] std::vector<Contact> contacts() const;
-  /// How many there are.
+  /// The number of contacts.
   [[nodiscard]] int count() const;
-  /// The bodies of a contact, and of a spring.
+  /// The two bodies of a contact, and those of the friction spring with a key.
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const Contact& contact) const;
   [[nodiscard]] std::pair<BodyIndex, BodyIndex> bodies(const ContactKey& key) const;
   [[nodiscard]] const Surfaces& surfaces() const { return surfaces_; }
@@ -81,43 +86,44 @@ class Contacts {
   /// True if there is friction or damping.
   [[nodiscard]] bool dissipates() const { return tangential_; }
   [[nodiscard]] bool damped() const { return table_.damped(); }
-  /// After the forces at the end of a drift of dt (s): books what friction and damping take on a
-  /// path that bends within the step.
-  void book_bend(Dynamics dynamics, double dt);
-  /// Impulses of contacts that have begun or ended in the drift of dt (s): see Kernel.
-  bool find_onsets(const Kinematics& now, Dynamics dynamics, double dt);
-  void add_onsets(double scale, const ForceViews& forces) const;
+  /// Adds to the ledger what friction and damping take because the path of a step is curved. It
+  /// must be called after the forces at the end of a drift of dt (s) are known.
+  void add_bend_losses(Dynamics dynamics, double dt);
+  /// Finds and adds the impulses of contact events in the drift of dt (s), see Kernel.
+  bool find_event_impulses(const Kinematics& now, Dynamics dynamics, double dt);
+  void add_event_impulses(double scale, const ForceViews& forces) const;
 
-  /// Elastic energy of contacts and springs, J. Not for every step.
+  /// Elastic energy of contacts and friction springs, J. It is too slow for every step.
   [[nodiscard]] double energy() const;
   [[nodiscard]] double friction_loss() const { return memory_.loss(); }
   [[nodiscard]] double damping_loss() const { return memory_.damping_loss(); }
-  /// What has been dissipated so far does not count.
+  /// Sets the dissipated energies to zero.
   void start_ledger() { memory_.start_ledger(); }
 
   [[nodiscard]] std::int64_t searches() const { return searches_; }
   [[nodiscard]] size_t candidates() const;
-  /// Of the last step: the largest penetrations of pairs of bodies, to one part in a million, or
-  /// `floors` where they are not above these, which is soon found out. `lengths`: of every body, m.
+  /// The largest penetrations of pairs of bodies in the last step, accurate to one part in a
+  /// million, or `floors` where no pair exceeds them. `lengths` has one length per body, m.
   [[nodiscard]] Penetrations penetrations(std::span<const double> lengths,
                                           const Penetrations& floors = {}) const;
-  /// False if no contact is deeper than `floors`, for bodies of no length below `shortest` (m); the
-  /// lengths of rigid ones are their inradii. Most steps bring nothing new, and this says so soon.
+  /// A quick test that is false if no contact is deeper than `floors`, for bodies whose lengths are
+  /// at least `shortest` (m). The length of a rigid body must be its inradius. Most steps bring no
+  /// new maximum.
   [[nodiscard]] bool may_be_deeper(const Penetrations& floors, double shortest) const;
-  /// Of the last step: the largest normal force of a pair of bodies, N. That of a body with itself
-  /// is none.
+  /// The largest normal force between two different bodies in the last step, N.
   [[nodiscard]] PairPeak largest_force() const;
 
-  /// Bound of w^2 of the boundary nodes of meshes, 1/s^2: see OutlineKernel::rate.
+  /// Upper bound of the squared frequency w^2 of the boundary nodes of meshes, 1/s^2, see
+  /// OutlineKernel::rate.
   [[nodiscard]] double node_rate(std::span<const double> node_mass) const;
   void add_stiffness(std::span<double> nodes, std::span<double> rigid) const;
-  /// The force on a deformable body, N.
+  /// The total contact force on a deformable body, N.
   [[nodiscard]] Vec2 force_on(BodyIndex body) const;
-  /// Adds the sizes of the normal forces on each body, N.
+  /// Adds the magnitudes of the normal forces on each body, N.
   void add_force_sizes(std::span<double> of_bodies) const;
-  /// The sizes of the friction forces on each body, summed, N.
+  /// The sum of the magnitudes of the friction forces on each body, N.
   [[nodiscard]] std::vector<double> friction_sizes() const;
-  /// One for each contact patch.
+  /// One record for each contact patch.
   [[nodiscard]] std::vector<ContactRecord> records() const;
   /// The friction springs of all contacts, in ascending order of their keys.
   [[nodiscard]] std::vector<Spring> springs() const {
@@ -126,21 +132,22 @@ class Contacts {
   /// The boundary edges that take part in contact with meshes.
   [[nodiscard]] std::vector<SurfaceRecord> surface_records() const;
 
-  /// Has the next step search anew.
+  /// Forces a new search in the next step.
   void forget_search();
-  /// Finds candidates, contacts and forces again. After keep_search() the candidates are those of
-  /// that moment, and after `fields` has been loaded those that its simulation had.
+  /// Finds candidates, contacts and forces again for a state that was set from outside. After
+  /// keep_search() the candidates are those of that moment. After `fields` has loaded a checkpoint,
+  /// they are those of the simulation that wrote it.
   void refresh(const Kinematics& now);
   void fields(Archive& archive);
 
-  /// The numbers that the memory of contacts goes by.
+  /// The numbers that the keys of the friction memory refer to.
   [[nodiscard]] ContactNumbers numbers() const;
-  /// Takes over the memory of other contacts, by the numbers of these.
-  void inherit(const FrictionMemory& memory);
+  /// Replaces the friction memory. Its keys must refer to the numbers of these contacts.
+  void set_memory(const FrictionMemory& memory);
 
  private:
   void hand_out_pairs();
-  // Those that may be deeper than `least`, m.
+  // Calls show(contact) for the contacts that may be deeper than `least`, m.
   void visit(double least, const ContactVisitor& show) const;
   template <class F>
   void each(F&& f) const {
@@ -160,26 +167,27 @@ class Contacts {
   PairTable table_;
   FrictionLaw friction_law_;
   Search search_;
-  std::optional<SearchPlaces> kept_search_;  // and not used yet
+  std::optional<SearchPlaces> kept_search_;  // places that the next refresh() searches at
   std::array<std::unique_ptr<Kernel>, kernel_kinds> kernels_;
-  bool tangential_;  // there is friction or damping
+  bool tangential_;  // true if there is friction or damping
   FrictionMemory memory_;
   Dashpots dashpots_;
-  // What friction and damping do to rigid bodies, N and N m: now and in the step before.
+  // Forces of friction and damping on rigid bodies, N and N m, in this step and in the step before.
   std::vector<double> beside_, beside_before_;
-  bool tried_ = false;  // the last slide was a trial
+  bool tried_ = false;  // true if the last friction update was a trial
   std::int64_t searches_ = 0;
 };
 
-/// A vertex of a body that lies farther inside another body than potentials near surfaces reach, so
-/// that contact would not feel it. Pairs of rigid bodies are not looked at: their potentials reach
-/// to their centres.
-struct Buried {
+/// A body that is engulfed by another one: one of its vertices lies deeper inside the other body
+/// than the potentials near the surface reach, so that contact would not feel it. Pairs of rigid
+/// bodies are not checked, because their potentials reach to the centre.
+struct EngulfedBody {
   BodyIndex inner, outer;
   Vec2 place;  ///< m
 };
-/// Bodies of which `absent` is not 0 are not there; it may be empty.
-std::optional<Buried> find_buried(const Outlines& outlines,
-                                  const std::vector<std::uint8_t>& absent = {});
+/// Finds an engulfed body. Bodies with a nonzero entry in `absent` are ignored; `absent` may be
+/// empty.
+std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& outlines,
+                                          const std::vector<std::uint8_t>& absent = {});
 
 }  // namespace apothem

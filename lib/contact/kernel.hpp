@@ -1,5 +1,5 @@
-// A kernel finds the contacts of some pairs of surfaces and the forces in them. Kernels keep their
-// own mathematics; what surrounds them exists once, in Contacts.
+// A kernel finds the contacts of certain pairs of surfaces and the forces in them. Each kernel has
+// its own mathematics; everything around it exists once, in Contacts.
 #pragma once
 
 #include <algorithm>
@@ -13,48 +13,49 @@
 #include "geometry/spatial/boxes.hpp"
 #include "lib/contact/law/contact.hpp"
 #include "lib/contact/law/dashpots.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 #include "lib/contact/law/friction_memory.hpp"
 #include "lib/contact/law/kinematics.hpp"
-#include "lib/contact/law/onset_rule.hpp"
 #include "lib/contact/surface/surfaces.hpp"
 
 namespace apothem {
 
-/// Two bodies that are deeper in each other than their potentials reach, so that the forces are not
-/// to be trusted, or an element out of the range of its method.
+/// Two bodies that overlap more deeply than their potentials reach, so that the forces are not
+/// reliable, or an element that is out of the range of its method.
 struct ContactFault {
   enum class Kind { singular_area, centre, element, not_convex };
   Kind kind;
-  BodyIndex a, b;             ///< a is in b where that makes a difference
+  BodyIndex a, b;             ///< the two bodies; a lies in b where that makes a difference
   Vec2 place = Vec2::Zero();  ///< m
   double depth = 0;           ///< m
 };
 
-/// A largest value and the two bodies it is of.
+/// A largest value and the two bodies that it belongs to.
 struct PairPeak {
   double value = 0;
   BodyIndex a = -1, b = -1;
 };
 
-/// Of all contacts of a kernel.
+/// Sums and maxima over all contacts of a kernel.
 struct ContactSummary {
   int count = 0;
-  double deepest = 0;  ///< none is deeper, m
-  double share = 0;    ///< largest: see Contact
-  /// None is deeper than so many inradii of one of its bodies; HUGE_VAL if that is not known.
-  double relative = HUGE_VAL;
+  double deepest = 0;         ///< upper bound of all penetrations, m
+  double relative_depth = 0;  ///< largest Contact::relative_depth
+  /// Upper bound of the penetration over the inradius of one of the two bodies; HUGE_VAL if it is
+  /// not known.
+  double inradius_ratio = HUGE_VAL;
 
   void include(double depth, double inradius, double of_range) {
     ++count;
     deepest = std::max(deepest, depth);
-    share = std::max(share, of_range);
-    relative = std::max(relative, depth / inradius);
+    relative_depth = std::max(relative_depth, of_range);
+    inradius_ratio = std::max(inradius_ratio, depth / inradius);
   }
   void include(const ContactSummary& other) {
     count += other.count;
     deepest = std::max(deepest, other.deepest);
-    share = std::max(share, other.share);
-    relative = std::max(relative, other.relative);
+    relative_depth = std::max(relative_depth, other.relative_depth);
+    inradius_ratio = std::max(inradius_ratio, other.inradius_ratio);
   }
 };
 
@@ -64,73 +65,78 @@ class Kernel {
  public:
   virtual ~Kernel() = default;
 
-  /// After a search: the pairs that this kernel serves. A body that touches itself is a pair with
-  /// itself.
-  virtual void take(std::span<const BoxPair> pairs) = 0;
-  /// Finds the contacts of its pairs and the normal forces in them. The same bits for any number of
-  /// threads. No allocation unless there are more contacts than ever before.
+  /// Sets the pairs that this kernel serves, after a search. A body that may touch itself is a pair
+  /// with itself.
+  virtual void set_pairs(std::span<const BoxPair> pairs) = 0;
+  /// Finds the contacts of all pairs and the normal forces in them. The result has the same bits
+  /// for any number of threads. Memory is allocated only if there are more contacts than ever
+  /// before.
   virtual void evaluate() = 0;
-  /// What a step asks of them.
+  /// The summary of all contacts that every step needs.
   [[nodiscard]] virtual ContactSummary summary() const = 0;
-  /// Shows those that may be deeper than `least`, m, in ascending order. Not for every step.
+  /// Calls visit(contact) for the contacts that may be deeper than `least`, m, in ascending order.
+  /// It is too slow for every step.
   virtual void visit_contacts(double least, const ContactVisitor& visit) const = 0;
-  /// The penetration of one of its contacts, m; `floor` if it is not larger than that. It is the
-  /// largest distance from the boundary of one body of a point on the boundary of the other one
-  /// that lies inside it (geometry/integrals/penetration.hpp). Not for every contact and step.
+  /// The penetration of a contact of this kernel, m, or `floor` if the penetration is not larger.
+  /// It is the largest distance from the boundary of one body of a point on the boundary of the
+  /// other body that lies inside the first one (geometry/integrals/penetration.hpp). It is too slow
+  /// for all contacts in every step.
   [[nodiscard]] virtual double penetration(const Contact& contact, double floor) = 0;
-  /// Where and why one of its contacts, with a share of 1 or more, is out of range. Outlines have
-  /// no such contacts: beyond a collar the potential is constant.
+  /// Where and why a contact with a relative depth of 1 or more is out of range. Contacts of
+  /// outlines never are, because the potential is constant beyond a collar.
   [[nodiscard]] virtual ContactFault fault(const Contact& /*contact*/) const { return {}; }
-  /// Friction of a step of dt (s) that ends here, with half-step velocities. With dt = 0 the
-  /// springs keep their forces. Returns the work on the bodies since the last call, J, of springs
-  /// whose losses it does not book itself.
-  virtual double slide(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
-  /// Takes back the last slide, whose step the memory takes back.
-  virtual void undo_slide() {}
-  /// After the memory has been restored: finds the forces of friction again that the next slide
-  /// needs.
-  virtual void refresh(const Kinematics& now, FrictionMemory& memory) { slide(now, 0, memory); }
-  /// Adds all forces but those of dashpots, normal ones first.
+  /// Updates the friction springs at the end of a step of dt (s), with half-step velocities. With
+  /// dt = 0 the springs keep their forces. Returns the work on the bodies since the last call, J,
+  /// of those springs whose losses the kernel does not book itself.
+  virtual double update_friction(const Kinematics& now, double dt, FrictionMemory& memory) = 0;
+  /// Undoes the last friction update. The caller undoes the same step of the memory.
+  virtual void undo_friction() {}
+  /// Recomputes the friction forces that the next update needs, after the memory has been restored.
+  virtual void refresh(const Kinematics& now, FrictionMemory& memory) {
+    update_friction(now, 0, memory);
+  }
+  /// Adds all forces except those of dashpots, the normal forces first.
   virtual void add_forces(const ForceViews& forces) = 0;
-  /// After a slide: the dashpots of its contacts.
-  virtual void add_dashpots(const Kinematics& now, Dashpots& to) = 0;
-  /// Takes note of what these have been found to do; they begin at the number `next`, which goes on
-  /// to the first one of the next kernel.
-  virtual void keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) = 0;
-  /// At the end of a drift of dt (s): finds the impulses that contacts lack that have begun or
-  /// ended in it (onset.hpp); true if there is one.
-  virtual bool find_onsets(const Kinematics& /*now*/, const Dynamics& /*dynamics*/, double /*dt*/,
-                           FrictionMemory& /*memory*/) {
+  /// Adds the dashpots of the contacts of the last friction update.
+  virtual void add_dashpots(const Kinematics& now, Dashpots& dashpots) = 0;
+  /// Stores the forces that the dashpots have been found to exert. The dashpots of this kernel
+  /// begin at the index `next`, which is advanced to the first one of the next kernel.
+  virtual void keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) = 0;
+  /// Finds the impulses that velocity Verlet misses because contacts have begun or ended in the
+  /// drift of dt (s) that ends now (law/event_impulse.hpp). Returns true if there is one.
+  virtual bool find_event_impulses(const Kinematics& /*now*/, const Dynamics& /*dynamics*/,
+                                   double /*dt*/, FrictionMemory& /*memory*/) {
     return false;
   }
-  /// Adds these impulses over dt, times `scale`, to the forces.
-  virtual void add_onsets(double /*scale*/, const ForceViews& /*forces*/) const {}
-  /// Of the last call: the largest normal force of a pair of bodies, N.
+  /// Adds these impulses divided by dt and multiplied by `scale` to the forces.
+  virtual void add_event_impulses(double /*scale*/, const ForceViews& /*forces*/) const {}
+  /// The largest normal force of a pair of bodies in the last evaluation, N.
   [[nodiscard]] virtual PairPeak largest_force() const = 0;
 
-  /// Elastic energy of the normal contact, J. Not for every step.
+  /// Elastic energy of the normal contact, J. It is too slow for every step.
   [[nodiscard]] virtual double energy() const = 0;
-  /// Bound of w^2 of boundary nodes of these masses in kg (0 where held), 1/s^2.
+  /// Upper bound of the squared frequency w^2 of boundary nodes with these masses in kg (0 where a
+  /// support fixes the node), 1/s^2.
   [[nodiscard]] virtual double rate(std::span<const double> /*node_mass*/) const { return 0; }
-  /// Adds to each node near another body the same bound as a stiffness, N/m, and to x, y and angle
-  /// of each rigid body what nodes near it have, N/m and N m.
+  /// Adds the same bound as a stiffness to each node near another body, N/m. Each rigid body gets,
+  /// for x, y and angle, the sum over the nodes near it, N/m and N m.
   virtual void add_stiffness(std::span<double> /*nodes*/, std::span<double> /*rigid*/) const {}
 
   [[nodiscard]] virtual size_t candidates() const = 0;
-  /// The force on a deformable body, N.
+  /// The total contact force on a deformable body, N.
   [[nodiscard]] virtual Vec2 force_on(BodyIndex /*body*/) const { return Vec2::Zero(); }
-  /// Adds the sizes of the normal forces in its contacts to both bodies, N. Not known to all
-  /// kernels.
+  /// Adds the magnitudes of the normal forces in the contacts to both bodies, N. Not all kernels
+  /// know them.
   virtual void add_force_sizes(std::span<double> /*of_bodies*/) const {}
-  /// Appends one record for each contact patch; ascending pairs of bodies.
+  /// Appends one record for each contact patch, in ascending order of the pairs of bodies.
   virtual void add_records(std::vector<ContactRecord>& records) const = 0;
-  /// Appends the boundary edges of its surfaces.
+  /// Appends one record for each boundary edge of the surfaces.
   virtual void add_surfaces(std::vector<SurfaceRecord>& /*records*/) const {}
 
   virtual void fields(Archive& /*archive*/) {}
 };
 
-/// Which kernel serves a pair of surfaces.
+/// The kernel that serves a pair of surfaces.
 inline constexpr std::array<std::array<KernelKind, 3>, 3> kKernelOf{{
     // polygon         element         outline
     {polygon_kernel, element_kernel, outline_kernel},  // polygon

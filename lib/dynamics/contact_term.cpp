@@ -61,14 +61,14 @@ MeshInertia inertia_of(const DeformableBody& body, const DegreesOfFreedom& dofs)
     for (const size_t axis : {0, 1}) {
       if (dofs.is_held(c + axis)) inertia.inverse_mass[axis] = inertia.inverse_mass[2] = 0;
     }
-    inertia.shares.push_back(dofs.mass(c));
+    inertia.mass_fractions.push_back(dofs.mass(c));
     mass += dofs.mass(c);
     centre += dofs.mass(c) * nodes[i];
   }
   centre /= mass;
   for (size_t i = 0; i < nodes.size(); ++i) {
-    moment += inertia.shares[i] * (nodes[i] - centre).squaredNorm();
-    inertia.shares[i] /= mass;
+    moment += inertia.mass_fractions[i] * (nodes[i] - centre).squaredNorm();
+    inertia.mass_fractions[i] /= mass;
   }
   for (const size_t axis : {0, 1}) inertia.inverse_mass[axis] /= mass;
   inertia.inverse_mass[2] /= moment;
@@ -146,12 +146,12 @@ ContactTerm::ContactTerm(const Model& model, const DegreesOfFreedom& dofs, const
   } catch (const NotFinite& error) {
     throw Unrunnable(error.what(), "bodies", -1);
   }
-  if (touches_meshes(model)) refuse_buried(state);
+  if (touches_meshes(model)) refuse_engulfed(state);
 }
 
 // Contact of meshes is felt near surfaces only: a body deep inside another one would feel nothing.
-void ContactTerm::refuse_buried(const State& state) const {
-  Outlines outlines;
+void ContactTerm::refuse_engulfed(const State& state) const {
+  OutlineSurfaces outlines;
   for (RigidIndex i = 0; i < static_cast<RigidIndex>(model_.bodies.size()); ++i) {
     const Potential& potential = model_.bodies[i].potential;
     outlines.add_rigid(potential.vertices, i, 1 / potential.steepest);
@@ -160,7 +160,7 @@ void ContactTerm::refuse_buried(const State& state) const {
     outlines.add_mesh(body.mesh, boundary(body.mesh), body.first_node);
   }
   outlines.place(state.kinematics(state.v), contacts_.surfaces().shapes());
-  const std::optional<Buried> found = find_buried(outlines, state.absent);
+  const std::optional<EngulfedBody> found = find_engulfed(outlines, state.absent);
   if (!found) return;
   const Vec2 world = found->place + model_.origin;
   throw Unrunnable(
@@ -207,8 +207,8 @@ void ContactTerm::check_drift(const State& state, double dt) {
 
 void ContactTerm::watch(const State& state) {
   if (!touches_itself(model_)) return;
-  const Outlines& outlines = contacts_.surfaces().outlines();
-  const std::optional<Outlines::Notch> notch = outlines.closed_notch();
+  const OutlineSurfaces& outlines = contacts_.surfaces().outlines();
+  const std::optional<OutlineSurfaces::Notch> notch = outlines.closed_notch();
   if (!notch) {
     if (++looks_without_notch_ >= kLooksKept) closed_notch_.clear();
     return;
@@ -242,9 +242,9 @@ void ContactTerm::add_forces(const Evaluation& now) {
   contacts_.evaluate();
   if (const auto fault = contacts_.fault()) refuse(*fault, state);
   if (now.trial) {
-    contacts_.try_slide(kinematics, now.dt);
+    contacts_.try_friction(kinematics, now.dt);
   } else {
-    contacts_.slide(kinematics, now.dt);
+    contacts_.update_friction(kinematics, now.dt);
   }
   now.clock.lap(Phase::contact);
   contacts_.add_forces({state.layout.of_rigid(state.f), state.layout.of_nodes(state.f), now.lambda,
@@ -261,9 +261,9 @@ void ContactTerm::add_forces(const Evaluation& now) {
 void ContactTerm::add_dashpots(State& state, double dt, bool onsets, bool first) {
   std::span<const double> kicked = state.f;
   if (onsets) {
-    with_onsets_ = state.f;
-    add_onsets(state.layout, with_onsets_);
-    kicked = with_onsets_;
+    with_event_impulses_ = state.f;
+    add_event_impulses(state.layout, with_event_impulses_);
+    kicked = with_event_impulses_;
   }
   rails_.clear();
   for (const DegreesOfFreedom::Driven& d : dofs_.driven()) {

@@ -32,17 +32,17 @@ class ContactTerm final : public Term {
   [[nodiscard]] bool dissipates() const { return contacts_.dissipates(); }
   /// After add_forces at the end of a drift of dt (s), with all forces at the start of the step as
   /// `before`: books what the trapezoid rule leaves out of the work of friction and damping.
-  void book_bend(const State& state, std::span<const double> before, double dt) {
-    contacts_.book_bend({dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
+  void add_bend_losses(const State& state, std::span<const double> before, double dt) {
+    contacts_.add_bend_losses({dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
   /// Likewise: finds the impulses that the two ends of the step do not tell of, because a contact
   /// has begun or ended in between. True if there is one.
-  bool find_onsets(const State& state, std::span<const double> before, double dt) {
-    return contacts_.find_onsets(state.kinematics(state.v),
-                                 {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
+  bool find_event_impulses(const State& state, std::span<const double> before, double dt) {
+    return contacts_.find_event_impulses(
+        state.kinematics(state.v), {dofs_.inverse_mass(), before, state.f, dofs_.weight()}, dt);
   }
   /// Adds these impulses as a force over the second half of the step.
-  void add_onsets(State& state) const { add_onsets(state.layout, state.f); }
+  void add_event_impulses(State& state) const { add_event_impulses(state.layout, state.f); }
   [[nodiscard]] bool damped() const { return contacts_.damped(); }
   /// Adds the forces of dashpots, when all other ones in a step of dt (s) are known; `onsets`:
   /// there are such impulses. `first`: nothing has moved since the last look.
@@ -83,7 +83,7 @@ class ContactTerm final : public Term {
   void set_absent(const std::vector<std::uint8_t>& absent) { contacts_.set_absent(absent); }
 
   /// See Simulation::inherit.
-  void inherit(const FrictionMemory& memory) { contacts_.inherit(memory); }
+  void inherit(const FrictionMemory& memory) { contacts_.set_memory(memory); }
 
   /// What was wrong with the contact of a body with itself in one of the last looks, in words.
   [[nodiscard]] const std::string& closed_notch() const { return closed_notch_; }
@@ -98,10 +98,10 @@ class ContactTerm final : public Term {
 
  private:
   static Surfaces surfaces_of(const Model& model, const DegreesOfFreedom& dofs);
-  void add_onsets(const Layout& layout, std::vector<double>& forces) const {
-    contacts_.add_onsets(2, {layout.of_rigid(forces), layout.of_nodes(forces), {}});
+  void add_event_impulses(const Layout& layout, std::vector<double>& forces) const {
+    contacts_.add_event_impulses(2, {layout.of_rigid(forces), layout.of_nodes(forces), {}});
   }
-  void refuse_buried(const State& state) const;
+  void refuse_engulfed(const State& state) const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
   void refuse_passage(const State& state);
@@ -113,7 +113,7 @@ class ContactTerm final : public Term {
   std::vector<double> inradius_;  // of each body, m
   double shortest_inradius_ = 0;  // of these, m
   StrideWatch strides_;
-  std::vector<double> with_onsets_;            // all forces but those of dashpots
+  std::vector<double> with_event_impulses_;    // all forces but those of dashpots
   std::vector<Dashpots::Motion::Rail> rails_;  // servo walls
   Peak penetration_, relative_penetration_, force_;
   ContactCounts counts_;

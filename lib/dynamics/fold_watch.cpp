@@ -60,8 +60,8 @@ void FoldWatch::fields(Archive& archive) {
 }
 
 // Where edges of a body cross.
-std::optional<Vec2> FoldWatch::crossing(const Outlines::Body& body) {
-  const Outlines& o = outlines_;
+std::optional<Vec2> FoldWatch::crossing(const OutlineSurfaces::Body& body) {
+  const OutlineSurfaces& o = outlines_;
   boxes_.assign(o.edge_boxes.begin() + body.first, o.edge_boxes.begin() + body.end);
   grid_.find_pairs(boxes_, pairs_);
   const auto side = [&](int e, int v) {

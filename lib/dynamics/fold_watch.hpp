@@ -1,7 +1,7 @@
 // Notices a body with a mesh whose boundary crosses itself, where contact does not look for that.
 #pragma once
 
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/dynamics/term.hpp"
 #include "lib/model/model.hpp"
 
@@ -21,10 +21,10 @@ class FoldWatch final : public Term {
   void fields(Archive& archive) override;
 
  private:
-  [[nodiscard]] std::optional<Vec2> crossing(const Outlines::Body& body);
+  [[nodiscard]] std::optional<Vec2> crossing(const OutlineSurfaces::Body& body);
 
   const Model& model_;
-  Outlines outlines_;
+  OutlineSurfaces outlines_;
   BoxGrid grid_;
   std::vector<Box> boxes_;
   std::vector<BoxPair> pairs_;

@@ -219,19 +219,19 @@ bool Simulation::needs_forces_before() const {
 // or end within the step push in its second half as if they had pushed when they did. True if there
 // are any: state.f holds their forces as well, and forces_ the others alone.
 bool Simulation::finish_contact(double dt) {
-  const bool onsets = onsets_ && contact_->find_onsets(state_, forces_, dt);
+  const bool onsets = onsets_ && contact_->find_event_impulses(state_, forces_, dt);
   if (contact_->damped()) contact_->add_dashpots(state_, dt, onsets, false);
-  if (contact_->dissipates()) contact_->book_bend(state_, forces_, dt);
+  if (contact_->dissipates()) contact_->add_bend_losses(state_, forces_, dt);
   if (!onsets) return false;
   forces_ = state_.f;
-  contact_->add_onsets(state_);
+  contact_->add_event_impulses(state_);
   return true;
 }
 
 // After forces that have been found where nothing has moved.
 void Simulation::finish_look() {
   if (!contact_) return;
-  if (onsets_) contact_->find_onsets(state_, forces_, 0);
+  if (onsets_) contact_->find_event_impulses(state_, forces_, 0);
   if (contact_->damped() && !equilibrium_) {
     contact_->add_dashpots(state_, step_size() / 2, false, true);
   }

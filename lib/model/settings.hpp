@@ -18,7 +18,7 @@ struct TimeSettings {
   /// Automatic step over the stability limit of contacts, and of finite elements; empty: from the
   /// accuracy.
   std::optional<double> safety = {}, element_safety = {};
-  /// Corrects steps in which a contact begins or ends (contact/onset_rule.hpp).
+  /// Corrects steps in which a contact begins or ends (contact/law/event_impulse.hpp).
   bool onsets = true;
   bool settled = false;         ///< start in equilibrium (dynamics/settle.cpp)
   bool statics = false;         ///< a sequence of equilibria (dynamics/equilibrium.cpp)

@@ -62,7 +62,7 @@ std::string potentials_hash(const Model& model) {
       for (const std::vector<int>& face : p.roof->faces) hash.add(face);
     }
     if (p.distance) hash.add(p.distance->slope), hash.add(p.distance->corners);
-    if (p.cells) hash.add(p.cells->depth), hash.add(p.cells->side);
+    if (p.layer) hash.add(p.layer->depth), hash.add(p.layer->side);
   }
   return hash.text();
 }

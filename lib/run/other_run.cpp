@@ -94,7 +94,7 @@ Beginning OtherRun::move_into(Scene& scene) {
 void OtherRun::hand_contacts_to(Simulation& simulation) const {
   const ContactNumbers numbers = simulation.contact_numbers();
   const bool both = !numbers.bodies.empty() && !record_.contacts.bodies.empty();
-  simulation.inherit(both ? hand_over(memory_, record_.contacts, numbers, heirs_)
+  simulation.inherit(both ? map_memory(memory_, record_.contacts, numbers, heirs_)
                           : FrictionMemory());
 }
 

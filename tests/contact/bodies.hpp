@@ -131,15 +131,15 @@ struct Bodies {
     place();
     contacts->evaluate();
   }
-  /// Needs a call of slide() since the last evaluation if there is friction.
+  /// Needs a call of update_friction() since the last evaluation if there is friction.
   void find_forces() {
     rigid_force.assign(pose.size(), 0);
     node_force.assign(displacement.size(), 0);
     lambda.assign(pose.size() / 3, 0);
     contacts->add_forces({rigid_force, node_force, lambda});
   }
-  void slide(double dt) {
-    contacts->slide(kinematics(), dt);
+  void update_friction(double dt) {
+    contacts->update_friction(kinematics(), dt);
     find_forces();
     if (contacts->damped() && dt > 0) add_dashpots(dt);
   }
@@ -175,11 +175,11 @@ struct Bodies {
   }
 };
 
-/// The largest share of the depth at which a potential ends; 1 is beyond its end.
-inline double deepest_share(const Contacts& contacts) {
-  double share = 0;
-  for (const Contact& c : contacts.contacts()) share = std::max(share, c.share);
-  return share;
+/// The largest relative depth of all contacts; a potential ends at 1.
+inline double largest_relative_depth(const Contacts& contacts) {
+  double largest = 0;
+  for (const Contact& c : contacts.contacts()) largest = std::max(largest, c.relative_depth);
+  return largest;
 }
 
 /// The largest penetration of a pair of bodies, m.

@@ -75,7 +75,7 @@ Number closed_form(const NumberRing<Number>& c, const NumberRing<Number>& t, dou
     const CollarFace<Number> face =
         CollarFace<Number>{t.x[i], t.y[i], t.x[q], t.y[q], tx[i], ty[i], length[i],
                            mx[i],  my[i],  mx[q],  my[q],  depth, 0}
-            .with_plain();
+            .with_regular_depth();
     const double around = winding_of(real_c, real_top[i]) - (self ? 1 : 0);
     sum +=
         around * (collar_cell(face).height + depth * swept(top.x[i], top.y[i], top.x[q], top.y[q]));
@@ -87,7 +87,7 @@ Number closed_form(const NumberRing<Number>& c, const NumberRing<Number>& t, dou
       if (!collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, crossings)) continue;
       sum += piece.height;
       for (int k = 0; k < crossings.count; ++k) {
-        const auto& [u, tau, sign] = crossings.at[static_cast<size_t>(k)];
+        const auto& [u, tau, sign] = crossings.list[static_cast<size_t>(k)];
         const double s = sign;
         const Number x = c.x[e] + u * (c.x[g] - c.x[e]), y = c.y[e] + u * (c.y[g] - c.y[e]);
         sum -= s * (collar_rest(face, tau).height + depth * swept(x, y, top.x[q], top.y[q]));

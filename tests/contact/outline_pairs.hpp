@@ -34,11 +34,11 @@ struct OutlinePair : Bodies {
     add_ring(b, r_b, material[1]);
     join();
     evaluate();
-    slide(0);
+    update_friction(0);
   }
   /// Force on a body and moment about the origin, by its nodes.
   [[nodiscard]] Resultant on(BodyIndex body) const {
-    const Outlines& o = contacts->surfaces().outlines();
+    const OutlineSurfaces& o = contacts->surfaces().outlines();
     Resultant sum;
     for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
       const Vec2 force = on_node(o.node[i]);
@@ -67,16 +67,16 @@ inline std::vector<double> first_nodes(const std::vector<Vec2>& ring) {
   return first;
 }
 
-/// The largest share of the depth up to which the collar of a face is the roof; less than 1 where
+/// The largest ratio to the depth up to which the collar of a face is the roof; less than 1 where
 /// all contact is of this kind. `first`: of both outlines.
-inline double roof_share(const OutlinePair& pair, const std::vector<double>& first) {
-  const Outlines& o = pair.contacts->surfaces().outlines();
-  double share = 0;
+inline double roof_ratio(const OutlinePair& pair, const std::vector<double>& first) {
+  const OutlineSurfaces& o = pair.contacts->surfaces().outlines();
+  double ratio = 0;
   for (const Contact& c : pair.contacts->contacts()) {
-    const double depth = c.share * o.depth[c.b];
-    share = std::max(share, depth / std::min(o.depth[c.b], first[c.b]));
+    const double depth = c.relative_depth * o.depth[c.b];
+    ratio = std::max(ratio, depth / std::min(o.depth[c.b], first[c.b]));
   }
-  return share;
+  return ratio;
 }
 
 /// Of two outlines; empty if there is no skeleton.
@@ -89,9 +89,9 @@ inline std::vector<double> first_nodes(const std::vector<Vec2>& a, const std::ve
     return {};
   }
 }
-inline double roof_share(const OutlinePair& pair) {
+inline double roof_ratio(const OutlinePair& pair) {
   const std::vector<double> first = first_nodes(pair.a, pair.b);
-  return first.empty() ? HUGE_VAL : roof_share(pair, first);
+  return first.empty() ? HUGE_VAL : roof_ratio(pair, first);
 }
 
 /// Outlines with reflex corners, pushed together until they overlap where their
@@ -113,7 +113,7 @@ inline std::optional<OutlinePair> random_pair(samples::Random& random, int n, do
     std::vector<Vec2> moved = b;
     for (Vec2& v : moved) v += apart * direction;
     OutlinePair pair(a, moved, r_a, r_b, law, material);
-    const double share = roof_share(pair, first);
+    const double share = roof_ratio(pair, first);
     if (share > .95) return {};
     if (share > .05) return pair;
   }

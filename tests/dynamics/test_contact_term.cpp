@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/mesh/rectangle_mesh.hpp"
 #include "lib/mesh/select.hpp"
@@ -225,7 +225,7 @@ TEST_CASE("the largest force is that of all steps, also between meshes", "[surfa
       add(model, "one", disc({0, .5001}, Shape::quads), ElementKind::quad4, {0, -5});
       add(model, "two", disc({.3, 1.46}, Shape::triangles), ElementKind::tri3,
           {-1, softness < 1 ? -60. : -15.});
-      Outlines outlines;
+      OutlineSurfaces outlines;
       outlines.add_mesh(model.deformables[0].mesh, boundary(model.deformables[0].mesh), 0);
       const double collar = outlines.bodies[0].depth;
       Simulation simulation(model, {.end = 1, .element_safety = .2}, 1, 1);

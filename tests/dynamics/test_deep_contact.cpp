@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/dynamics/unstable.hpp"
 #include "lib/mesh/rectangle_mesh.hpp"
 #include "tests/dynamics/surface_models.hpp"
@@ -73,7 +73,7 @@ DeepRun run_deep(const Model& model, double safety, double end) {
 }
 
 double collar_of(const Mesh& mesh) {
-  Outlines outlines;
+  OutlineSurfaces outlines;
   outlines.add_mesh(mesh, boundary(mesh), 0);
   return outlines.bodies[0].depth;
 }

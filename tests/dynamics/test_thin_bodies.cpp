@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 #include "lib/mesh/rectangle_mesh.hpp"
 #include "tests/contact/outline_pairs.hpp"
 #include "tests/dynamics/surface_models.hpp"
@@ -157,7 +157,7 @@ TEST_CASE("thin bodies go on beyond their collars with order 2", "[surface][slow
   for (const Named& body : thin_bodies()) {
     constexpr double kSpeed = 60;
     const Model model = thin_model(body, Against::floor, 3e-4, kSpeed);
-    Outlines outlines;
+    OutlineSurfaces outlines;
     outlines.add_mesh(body.mesh, boundary(body.mesh), 0);
     const double collar = outlines.bodies[0].depth;
     const double end = 1.8 * collar / kSpeed;  // before they go through the floor

@@ -7,10 +7,10 @@
 
 namespace apothem::test {
 
-/// The runs and contact patches of two polygons.
+/// The segments and contact patches of two polygons.
 struct PatchResult {
-  std::vector<BoundaryRun> runs;      ///< runs, ordered by their edges, those of a first
-  std::vector<PairIntegral> patches;  ///< patches, ordered by their first run
+  std::vector<BoundarySegment> segments;  ///< segments, ordered by their edges, those of a first
+  std::vector<PairIntegral> patches;      ///< patches, ordered by their first segment
 };
 
 /// Splits two polygons at their given positions into contact patches. As with edge_method, moments
@@ -20,13 +20,13 @@ inline PatchResult edge_patches(const Polygon& a, const Potential& potential_a, 
   const PlacedPair placed(a, potential_a, b, potential_b);
   PatchWorkspace workspace;
   PatchResult result;
-  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.runs,
+  contact_patches(placed.a.view, placed.b.view, Vec2::Zero(), workspace, result.segments,
                   result.patches);
   for (PairIntegral& patch : result.patches) placed.about_centroids(patch);
-  for (BoundaryRun& run : result.runs) {
-    placed.about_centroids(run);
-    run.start -= placed.centroid_a;
-    run.end -= placed.centroid_a;
+  for (BoundarySegment& segment : result.segments) {
+    placed.about_centroids(segment);
+    segment.start -= placed.centroid_a;
+    segment.end -= placed.centroid_a;
   }
   return result;
 }

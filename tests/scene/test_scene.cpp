@@ -543,7 +543,7 @@ TEST_CASE("the stiffness of friction springs is a ratio or a constant", "[scene]
   const auto is = [](const Friction& friction, double ratio, double constant) {
     return friction.stiffness_ratio == ratio && friction.tangential_stiffness == constant;
   };
-  CHECK(kTangentialShare == .8);
+  CHECK(kTangentialRatio == .8);
   CHECK(is(between(plain, ""), .8, 0));
   CHECK(is(between(given, ""), 0, 3e9));
   CHECK(is(between(scene_ratio, ""), .6, 0));

@@ -20,7 +20,7 @@ ElementKernel::ElementKernel(const Surfaces& surfaces, const ContactLaw& law,
   tangential_.clear(static_cast<size_t>(surfaces.body_count()));
 }
 
-void ElementKernel::take(std::span<const BoxPair> pairs) { pairs_.take(pairs); }
+void ElementKernel::set_pairs(std::span<const BoxPair> pairs) { pairs_.set_pairs(pairs); }
 
 std::span<const NodeIndex> ElementKernel::nodes(SurfaceIndex i) const {
   if (surfaces_.is_rigid(i)) return {};
@@ -41,10 +41,12 @@ void ElementKernel::evaluate() {
     const SurfaceIndex a = pair.a, b = pair.b;
     Contact& contact =
         contacts_.emplace_back(pairs_.contact(KernelKind::element_kernel, pair, stiffness(a, b)));
-    // The potential measures the depth below borders that are not part of the body's boundary.
+    // The potential measures the depth below borders of the element that are not part of the body's
+    // boundary, so it gives no bounds of the penetration.
     contact.depth = 0, contact.at_most = HUGE_VAL;
     if (!convex(a) || !convex(b) || pairs_.too_deep(pair, pairs_.integral(pair))) {
-      contact.share = 1;  // nothing beyond is to be trusted
+      // The following pairs are not evaluated, as the state is out of range.
+      contact.relative_depth = 1;
       return;
     }
     add_touch(pair);
@@ -58,7 +60,7 @@ ContactSummary ElementKernel::summary() const {
   ContactSummary summary{.count = static_cast<int>(contacts_.size())};
   for (const Contact& contact : contacts_) {
     summary.deepest = HUGE_VAL;
-    if (!(contact.share < 1)) summary.share = 1;  // also if it is NaN
+    if (!(contact.relative_depth < 1)) summary.relative_depth = 1;  // a NaN counts as out of range
   }
   return summary;
 }
@@ -89,7 +91,7 @@ double ElementKernel::penetration(const Contact& c, double floor) {
   return convex(c.a) && convex(c.b) ? find_penetration(c.a, c.b, floor, depths_) : floor;
 }
 
-// True if an edge of a polygon is on the boundary of the body.
+// True if an edge of a polygon or element is on the boundary of the body.
 bool ElementKernel::outer(SurfaceIndex i, int edge) const {
   return surfaces_.is_rigid(i) || surfaces_.elements().outer(i - surfaces_.rigid_count(), edge);
 }
@@ -103,19 +105,19 @@ void ElementKernel::add_boundary(SurfaceIndex i, BoundaryDistance& boundary) con
   }
 }
 
-// Edges of the two bodies' boundaries in the other polygon, and their distance from the whole
-// boundary of the other body. The polygon's own edges in that boundary mostly say enough.
+// Finds the largest distance of the boundary edges of each body, inside the other polygon, from the
+// whole boundary of the other body. The polygon's own edges of that boundary usually decide.
 double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double floor,
                                        Depths& work) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   contact_patches(shapes.view(a), shapes.view(b), surfaces_.between(a, b), work.workspace,
-                  work.runs, work.patches);
+                  work.segments, work.patches);
   const Vec2 place = surfaces_.reference(a);
   const auto deepest = [&](bool of_a) {
     double most = floor;
-    for (const BoundaryRun& run : work.runs) {
-      if (run.of_a != of_a || !outer(of_a ? a : b, run.edge)) continue;
-      most = work.boundary.largest(place + run.start, place + run.end, most);
+    for (const BoundarySegment& segment : work.segments) {
+      if (segment.of_a != of_a || !outer(of_a ? a : b, segment.edge)) continue;
+      most = work.boundary.largest(place + segment.start, place + segment.end, most);
     }
     return most;
   };
@@ -140,9 +142,9 @@ double ElementKernel::find_penetration(SurfaceIndex a, SurfaceIndex b, double fl
 
 ContactFault ElementKernel::fault(const Contact& c) const {
   const bool bent = !convex(c.a) || !convex(c.b);
-  const SurfaceIndex at = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
+  const SurfaceIndex place = convex(c.a) && !surfaces_.is_rigid(c.b) ? c.b : c.a;
   return {bent ? ContactFault::Kind::not_convex : ContactFault::Kind::element, surfaces_.body(c.a),
-          surfaces_.body(c.b), surfaces_.reference(at)};
+          surfaces_.body(c.b), surfaces_.reference(place)};
 }
 
 void ElementKernel::add_touch(const PairInTouch& result) {
@@ -159,8 +161,8 @@ void ElementKernel::add_touch(const PairInTouch& result) {
   const Vec2 offset = surfaces_.between(a, b);
   const Vec2 point = loading_point(pair);
   touches_.push_back({a, b, force, point, offset, k * pair.weight});
-  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& at) {
-    find_corners(i, at, of_a_);
+  const auto add = [&](SurfaceIndex i, const Vec2& f, const Vec2& place) {
+    find_corners(i, place, of_a_);
     distribute(of_a_, f, normal_);
   };
   if (distribution_ == ForceDistribution::resultant) {
@@ -169,14 +171,15 @@ void ElementKernel::add_touch(const PairInTouch& result) {
     return;
   }
   const PlacedShapes& shapes = surfaces_.shapes();
-  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, runs_, patches_);
-  for (const BoundaryRun& run : runs_) {
-    add(a, k * run.force, run.centre);
-    add(b, -k * run.force, run.centre + offset);
+  contact_patches(shapes.view(a), shapes.view(b), offset, workspace_, segments_, patches_);
+  for (const BoundarySegment& segment : segments_) {
+    add(a, k * segment.force, segment.centre);
+    add(b, -k * segment.force, segment.centre + offset);
   }
 }
 
-// `point`: relative to the reference point. Rigid bodies have no nodes.
+// Finds the interpolation weights of the corners at `point`, which is relative to the reference
+// point. Rigid bodies have no nodes.
 void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& corners) const {
   corners.nodes = nodes(i);
   const size_t count = corners.nodes.size();
@@ -187,13 +190,13 @@ void ElementKernel::find_corners(SurfaceIndex i, const Vec2& point, Corners& cor
   interpolation_weights(corners.ring, corners.weights);
 }
 
-void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& to) {
+void ElementKernel::distribute(const Corners& corners, const Vec2& force, Forces& sum) {
   for (size_t k = 0; k < corners.nodes.size(); ++k) {
-    to.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
+    sum.nodes.push_back({corners.nodes[k], corners.weights[k] * force});
   }
 }
 
-// Of the material at a point.
+// The velocity of the material at a point.
 Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners& corners,
                                 const Kinematics& now) const {
   if (surfaces_.is_rigid(i)) {
@@ -208,7 +211,7 @@ Vec2 ElementKernel::velocity_at(SurfaceIndex i, const Vec2& point, const Corners
   return sum;
 }
 
-double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& memory) {
+double ElementKernel::update_friction(const Kinematics& now, double dt, FrictionMemory& memory) {
   if (!table_.rough()) return 0;
   const double power_before = power(tangential_, now);
   ContactWalk<const Spring> walk = memory.before(element_kernel);
@@ -233,31 +236,32 @@ double ElementKernel::slide(const Kinematics& now, double dt, FrictionMemory& me
     t.spring = spring.after(kept * old.force, rate.dot(tangent) * dt);
     memory.keep({key, t.spring, spring.stiffness, tangent, old.push});
     t.friction = t.spring * tangent;
-    const auto on = [&](SurfaceIndex i, const Vec2& f, const Vec2& point, const Corners& at) {
+    const auto add_friction = [&](SurfaceIndex i, const Vec2& f, const Vec2& point,
+                                  const Corners& corners) {
       Resultant& sum = tangential_.sums[surfaces_.body(i)];
       sum.force += f;
       if (surfaces_.is_rigid(i)) sum.moment += cross(point, f);
-      distribute(at, f, tangential_);
+      distribute(corners, f, tangential_);
     };
-    on(t.a, t.friction, t.point, of_a_);
-    on(t.b, -t.friction, point_b, of_b_);
+    add_friction(t.a, t.friction, t.point, of_a_);
+    add_friction(t.b, -t.friction, point_b, of_b_);
   }
   return dt / 2 * (power_before + power(tangential_, now));
 }
 
-// What touches between two bodies.
+// Sums the touches between each two bodies.
 void ElementKernel::find_damped_pairs() {
   damped_pairs_.clear();
   pair_of_.resize(touches_.size());
   std::pair<BodyIndex, BodyIndex> last(-1, -1);
-  for (const BodyTouch& of : body_touches_) {
-    if (const std::pair bodies(of.a, of.b); bodies != last) {
+  for (const BodyTouch& body_touch : body_touches_) {
+    if (const std::pair bodies(body_touch.a, body_touch.b); bodies != last) {
       damped_pairs_.emplace_back();
       last = bodies;
     }
     DampedPair& pair = damped_pairs_.back();
-    const Touch& t = touches_[static_cast<size_t>(of.touch)];
-    pair_of_[static_cast<size_t>(of.touch)] = damped_pairs_.size() - 1;
+    const Touch& t = touches_[static_cast<size_t>(body_touch.touch)];
+    pair_of_[static_cast<size_t>(body_touch.touch)] = damped_pairs_.size() - 1;
     pair.resistance += t.stiffness, pair.stiffness += t.spring_stiffness;
     pair.force += t.force;
     pair.sizes += t.force.norm();
@@ -265,9 +269,9 @@ void ElementKernel::find_damped_pairs() {
   }
 }
 
-// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
-// them.
-void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
+// The ratio of critical damping refers to the two bodies as rigid ones, with the stiffness of all
+// touches between them.
+void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& dashpots) {
   find_damped_pairs();
   for (const Touch& t : touches_) {
     const BodyIndex body_a = surfaces_.body(t.a), body_b = surfaces_.body(t.b);
@@ -283,21 +287,22 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
                               surfaces_.mobility(body_b, now, place, along));
     };
     const Vec2 normal = t.force / size, across(-normal.y(), normal.x());
-    to.add({body_a,
-            body_b,
-            normal,
-            {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction),
-                             size, size / t.stiffness}},
-            t.spring_stiffness *
-                time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
-            t.spring,
-            law.friction.coefficient});
+    dashpots.add(
+        {body_a,
+         body_b,
+         normal,
+         {Dashpot::Normal{t.stiffness * time(law.damping.normal, pair.resistance, direction), size,
+                          size / t.stiffness}},
+         t.spring_stiffness *
+             time(law.damping.tangential, pair.stiffness, Vec2(-direction.y(), direction.x())),
+         t.spring,
+         law.friction.coefficient});
     const auto add_side = [&](SurfaceIndex i, const Vec2& point, double sign) {
-      if (surfaces_.is_rigid(i)) return to.add_point(i, point, sign * normal, sign * across);
+      if (surfaces_.is_rigid(i)) return dashpots.add_point(i, point, sign * normal, sign * across);
       find_corners(i, point, of_a_);
       for (size_t k = 0; k < of_a_.nodes.size(); ++k) {
-        const double share = sign * of_a_.weights[k];
-        to.add_node(of_a_.nodes[k], share * normal, share * across);
+        const double weight = sign * of_a_.weights[k];
+        dashpots.add_node(of_a_.nodes[k], weight * normal, weight * across);
       }
     };
     add_side(t.a, t.point, 1);
@@ -305,23 +310,23 @@ void ElementKernel::add_dashpots(const Kinematics& now, Dashpots& to) {
   }
 }
 
-void ElementKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& memory) {
+void ElementKernel::keep_pushes(const Dashpots& dashpots, size_t& next, FrictionMemory& memory) {
   auto spring = memory.springs_of(element_kernel).begin();
   for (Touch& t : touches_) {
     const PairLaw& law = table_.between(surfaces_.body(t.a), surfaces_.body(t.b));
     if (!law.damped() || !has_direction(t) || !(t.stiffness > 0)) continue;
     const Vec2 normal = t.force / t.force.norm();
-    t.push = from.normal_force(next) * normal;
-    t.drag = from.tangential_force(next) * Vec2(-normal.y(), normal.x());
+    t.push = dashpots.normal_force(next) * normal;
+    t.drag = dashpots.tangential_force(next) * Vec2(-normal.y(), normal.x());
     if (law.rough()) {
       while (std::pair(spring->key.a, spring->key.b) < std::pair(t.a, t.b)) ++spring;
-      spring->push = from.normal_force(next);
+      spring->push = dashpots.normal_force(next);
     }
     ++next;
   }
 }
 
-// Of forces on the bodies, W.
+// The power of forces on the bodies, W.
 double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   double sum = 0;
   for (const auto& [node, force] : forces.nodes) {
@@ -330,8 +335,8 @@ double ElementKernel::power(const Forces& forces, const Kinematics& now) const {
   }
   for (RigidIndex i = 0; i < surfaces_.rigid_count(); ++i) {
     const double* v = &now.pose_rate[3 * static_cast<size_t>(i)];
-    const Resultant& on = forces.sums[i];
-    sum += on.force.x() * v[0] + on.force.y() * v[1] + on.moment * v[2];
+    const Resultant& resultant = forces.sums[i];
+    sum += resultant.force.x() * v[0] + resultant.force.y() * v[1] + resultant.moment * v[2];
   }
   return sum;
 }
@@ -353,7 +358,7 @@ void ElementKernel::add_forces(const ForceViews& forces) {
   }
 }
 
-// Of each body the steepest, 1/m.
+// The steepest slope of each body's potentials, 1/m.
 std::vector<double> ElementKernel::slopes() const {
   std::vector<double> slope(static_cast<size_t>(surfaces_.body_count()));
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
@@ -366,14 +371,14 @@ std::vector<double> ElementKernel::slopes() const {
 double ElementKernel::rate(std::span<const double> node_mass) const {
   const auto bodies = static_cast<size_t>(surfaces_.body_count());
   const std::vector<double> slope = slopes();
-  std::vector<double> other(bodies);  // the steepest among the others
+  std::vector<double> other(bodies);  // steepest slope among the other bodies
   for (size_t a = 0; a < bodies; ++a) {
     for (size_t b = 0; b < bodies; ++b) {
       if (a != b) other[a] = std::max(other[a], slope[b]);
     }
   }
   double worst = 0;
-  for (const auto& [node, body, length] : surfaces_.elements().shares()) {
+  for (const auto& [node, body, length] : surfaces_.elements().tributary_lengths()) {
     const double mass = node_mass[node];
     if (!(mass > 0) || other[body] == 0) continue;
     worst = std::max(
@@ -382,10 +387,10 @@ double ElementKernel::rate(std::span<const double> node_mass) const {
   return worst;
 }
 
-// What acts on polygons goes to the nearest edge of their boundary.
+// The force of a touch is assigned to the nearest boundary edge of its polygon.
 void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   const size_t begin = records.size();
-  std::vector<size_t> first;  // record of each surface
+  std::vector<size_t> first;  // first record of each surface
   for (SurfaceIndex i = 0; i < surfaces_.size(); ++i) {
     first.push_back(records.size());
     const PlacedPotential view = surfaces_.shapes().view(i);
@@ -422,7 +427,8 @@ void ElementKernel::add_surfaces(std::vector<SurfaceRecord>& records) const {
   }
 }
 
-// Pairs of polygons belong together if on both sides the polygons are the same or share a node.
+// Groups the touches into patches. Two touches belong together if on both sides the polygons are
+// the same or share a node.
 std::vector<int> ElementKernel::patches() const {
   const auto adjacent = [&](SurfaceIndex p, SurfaceIndex q) {
     if (p == q) return true;
@@ -431,7 +437,7 @@ std::vector<int> ElementKernel::patches() const {
   };
   Groups groups(touches_.size());
   std::vector<std::pair<int, int>> keys;
-  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements there
+  std::map<NodeIndex, std::vector<int>> at_node;  // touches of elements at each node
   for (int i = 0; i < static_cast<int>(touches_.size()); ++i) {
     const Touch& t = touches_[i];
     keys.emplace_back(surfaces_.body(t.a), surfaces_.body(t.b));

@@ -1,4 +1,4 @@
-// A contact: where the boundaries of two bodies touch, as the kernels find it.
+// A contact is a place where the boundaries of two bodies touch, as a kernel finds it.
 #pragma once
 
 #include "geometry/polygon/point.hpp"
@@ -7,30 +7,33 @@
 
 namespace apothem {
 
-/// The kernels there are (kernel.hpp). A law of friction has the number of its kernel.
+/// The kinds of kernels (kernel.hpp). The friction law of a kernel has the same number.
 enum KernelKind { polygon_kernel, element_kernel, outline_kernel, kernel_kinds };
 
-/// One record for every kernel. `a` and `b` are two surfaces, or an edge and a face of outlines;
-/// what else the kernel knows about the contact stands in its own list, in the same order.
+/// The record that all kernels share. `a` and `b` are two surfaces, or an edge and a face of
+/// outlines. Whatever else a kernel knows about a contact is kept in a list of its own, in the same
+/// order.
 struct Contact {
   KernelKind kernel;
   int a, b;
-  double depth;      ///< the penetration is at least this, m, and
-  double at_most;    ///< at most this, m; where both are equal it is known
-  double share;      ///< of the depth at which the potential ends; 1 or more: there or beyond
-  double stiffness;  ///< bound of the change of the force over the depth, N/m (docs/theory.md,
-                     ///< Normal contact)
+  double depth;    ///< lower bound of the penetration, m
+  double at_most;  ///< upper bound, m; the penetration is known if both are equal
+  double
+      relative_depth;  ///< depth over the depth at which the potential ends; out of range from 1 on
+  double stiffness;    ///< upper bound of the derivative of the force by the depth, N/m
+                       ///< (docs/theory.md, Normal contact)
 };
 
-/// What acts in one contact patch, a connected part of the overlap of two bodies. Forces act on a.
+/// The forces in one contact patch, which is a connected part of the overlap of two bodies. Forces
+/// act on a.
 struct ContactRecord {
   BodyIndex a, b;                  ///< a < b
   Vec2 point = Vec2::Zero();       ///< loading point relative to the origin of the model, m
   Vec2 normal = Vec2::Zero();      ///< elastic normal force, N
   Vec2 tangential = Vec2::Zero();  ///< friction, N
-  double penetration = 0;          ///< how deep the bodies are in each other, m: see Kernel
-  double phi = 0;                  ///< largest potential met
-  Vec2 damping = Vec2::Zero();     ///< damping of the normal force, N
+  double penetration = 0;          ///< penetration of the bodies, m, see Kernel
+  double phi = 0;                  ///< largest potential in the patch
+  Vec2 damping = Vec2::Zero();     ///< normal force of the dashpots, N
 };
 
 /// A resultant on a body: force and moment about the mass centre of a rigid body.

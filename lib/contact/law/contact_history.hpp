@@ -1,8 +1,9 @@
-// What contacts remember from one step to the next: an ordered list for every kind of record.
+// The memory of contacts from one step to the next (contact matching): an ordered list of each kind
+// of record.
 //
-// It is what all methods of contact use, and the one place that is asked what contacts were like
-// before: for a step, for a state that is only tried, for a checkpoint, and for a simulation that
-// goes on from another one.
+// All contact methods use it. It is the only place that knows what contacts were like before, for
+// the next step, for a trial state, for a checkpoint, and for a simulation that continues another
+// one.
 #pragma once
 
 #include <algorithm>
@@ -18,17 +19,17 @@
 
 namespace apothem {
 
-/// Who touches what. Records of the same `law`, `a` and `b` are those of a pair. (If surfaces touch
-/// images of others some day, the number of the image belongs to the pair as well.)
+/// The key of a record: which surfaces touch. Records with the same `law`, `a` and `b` belong to
+/// one pair.
 struct ContactKey {
-  int law;   ///< of the kernel whose contact it is: see kernel.hpp
+  int law;   ///< number of the kernel whose contact it is, see kernel.hpp
   int a, b;  ///< two surfaces, or an edge and its partner
-  int part;  ///< patch of the pair, or edge of its overlap; 0 where a pair has one record
+  int part;  ///< patch of the pair, or edge of its overlap; 0 where a pair has only one record
   auto operator<=>(const ContactKey&) const = default;
   void fields(Archive& archive) { archive("law", law)("a", a)("b", b)("part", part); }
 };
 
-/// Whether the pair of one key comes before that of another one.
+/// True if the pair of the key `one` comes before the pair of the key `other`.
 APOTHEM_INLINE bool is_before(const ContactKey& one, const ContactKey& other) {
   const auto number = [](const ContactKey& key) APOTHEM_LAMBDA {
     return static_cast<std::uint64_t>(key.a) << 32 | static_cast<std::uint32_t>(key.b);
@@ -36,24 +37,24 @@ APOTHEM_INLINE bool is_before(const ContactKey& one, const ContactKey& other) {
   return one.law == other.law ? number(one) < number(other) : one.law < other.law;
 }
 
-/// The records from the pair of `first` on that come before the pair of `end`.
+/// The records of all pairs from that of `first` up to, but not including, that of `end`.
 template <class Record>
 std::span<Record> records_between(std::span<Record> records, const ContactKey& first,
                                   const ContactKey& end) {
   const auto before = [](const ContactKey& one, const ContactKey& other) {
     return is_before(one, other);
   };
-  const auto at = [&](const ContactKey& key) {
+  const auto position_of = [&](const ContactKey& key) {
     return std::ranges::lower_bound(records, key, before, &Record::key);
   };
-  return {at(first), at(end)};
+  return {position_of(first), position_of(end)};
 }
-/// Those of the pair of a key.
+/// The records of the pair of a key.
 template <class Record>
 std::span<Record> records_of_pair(std::span<Record> records, const ContactKey& pair) {
   return records_between(records, pair, {pair.law, pair.a, pair.b + 1, 0});
 }
-/// The same where they probably begin at this place.
+/// The records of the pair of a key, which probably begin at the index `guess`.
 template <class Record>
 std::span<Record> records_of_pair(std::span<Record> records, const ContactKey& pair, size_t guess) {
   const auto of_pair = [&](size_t i) {
@@ -70,14 +71,14 @@ std::span<Record> records_of_law(std::span<Record> records, int law) {
   return records_between(records, {law, 0, 0, 0}, {law + 1, 0, 0, 0});
 }
 
-/// Looks for pairs in ascending order, along a list that is walked once for all of them.
+/// Finds the records of pairs that are asked for in ascending order, in one pass over the list.
 template <class Record>
 class ContactWalk {
  public:
   explicit ContactWalk(std::span<Record> records = {}) : rest_(records) {}
 
   /// The records of the pair of a key, in the order of their parts; empty if there are none. Calls
-  /// passed(records) for each pair before it that nobody has looked for.
+  /// passed(records) for each earlier pair of the list that was not asked for.
   template <class F>
   APOTHEM_INLINE std::span<Record> find(const ContactKey& pair, const F& passed) {
     while (!rest_.empty() && is_before(rest_.front().key, pair)) passed(next());
@@ -87,7 +88,7 @@ class ContactWalk {
   APOTHEM_INLINE std::span<Record> find(const ContactKey& pair) {
     return find(pair, [](std::span<Record>) APOTHEM_LAMBDA {});
   }
-  /// Calls passed(records) for each pair that is left.
+  /// Calls passed(records) for each remaining pair.
   template <class F>
   void finish(const F& passed) {
     while (!rest_.empty()) passed(next());
@@ -105,8 +106,8 @@ class ContactWalk {
   std::span<Record> rest_;
 };
 
-/// The records of this step and of the step before, each in ascending order of their keys. No
-/// allocation unless there are more of them than ever before.
+/// The records of this step and of the step before, each list in ascending order of the keys.
+/// Memory is allocated only if there are more records than ever before.
 template <class Record>
 class ContactHistory {
  public:
@@ -115,10 +116,10 @@ class ContactHistory {
     std::swap(now_, before_);
     now_.size = 0;
   }
-  /// Takes back the last step, which can be made anew.
+  /// Undoes the last step, which can then be repeated.
   void undo_step() { std::swap(now_, before_); }
 
-  /// Keeps a record for the next step.
+  /// Stores a record for the next step.
   void keep(const Record& record) {
     if (now_.size == now_.records.size()) {
       now_.records.push_back(record);
@@ -127,7 +128,7 @@ class ContactHistory {
     }
     ++now_.size;
   }
-  /// Keeps several. What the list holds afterwards is of no use.
+  /// Stores several records. The content of `records` afterwards is unspecified.
   void keep(std::vector<Record>& records) {
     if (now_.size == 0) {
       now_.records.swap(records);
@@ -138,7 +139,8 @@ class ContactHistory {
       now_.size = now_.records.size();
     }
   }
-  /// Keeps so many, for several threads to write. Until then they are any.
+  /// Makes room for `count` records, which several threads may fill. Until then their values are
+  /// unspecified.
   std::span<Record> make_room(size_t count) {
     const size_t first = now_.size, needed = first + count;
     if (needed > now_.records.capacity()) now_.records.reserve(needed + needed / 8);
@@ -151,8 +153,8 @@ class ContactHistory {
   [[nodiscard]] std::span<const Record> now() const { return now_.all(); }
   [[nodiscard]] std::span<const Record> before() const { return before_.all(); }
 
-  /// Takes over the records of another simulation.
-  void inherit(std::vector<Record> records) {
+  /// Replaces the records of this step, at a restart.
+  void restore(std::vector<Record> records) {
     now_.records = std::move(records);
     now_.size = now_.records.size();
   }
@@ -163,7 +165,7 @@ class ContactHistory {
   }
 
  private:
-  // What lies behind the first `size` records is of earlier steps, and of no use.
+  // Records behind the first `size` ones are left over from earlier steps and are not used.
   struct List {
     std::vector<Record> records;
     size_t size = 0;

@@ -1,4 +1,4 @@
-// The spring of friction, as formulas for numbers and for packs of them (the paper, Eqs. 12 and
+// The friction spring, as formulas for numbers and for packs of numbers (the paper, Eqs. 12 and
 // 14).
 #pragma once
 
@@ -6,14 +6,15 @@
 
 namespace apothem {
 
-/// What friction holds where so much presses, N: Coulomb's law (the paper, Eq. 14), for every
-/// surface and for the dashpot beside the spring. Another law of friction begins here.
+/// The largest friction force, N, for the normal force `pressed`, N: Coulomb's law (the paper, Eq.
+/// 14). It serves every kind of surface, and the dashpot beside the spring. Another friction law
+/// starts here.
 template <class Real>
 APOTHEM_INLINE Real friction_limit(const Real& coefficient, const Real& pressed) {
   return coefficient * select(pressed > Real(0.), pressed, Real(0.));
 }
 
-/// A spring along the tangent of a contact, whose force is never beyond Coulomb's limit.
+/// A spring along the tangent of a contact whose force never exceeds Coulomb's limit.
 template <class Real>
 struct CoulombSpring {
   Real stiffness;  ///< N/m
@@ -22,17 +23,17 @@ struct CoulombSpring {
   [[nodiscard]] APOTHEM_INLINE Real within(const Real& force) const {
     return select(force < -limit, -limit, select(limit < force, limit, force));
   }
-  /// The force, N, that was `force` before a slip in m, if nothing held it back.
+  /// The trial force, N, after a slip in m from the force `force`, without Coulomb's limit.
   [[nodiscard]] APOTHEM_INLINE Real trial(const Real& force, const Real& slip) const {
     return force - stiffness * slip;
   }
-  /// The force after it, N.
+  /// The force after the slip, N, within Coulomb's limit.
   [[nodiscard]] APOTHEM_INLINE Real after(const Real& force, const Real& slip) const {
     return within(trial(force, slip));
   }
 };
 
-/// What a spring stores, J, from its force (N) and stiffness (N/m); 0 without a stiffness.
+/// The energy of a spring, J, from its force (N) and stiffness (N/m); 0 if the stiffness is 0.
 template <class Real>
 APOTHEM_INLINE Real spring_energy(const Real& force, const Real& stiffness) {
   return select(stiffness > Real(0.), force * force / (Real(2.) * stiffness), Real(0.));

@@ -9,7 +9,8 @@ namespace apothem {
 namespace {
 
 constexpr int kMostSweeps = 50;
-constexpr double kAgree = 1e-6;  // of the largest impulse, or of what presses over the step
+constexpr double kAgree = 1e-6;  // tolerance relative to the largest impulse, or to the elastic
+                                 // normal impulse of the step
 
 }  // namespace
 
@@ -19,8 +20,9 @@ double dashpot_time(double value, bool is_time, double k, double mobility) {
   return value > 0 && omega2 > 0 ? 2 * value / std::sqrt(omega2) : 0;
 }
 
-// Where the force rises with the power p of the depth, the stiffness is p times the force over the
-// depth, and the coefficient rises with its root: 1 flat on flat, 2 at a corner.
+// If the force rises with the power p of the depth, the stiffness is p times the force over the
+// depth, and the damping coefficient rises with the square root of the stiffness. p is 1 for flat
+// faces and 2 at a corner.
 Dashpot::Normal Dashpot::Normal::of(double rate, double pressed, double stiffness, double deepest) {
   if (!(stiffness > 0 && pressed > 0)) return {rate, pressed, 0, 1};
   const double power = std::clamp(stiffness * deepest / pressed, 1., 2.);
@@ -35,7 +37,8 @@ void Dashpots::clear() {
   across_rails_.clear(), of_these_.clear();
 }
 
-// The place of the first of these coordinates, which are next to each other, among the moved ones.
+// Returns the index in moved_ of the first of `count` consecutive coordinates, and adds them if
+// they are new.
 std::uint32_t Dashpots::find(size_t first, size_t count) {
   if (first + count > index_.size()) index_.resize(first + count, kNone);
   std::uint32_t& index = index_[first];
@@ -47,7 +50,7 @@ std::uint32_t Dashpots::find(size_t first, size_t count) {
   return index;
 }
 
-// A node that comes again in a contact has the same entries.
+// If a node occurs again in the same contact, its entries are summed.
 template <size_t count>
 void Dashpots::add(size_t first, const std::array<Parts, count>& parts) {
   const std::uint32_t index = find(first, count);
@@ -103,12 +106,12 @@ double Dashpots::lost_after(std::span<const double> velocity, double dt) const {
   return -dt / 2 * (power - gain_);
 }
 
-// The velocity along a rail is one number, and both coordinates have it. Impulses across it go into
-// what holds the rail.
+// The velocity along a rail is one number that both coordinates share. Impulses across the rail go
+// into whatever holds the rail.
 void Dashpots::put_on(const Motion::Rail& rail) {
   const size_t coordinate = 3 * static_cast<size_t>(rail.body);
   if (coordinate >= index_.size() || index_[coordinate] == kNone) return;
-  // A body comes with all of its coordinates, one behind the other.
+  // The coordinates of a body are consecutive.
   const std::uint32_t index = index_[coordinate];
   moving_[index].inverse_mass = moving_[index + 1].inverse_mass = rail.inverse_mass;
   moved_[index].kick = rail.gain * rail.direction.x();
@@ -146,11 +149,12 @@ void Dashpots::find_kicks(const Motion& motion, double dt) {
   }
 }
 
-// A contact that has begun within the last drift, or will end within the next one, acts for as long
-// as it is closed, and any other one for half of both.
+// A dashpot acts for half of the last drift and half of the next one. If the contact began within
+// the last drift, or will end within the next one, it acts only for as long as the contact is
+// closed.
 void Dashpots::find_rates(double dt) {
   for (size_t i = 0; i < dashpots_.size(); ++i) {
-    const Dashpot& of = dashpots_[i];
+    const Dashpot& dashpot = dashpots_[i];
     Solved& solved = solved_[i];
     std::array<double, 3> before{}, kick{};
     for (const Entry& e : entries(i)) {
@@ -160,17 +164,18 @@ void Dashpots::find_rates(double dt) {
         before[k] += e.part[k] * v;
       }
     }
-    const auto share_of = [&](double approach, const Dashpot::Normal& normal) {
+    const auto closed_fraction = [&](double approach, const Dashpot::Normal& normal) {
       return approach * dt > normal.depth ? normal.mean * normal.depth / (approach * dt) : .5;
     };
-    double share = 0;  // of the contact: where it is deeper
+    double fraction = 0;  // larger fraction of the step for which one end of the contact is closed
     for (size_t k = 0; k < 2; ++k) {
-      const Dashpot::Normal& across = of.across[k];
-      const double both = share_of(-before[k], across) + share_of(before[k] + kick[k], across);
-      if (across.rate > 0) share = std::max(share, both);
+      const Dashpot::Normal& across = dashpot.across[k];
+      const double both =
+          closed_fraction(-before[k], across) + closed_fraction(before[k] + kick[k], across);
+      if (across.rate > 0) fraction = std::max(fraction, both);
       solved.along[k] = {0, across.rate * both * dt, before[k]};
     }
-    solved.along[2] = {0, of.tangential_rate * share * dt, before[2]};
+    solved.along[2] = {0, dashpot.tangential_rate * fraction * dt, before[2]};
     for (const Entry& e : entries(i)) {
       double& reach = moved_[e.moved].reach;
       for (size_t k = 0; k < 3; ++k) reach += solved.along[k].gain * std::abs(e.part[k]);
@@ -178,7 +183,7 @@ void Dashpots::find_rates(double dt) {
   }
 }
 
-// x counts what the impulses of all dashpots of these bodies do to the rate.
+// x includes the effect of all dashpots at these bodies on the rate.
 void Dashpots::find_gains() {
   for (size_t i = 0; i < dashpots_.size(); ++i) {
     Solved& solved = solved_[i];
@@ -202,10 +207,10 @@ void Dashpots::find_gains() {
   }
 }
 
-// Has the dashpots of a contact agree with all others as they are. Returns the largest change of an
+// Solves for the dashpots of one contact with all others fixed. Returns the largest change of an
 // impulse, N s.
 double Dashpots::relax(size_t i, double dt) {
-  const Dashpot& of = dashpots_[i];
+  const Dashpot& dashpot = dashpots_[i];
   Solved& solved = solved_[i];
   std::array<double, 3> rate{};
   for (const Entry& e : entries(i)) {
@@ -220,11 +225,11 @@ double Dashpots::relax(size_t i, double dt) {
     change[k] = next - along.impulse;
     along.impulse = next;
   };
-  follow(0, rate[0], -of.across[0].pressed * dt, HUGE_VAL);
-  follow(1, rate[1] + solved.d01 * change[0], -of.across[1].pressed * dt, HUGE_VAL);
-  const double pressed = (of.across[0].pressed + of.across[1].pressed) * dt +
+  follow(0, rate[0], -dashpot.across[0].pressed * dt, HUGE_VAL);
+  follow(1, rate[1] + solved.d01 * change[0], -dashpot.across[1].pressed * dt, HUGE_VAL);
+  const double pressed = (dashpot.across[0].pressed + dashpot.across[1].pressed) * dt +
                          solved.along[0].impulse + solved.along[1].impulse;
-  const double limit = friction_limit(of.coefficient, pressed), spring = of.spring * dt;
+  const double limit = friction_limit(dashpot.coefficient, pressed), spring = dashpot.spring * dt;
   follow(2, rate[2] + solved.d02 * change[0] + solved.d12 * change[1], -limit - spring,
          limit - spring);
   for (const Entry& e : entries(i)) {
@@ -241,8 +246,8 @@ void Dashpots::solve(const Motion& motion, double dt) {
   find_rates(dt);
   find_gains();
   double pressed = 0;
-  for (const Dashpot& of : dashpots_) {
-    pressed = std::max(pressed, of.across[0].pressed + of.across[1].pressed);
+  for (const Dashpot& dashpot : dashpots_) {
+    pressed = std::max(pressed, dashpot.across[0].pressed + dashpot.across[1].pressed);
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double change = 0, largest = pressed * dt;
@@ -271,7 +276,7 @@ void Dashpots::sum_forces(const Motion& motion, double dt) {
     const Entry& e = across_rails_[k];
     moved_[e.moved].force += force(of_these_[k], e);
   }
-  // The mean velocities of both half kicks.
+  // The power is taken at the mean velocities of the two half kicks.
   double power = 0;
   gain_ = 0;
   for (const Moved& moved : moved_) {
@@ -284,9 +289,9 @@ void Dashpots::sum_forces(const Motion& motion, double dt) {
   lost_ = -dt / 2 * power;
 }
 
-void Dashpots::add_forces(std::span<double> to) const {
+void Dashpots::add_forces(std::span<double> forces) const {
   for (const Moved& moved : moved_) {
-    if (moved.coordinate < to.size()) to[moved.coordinate] += moved.force;
+    if (moved.coordinate < forces.size()) forces[moved.coordinate] += moved.force;
   }
 }
 

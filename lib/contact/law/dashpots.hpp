@@ -1,20 +1,21 @@
 // All dashpots of a step (docs/theory.md, Dashpots).
 //
-// A contact of any two surfaces has one direction in the coordinates along its normal and one along
-// its tangent: g.v is the rate at which its two sides move against each other, and the impulse J on
-// them changes v by W J g, with the inverse masses W. A dashpot of the coefficient c gives
+// A contact of any two surfaces has one direction g in the space of all coordinates along its
+// normal, and one along its tangent: g.v is the rate at which its two sides move relative to each
+// other, and an impulse J on them changes v by W J g, with the inverse masses W. A dashpot with the
+// coefficient c gives
 //
 //   J = -c h [theta g.v1 + (1 - theta) g.v0],   theta = max(1/2, 1 - 1/x),
 //   x = sum over the coordinates q of W_q |g_q| sum over all contacts j of c_j h |g_jq|,
 //
-// over a step of h from the velocities v0 half a step before to v1 half a step behind: the midpoint
-// rule where it bears it, and beyond no more than what brings the two sides to rest. x is the part
-// of the rate that all dashpots at these bodies would take at v0. The dashpots of all contacts are
-// solved for together, one after the other forwards and backwards, until they
-// agree. This takes energy with any coefficient, step and masses, and however often it is done: the
-// step needs no bound for it. g vanishes in rigid motion, so that momenta are kept.
+// over a step of h, where v0 and v1 are the velocities half a step before and after. This is the
+// midpoint rule where that is stable; beyond, theta is just large enough that the two sides come to
+// rest. x is the fraction of the rate that all dashpots at these bodies would remove at v0. The
+// dashpots of all contacts are solved together, one after the other, forwards and backwards, until
+// they agree. Energy is removed for any coefficient, step and masses, and for any number of sweeps,
+// so dashpots do not limit the step. g vanishes in rigid motion, so that momenta are conserved.
 //
-// A contact does not pull: J >= -N h along the normal with the elastic force N. Along the tangent
+// A contact does not pull: J >= -N h along the normal, with the elastic force N. Along the tangent
 // the friction spring and the dashpot beside it together stay within Coulomb's limit.
 #pragma once
 
@@ -30,67 +31,74 @@
 
 namespace apothem {
 
-/// A contact with dashpots. Forces act on the body a, along the normal or the tangent (-n_y, n_x).
+/// A contact with dashpots. Forces act on the body a along the normal or along the tangent (-n_y,
+/// n_x).
 struct Dashpot {
   BodyIndex a, b;
   Vec2 normal;  ///< unit vector
-  /// Of one dashpot along the normal, or of two at different places of the contact.
+  /// A dashpot along the normal. A contact has one, or two at different points.
   struct Normal {
     double rate = 0;     ///< coefficient, N s/m
-    double pressed = 0;  ///< elastic normal force there, N
-    double depth = 0;    ///< over which that has risen from nothing, m
-    double mean = 1;     ///< of the coefficient over this depth, as a part of it
-    /// `stiffness` there, N/m; `deepest`: of the whole contact, m.
+    double pressed = 0;  ///< elastic normal force at its point, N
+    double depth = 0;    ///< depth over which this force has risen from zero, m
+    double mean = 1;     ///< mean of the coefficient over this depth, as a fraction of `rate`
+    /// The dashpot at a point with the contact stiffness `stiffness`, N/m. `deepest` is the depth
+    /// of the whole contact, m.
     static Normal of(double rate, double pressed, double stiffness, double deepest);
   };
   std::array<Normal, 2> across;
   double tangential_rate = 0;  ///< coefficient along the tangent, N s/m
   double spring = 0;           ///< force of the friction spring, N
-  double coefficient = 0;      ///< of friction
+  double coefficient = 0;      ///< coefficient of friction
 };
 
-/// Coefficient of a dashpot over the stiffness `k` (N/m) of the spring beside it, s: `value`, or,
-/// if this is a ratio of critical damping, 2 value/omega for two bodies that a force of 1 N
-/// accelerates by `mobility` (1/kg) against each other. 0 where nothing can move.
+/// The coefficient of a dashpot over the stiffness `k` (N/m) of the spring beside it, s. This is
+/// `value` if `value` is a time. If it is a ratio of critical damping, the result is 2 value/omega
+/// for two bodies that a force of 1 N accelerates relative to each other by `mobility` (1/kg), and
+/// 0 if nothing can move.
 double dashpot_time(double value, bool is_time, double k, double mobility);
 
 class Dashpots {
  public:
-  /// What moves the bodies, of every coordinate in the order of a state.
+  /// Velocities and forces of every coordinate, in the order of a state.
   struct Motion {
-    std::span<const double> inverse_mass;  ///< 1/kg and 1/(kg m^2); 0 where forces cannot move it
-    std::span<const double> velocity;      ///< half a step before
-    /// All other forces in the second half of the step before and in the first half of the next, N.
+    /// 1/kg and 1/(kg m^2); 0 where forces cannot move the coordinate.
+    std::span<const double> inverse_mass;
+    std::span<const double> velocity;  ///< velocities half a step before
+    /// All forces except those of dashpots, in the second half of the last step and in the first
+    /// half of the next one, N.
     std::span<const double> before, after;
-    std::span<const double> weight;  ///< of gravity, besides; may be empty
-    /// Bodies that are steered, so that their inverse masses above are 0, but give way along a
-    /// direction: servo walls.
+    std::span<const double> weight;  ///< weight, in addition to these forces; may be empty
+    /// A body with prescribed motion, so that its inverse mass above is 0, that yields along one
+    /// direction: a servo wall.
     struct Rail {
       RigidIndex body;
-      Vec2 direction;       ///< of unit length
-      double inverse_mass;  ///< along it, 1/kg
-      double gain;          ///< of the speed along it in this step by all other forces, m/s
+      Vec2 direction;       ///< unit vector
+      double inverse_mass;  ///< inverse mass along the direction, 1/kg
+      double
+          gain;  ///< change of the speed along the direction in this step by all other forces, m/s
     };
     std::span<const Rail> rails = {};
   };
 
   explicit Dashpots(int rigid_bodies) : nodes_(3 * static_cast<size_t>(rigid_bodies)) {}
 
-  /// The contacts of a step are added anew, always in the same order.
+  /// Removes all contacts. Every step adds its contacts again, always in the same order.
   void clear();
-  /// Begins a contact, whose coordinates follow.
+  /// Adds a contact. The coordinates that belong to it are added next.
   void add(const Dashpot& dashpot) {
     dashpots_.push_back(dashpot);
     solved_.push_back({.first = static_cast<std::uint32_t>(entries_.size()), .along = {}});
   }
-  /// How the velocity of a node, or of a rigid body, counts in the rates of the last contact: along
-  /// the normal at both places, and along the tangent. Vectors for a node; for a body a force acts
-  /// on it at these places relative to its mass centre, `sign` times as on a. Both may come several
-  /// times.
+  /// Adds the contribution of a node, or of a rigid body, to the rates of the last contact, along
+  /// the normal at both points and along the tangent. A node contributes by its coefficient
+  /// vectors. For a body a force acts at these points relative to its mass centre, with the sign
+  /// `sign` relative to the body a. Both functions may be called several times per contact.
   void add_node(NodeIndex node, const Vec2& normal, const Vec2& tangential);
   void add_rigid(RigidIndex body, double sign, const std::array<Vec2, 2>& normal_at,
                  const Vec2& tangential_at);
-  /// A point of a rigid body at `arm` counts by vectors as a node does.
+  /// Adds a point of a rigid body at `arm` from its mass centre, m, by coefficient vectors as for a
+  /// node.
   void add_point(RigidIndex body, const Vec2& arm, const Vec2& normal, const Vec2& tangential);
 
   /// Finds the forces of a step of dt (s).
@@ -98,7 +106,7 @@ class Dashpots {
 
   [[nodiscard]] size_t size() const { return dashpots_.size(); }
   [[nodiscard]] const Dashpot& operator[](size_t i) const { return dashpots_[i]; }
-  /// On a, N: along the normal, and along the tangent.
+  /// The forces on body a along the normal and along the tangent, N.
   [[nodiscard]] double normal_force(size_t i) const {
     return (solved_[i].along[0].impulse + solved_[i].along[1].impulse) / dt_;
   }
@@ -106,10 +114,10 @@ class Dashpots {
     return solved_[i].along[2].impulse / dt_;
   }
   [[nodiscard]] Vec2 force_on_a(size_t i) const;
-  /// Adds the forces on the first coordinates, as many as there are, N and N m.
-  void add_forces(std::span<double> to) const;
-  /// What they take from the bodies, J: in the second half of the last step, and in the first half
-  /// of the next one, whose velocities these are.
+  /// Adds the dashpot forces to the first forces.size() coordinates, N and N m.
+  void add_forces(std::span<double> forces) const;
+  /// The energy that the dashpots remove from the bodies, J: in the second half of the last step,
+  /// and in the first half of the next one with the velocities `velocity`.
   [[nodiscard]] double lost_before() const { return lost_; }
   [[nodiscard]] double lost_after(std::span<const double> velocity, double dt) const;
 
@@ -123,34 +131,35 @@ class Dashpots {
   // A coordinate that dashpots move.
   struct Moved {
     std::uint32_t coordinate = 0;
-    std::uint32_t end = 0;  // behind its last entries, and those of the coordinates next to it
-    double kick = 0;        // by all other forces over this step
-    double reach = 0;       // of its dashpots together: impulse per velocity, N s/(m/s)
+    std::uint32_t end = 0;  // index after its last entries and those of the adjacent coordinates
+    double kick = 0;        // change of velocity by all other forces over this step
+    double reach = 0;       // impulse per velocity of all its dashpots together, N s/(m/s)
     double force = 0;
 
-    // What the ledger needs of the step before.
+    // The ledger needs these values of the step before.
     void fields(Archive& archive) { archive("coordinate", coordinate)("force", force); }
   };
   struct Moving {
-    double inverse_mass, velocity;  // half a step behind, with the impulses so far
+    // Velocity half a step later, including the impulses found so far.
+    double inverse_mass, velocity;
   };
   using Parts = std::array<double, 3>;
-  // How such a coordinate counts in the three rates of a contact.
+  // The contributions of a coordinate to the three rates of a contact.
   struct Entry {
     std::uint32_t moved;
     Parts part;
   };
-  // Of one of these rates. An impulse becomes kept times itself, less gain times the rate half a
-  // step behind, less offset.
+  // The update of one of these rates: the new impulse is kept times the impulse, minus gain times
+  // the rate half a step later, minus offset.
   struct Along {
     double kept = 0, gain = 0, offset = 0;
     double impulse = 0;  // N s
   };
-  // What is found of a contact.
+  // The solution for a contact.
   struct Solved {
-    std::uint32_t first;               // of its entries
-    std::array<Along, 3> along;        // along the normal at both places, and along the tangent
-    double d01 = 0, d02 = 0, d12 = 0;  // what an impulse along one does to another rate, 1/kg
+    std::uint32_t first;               // index of its first entry
+    std::array<Along, 3> along;        // along the normal at both points, and along the tangent
+    double d01 = 0, d02 = 0, d12 = 0;  // change of one rate by an impulse along another one, 1/kg
   };
   std::uint32_t find(size_t first, size_t count);
   template <size_t count>
@@ -167,13 +176,13 @@ class Dashpots {
   std::vector<Dashpot> dashpots_;
   std::vector<Solved> solved_;
   std::vector<Entry> entries_;
-  std::vector<Moved> moved_;             // in the order in which they were first added
-  std::vector<Moving> moving_;           // the same
-  std::vector<std::uint32_t> index_;     // of every coordinate in this list, or kNone
-  std::vector<Entry> across_rails_;      // what entries of bodies on rails have lost
-  std::vector<std::uint32_t> of_these_;  // the contacts of those
+  std::vector<Moved> moved_;             // coordinates in the order in which they were first added
+  std::vector<Moving> moving_;           // the same coordinates while solving
+  std::vector<std::uint32_t> index_;     // index of every coordinate in moved_, or kNone
+  std::vector<Entry> across_rails_;      // parts of entries across the rails of bodies
+  std::vector<std::uint32_t> of_these_;  // the contact of each of these parts
   double lost_ = 0;                      // J
-  double gain_ = 0;  // of their power, in a half of the first half of the next step, W
+  double gain_ = 0;  // contribution of their impulses to their own power in the next half step, W
   double dt_ = 1;
 };
 

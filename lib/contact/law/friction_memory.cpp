@@ -4,7 +4,7 @@ namespace apothem {
 
 void FrictionMemory::begin_step() {
   springs_.begin_step();
-  runs_.begin_step();
+  segments_.begin_step();
   balanced_before_ = balanced_;
   sums_before_ = {energy_, balanced_, loss_, damping_loss_};
   energy_ = balanced_ = 0;
@@ -12,16 +12,16 @@ void FrictionMemory::begin_step() {
 
 void FrictionMemory::undo_step() {
   springs_.undo_step();
-  runs_.undo_step();
+  segments_.undo_step();
   energy_ = sums_before_.energy;
   balanced_ = sums_before_.balanced;
   loss_ = sums_before_.loss;
   damping_loss_ = sums_before_.damping_loss;
 }
 
-void FrictionMemory::inherit(std::vector<Spring> springs, std::vector<PatchRun> runs) {
-  springs_.inherit(std::move(springs));
-  runs_.inherit(std::move(runs));
+void FrictionMemory::restore(std::vector<Spring> springs, std::vector<PatchSegment> segments) {
+  springs_.restore(std::move(springs));
+  segments_.restore(std::move(segments));
   energy_ = balanced_ = 0;
   for (const Spring& spring : springs_.now()) {
     energy_ += spring.energy();

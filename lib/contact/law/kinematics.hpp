@@ -1,5 +1,5 @@
-// Where all bodies are and how they move, and where the forces on them go: views of the vectors of
-// the state, which contact reads and adds to.
+// Positions and velocities of all bodies, and the forces on them: views of the vectors of the
+// state, which contact reads and adds to.
 #pragma once
 
 #include <span>
@@ -14,28 +14,30 @@ struct Kinematics {
   std::span<const double> displacement;   ///< x, y of each node, m
   std::span<const double> pose_rate;      ///< m/s, m/s, rad/s of each rigid body
   std::span<const double> node_velocity;  ///< x, y of each node, m/s
-  /// The rates are differences from earlier places: bodies may have turned by finite angles.
+  /// True if the rates are differences of positions, so that bodies may have turned by finite
+  /// angles.
   bool finite = false;
-  /// The part of pose_rate that is slip alone, by which no body has turned; empty if there is none.
+  /// The part of pose_rate that is slip without rotation of a body; empty if there is none.
   std::span<const double> slip = {};
-  /// An equilibrium is sought: no dashpot acts.
+  /// True while an equilibrium is sought, so that no dashpot acts.
   bool still = false;
-  /// The state has been loaded. Springs have the forces that they had, also where dashpots, which
-  /// go by velocities of within the step, had raised their limits.
+  /// True if the state has been loaded from a checkpoint. Springs then keep their stored forces,
+  /// even where dashpots, which depend on velocities within the step, had raised their limits.
   bool restored = false;
 };
 
 struct ForceViews {
   std::span<double> rigid;  ///< N, N and the moment about the mass centre, N m, of each rigid body
   std::span<double> nodes;  ///< x, y of each node, N
-  /// Of each rigid body: bound of w^2 of what its contacts hold, 1/s^2: see stiffness.hpp.
+  /// For each rigid body: upper bound of the squared frequency w^2 of its contact stiffness, 1/s^2,
+  /// see stiffness.hpp.
   std::span<double> lambda;
-  double lambda_limit = 0;  ///< up to it lambda need not be sharp, 1/s^2
-  /// What of `rigid` friction and damping do; empty if nobody asks.
+  double lambda_limit = 0;  ///< lambda need not be sharp below this value, 1/s^2
+  /// The part of `rigid` due to friction and damping; empty if it is not needed.
   std::span<double> beside = {};
 };
 
-/// A body has a vertex that is not at a finite place.
+/// Thrown if a vertex of a body has a coordinate that is not finite.
 class NotFinite : public std::domain_error {
  public:
   explicit NotFinite(BodyIndex body)

@@ -1,4 +1,4 @@
-// The contact law of a scene: which potential, how stiff, how rough, how much is damped.
+// The contact law of a scene: potential, stiffness, friction and damping.
 #pragma once
 
 #include <array>
@@ -10,28 +10,31 @@
 
 namespace apothem {
 
-/// k_t over the normal stiffness of a contact by default: what R. D. Mindlin (J. Appl. Mech. 16
-/// (1949), 259) finds for elastic bodies, 2 (1 - nu)/(2 - nu), at nu = 1/3.
-inline constexpr double kTangentialShare = 0.8;
+/// The default ratio of the tangential to the normal stiffness of a contact. R. D. Mindlin (J.
+/// Appl. Mech. 16 (1949), 259) finds 2 (1 - nu)/(2 - nu) for elastic bodies; this is its value at
+/// nu = 1/3.
+inline constexpr double kTangentialRatio = 0.8;
 
 struct Friction {
-  double coefficient = 0;  ///< mu; 0: none
-  /// k_s, Pa: the paper's constant stiffness of a spring, whatever the size of its contact (Eq.
-  /// 12). 0: by the ratio.
+  double coefficient = 0;  ///< mu; 0 means no friction
+  /// k_s, Pa: the paper's constant stiffness of a friction spring, independent of the size of its
+  /// contact (Eq. 12). With 0 the stiffness follows from the ratio below.
   double tangential_stiffness = 0;
   /// Stiffness of the spring over the normal stiffness dN/dd of its contact.
-  double stiffness_ratio = kTangentialShare;
+  double stiffness_ratio = kTangentialRatio;
 };
 
-/// Viscous damping of contacts. 0: none.
+/// Viscous damping of contacts; 0 means none.
 struct ContactDamping {
-  double normal = 0;       ///< ratio of critical damping, or time constant, s
-  double tangential = 0;   ///< likewise, beside the friction spring, within Coulomb's limit
-  double bulk = 0;         ///< ratio for the strains of bodies with a mesh; of the whole scene
-  bool are_times = false;  ///< the first two are time constants: coefficients over stiffnesses
+  double normal = 0;  ///< ratio of critical damping, or time constant in s
+  /// The same for the dashpot beside the friction spring, within Coulomb's limit.
+  double tangential = 0;
+  double bulk = 0;  ///< ratio for the strains of bodies with a mesh; one value for the whole scene
+  /// True if the first two are time constants, which are coefficients over stiffnesses.
+  bool are_times = false;
 };
 
-/// What acts between two bodies.
+/// The contact law between two bodies.
 struct PairLaw {
   double normal_stiffness = 0;  ///< k_n, Pa
   Friction friction = {};
@@ -39,29 +42,31 @@ struct PairLaw {
 
   [[nodiscard]] bool rough() const { return friction.coefficient > 0; }
   [[nodiscard]] bool damped() const { return damping.normal > 0 || damping.tangential > 0; }
-  /// Stiffness of the springs of boundaries, on which the normal stiffness is spread as well, over
-  /// that.
+  /// Ratio of the stiffness of friction springs that are spread over a boundary to the normal
+  /// stiffness, which is spread over it as well.
   [[nodiscard]] double spread_ratio() const {
     const double k = friction.tangential_stiffness;
     return k > 0 ? k / normal_stiffness : friction.stiffness_ratio;
   }
-  /// Of springs of one stiffness (Eq. 9), Pa.
+  /// The stiffness of friction springs that all have the same stiffness (Eq. 9), Pa.
   [[nodiscard]] double one_stiffness() const { return spread_ratio() * normal_stiffness; }
 };
 
 /// resultant: one spring per contact patch (the paper); per_edge: one per edge of the overlap.
 enum class FrictionLaw { resultant, per_edge };
 
-/// Whose potential deformable bodies touch with: the body's own near its surface, or that of each
-/// of its outermost elements (the paper).
+/// The potential by which deformable bodies touch: that of the body near its surface, or that of
+/// each of its outermost elements (the paper).
 enum class ContactSurface { body, element };
 
-/// How the contact force of deformable bodies becomes nodal forces: as the gradient of the energy;
-/// the tractions of each part of the overlap's boundary by the shape functions; or the resultant of
-/// a pair of elements by the shape functions at its action point (Eq. 15).
+/// How the contact force on deformable bodies becomes nodal forces: as the gradient of the energy;
+/// by distributing the tractions of each boundary segment of the overlap with the shape functions;
+/// or by distributing the resultant of a pair of elements with the shape functions at its action
+/// point (Eq. 15).
 enum class ForceDistribution { variational, integrated, resultant };
 
-/// What is different between two parties, each a body or every body of a material.
+/// A contact law that applies only between two parties. A party is one body, or all bodies of a
+/// material.
 struct ContactRule {
   struct Party {
     bool is_body;
@@ -81,16 +86,16 @@ struct ContactLaw {
   ContactSurface surface = ContactSurface::body;
   ForceDistribution distribution = ForceDistribution::variational;
   ContactDamping damping = {};
-  std::vector<ContactRule> rules = {};  ///< for pairs; later ones win
-  double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0: none
-  bool self = false;                    ///< bodies with a mesh touch themselves as well
-  bool accepts_overlaps = false;        ///< bodies may overlap deeply at the start
-  /// Penetration over the inradius of a body above which the run warns.
+  std::vector<ContactRule> rules = {};  ///< rules for pairs; later rules override earlier ones
+  double mass_damping = 0;              ///< alpha of C = alpha M, 1/s; 0 means none
+  bool self = false;                    ///< true if bodies with a mesh may touch themselves
+  bool accepts_overlaps = false;        ///< true if bodies may overlap deeply at the start
+  /// The run warns if the penetration over the inradius of a body exceeds this value.
   double penetration_warning = 0.01;
 };
 
-/// Between two bodies, given with their materials: of each part the last rule that fits, or that of
-/// the scene.
+/// The law between two bodies, given with their materials. Each part of it comes from the last rule
+/// that applies, or else from the law of the scene.
 PairLaw law_between(const ContactLaw& law, int a, int material_a, int b, int material_b);
 
 /// The friction laws a scene can name.
@@ -113,8 +118,8 @@ inline constexpr std::array kSurfaces{
     NamedSurface{"element", ContactSurface::element},
 };
 
-/// The distributions of contact forces a scene can name, each with the one surface it belongs to;
-/// the first of a surface is its default.
+/// The distributions of contact forces that a scene can name, each with the surface that it belongs
+/// to. The first one of a surface is its default.
 struct NamedDistribution {
   std::string_view name;
   ForceDistribution distribution;

@@ -13,7 +13,7 @@ PairTable::PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& ma
       if (party.is_body) named[party.index] = 1;
     }
   }
-  std::vector<BodyIndex> first;  // of each kind
+  std::vector<BodyIndex> first;  // the first body of each kind
   std::vector<int> of_material(materials, -1);
   for (BodyIndex a = 0; a < static_cast<BodyIndex>(material.size()); ++a) {
     int& known = of_material[material[a]];

@@ -11,8 +11,8 @@ namespace apothem {
 
 class PairTable {
  public:
-  /// `material` of each body, `materials` how many there are. Bodies of one material share a row,
-  /// unless a rule names them.
+  /// `material` has the material of each body; `materials` is the number of materials. Bodies of
+  /// one material share a row, unless a rule names them.
   PairTable(const ContactLaw& law, const std::vector<MaterialIndex>& material, int materials);
 
   [[nodiscard]] const PairLaw& between(BodyIndex a, BodyIndex b) const {
@@ -27,14 +27,14 @@ class PairTable {
   /// The largest and the smallest normal stiffness between any two bodies, Pa.
   [[nodiscard]] double stiffest() const { return stiffest_; }
   [[nodiscard]] double softest() const { return softest_; }
-  /// Between any two rough bodies: the largest constant stiffness of springs, Pa, and the largest
-  /// ratio of others to the normal stiffness. 0 if there are none.
+  /// The largest constant stiffness of friction springs between any two bodies with friction, Pa,
+  /// and the largest ratio of the other ones to the normal stiffness; 0 if there are none.
   [[nodiscard]] const Friction& stiffest_friction() const { return stiffest_friction_; }
 
  private:
-  std::vector<int> kind_;  // of each body
+  std::vector<int> kind_;  // kind of each body
   size_t kinds_ = 0;
-  std::vector<PairLaw> table_;  // between kinds p and q at p kinds_ + q
+  std::vector<PairLaw> table_;  // law between the kinds p and q at the index p kinds_ + q
   bool self_, rough_ = false, damped_ = false;
   double stiffest_ = 0, softest_ = HUGE_VAL;
   Friction stiffest_friction_{0, 0, 0};

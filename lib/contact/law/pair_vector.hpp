@@ -1,5 +1,5 @@
 // Vectors of the plane, and forces and velocities of a pair of rigid bodies, for formulas with
-// numbers or packs of them.
+// numbers or packs of numbers.
 #pragma once
 
 #include "lib/archive/archive.hpp"
@@ -7,12 +7,12 @@
 
 namespace apothem {
 
-/// A normal force that is so much smaller than the pressures it is the sum of has no direction
-/// worth following.
+/// A normal force has no meaningful direction if its magnitude is below this fraction of the sum of
+/// the pressures that it consists of.
 inline constexpr double kNoResultant = 1e-9;
 
-/// Direction in which friction acts: (-n_y, n_x), n the direction of the normal force; zero if
-/// there is no normal force.
+/// The direction of friction, (-n_y, n_x) for the direction n of the normal force; zero if there is
+/// no normal force.
 inline Vec2 tangent_of(const Vec2& normal_force) {
   const double size = normal_force.norm();
   return size > 0 ? Vec2(Vec2(-normal_force.y(), normal_force.x()) / size) : Vec2(Vec2::Zero());
@@ -31,13 +31,13 @@ struct VectorOf {
   }
   [[nodiscard]] APOTHEM_INLINE Real dot(const VectorOf& b) const { return x * b.x + y * b.y; }
   [[nodiscard]] APOTHEM_INLINE Real cross(const VectorOf& b) const { return x * b.y - y * b.x; }
-  /// Turned to the left by a right angle.
+  /// The vector turned to the left by a right angle.
   [[nodiscard]] APOTHEM_INLINE VectorOf turned() const { return {-y, x}; }
   [[nodiscard]] APOTHEM_INLINE Real size() const { return square_root(x * x + y * y); }
 };
 
 /// A force on the first body of a pair with its moments about both mass centres, N and N m; or the
-/// velocity of the first mass centre against the second one with both spins, m/s and rad/s.
+/// velocity of the first mass centre relative to the second one with both spins, m/s and rad/s.
 template <class Real>
 struct PairVectorOf {
   Real x = Real(0.), y = Real(0.), a = Real(0.), b = Real(0.);
@@ -56,7 +56,7 @@ struct PairVectorOf {
     return (x * velocity.x + y * velocity.y) + a * velocity.a + b * velocity.b;
   }
   [[nodiscard]] APOTHEM_INLINE VectorOf<Real> plane() const { return {x, y}; }
-  /// Each entry where the mask is true, else 0.
+  /// The entries where the mask is true, and 0 elsewhere.
   [[nodiscard]] APOTHEM_INLINE PairVectorOf where(const Truth<Real>& mask) const {
     return {select(mask, x, Real(0.)), select(mask, y, Real(0.)), select(mask, a, Real(0.)),
             select(mask, b, Real(0.))};

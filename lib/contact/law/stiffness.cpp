@@ -8,8 +8,9 @@ constexpr int kMostLooks = 100;
 
 }  // namespace
 
-// Newton's method on the characteristic polynomial: from above its largest zero it comes down to it
-// and does not pass it. The functions of Eigen for this have other bits on other processors.
+// Newton's method on the characteristic polynomial. From a start above the largest root it descends
+// to this root without passing it. The eigenvalue functions of Eigen give other bits on other
+// processors.
 double rate_of(const BodyStiffness& k, const std::array<double, 3>& inverse_mass) {
   const auto& [wx, wy, wt] = inverse_mass;
   const double x = k.xx * wx, y = k.yy * wy, t = k.tt * wt;
@@ -31,7 +32,8 @@ double rate_of(const BodyStiffness& k, const std::array<double, 3>& inverse_mass
   return rate;
 }
 
-// Mean and variance of the eigenvalues: the largest one is at most mean + sqrt(2 variance).
+// The bound follows from mean and variance of the eigenvalues: the largest one is at most mean +
+// sqrt(2 variance).
 double rate_bound_of(const BodyStiffness& k, const std::array<double, 3>& inverse_mass) {
   const auto& [wx, wy, wt] = inverse_mass;
   const double x = k.xx * wx, y = k.yy * wy, t = k.tt * wt;

@@ -1,82 +1,84 @@
-// The common normal of friction springs that are close to each other on a boundary, and how much
-// of the normal force counts for friction there (docs/theory.md, Friction).
+// The common normal of friction springs that are close to each other on a boundary, and the
+// fraction of the normal force that counts for friction (docs/theory.md, Friction).
 //
-// At a corner the edges push against each other. With every edge by itself, Coulomb's limit would
-// be the sum of the sizes of their forces, which is more than what presses the bodies together, and
-// the slip would be along the flanks. Therefore the pushes of a neighbourhood are summed: friction
-// acts across their resultant, and what cancels does not count. Neighbourhoods are as long as a few
-// depths: where a boundary is straight nothing changes, however the pressure varies.
+// At a corner the edges push against each other. If every edge were treated alone, Coulomb's limit
+// would be the sum of the magnitudes of their forces, which exceeds the force that presses the
+// bodies together, and the slip would be along the flanks. Therefore the normal forces of a
+// neighbourhood are summed: friction acts across the resultant, and the part that cancels does not
+// count. A neighbourhood is a few depths long, so that nothing changes where a boundary is
+// straight, however the pressure varies.
 #pragma once
 
 #include <vector>
 
 #include "lib/contact/mesh/edge_face_blocks.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
-/// The contacts of an edge that have one friction spring, in an evaluation.
+/// The sums over those contacts of an edge that share one friction spring, in one evaluation.
 struct SpringContact {
-  // What their contacts add up to; nothing acts where `normal` is 0.
-  double normal = 0;      ///< size of the elastic push on the edge, N
-  double place = 0;       ///< its moment along the edge over the length of the edge, N
-  double rate_x = 0;      ///< slip rate of the edge against the faces, times the push, N m/s
-  double rate_y = 0;      ///< likewise
-  double slope_x = 0;     ///< of the potentials along the faces, which resist across them, N/m
-  double slope_y = 0;     ///< likewise
-  double deepest = 0;     ///< depth, m
-  double ratio = 0;       ///< of the spring's stiffness to that along the normal
-  std::int32_t edge = 0;  ///< of the outlines
+  // Sums over the contacts; there is no contact where `normal` is 0.
+  double normal = 0;      ///< magnitude of the elastic normal force on the edge, N
+  double place = 0;       ///< moment of this force along the edge over the length of the edge, N
+  double rate_x = 0;      ///< slip rate of the edge against the faces times the normal force, N m/s
+  double rate_y = 0;      ///< y component, N m/s
+  double slope_x = 0;     ///< stiffness of the faces times their tangents, N/m
+  double slope_y = 0;     ///< y component, N/m
+  double deepest = 0;     ///< largest depth, m
+  double ratio = 0;       ///< ratio of the stiffness of the spring to that along the normal
+  std::int32_t edge = 0;  ///< edge of the outlines
   BodyIndex other = 0;    ///< the body of the faces
-  // What the springs before have left; force_before is then with what neighbours hand over.
+  // The spring of the step before. transfer_forces adds to force_before what neighbouring springs
+  // hand over.
   bool is_old = false;
   double force_before = 0, stiffness_before = 0;  ///< N, N/m
-  double push_before = 0;                         ///< of the dashpot along the normal, N
-  // What follows.
-  double nx = 0, ny = 0;      ///< unit vector along which the edge is pushed; 0 if there is none
-  double pressed = 0;         ///< normal force that counts for friction, N
-  double resistance = 0;      ///< stiffness along the normal, N/m
-  double stiffness = 0;       ///< of the spring, N/m
-  double friction = 0;        ///< its force along (-ny, nx) on the edge, N
-  double drag = 0, push = 0;  ///< of the dashpots, along it and along the normal, N
+  double push_before = 0;                         ///< force of the dashpot along the normal, N
+  // Results.
+  double nx = 0, ny = 0;  ///< unit vector of the normal force on the edge; zero if there is none
+  double pressed = 0;     ///< normal force that counts for friction, N
+  double resistance = 0;  ///< stiffness along the normal, N/m
+  double stiffness = 0;   ///< stiffness of the spring, N/m
+  double friction = 0;    ///< force of the spring on the edge along (-ny, nx), N
+  double drag = 0, push = 0;  ///< forces of the dashpots along the tangent and along the normal, N
 };
 
 class CommonNormals {
  public:
-  /// Must outlive this object.
-  explicit CommonNormals(const Outlines& outlines) : outlines_(outlines) {}
+  /// `outlines` must outlive this object.
+  explicit CommonNormals(const OutlineSurfaces& outlines) : outlines_(outlines) {}
 
-  /// Finds the normals, the normal forces and the forces of the springs before the step, in place.
-  /// The same bits for any order of the springs and number of threads.
+  /// Computes in place the normals, the normal forces and the forces of the springs before the
+  /// step. The result has the same bits for any order of the springs and any number of threads.
   void find(std::vector<SpringContact>& springs);
 
  private:
-  /// Of those on one closed line that touch one body: by their places along the line.
-  struct Place {
+  /// The place of a spring along its closed line.
+  struct SpringPlace {
     std::int32_t loop;
     BodyIndex other;
-    double at;  // along the line, m
+    double arc_length;  // position along the line, m
     std::int32_t spring;
-    double depth = 0;      // with that of neighbours, less the further they are, m
-    double sizes = 0;      // of the pushes of the neighbourhood, N
-    double cancelled = 0;  // of the own push, N
-    double offered = 0;    // part of what a neighbour wants that it gets of what has gone
+    double depth = 0;      // largest depth nearby, reduced with the distance, m
+    double sizes = 0;      // sum of the magnitudes of the normal forces of the neighbourhood, N
+    double cancelled = 0;  // part of the own normal force that cancels, N
+    double offered_fraction = 0;  // fraction of a neighbour's growth that this spring can supply
   };
 
   void find_places(const std::vector<SpringContact>& springs);
   void find_neighbourhood(std::vector<SpringContact>& springs, size_t first, size_t end);
-  void hand_over(std::vector<SpringContact>& springs, size_t first, size_t end);
+  void transfer_forces(std::vector<SpringContact>& springs, size_t first, size_t end);
   template <class F>
   void each_neighbour(size_t first, size_t end, size_t i, const F& f) const;
 
-  const Outlines& outlines_;
-  std::vector<double> at_;              // of each vertex along its line, m
-  std::vector<double> perimeter_;       // of each line, m
-  std::vector<std::int32_t> loop_of_;   // of each vertex
-  std::vector<std::uint8_t> measured_;  // of each line, in this evaluation
-  std::vector<Place> places_;
-  std::vector<double> added_;  // forces that neighbours hand over, N
-  double deepest_ = 0;         // of the line at hand, m
+  const OutlineSurfaces& outlines_;
+  std::vector<double> arc_length_;      // position of each vertex along its line, m
+  std::vector<double> perimeter_;       // length of each line, m
+  std::vector<std::int32_t> loop_of_;   // closed line of each vertex
+  std::vector<std::uint8_t> measured_;  // whether each line has been measured in this evaluation
+  std::vector<SpringPlace> places_;
+  std::vector<double> added_;  // forces taken over from neighbours, N
+  double deepest_ = 0;         // largest depth on the present line, m
 };
 
 }  // namespace apothem

@@ -1,4 +1,5 @@
-// An edge of an outline and a face of another outline's collar (geometry/integrals/collar.hpp).
+// An edge of one outline and a face of the collar of another outline
+// (geometry/integrals/collar.hpp).
 #pragma once
 
 #include <compare>
@@ -10,40 +11,41 @@
 
 namespace apothem {
 
-/// An edge of one outline that may meet a face of another.
+/// A candidate: an edge of one outline that may meet a face of another one.
 struct EdgeFace {
   std::int32_t edge, face;
-  std::int32_t pair = 0;  ///< index of the EdgeFaceLaw
+  std::int32_t pair = 0;  ///< index of the candidate's EdgeFaceLaw
   auto operator<=>(const EdgeFace&) const = default;
 };
 
-/// Between the edges of one body and the faces of another.
+/// The contact law between the edges of one body and the faces of another one.
 struct EdgeFaceLaw {
   double slope;        ///< k_n thickness / r of the faces, N/m^2
-  const PairLaw* law;  ///< between the two
-  bool self;           ///< both are one body
-  std::int32_t pair;   ///< index of the pair of bodies, which takes no order of the two
+  const PairLaw* law;  ///< the law between the two bodies
+  bool self;           ///< true if both are the same body
+  std::int32_t pair;   ///< index of the unordered pair of bodies
 };
 
-/// An edge that meets a face.
+/// A contact: an edge that meets a face.
 struct EdgeFaceContact {
   std::int32_t edge, face;
   double slope;  ///< k_n thickness / r of the face, N/m^2
   CollarPiece<double> piece;
-  Vec2 drag = Vec2::Zero();  ///< friction on the edge with the dashpot beside it, N
-  Vec2 push = Vec2::Zero();  ///< of the dashpot across the contact on the edge, N
+  /// Force of the friction spring and of the dashpot beside it on the edge, N.
+  Vec2 drag = Vec2::Zero();
+  Vec2 push = Vec2::Zero();  ///< force of the dashpot along the normal on the edge, N
 };
 
-/// The normal forces of a contact, N, each along the inward normal of its edge or face, on its
-/// start and on its end. The edge gets the pressure against its outward normal, and the face gives
-/// way. Of numbers or packs.
+/// The normal forces of a contact on the start and on the end of its edge and of its face, N, each
+/// along the inward normal of that edge or face. The edge gets the pressure against its outward
+/// normal; the face gets the derivative by its own displacement. `Real` is a number or a pack.
 template <class Real>
 struct EdgeFaceForces {
   Real edge_start, edge_end, face_start, face_end;
 };
 
-/// `piece` has the members of CollarPiece. `slope` of the face, as above; length of the edge, m,
-/// and 1 over that of the face's base, 1/m.
+/// `p` has the members of CollarPiece. `slope` is that of the face, N/m^2, `edge_length` the length
+/// of the edge, m, and `per_face_length` the inverse length of the face's base, 1/m.
 template <class Real, class Piece>
 APOTHEM_INLINE EdgeFaceForces<Real> edge_face_forces(const Piece& p, const Real& slope,
                                                      const Real& edge_length,
@@ -54,12 +56,13 @@ APOTHEM_INLINE EdgeFaceForces<Real> edge_face_forces(const Piece& p, const Real&
           on_face_end};
 }
 
-/// The height up to which an edge's height in a face is surely its depth, unless the body is
-/// squeezed to less than the collar. `plain` of the face and `depth` of the collar, m.
+/// Up to this height the height of an edge in a face is certainly its depth, unless the body is
+/// squeezed to less than its collar. `regular_depth` is that of the face, `depth` that of the
+/// collar, m.
 template <class Real>
-APOTHEM_INLINE Real sure_depth(const Real& plain, const Real& depth) {
+APOTHEM_INLINE Real sure_depth(const Real& regular_depth, const Real& depth) {
   const Real half = Real(.5) * depth;
-  return select(half < plain, half, plain);
+  return select(half < regular_depth, half, regular_depth);
 }
 
 }  // namespace apothem

@@ -6,20 +6,21 @@
 namespace apothem {
 namespace {
 
-constexpr int kUnitEdges = 48;      // of a unit
-constexpr int kUnitFaces = 64;      // of a unit with one long edge
-constexpr double kLong = 32;        // times the smallest r of a mesh
-constexpr double kNothing = 1e-12;  // of a collar: round-off where an edge begins on a face
+constexpr int kUnitEdges = 48;  // edges of a unit
+constexpr int kUnitFaces = 64;  // faces of a unit with one long edge
+constexpr double kLong = 32;    // an edge is long above this multiple of the smallest r of a mesh
+constexpr double kNothing = 1e-12;  // round-off of a depth where an edge begins on a face, relative
+                                    // to the depth of the collar
 
 }  // namespace
 
-EdgeFaceBlocks::EdgeFaceBlocks(const Outlines& outlines)
+EdgeFaceBlocks::EdgeFaceBlocks(const OutlineSurfaces& outlines)
     : outlines_(outlines), is_long_(static_cast<size_t>(outlines.size())) {
   double smallest = HUGE_VAL;
-  for (const Outlines::Body& body : outlines.bodies) {
+  for (const OutlineSurfaces::Body& body : outlines.bodies) {
     if (!body.is_rigid()) smallest = std::min(smallest, body.reference);
   }
-  for (const Outlines::Body& body : outlines.bodies) {
+  for (const OutlineSurfaces::Body& body : outlines.bodies) {
     for (int i = body.first; body.is_rigid() && i < body.end; ++i) {
       is_long_[static_cast<size_t>(i)] = outlines.given_length(i) > kLong * smallest;
     }
@@ -31,14 +32,16 @@ EdgeFaceBlocks::Key EdgeFaceBlocks::unit_of(const EdgeFace& c) const {
   return {-1 - c.edge / kUnitEdges, 0};
 }
 
-// Of the spring that a contact belongs to: an edge has one for each body that it touches. Edges of
-// rigid bodies are long: they have one for each face, which the face takes with it.
+// The key of the spring that a contact belongs to. An edge of a mesh has one spring for each body
+// that it touches. An edge of a rigid body may be long and has one spring for each face, which
+// moves with the face.
 EdgeFaceBlocks::Key EdgeFaceBlocks::key_of(const EdgeFace& c) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   return {c.edge, o.bodies[o.body[c.edge]].is_rigid() ? c.face : o.body[c.face]};
 }
 
-void EdgeFaceBlocks::take(std::span<const EdgeFace> candidates, std::span<const EdgeFaceLaw> laws) {
+void EdgeFaceBlocks::set_candidates(std::span<const EdgeFace> candidates,
+                                    std::span<const EdgeFaceLaw> laws) {
   units_.clear(), blocks_.clear(), groups_.clear(), laws_.clear();
   most_blocks_ = 0;
   number_of_law_.assign(laws.size(), -1);
@@ -64,8 +67,8 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
   for (int worker = 0; worker < threads.count(); ++worker) {
     for (int u = threads.first_of(units, worker); u < threads.first_of(units, worker + 1); ++u) {
       for (std::int32_t i = units_[u].first; i < units_[u].end; ++i) {
-        for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
-          for (const std::int32_t v : *of) {
+        for (const EdgeFaceBlock::Vertices* list : vertices(blocks_[i])) {
+          for (const std::int32_t v : *list) {
             int& owner = owners_[static_cast<size_t>(v)];
             owner = owner == kNobody || owner == worker ? worker : kSeveral;
           }
@@ -74,8 +77,8 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
     }
   }
   for (size_t i = 0; i < blocks_.size(); ++i) {
-    for (const EdgeFaceBlock::Vertices* of : vertices(blocks_[i])) {
-      if (std::ranges::any_of(*of, [&](std::int32_t v) { return is_shared(v); }))
+    for (const EdgeFaceBlock::Vertices* list : vertices(blocks_[i])) {
+      if (std::ranges::any_of(*list, [&](std::int32_t v) { return is_shared(v); }))
         has_shared_[i] = 1;
     }
   }
@@ -83,8 +86,8 @@ void EdgeFaceBlocks::divide(const Threads& threads) {
 
 void EdgeFaceBlocks::add_unit(std::span<const EdgeFace> candidates, std::int32_t first,
                               std::span<const EdgeFaceLaw> laws) {
-  const Outlines& o = outlines_;
-  const auto size = [](const auto& of) { return static_cast<std::int32_t>(of.size()); };
+  const OutlineSurfaces& o = outlines_;
+  const auto size = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
   EdgeFaceUnit unit{};
   unit.first = size(blocks_), unit.first_law = size(laws_), unit.first_group = size(groups_);
   unit.first_candidate = first, unit.candidates = size(candidates);

@@ -1,5 +1,5 @@
-// Edges against faces, several at a time: which of them meet, and the forces between them. Private
-// to outline_kernel.cpp.
+// Edges against faces, several at a time: which of them meet, and the forces between them. This
+// header is private to outline_kernel.cpp.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 #include "geometry/integrals/collar.hpp"
 #include "lib/contact/mesh/edge_face_blocks.hpp"
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 namespace apothem {
 
-/// The normal forces of the candidates of a block, N: of each lane on the start and the end of its
-/// edge, then of its face. 0 where they do not meet.
+/// The normal forces of the candidates of a block, N. Each lane has the forces on the start and the
+/// end of its edge, then those on its face; they are 0 where the edge does not meet the face.
 using EdgeFacePushes = std::array<FourOf<double>, kBlock>;
 
 /// The forces on the two ends of an edge.
 using EndForces = std::array<double, 2>;
-APOTHEM_INLINE void add(const EndForces& force, EndForces& to) {
-  using Pair = double __attribute__((vector_size(16)));
-  const Pair sum = Pair{to[0], to[1]} + Pair{force[0], force[1]};
-  to[0] = sum[0], to[1] = sum[1];
+APOTHEM_INLINE void add(const EndForces& force, EndForces& sum) {
+  using TwoNumbers = double __attribute__((vector_size(16)));
+  const TwoNumbers both = TwoNumbers{sum[0], sum[1]} + TwoNumbers{force[0], force[1]};
+  sum[0] = both[0], sum[1] = both[1];
 }
 
 /// Calls f(edge, EndForces) for the edges of a block and the bases of its faces.
@@ -43,19 +43,19 @@ namespace edge_face_detail {
 
 using Pack = PackOf<kBlock>;
 
-/// One candidate that may cross the top of the collar.
-inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, EdgeFaceTouch& touch,
-                      unsigned& met, EdgeFacePushes& pushes, double& deepest,
-                      EdgeFaceCrossings& crossings) {
+/// Evaluates one candidate that may reach the saturated region of the collar.
+inline void find_general(const OutlineSurfaces& o, const EdgeFaceBlock& block, size_t l,
+                         EdgeFaceTouch& touch, unsigned& met, EdgeFacePushes& pushes,
+                         double& deepest, EdgeFaceCrossings& all_crossings) {
   const std::int32_t p = block.p[l], q = block.q[l], a = block.a[l];
   const CollarFace<double> face = o.face(a);
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  if (!deep_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, top)) return;
+  CollarCrossings<double> crossings;
+  if (!general_collar_piece(face, o.x[p], o.y[p], o.x[q], o.y[q], piece, crossings)) return;
   const EdgeFaceForces<double> f =
       edge_face_forces(piece, block.slope[l], o.length[p], 1 / face.length);
   pushes[l] = {f.edge_start, f.edge_end, f.face_start, f.face_end};
-  if (top.count > 0) crossings.emplace_back(EdgeFace{p, a}, top);
+  if (crossings.count > 0) all_crossings.emplace_back(EdgeFace{p, a}, crossings);
   if (piece.deepest <= block.nothing[l]) return;
   met |= 1U << l;
   touch.from[l] = piece.from, touch.to[l] = piece.to;
@@ -66,37 +66,46 @@ inline void find_deep(const Outlines& o, const EdgeFaceBlock& block, size_t l, E
 
 }  // namespace edge_face_detail
 
-/// Finds the contacts of a unit. push(block, pushes) for blocks in which something meets.
+/// Finds the contacts of a unit. Calls push(block, pushes) for the blocks in which an edge meets
+/// its face.
 template <class Push>
-APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
+APOTHEM_INLINE void find_meetings(const OutlineSurfaces& o, EdgeFaceBlocks& all, EdgeFaceUnit& unit,
                                   EdgeFaceCrossings& crossings, const Push& push) {
   using edge_face_detail::Pack;
   using Vertices = EdgeFaceBlock::Vertices;
   const Pack zero(0.), one(1.);
-  Pack deepest(0.);  // squares of bounds
-  double deep_deepest = 0;
+  Pack deepest(0.);  // squares of upper bounds
+  double general_deepest = 0;
   int touching = 0;
   for (std::int32_t i = unit.first_law; i < unit.end_law; ++i) all.forces()[i].setZero();
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     const EdgeFaceBlock& block = all.blocks()[i];
-    const auto at = [](const std::vector<double>& of, const Vertices& v) APOTHEM_LAMBDA {
+    const auto gathered = [](const std::vector<double>& values, const Vertices& v) APOTHEM_LAMBDA {
       return pack_of<kBlock>([&](size_t l)
-                                 APOTHEM_LAMBDA { return of[static_cast<size_t>(v[l])]; });
+                                 APOTHEM_LAMBDA { return values[static_cast<size_t>(v[l])]; });
     };
-    const CollarFace<Pack> face{at(o.x, block.a),      at(o.y, block.a),  at(o.x, block.b),
-                                at(o.y, block.b),      at(o.tx, block.a), at(o.ty, block.a),
-                                at(o.length, block.a), at(o.mx, block.a), at(o.my, block.a),
-                                at(o.mx, block.b),     at(o.my, block.b), at(o.depth, block.a),
-                                at(o.plain, block.a)};
-    const Pack px = at(o.x, block.p), py = at(o.y, block.p);
-    const Pack qx = at(o.x, block.q), qy = at(o.y, block.q);
+    const CollarFace<Pack> face{gathered(o.x, block.a),
+                                gathered(o.y, block.a),
+                                gathered(o.x, block.b),
+                                gathered(o.y, block.b),
+                                gathered(o.tx, block.a),
+                                gathered(o.ty, block.a),
+                                gathered(o.length, block.a),
+                                gathered(o.mx, block.a),
+                                gathered(o.my, block.a),
+                                gathered(o.mx, block.b),
+                                gathered(o.my, block.b),
+                                gathered(o.depth, block.a),
+                                gathered(o.regular_depth, block.a)};
+    const Pack px = gathered(o.x, block.p), py = gathered(o.y, block.p);
+    const Pack qx = gathered(o.x, block.q), qy = gathered(o.y, block.q);
     const CollarPieces<Pack> piece = collar_pieces(face, px, py, qx, qy);
-    unsigned deep = bits(piece.deep) & block.lanes;
+    unsigned general = bits(piece.general) & block.lanes;
     std::uint8_t& met = all.met()[i];
     met = 0;
-    if ((bits(piece.met) | deep) == 0) continue;
+    if ((bits(piece.met) | general) == 0) continue;
 
-    const Pack edge_length = at(o.length, block.p), scale = one / face.length;
+    const Pack edge_length = gathered(o.length, block.p), scale = one / face.length;
     const EdgeFaceForces<Pack> force =
         edge_face_forces(piece, Pack::load(block.slope.data()), edge_length, scale);
     const auto where = [&](const auto& mask, const Pack& x)
@@ -108,8 +117,8 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
 
     const auto contact = piece.met & !(piece.deepest <= Pack::load(block.nothing.data()));
     EdgeFaceTouch& touch = all.touches()[i];
-    const auto put = [&](EdgeFaceTouch::Numbers& to, const Pack& x)
-                         APOTHEM_LAMBDA { x.store(to.data()); };
+    const auto put = [&](EdgeFaceTouch::Numbers& numbers, const Pack& x)
+                         APOTHEM_LAMBDA { x.store(numbers.data()); };
     put(touch.from, where(contact, piece.from)), put(touch.to, where(contact, piece.to));
     put(touch.sum, where(contact, piece.sum)), put(touch.first, where(contact, piece.first));
     put(touch.deepest, where(contact, piece.deepest));
@@ -120,15 +129,15 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     put(touch.height, (face.tx * y - face.ty * x) * scale);
     put(touch.climb, (face.tx * ey - face.ty * ex) * scale);
 
-    // The distance from the boundary over the height in a face is more than 1 where the face
-    // reaches beyond the end of its edge, at a reflex vertex.
+    // Where a face reaches beyond the end of its edge, at a reflex vertex, the distance from the
+    // boundary may exceed the height in the face. This factor bounds their ratio.
     const Pack alpha = -face.alpha(), beta = face.beta();
     const Pack further = select(alpha < beta, beta, alpha);
     const Pack beyond = where(further > zero, further);
     const Pack square = where(contact, piece.deepest * piece.deepest * (one + beyond * beyond));
     deepest = select(square <= deepest, deepest, square);
 
-    // What the body with the lower number feels at its edge, or at its face.
+    // The force on the body with the lower number, which acts at its edge or at its face.
     EdgeFaceTouch::Numbers lower_x, lower_y;
     const auto at_edge = Pack::load(block.edge_is_lower.data()) > zero;
     const Pack lower =
@@ -138,9 +147,9 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     put(lower_y, select(at_edge, ex, face.tx) * lower);
 
     unsigned found = bits(contact);
-    for (; deep != 0; deep &= deep - 1) {
-      const auto l = static_cast<size_t>(std::countr_zero(deep));
-      edge_face_detail::find_deep(o, block, l, touch, found, pushes, deep_deepest, crossings);
+    for (; general != 0; general &= general - 1) {
+      const auto l = static_cast<size_t>(std::countr_zero(general));
+      edge_face_detail::find_general(o, block, l, touch, found, pushes, general_deepest, crossings);
       const bool edge = block.edge_is_lower[l] > 0;
       const std::int32_t line = edge ? block.p[l] : block.a[l];
       const double sum = edge ? pushes[l][0] + pushes[l][1] : pushes[l][2] + pushes[l][3];
@@ -160,8 +169,8 @@ APOTHEM_INLINE void find_meetings(const Outlines& o, EdgeFaceBlocks& all, EdgeFa
     push(i, pushes);
   }
   unit.touching = touching;
-  for (size_t l = 0; l < kBlock; ++l) deep_deepest = std::max(deep_deepest, deepest.v[l]);
-  unit.deepest = deep_deepest;
+  for (size_t l = 0; l < kBlock; ++l) general_deepest = std::max(general_deepest, deepest.v[l]);
+  unit.deepest = general_deepest;
 }
 
 }  // namespace apothem

@@ -6,7 +6,7 @@
 
 namespace apothem {
 bool OutlineDepths::is_depth(int face, const CollarPiece<double>& piece) const {
-  return piece.deepest <= sure_depth(outlines_.plain[face], outlines_.depth[face]);
+  return piece.deepest <= sure_depth(outlines_.regular_depth[face], outlines_.depth[face]);
 }
 
 void OutlineDepths::forget() {
@@ -14,7 +14,7 @@ void OutlineDepths::forget() {
 }
 
 BoundaryDistance& OutlineDepths::boundary(BodyIndex body) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   BoundaryDistance& found = boundaries_[static_cast<size_t>(body)];
   if (!found.empty()) return found;
   for (int i = o.bodies[body].first; i < o.bodies[body].end; ++i) {
@@ -24,23 +24,24 @@ BoundaryDistance& OutlineDepths::boundary(BodyIndex body) {
 }
 
 double OutlineDepths::of_piece(int edge, int face, const CollarPiece<double>& piece, double floor) {
-  const BodyIndex in = outlines_.body[face];
-  if (outlines_.body[edge] == in || !is_depth(face, piece)) return of_edge(edge, in, floor);
-  // A face that does not reach beyond its edge has heights that are distances.
-  const CollarFace<double> at = outlines_.face(face);
-  if (at.alpha() >= 0 && at.beta() <= 0) return std::max(floor, piece.deepest);
+  const BodyIndex body = outlines_.body[face];
+  if (outlines_.body[edge] == body || !is_depth(face, piece)) return of_edge(edge, body, floor);
+  // In a face that does not reach beyond its edge, heights are distances.
+  const CollarFace<double> collar_face = outlines_.face(face);
+  if (collar_face.alpha() >= 0 && collar_face.beta() <= 0) return std::max(floor, piece.deepest);
   const Vec2 start = outlines_.point(edge);
   const Vec2 along = outlines_.point(outlines_.next[edge]) - start;
-  return boundary(in).largest(start + piece.from * along, start + piece.to * along, floor);
+  return boundary(body).largest(start + piece.from * along, start + piece.to * along, floor);
 }
 
-// In its own body an edge is inside where this lies once more on its outer side, and edges that
-// carry it on are not the boundary.
-double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
-  constexpr double kBeside = 1e-9;   // of the edge
-  constexpr double kCarriesOn = .7;  // cosine of the turn
-  const Outlines& o = outlines_;
-  const bool self = o.body[edge] == in;
+// An edge is inside its own body where the body covers the outer side of the edge as well. Edges
+// that continue it smoothly do not count as boundary then.
+double OutlineDepths::of_edge(int edge, BodyIndex body, double floor) {
+  constexpr double kBeside = 1e-9;  // offset to the outer side, relative to the length of the edge
+  // Cosine of the angle up to which a neighbour continues the edge.
+  constexpr double kCarriesOn = .7;
+  const OutlineSurfaces& o = outlines_;
+  const bool self = o.body[edge] == body;
   const auto is_other = [&](int i) {
     if (!self) return true;
     if (i == edge) return false;
@@ -50,10 +51,10 @@ double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
   const Vec2 start = o.point(edge), along = o.point(o.next[edge]) - start;
   const Vec2 beside = self ? kBeside * Vec2(along.y(), -along.x()) : Vec2(0, 0);
   std::vector<double> ends{0, 1};
-  const Outlines::Body& body = o.bodies[in];
+  const OutlineSurfaces::Body& vertices = o.bodies[body];
   BoundaryDistance of_others;
-  BoundaryDistance& depths = self ? of_others : boundary(in);
-  for (int i = body.first; i < body.end; ++i) {
+  BoundaryDistance& depths = self ? of_others : boundary(body);
+  for (int i = vertices.first; i < vertices.end; ++i) {
     if (!is_other(i)) continue;
     if (self) depths.add(o.point(i), o.point(o.next[i]));
     const Vec2 from = o.point(i) - start, to = o.point(o.next[i]) - start;
@@ -67,7 +68,7 @@ double OutlineDepths::of_edge(int edge, BodyIndex in, double floor) {
   for (size_t i = 1; i < ends.size(); ++i) {
     if (!(ends[i] > ends[i - 1])) continue;
     const Vec2 from = start + ends[i - 1] * along, to = start + ends[i] * along;
-    if (o.winding((from + to) / 2 + beside, in) != 0) deepest = depths.largest(from, to, deepest);
+    if (o.winding((from + to) / 2 + beside, body) != 0) deepest = depths.largest(from, to, deepest);
   }
   return deepest;
 }

@@ -32,11 +32,11 @@ OutlineFriction::OutlineFriction(const Surfaces& surfaces, const PairTable& tabl
   std::iota(all_.begin(), all_.end(), 0);
 }
 
-// Finds the velocities of the vertices, and makes room for the new forces. Returns the power of the
-// old ones, W.
+// Finds the velocities of the vertices of a body and clears their new forces. Returns the power of
+// the old forces, W.
 double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& step) {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[b];
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[b];
   double power = 0;
   const auto put = [&](int i, double vx, double vy) {
     velocities_[2 * static_cast<size_t>(i)] = vx;
@@ -54,7 +54,7 @@ double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& st
   }
   const double* v = now.pose_rate.data() + 3 * static_cast<size_t>(body.rigid);
   double drawn = 0, turned = 0;
-  if (now.finite) {  // from where the vertex was, along the chord of its arc
+  if (now.finite) {  // mean velocity along the chord of the vertex's path
     const double spin = v[2] - (now.slip.empty() ? 0 : now.slip[3 * size_t(body.rigid) + 2]);
     const double angle = spin * step.dt, half = sine_cosine(angle / 2).sine;
     turned = sine_cosine(angle).sine / step.dt - spin, drawn = 2 * half * half / step.dt;
@@ -71,7 +71,7 @@ double OutlineFriction::begin(BodyIndex b, const Kinematics& now, const Step& st
   return power;
 }
 
-// What the contacts of springs add up to, without what springs remember.
+// Sums the contacts of the springs of a unit, without the memory of the springs.
 void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) {
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     for (std::int32_t i = unit.first; i < unit.end; ++i) {
@@ -102,7 +102,7 @@ void OutlineFriction::find_contacts(const Step& step, const EdgeFaceUnit& unit) 
   }
 }
 
-// What springs remember.
+// Looks up the springs of the step before.
 void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> walk) {
   for (const EdgeFaceUnit& unit : step.blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
@@ -118,9 +118,9 @@ void OutlineFriction::find_before(const Step& step, ContactWalk<const Spring> wa
   }
 }
 
-// The part of a long step in which a new contact was closed: what came before is no slip.
-double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
-                                     const EdgeFaceGroup& group, const SpringContact& contact) {
+// The fraction of a long step for which a new contact was closed; motion before that is no slip.
+double OutlineFriction::closed_fraction(const Step& step, const EdgeFaceUnit& unit,
+                                        const EdgeFaceGroup& group, const SpringContact& contact) {
   double width = 0, depth = 0;
   step.blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
     const EdgeFaceTouch& touch = step.blocks.touches()[i];
@@ -132,8 +132,9 @@ double OutlineFriction::closed_share(const Step& step, const EdgeFaceUnit& unit,
   return closed > depth / width ? depth / width / closed : 1;
 }
 
-// Finds the forces of springs. Returns their energy, J.
-double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worker& worker) {
+// Updates the springs of a unit and finds their forces. Returns their energy, J.
+double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit,
+                               FrictionWorkspace& worker) {
   const std::span<const EdgeFaceGroup> groups = step.blocks.groups(unit);
   double energy = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
@@ -147,7 +148,7 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
       const CoulombSpring<double> spring{
           contact.stiffness, step.limited ? friction_limit(coefficient, pressed) : HUGE_VAL};
       double slip = (contact.nx * contact.rate_y - contact.ny * contact.rate_x) / contact.normal;
-      if (step.finite && !contact.is_old) slip *= closed_share(step, unit, group, contact);
+      if (step.finite && !contact.is_old) slip *= closed_fraction(step, unit, group, contact);
       contact.friction = spring.after(contact.force_before, slip * step.dt);
       energy += spring_energy(contact.friction, contact.stiffness);
       worker.springs.push_back({.key = key_of(group),
@@ -165,15 +166,15 @@ double OutlineFriction::follow(const Step& step, const EdgeFaceUnit& unit, Worke
   return energy;
 }
 
-// Adds the forces on the vertices. Returns their power, W.
+// Adds the forces of a unit's springs to the vertices. Returns their power, W.
 APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit& unit,
-                                            Worker& worker, bool divided) {
+                                            FrictionWorkspace& worker, bool divided) {
   double power = 0;
   for (std::int32_t i = unit.first; i < unit.end; ++i) {
     if ((step.blocks.met()[i] & EdgeFaceBlocks::kContacts) == 0) continue;
     const OutlineSlip& slip = slips_[static_cast<size_t>(i)];
     const SlipPull& pull = worker.pulls[static_cast<size_t>(i - unit.first)];
-    for (size_t l = 0; l < kBlock; ++l) {  // contact by contact, wherever they stand in blocks
+    for (size_t l = 0; l < kBlock; ++l) {  // in the order of the contacts, whatever their blocks
       power += pull.x[l] * slip.rate_x[l] + pull.y[l] * slip.rate_y[l];
     }
     SlipForces forces;
@@ -182,7 +183,7 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
     each_drag(step.blocks.blocks()[i], forces,
               [&](std::int32_t vertex, double x, double y) APOTHEM_LAMBDA {
                 if (shared && step.blocks.is_shared(vertex)) {
-                  worker.late.push_back({vertex, {x, y}});
+                  worker.deferred.push_back({vertex, {x, y}});
                   return;
                 }
                 VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
@@ -192,12 +193,14 @@ APOTHEM_INLINE double OutlineFriction::pull(const Step& step, const EdgeFaceUnit
   return power;
 }
 
-// `divided`: several threads work. Forces on vertices that two of them have are added later.
-void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker, bool divided) {
+// Updates the springs of a unit. If `divided`, several threads work, and forces on vertices that
+// two of them share are deferred.
+void OutlineFriction::update_unit(const Step& step, size_t index, FrictionWorkspace& worker,
+                                  bool divided) {
   const EdgeFaceUnit& unit = step.blocks.units()[index];
-  Unit& found = units_[index] = {};
+  UnitResult& found = units_[index] = {};
   if (unit.touching == 0) return;
-  // The last block may have lanes without a spring.
+  // The last block may have padding, which has no spring.
   const auto last = static_cast<size_t>(unit.end - unit.first) - 1;
   worker.pulls[last] = {};
   found.energy = follow(step, unit, worker);
@@ -207,9 +210,9 @@ void OutlineFriction::slide_unit(const Step& step, size_t index, Worker& worker,
   });
 }
 
-double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& now, double dt,
-                              FrictionMemory& memory) {
-  const Outlines& o = outlines_;
+double OutlineFriction::update_friction(const EdgeFaceBlocks& blocks, const Kinematics& now,
+                                        double dt, FrictionMemory& memory) {
+  const OutlineSurfaces& o = outlines_;
   const Step step{blocks, dt, now.finite, !now.restored};
   const auto n = static_cast<size_t>(o.size());
   velocities_.resize(2 * n);
@@ -228,10 +231,10 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   units_.resize(blocks.units().size());
   slips_.resize(blocks.blocks().size());
   contacts_.resize(blocks.group_count());
-  for (Worker& worker : workers_) {
+  for (FrictionWorkspace& worker : workers_) {
     const auto most = static_cast<size_t>(blocks.most_blocks());
     if (worker.pulls.size() < most) worker.pulls.resize(most);
-    worker.springs.clear(), worker.late.clear();
+    worker.springs.clear(), worker.deferred.clear();
   }
   const auto units = static_cast<int>(blocks.units().size());
   const double per_unit = static_cast<double>(blocks.blocks().size()) / std::max(units, 1);
@@ -242,23 +245,24 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   normals_.find(contacts_);
   const bool divided = threads_.worth(units, kSlipTime * per_unit);
   threads_.chunks(units, kSlipTime * per_unit, [&](int first, int end, int number) {
-    Worker& worker = workers_[static_cast<size_t>(number)];
-    for (int i = first; i < end; ++i) slide_unit(step, static_cast<size_t>(i), worker, divided);
+    FrictionWorkspace& worker = workers_[static_cast<size_t>(number)];
+    for (int i = first; i < end; ++i) update_unit(step, static_cast<size_t>(i), worker, divided);
   });
-  // In the order of the units, as if one thread had worked on them.
-  for (const Worker& worker : workers_) {
-    for (const auto& [vertex, force] : worker.late) {
+  // Deferred forces are added in the order of the units, as if one thread had worked on all of
+  // them.
+  for (const FrictionWorkspace& worker : workers_) {
+    for (const auto& [vertex, force] : worker.deferred) {
       VertexDrag& drag = drags_[static_cast<size_t>(vertex)];
       drag[0] += force[0], drag[1] += force[1];
     }
   }
   double power = 0, energy = 0;
   for (const double of_body : body_powers_) power += of_body;
-  for (const Unit& unit : units_) {
+  for (const UnitResult& unit : units_) {
     power += unit.power;
     energy += unit.energy;
   }
-  for (Worker& worker : workers_) {
+  for (FrictionWorkspace& worker : workers_) {
     memory.keep(worker.springs, energy);
     energy = 0;
   }
@@ -266,10 +270,10 @@ double OutlineFriction::slide(const EdgeFaceBlocks& blocks, const Kinematics& no
   return dt / 2 * power;
 }
 
-// The ratio of critical damping is that of the two bodies as rigid ones on all that touches between
-// them.
+// Sums the contacts of each pair of bodies. The ratio of critical damping refers to the two bodies
+// as rigid ones, with the stiffness of all contacts between them.
 void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics& now) {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   for (PairSum& pair : pairs_) pair = {};
   for (const EdgeFaceUnit& unit : blocks.units()) {
     const std::span<const EdgeFaceGroup> groups = blocks.groups(unit);
@@ -297,7 +301,7 @@ void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics&
     if (pair.a < 0 || !(size > 0)) continue;
     const PairLaw& law = table_.between(pair.a, pair.b);
     const Vec2 normal = pair.force / size;
-    // The middle of the forces, moved to the line of action.
+    // The point is the mean of the points of the forces, moved to the line of action.
     const Vec2 middle = pair.places / pair.sizes;
     const Vec2 point =
         middle + (pair.moment - cross(middle, pair.force)) / size * Vec2(normal.y(), -normal.x());
@@ -312,7 +316,7 @@ void OutlineFriction::find_pairs(const EdgeFaceBlocks& blocks, const Kinematics&
   }
 }
 
-// Calls f(unit, group, contact) for the springs with dashpots, in their order.
+// Calls f(unit, group, law, contact) for the contacts with dashpots, in their order.
 template <class F>
 void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
   for (const EdgeFaceUnit& unit : blocks.units()) {
@@ -326,35 +330,35 @@ void OutlineFriction::each_dashpot(const EdgeFaceBlocks& blocks, const F& f) {
 }
 
 void OutlineFriction::add_dashpots(const EdgeFaceBlocks& blocks, const Kinematics& now,
-                                   Dashpots& to) {
+                                   Dashpots& dashpots) {
   find_pairs(blocks, now);
   each_dashpot(blocks, [&](const EdgeFaceUnit& unit, const EdgeFaceGroup& group, const PairLaw& law,
                            const SpringContact& contact) {
     const PairSum& pair = pairs_[static_cast<size_t>(blocks.laws()[group.law].pair)];
-    to.add({outlines_.body[contact.edge],
-            contact.other,
-            Vec2(contact.nx, contact.ny),
-            {Dashpot::Normal::of(pair.normal_time * contact.resistance, contact.pressed,
-                                 contact.resistance, contact.deepest)},
-            pair.tangential_time * contact.stiffness,
-            contact.friction,
-            law.friction.coefficient});
-    add_coordinates(blocks, unit, group, contact, to);
+    dashpots.add({outlines_.body[contact.edge],
+                  contact.other,
+                  Vec2(contact.nx, contact.ny),
+                  {Dashpot::Normal::of(pair.normal_time * contact.resistance, contact.pressed,
+                                       contact.resistance, contact.deepest)},
+                  pair.tangential_time * contact.stiffness,
+                  contact.friction,
+                  law.friction.coefficient});
+    add_coordinates(blocks, unit, group, contact, dashpots);
   });
 }
 
-// The parts of the vertices in the rates along the normal and the tangent.
+// Adds the contributions of the vertices to the rates along the normal and the tangent.
 void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFaceUnit& unit,
                                       const EdgeFaceGroup& group, const SpringContact& contact,
-                                      Dashpots& to) const {
-  const Outlines& o = outlines_;
+                                      Dashpots& dashpots) const {
+  const OutlineSurfaces& o = outlines_;
   const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
   const auto add = [&](std::int32_t vertex, const Vec2& normal, const Vec2& tangential) {
-    const Outlines::Body& body = o.bodies[o.body[vertex]];
+    const OutlineSurfaces::Body& body = o.bodies[o.body[vertex]];
     if (body.is_rigid()) {
-      to.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
+      dashpots.add_point(body.rigid, o.point(vertex) - Vec2(body.cx, body.cy), normal, tangential);
     } else {
-      to.add_node(o.node[vertex], normal, tangential);
+      dashpots.add_node(o.node[vertex], normal, tangential);
     }
   };
   blocks.each_contact(unit, group, [&](size_t i, size_t lane) {
@@ -375,13 +379,13 @@ void OutlineFriction::add_coordinates(const EdgeFaceBlocks& blocks, const EdgeFa
   });
 }
 
-void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& from, size_t& next,
-                                  FrictionMemory& memory) {
+void OutlineFriction::keep_pushes(const EdgeFaceBlocks& blocks, const Dashpots& dashpots,
+                                  size_t& next, FrictionMemory& memory) {
   auto spring = memory.springs_of(outline_kernel).begin();
   each_dashpot(blocks, [&](const EdgeFaceUnit&, const EdgeFaceGroup& group, const PairLaw& law,
                            SpringContact& contact) {
-    contact.push = from.normal_force(next);
-    contact.drag = from.tangential_force(next);
+    contact.push = dashpots.normal_force(next);
+    contact.drag = dashpots.tangential_force(next);
     ++next;
     if (!law.rough()) return;
     while (is_before(spring->key, key_of(group))) ++spring;
@@ -399,11 +403,11 @@ void OutlineFriction::add_to(const EdgeFaceBlocks& blocks,
       const SpringContact& contact = contacts_[static_cast<size_t>(unit.first_group) + g];
       const Vec2 n(contact.nx, contact.ny), t(-contact.ny, contact.nx);
       blocks.each_contact(unit, groups[g], [&](size_t i, size_t lane) {
-        EdgeFaceContact& of = *next++;
+        EdgeFaceContact& result = *next++;
         if (!(contact.normal > 0)) return;
-        const double share = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
-        of.drag = share * (contact.friction + contact.drag) * t;
-        of.push = share * contact.push * n;
+        const double fraction = (slips_[i].at_p[lane] + slips_[i].at_q[lane]) / contact.normal;
+        result.drag = fraction * (contact.friction + contact.drag) * t;
+        result.push = fraction * contact.push * n;
       });
     }
   }

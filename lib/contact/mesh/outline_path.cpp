@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;
 
-// A number of each lane.
+// A pack with one number for each lane.
 template <class F>
 PackOf<4> of_lanes(const F& f) {
   return pack_of<4>(f);
@@ -23,17 +23,17 @@ PackOf<4> of_lanes(const F& f) {
 void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
                        std::span<const EdgeFace> candidates, const Step& step,
                        std::vector<Impulse>& on_nodes, std::vector<Impulse>& on_rigid) {
-  take_near(body_a, body_b, candidates);
-  if (near_.empty()) return;
+  list_candidates(body_a, body_b, candidates);
+  if (edges_.empty()) return;
   coordinates_.clear(), sides_.clear();
-  sides_.push_back(take_side(body_a, step));
-  if (body_b != body_a) sides_.push_back(take_side(body_b, step));
-  find_events(step);
-  const auto inside = static_cast<size_t>(find_onset_samples(events_, panels, samples_));
+  sides_.push_back(add_side(body_a, step));
+  if (body_b != body_a) sides_.push_back(add_side(body_b, step));
+  find_kinks(step);
+  const auto inside = static_cast<size_t>(find_event_samples(kinks_, panels, samples_));
   for (size_t first = 0; first < samples_.size(); first += kAtOnce) {
     find_loads(step, first, std::min<size_t>(kAtOnce, samples_.size() - first), inside);
   }
-  OnsetRest rest_a(step.dt), rest_b(step.dt);
+  EventResidual rest_a(step.dt), rest_b(step.dt);
   for (size_t i = 0; i < coordinates_.size(); ++i) {
     Coordinate& c = coordinates_[i];
     c.missing = c.force.missing();
@@ -42,31 +42,32 @@ void OutlinePath::find(BodyIndex body_a, BodyIndex body_b, int panels,
              step.dynamics.inverse_mass[c.index], c.velocity);
   }
   rest_a.add(rest_b);
-  const double share = rest_a.share();
-  for (Coordinate& c : coordinates_) c.missing += share * c.force.mean;
+  const double correction = rest_a.correction();
+  for (Coordinate& c : coordinates_) c.missing += correction * c.force.mean;
   balance();
-  for (const Side& side : sides_) keep(side, on_nodes, on_rigid);
+  for (const PathBody& side : sides_) keep(side, on_nodes, on_rigid);
 }
 
-// The candidates of the two bodies; candidates ascend by edge, and so by the body of the edge.
-void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates) {
-  const Outlines& o = outlines_;
-  candidates_.clear(), ends_.clear(), corners_.clear(), near_.clear(), faces_.clear();
-  const auto take = [&](BodyIndex edges, BodyIndex faces) {
+// Lists the candidates of the two bodies. Candidates ascend by edge, and so by the body of the
+// edge.
+void OutlinePath::list_candidates(BodyIndex a, BodyIndex b, std::span<const EdgeFace> candidates) {
+  const OutlineSurfaces& o = outlines_;
+  candidates_.clear(), ends_.clear(), corners_.clear(), edges_.clear(), faces_.clear();
+  const auto add = [&](BodyIndex edges, BodyIndex faces) {
     const auto first = std::ranges::lower_bound(candidates, o.bodies[edges].first, {},
                                                 [](const EdgeFace& c) { return c.edge; });
     for (auto c = first; c != candidates.end() && c->edge < o.bodies[edges].end; ++c) {
       if (o.body[c->face] == faces) candidates_.push_back(*c);
     }
   };
-  take(a, b);
-  if (a != b) take(b, a);
-  // Every vertex once: those that have been listed are marked.
+  add(a, b);
+  if (a != b) add(b, a);
+  // Every vertex is listed once; listed vertices are marked.
   corner_of_.resize(static_cast<size_t>(o.size()), -1);
-  const auto list = [&](int vertex, std::vector<int>& to) {
+  const auto list = [&](int vertex, std::vector<int>& vertices) {
     if (corner_of_[static_cast<size_t>(vertex)] >= 0) return;
     corner_of_[static_cast<size_t>(vertex)] = 0;
-    to.push_back(vertex);
+    vertices.push_back(vertex);
   };
   for (const auto& [e, f, pair] : candidates_) {
     for (const int i : {e, o.next[e], f, o.next[f]}) list(i, ends_);
@@ -85,11 +86,11 @@ void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> 
   };
   corner_of_end_.clear();
   for (const int i : ends_) corner_of_end_.push_back(corner(i));
-  // Faces, by the corner that they begin at.
-  face_at_.assign(corners_.size(), -1);
+  // Each face is listed once, at the corner where it begins.
+  face_of_corner_.assign(corners_.size(), -1);
   for (const EdgeFace& c : candidates_) {
     const int f = c.face;
-    int& face = face_at_[corner(f)];
+    int& face = face_of_corner_[corner(f)];
     if (face < 0) {
       face = static_cast<int>(faces_.size());
       faces_.push_back({.before = corner(o.previous[f]),
@@ -98,25 +99,27 @@ void OutlinePath::take_near(BodyIndex a, BodyIndex b, std::span<const EdgeFace> 
                         .after = corner(o.next[o.next[f]]),
                         .depth = o.depth[f]});
     }
-    near_.push_back(
+    edges_.push_back(
         {corner(c.edge), corner(o.next[c.edge]), static_cast<size_t>(face), slopes_.of(c)});
   }
   for (const int i : corners_) corner_of_[static_cast<size_t>(i)] = -1;
-  for (std::vector<Pack>* v : {&at_.x, &at_.y, &at_.fx, &at_.fy}) v->resize(corners_.size());
+  for (std::vector<Pack>* v :
+       {&corner_values_.x, &corner_values_.y, &corner_values_.fx, &corner_values_.fy})
+    v->resize(corners_.size());
 }
 
-OutlinePath::Side OutlinePath::take_side(BodyIndex body, const Step& step) {
-  const Outlines& o = outlines_;
-  const auto at = [](const std::vector<int>& list, int vertex) {
+OutlinePath::PathBody OutlinePath::add_side(BodyIndex body, const Step& step) {
+  const OutlineSurfaces& o = outlines_;
+  const auto position_in = [](const std::vector<int>& list, int vertex) {
     return static_cast<size_t>(std::ranges::lower_bound(list, vertex) - list.begin());
   };
   const int first = o.bodies[body].first, end = o.bodies[body].end;
-  const Side side{body,
-                  at(ends_, first),
-                  at(ends_, end),
-                  at(corners_, first),
-                  at(corners_, end),
-                  coordinates_.size()};
+  const PathBody side{body,
+                      position_in(ends_, first),
+                      position_in(ends_, end),
+                      position_in(corners_, first),
+                      position_in(corners_, end),
+                      coordinates_.size()};
   if (o.bodies[body].is_rigid()) {
     for (size_t k = 0; k < 3; ++k) {
       const size_t c = 3 * static_cast<size_t>(o.bodies[body].rigid) + k;
@@ -133,17 +136,17 @@ OutlinePath::Side OutlinePath::take_side(BodyIndex body, const Step& step) {
   return side;
 }
 
-// Moves the corners of a body to places of the path.
-APOTHEM_INLINE void OutlinePath::place(const Side& side, const Step& step, const Pack& theta) {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[side.body];
+// Moves the corners of a body to their positions at the fractions theta of the drift.
+APOTHEM_INLINE void OutlinePath::place(const PathBody& side, const Step& step, const Pack& theta) {
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[side.body];
   const Pack back = (Pack(1.) - theta) * Pack(step.dt);
   if (!body.is_rigid()) {
     for (size_t k = side.first_corner; k < side.last_corner; ++k) {
       const int i = corners_[k];
       const double* v = &step.now.node_velocity[2 * static_cast<size_t>(o.node[i])];
-      at_.x[k] = Pack(o.x[i]) - back * Pack(v[0]);
-      at_.y[k] = Pack(o.y[i]) - back * Pack(v[1]);
+      corner_values_.x[k] = Pack(o.x[i]) - back * Pack(v[0]);
+      corner_values_.y[k] = Pack(o.y[i]) - back * Pack(v[1]);
     }
     return;
   }
@@ -156,53 +159,53 @@ APOTHEM_INLINE void OutlinePath::place(const Side& side, const Step& step, const
   for (size_t k = side.first_corner; k < side.last_corner; ++k) {
     const int i = corners_[k];
     const Pack rx(o.x[i] - body.cx), ry(o.y[i] - body.cy);
-    at_.x[k] = Pack(body.cx) - back * Pack(v[0]) + (c * rx + s * ry);
-    at_.y[k] = Pack(body.cy) - back * Pack(v[1]) + (c * ry - s * rx);
+    corner_values_.x[k] = Pack(body.cx) - back * Pack(v[0]) + (c * rx + s * ry);
+    corner_values_.y[k] = Pack(body.cy) - back * Pack(v[1]) + (c * ry - s * rx);
   }
 }
 
-// Where a vertex of one outline crosses an edge of the other one: heights are linear in theta, but
-// for small deformations and rotations.
-void OutlinePath::find_events(const Step& step) {
+// Finds the kinks of the force, where a vertex of one outline crosses an edge of the other one.
+// Heights are linear in theta except for small deformations and rotations.
+void OutlinePath::find_kinks(const Step& step) {
   const Pack ends = of_lanes([](int k) { return k == 0 ? 0. : 1.; });
-  for (const Side& side : sides_) place(side, step, ends);
+  for (const PathBody& side : sides_) place(side, step, ends);
   const auto point = [&](size_t corner, int lane) {
-    return Vec2(at_.x[corner].v[lane], at_.y[corner].v[lane]);
+    return Vec2(corner_values_.x[corner].v[lane], corner_values_.y[corner].v[lane]);
   };
-  events_.clear();
-  for (const Near& near : near_) {
+  kinks_.clear();
+  for (const PathEdge& near : edges_) {
     const size_t e = near.p, f = faces_[near.face].a, g = faces_[near.face].b;
     const auto height = [&](int lane) {
       return cross(point(g, lane) - point(f, lane), point(e, lane) - point(f, lane));
     };
     const double theta = crossing(height(0), height(1));
     if (theta < 0) continue;
-    const auto at = [&](size_t i) {
+    const auto point_at_kink = [&](size_t i) {
       return Vec2(point(i, 0) + theta * (point(i, 1) - point(i, 0)));
     };
-    const Vec2 edge = at(g) - at(f);
-    const double along = edge.dot(at(e) - at(f)) / edge.squaredNorm();
-    if (along > -kRoundOff && along < 1 + kRoundOff) events_.push_back(theta);
+    const Vec2 edge = point_at_kink(g) - point_at_kink(f);
+    const double along = edge.dot(point_at_kink(e) - point_at_kink(f)) / edge.squaredNorm();
+    if (along > -kRoundOff && along < 1 + kRoundOff) kinks_.push_back(theta);
   }
-  std::ranges::sort(events_);
+  std::ranges::sort(kinks_);
 }
 
-// The forces on all coordinates at up to four samples; the first `inside` of all are within the
-// step.
+// Finds the forces on all coordinates at up to four samples. Of all samples the first `inside` lie
+// within the step.
 void OutlinePath::find_loads(const Step& step, size_t first, size_t count, size_t inside) {
-  // Lanes that are left over take the last sample again.
+  // The remaining lanes are padding, which repeats the last sample.
   const Pack theta = of_lanes(
       [&](int k) { return samples_[first + std::min(static_cast<size_t>(k), count - 1)].theta; });
   forces_.clear();
   forces_.resize(coordinates_.size());
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
-    for (const Side& side : sides_) place(side, step, theta);
+    for (const PathBody& side : sides_) place(side, step, theta);
     find_forces();
-    for (const Side& side : sides_) add_forces(side, step, theta);
+    for (const PathBody& side : sides_) add_forces(side, step, theta);
     return 0.;
   });
   for (size_t c = 0; c < coordinates_.size(); ++c) {
-    OnsetForces& f = coordinates_[c].force;
+    EventForces& f = coordinates_[c].force;
     for (size_t k = 0; k < count; ++k) {
       const double force = forces_[c].v[k];
       f.add(samples_[first + k], force);
@@ -212,12 +215,13 @@ void OutlinePath::find_loads(const Step& step, size_t first, size_t count, size_
   }
 }
 
-APOTHEM_INLINE void OutlinePath::place(Face& face) const {
+APOTHEM_INLINE void OutlinePath::place(PathFace& face) const {
   struct Direction {
     Pack x, y, length;
   };
-  const auto along = [&](size_t from, size_t to) APOTHEM_LAMBDA {
-    const Pack x = at_.x[to] - at_.x[from], y = at_.y[to] - at_.y[from];
+  const auto along = [&](size_t start, size_t end) APOTHEM_LAMBDA {
+    const Pack x = corner_values_.x[end] - corner_values_.x[start],
+               y = corner_values_.y[end] - corner_values_.y[start];
     const Pack length = square_root(x * x + y * y);
     return Direction{x / length, y / length, length};
   };
@@ -225,85 +229,99 @@ APOTHEM_INLINE void OutlinePath::place(Face& face) const {
                   after = along(face.b, face.after);
   const Mitre<Pack> a(before.x, before.y, own.x, own.y);
   const Mitre<Pack> b(own.x, own.y, after.x, after.y);
-  face.at = {at_.x[face.a], at_.y[face.a],    at_.x[face.b], at_.y[face.b], own.x,
-             own.y,         own.length,       a.x,           a.y,           b.x,
-             b.y,           Pack(face.depth), Pack(0.)};
-  face.at = face.at.with_plain();
+  face.collar_face = {corner_values_.x[face.a],
+                      corner_values_.y[face.a],
+                      corner_values_.x[face.b],
+                      corner_values_.y[face.b],
+                      own.x,
+                      own.y,
+                      own.length,
+                      a.x,
+                      a.y,
+                      b.x,
+                      b.y,
+                      Pack(face.depth),
+                      Pack(0.)};
+  face.collar_face = face.collar_face.with_regular_depth();
   face.placed = true;
 }
 
-// Of the near edges and faces, where the corners are.
+// Finds the forces of the near edges and faces at the present positions of the corners.
 APOTHEM_INLINE void OutlinePath::find_forces() {
   const Pack zero(0.), one(1.);
-  for (const size_t k : corner_of_end_) at_.fx[k] = at_.fy[k] = zero;
-  for (Face& face : faces_) face.placed = false;
+  for (const size_t k : corner_of_end_) corner_values_.fx[k] = corner_values_.fy[k] = zero;
+  for (PathFace& face : faces_) face.placed = false;
   const auto push = [&](size_t i, const Pack& x, const Pack& y, const Pack& force,
                         const Pack::Mask& there) APOTHEM_LAMBDA {
-    at_.fx[i] = select(there, at_.fx[i] + force * x, at_.fx[i]);
-    at_.fy[i] = select(there, at_.fy[i] + force * y, at_.fy[i]);
+    corner_values_.fx[i] = select(there, corner_values_.fx[i] + force * x, corner_values_.fx[i]);
+    corner_values_.fy[i] = select(there, corner_values_.fy[i] + force * y, corner_values_.fy[i]);
   };
-  for (const Near& near : near_) {
-    Face& face = faces_[near.face];
-    const Pack &px = at_.x[near.p], &py = at_.y[near.p];
-    const Pack &qx = at_.x[near.q], &qy = at_.y[near.q];
-    const Pack &ax = at_.x[face.a], &ay = at_.y[face.a];
-    const Pack base_x = at_.x[face.b] - ax, base_y = at_.y[face.b] - ay;
+  for (const PathEdge& near : edges_) {
+    PathFace& face = faces_[near.face];
+    const Pack &px = corner_values_.x[near.p], &py = corner_values_.y[near.p];
+    const Pack &qx = corner_values_.x[near.q], &qy = corner_values_.y[near.q];
+    const Pack &ax = corner_values_.x[face.a], &ay = corner_values_.y[face.a];
+    const Pack base_x = corner_values_.x[face.b] - ax, base_y = corner_values_.y[face.b] - ay;
     const Pack::Mask below = (base_x * (py - ay) - base_y * (px - ax) < zero) &
                              (base_x * (qy - ay) - base_y * (qx - ax) < zero);
     if (!any(!below)) continue;
     if (!face.placed) place(face);
-    const CollarPieces<Pack> piece = collar_pieces(face.at, px, py, qx, qy);
-    const unsigned deep = bits(piece.deep & !below);
+    const CollarPieces<Pack> piece = collar_pieces(face.collar_face, px, py, qx, qy);
+    const unsigned general = bits(piece.general & !below);
     const Pack::Mask met = piece.met & !below;
     if (any(met)) {
       const Pack x = qx - px, y = qy - py, length = square_root(x * x + y * y);
       const EdgeFaceForces<Pack> force =
-          edge_face_forces(piece, Pack(near.slope), length, one / face.at.length);
+          edge_face_forces(piece, Pack(near.slope), length, one / face.collar_face.length);
       const Pack inward_x = -y / length, inward_y = x / length;
       push(near.p, inward_x, inward_y, force.edge_start, met);
       push(near.q, inward_x, inward_y, force.edge_end, met);
-      push(face.a, -face.at.ty, face.at.tx, force.face_start, met);
-      push(face.b, -face.at.ty, face.at.tx, force.face_end, met);
+      push(face.a, -face.collar_face.ty, face.collar_face.tx, force.face_start, met);
+      push(face.b, -face.collar_face.ty, face.collar_face.tx, force.face_end, met);
     }
-    for (unsigned rest = deep; rest != 0; rest &= rest - 1) {
-      add_deep(near, face, static_cast<size_t>(std::countr_zero(rest)));
+    for (unsigned rest = general; rest != 0; rest &= rest - 1) {
+      add_general(near, face, static_cast<size_t>(std::countr_zero(rest)));
     }
   }
 }
 
-// A candidate that may cross the top of the collar at one of the places.
-void OutlinePath::add_deep(const Near& near, const Face& face, size_t l) {
-  const CollarFace<Pack>& f = face.at;
-  const CollarFace<double> at{f.ax.v[l],  f.ay.v[l],     f.bx.v[l],   f.by.v[l],  f.tx.v[l],
-                              f.ty.v[l],  f.length.v[l], f.max.v[l],  f.may.v[l], f.mbx.v[l],
-                              f.mby.v[l], face.depth,    f.plain.v[l]};
-  const Vec2 p(at_.x[near.p].v[l], at_.y[near.p].v[l]);
-  const Vec2 q(at_.x[near.q].v[l], at_.y[near.q].v[l]);
+// Adds the forces of a candidate that may reach the saturated region of the collar in the lane l.
+void OutlinePath::add_general(const PathEdge& near, const PathFace& face, size_t l) {
+  const CollarFace<Pack>& f = face.collar_face;
+  const CollarFace<double> collar_face{f.ax.v[l],           f.ay.v[l],  f.bx.v[l],     f.by.v[l],
+                                       f.tx.v[l],           f.ty.v[l],  f.length.v[l], f.max.v[l],
+                                       f.may.v[l],          f.mbx.v[l], f.mby.v[l],    face.depth,
+                                       f.regular_depth.v[l]};
+  const Vec2 p(corner_values_.x[near.p].v[l], corner_values_.y[near.p].v[l]);
+  const Vec2 q(corner_values_.x[near.q].v[l], corner_values_.y[near.q].v[l]);
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  if (!deep_collar_piece(at, p.x(), p.y(), q.x(), q.y(), piece, top)) return;
+  CollarCrossings<double> crossings;
+  if (!general_collar_piece(collar_face, p.x(), p.y(), q.x(), q.y(), piece, crossings)) return;
   const Vec2 edge = q - p;
   const double length = edge.norm();
-  const EdgeFaceForces<double> force = edge_face_forces(piece, near.slope, length, 1 / at.length);
+  const EdgeFaceForces<double> force =
+      edge_face_forces(piece, near.slope, length, 1 / collar_face.length);
   const auto push = [&](size_t i, const Vec2& inward, double size) {
-    at_.fx[i].v[l] += size * inward.x();
-    at_.fy[i].v[l] += size * inward.y();
+    corner_values_.fx[i].v[l] += size * inward.x();
+    corner_values_.fy[i].v[l] += size * inward.y();
   };
-  const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length, from_face(-at.ty, at.tx);
+  const Vec2 from_edge = Vec2(-edge.y(), edge.x()) / length,
+             from_face(-collar_face.ty, collar_face.tx);
   push(near.p, from_edge, force.edge_start);
   push(near.q, from_edge, force.edge_end);
   push(face.a, from_face, force.face_start);
   push(face.b, from_face, force.face_end);
 }
 
-// The forces on the coordinates of a body.
-APOTHEM_INLINE void OutlinePath::add_forces(const Side& side, const Step& step, const Pack& theta) {
-  const Outlines::Body& body = outlines_.bodies[side.body];
-  Pack* to = &forces_[side.coordinates];
+// Sums the forces on the coordinates of a body.
+APOTHEM_INLINE void OutlinePath::add_forces(const PathBody& side, const Step& step,
+                                            const Pack& theta) {
+  const OutlineSurfaces::Body& body = outlines_.bodies[side.body];
+  Pack* force = &forces_[side.coordinates];
   if (!body.is_rigid()) {
     for (size_t i = side.first_end; i < side.end; ++i) {
-      *to++ = at_.fx[corner_of_end_[i]];
-      *to++ = at_.fy[corner_of_end_[i]];
+      *force++ = corner_values_.fx[corner_of_end_[i]];
+      *force++ = corner_values_.fy[corner_of_end_[i]];
     }
     return;
   }
@@ -313,25 +331,26 @@ APOTHEM_INLINE void OutlinePath::add_forces(const Side& side, const Step& step, 
   Pack x(0.), y(0.), moment(0.);
   for (size_t i = side.first_end; i < side.end; ++i) {
     const size_t k = corner_of_end_[i];
-    const Pack &fx = at_.fx[k], &fy = at_.fy[k];
+    const Pack &fx = corner_values_.fx[k], &fy = corner_values_.fy[k];
     x += fx, y += fy;
-    moment += (at_.x[k] - cx) * fy - (at_.y[k] - cy) * fx;
+    moment += (corner_values_.x[k] - cx) * fy - (corner_values_.y[k] - cy) * fx;
   }
-  to[0] = x, to[1] = y, to[2] = moment;
+  force[0] = x, force[1] = y, force[2] = moment;
 }
 
-// Moments of forces at earlier positions do not balance at the end of the step. What is left over
-// goes to both bodies in equal parts, so that the angular momentum is kept.
+// Moments of forces at earlier positions do not balance at the end of the step. Half of the
+// difference goes to each body, so that the angular momentum is conserved.
 void OutlinePath::balance() {
   double rest = 0;
-  for (const Side& side : sides_) rest += moment(side);
-  for (const Side& side : sides_) turn(side, -rest / static_cast<double>(sides_.size()));
+  for (const PathBody& side : sides_) rest += moment(side);
+  for (const PathBody& side : sides_) turn(side, -rest / static_cast<double>(sides_.size()));
 }
 
-// Of what is missing, about the first end, where the bodies are at the end of the step.
-double OutlinePath::moment(const Side& side) const {
-  const Outlines& o = outlines_;
-  const Outlines::Body& body = o.bodies[side.body];
+// The moment of the missing impulses on a body about the first vertex of ends_, at the end of the
+// step.
+double OutlinePath::moment(const PathBody& side) const {
+  const OutlineSurfaces& o = outlines_;
+  const OutlineSurfaces::Body& body = o.bodies[side.body];
   const Vec2 origin = o.point(ends_.front());
   const Coordinate* c = &coordinates_[side.coordinates];
   if (body.is_rigid()) {
@@ -345,9 +364,10 @@ double OutlinePath::moment(const Side& side) const {
   return sum;
 }
 
-// Adds a moment: on a mesh, the smallest forces on the ends that have one already.
-void OutlinePath::turn(const Side& side, double moment) {
-  const Outlines& o = outlines_;
+// Adds a moment to the missing impulses of a body. On a mesh this is done by the smallest forces on
+// those vertices that have a missing impulse already.
+void OutlinePath::turn(const PathBody& side, double moment) {
+  const OutlineSurfaces& o = outlines_;
   Coordinate* const first = &coordinates_[side.coordinates];
   if (o.bodies[side.body].is_rigid()) {
     first[2].missing += moment;
@@ -373,9 +393,9 @@ void OutlinePath::turn(const Side& side, double moment) {
   });
 }
 
-void OutlinePath::keep(const Side& side, std::vector<Impulse>& on_nodes,
+void OutlinePath::keep(const PathBody& side, std::vector<Impulse>& on_nodes,
                        std::vector<Impulse>& on_rigid) const {
-  const Outlines& o = outlines_;
+  const OutlineSurfaces& o = outlines_;
   const Coordinate* c = &coordinates_[side.coordinates];
   if (o.bodies[side.body].is_rigid()) {
     for (size_t k = 0; k < 3; ++k) {

@@ -10,20 +10,20 @@
 namespace apothem {
 namespace {
 
-// A contact patch while it is summed. Where a body touches itself, the side of the first edge is
-// called a, and that of its face b.
+// The sums over a contact patch. Where a body touches itself, the side of the first edge is called
+// a, and that of its face b.
 struct PatchSum {
   ContactRecord record;
   double weight = 0, deepest = 0;
-  double moment = 0;         // of the normal force on a, about the origin, N m
-  int edge = -1, face = -1;  // first ones
+  double moment = 0;         // moment of the normal force on a about the origin, N m
+  int edge = -1, face = -1;  // the first edge and its face
 
-  /// A force that acts on a.
+  /// Adds a force that acts on a.
   void add(const Vec2& point, const Vec2& force) {
     record.normal += force;
     moment += cross(point, force);
   }
-  /// What presses on an edge there, with that size (N) and depth (m).
+  /// Adds the pressure on an edge at a point, with the given magnitude (N) and depth (m).
   void press(const Vec2& point, double size, double depth) {
     record.point += size * point;
     weight += size;
@@ -31,8 +31,8 @@ struct PatchSum {
   }
 };
 
-// The mean of where edges are pushed, moved across the force until the force has the moment there
-// that it has. Where forces nearly cancel there is no line of action, and the mean stays.
+// The mean point of the pressure on the edges, moved across the force onto its line of action. If
+// the forces nearly cancel, there is no line of action, and the result is the mean point.
 Vec2 loading_point(const PatchSum& patch) {
   if (!(patch.weight > 0)) return patch.record.point;
   const Vec2 force = patch.record.normal;
@@ -42,22 +42,22 @@ Vec2 loading_point(const PatchSum& patch) {
   return mean + (patch.moment - cross(mean, force)) / squared * Vec2(force.y(), -force.x());
 }
 
-// Puts the contacts, and then the edges and the faces of the plateaus, into patches: the boundary
-// of an overlap goes on in the next face or at a vertex, or crosses over to the other outline, or
-// goes on inside the top.
+// Groups the contacts, and then the edges and faces of saturated regions, into patches. The
+// boundary of an overlap continues in the next face, at a vertex, on the other outline where the
+// two cross, or inside the saturated region.
 class PatchGroups {
  public:
   explicit PatchGroups(const OutlineState& state)
       : o_(state.outlines()),
         contacts_(state.contacts),
-        edges_(state.plateaus.edges()),
-        faces_(state.plateaus.faces()),
+        edges_(state.saturated.edges()),
+        faces_(state.saturated.faces()),
         first_face_(contacts_.size() + edges_.size()),
         groups_(first_face_ + faces_.size()) {
     for (size_t i = 0; i < contacts_.size(); ++i) join_contact(i);
-    join_plateaus();
+    join_saturated();
   }
-  /// The number of the patch of each; ascending pairs of bodies.
+  /// The patch number of each contact. The numbers ascend with the pairs of bodies.
   std::vector<int> numbers() { return groups_.numbers(keys_); }
 
  private:
@@ -69,12 +69,13 @@ class PatchGroups {
                          }) -
         contacts_.begin());
   }
-  // Calls f(number) for the contacts of an edge with the faces of a body.
+  // Calls f(index) for the contacts of an edge with the faces of a body.
   template <class F>
-  void each(int edge, BodyIndex in, const F& f) const {
-    const Outlines::Body& body = o_.bodies[in];
-    for (size_t k = from(edge, body.first);
-         k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < body.end; ++k) {
+  void each(int edge, BodyIndex body, const F& f) const {
+    const OutlineSurfaces::Body& vertices = o_.bodies[body];
+    for (size_t k = from(edge, vertices.first);
+         k < contacts_.size() && contacts_[k].edge == edge && contacts_[k].face < vertices.end;
+         ++k) {
       f(k);
     }
   }
@@ -101,30 +102,31 @@ class PatchGroups {
     });
   }
 
-  // By the numbers of edges and faces, and the body inside whose top they are.
-  void join_plateaus() {
+  // Joins edges and faces of saturated regions by their numbers and by the body whose saturated
+  // region they are in.
+  void join_saturated() {
     std::map<std::pair<int, BodyIndex>, size_t> edge_at, face_at;
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const OutlinePlateaus::Edge& on = edges_[k];
-      keys_.push_back(std::minmax(o_.body[on.edge], on.in));
-      const size_t i = edge_at[{on.edge, on.in}] = contacts_.size() + k;
-      each(on.edge, on.in, [&](size_t contact) { join(i, contact); });
+      const SaturatedEdge& saturated = edges_[k];
+      keys_.push_back(std::minmax(o_.body[saturated.edge], saturated.body));
+      const size_t i = edge_at[{saturated.edge, saturated.body}] = contacts_.size() + k;
+      each(saturated.edge, saturated.body, [&](size_t contact) { join(i, contact); });
     }
     for (size_t k = 0; k < faces_.size(); ++k) {
-      const OutlinePlateaus::Face& on = faces_[k];
-      keys_.push_back(std::minmax(o_.body[on.face], on.in));
-      face_at[{on.face, on.in}] = first_face_ + k;
+      const SaturatedFace& saturated = faces_[k];
+      keys_.push_back(std::minmax(o_.body[saturated.face], saturated.body));
+      face_at[{saturated.face, saturated.body}] = first_face_ + k;
     }
-    const auto join_at = [&](const auto& at, size_t i, int number, BodyIndex in) {
-      if (const auto it = at.find({number, in}); it != at.end()) join(i, it->second);
+    const auto join_at = [&](const auto& numbers, size_t i, int number, BodyIndex body) {
+      if (const auto it = numbers.find({number, body}); it != numbers.end()) join(i, it->second);
     };
     for (size_t k = 0; k < edges_.size(); ++k) {
-      const OutlinePlateaus::Edge& on = edges_[k];
-      join_at(edge_at, contacts_.size() + k, o_.next[on.edge], on.in);
-      join_at(face_at, contacts_.size() + k, on.edge, on.in);
+      const SaturatedEdge& saturated = edges_[k];
+      join_at(edge_at, contacts_.size() + k, o_.next[saturated.edge], saturated.body);
+      join_at(face_at, contacts_.size() + k, saturated.edge, saturated.body);
     }
     for (size_t k = 0; k < faces_.size(); ++k) {
-      join_at(face_at, first_face_ + k, o_.next[faces_[k].face], faces_[k].in);
+      join_at(face_at, first_face_ + k, o_.next[faces_[k].face], faces_[k].body);
     }
     if (face_at.empty()) return;
     for (size_t i = 0; i < contacts_.size(); ++i) {
@@ -132,36 +134,37 @@ class PatchGroups {
     }
   }
 
-  const Outlines& o_;
+  const OutlineSurfaces& o_;
   const std::vector<EdgeFaceContact>& contacts_;
-  const std::vector<OutlinePlateaus::Edge>& edges_;
-  const std::vector<OutlinePlateaus::Face>& faces_;
+  const std::vector<SaturatedEdge>& edges_;
+  const std::vector<SaturatedFace>& faces_;
   size_t first_face_;
   Groups groups_;
   std::vector<std::pair<int, int>> keys_;
 };
 
-// How far apart two vertices of a closed line are, in edges.
-int steps_between(const Outlines& outlines, int vertex, int other) {
-  const std::vector<Outlines::Loop>& loops = outlines.loops;
-  const auto loop = std::prev(std::ranges::upper_bound(loops, vertex, {}, &Outlines::Loop::first));
+// The number of edges between two vertices of a closed line.
+int steps_between(const OutlineSurfaces& outlines, int vertex, int other) {
+  const std::vector<OutlineSurfaces::Loop>& loops = outlines.loops;
+  const auto loop =
+      std::prev(std::ranges::upper_bound(loops, vertex, {}, &OutlineSurfaces::Loop::first));
   if (other < loop->first || other >= loop->end) return std::numeric_limits<int>::max() / 2;
   const int steps = std::abs(vertex - other);
   return std::min(steps, loop->end - loop->first - steps);
 }
 
-// At the part u of an edge.
-Vec2 point_of(const Outlines& outlines, int edge, double u) {
+// The point at the fraction u of an edge.
+Vec2 point_of(const OutlineSurfaces& outlines, int edge, double u) {
   const Vec2 start = outlines.point(edge);
   return start + u * (outlines.point(outlines.next[edge]) - start);
 }
 
-bool is_a(const Outlines& outlines, const PatchSum& patch, int edge) {
+bool is_a(const OutlineSurfaces& outlines, const PatchSum& patch, int edge) {
   if (patch.record.a != patch.record.b) return outlines.body[edge] == patch.record.a;
   return steps_between(outlines, edge, patch.edge) <= steps_between(outlines, edge, patch.face);
 }
 
-// Sums what is found into the patches.
+// Sums contacts into the patches.
 class PatchSums {
  public:
   PatchSums(const OutlineState& state, int patches)
@@ -188,23 +191,27 @@ class PatchSums {
     sum.record.damping += own_is_a ? push : Vec2(-push);
   }
 
-  void add(int patch, const OutlinePlateaus::Edge& on) {
-    PatchSum& sum = of(patch, o_.body[on.edge], on.in, on.edge, -1);
-    const double depth = o_.bodies[on.in].depth;
-    const double force = slopes_(on.in, o_.body[on.edge]) * depth * on.sum * o_.length[on.edge];
-    const Vec2 on_edge = point_of(o_, on.edge, on.sum > 0 ? on.first / on.sum : 0);
-    if (is_a(o_, sum, on.edge)) sum.add(on_edge, force * inward(on.edge));
+  void add(int patch, const SaturatedEdge& saturated) {
+    PatchSum& sum = of(patch, o_.body[saturated.edge], saturated.body, saturated.edge, -1);
+    const double depth = o_.bodies[saturated.body].depth;
+    const double force = slopes_(saturated.body, o_.body[saturated.edge]) * depth * saturated.sum *
+                         o_.length[saturated.edge];
+    const Vec2 on_edge =
+        point_of(o_, saturated.edge, saturated.sum > 0 ? saturated.first / saturated.sum : 0);
+    if (is_a(o_, sum, saturated.edge)) sum.add(on_edge, force * inward(saturated.edge));
     sum.press(on_edge, force, depth);
-    sum.record.penetration = depths_.of_edge(on.edge, on.in, sum.record.penetration);
+    sum.record.penetration =
+        depths_.of_edge(saturated.edge, saturated.body, sum.record.penetration);
   }
 
-  void add(int patch, const OutlinePlateaus::Face& on) {
+  void add(int patch, const SaturatedFace& saturated) {
     PatchSum& sum = found_[static_cast<size_t>(patch)];
-    std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[on.face], on.in);
-    if (!is_a(o_, sum, on.face)) return;
-    const double area = on.moment.area;
-    sum.add(point_of(o_, on.face, area > 0 ? on.moment.along / (area * o_.length[on.face]) : 0),
-            slopes_(o_.body[on.face], on.in) * area * inward(on.face));
+    std::tie(sum.record.a, sum.record.b) = std::minmax(o_.body[saturated.face], saturated.body);
+    if (!is_a(o_, sum, saturated.face)) return;
+    const double area = saturated.moment.area;
+    sum.add(point_of(o_, saturated.face,
+                     area > 0 ? saturated.moment.along / (area * o_.length[saturated.face]) : 0),
+            slopes_(o_.body[saturated.face], saturated.body) * area * inward(saturated.face));
   }
 
   void finish(std::vector<ContactRecord>& records) {
@@ -225,7 +232,7 @@ class PatchSums {
   }
   [[nodiscard]] Vec2 inward(int edge) const { return {-o_.ty[edge], o_.tx[edge]}; }
 
-  const Outlines& o_;
+  const OutlineSurfaces& o_;
   const OutlineSlopes& slopes_;
   OutlineDepths depths_;
   std::vector<PatchSum> found_;
@@ -238,13 +245,13 @@ void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& re
   PatchSums sums(state, patch.empty() ? 0 : *std::ranges::max_element(patch) + 1);
   auto next = patch.begin();
   for (const EdgeFaceContact& contact : state.contacts) sums.add(*next++, contact);
-  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) sums.add(*next++, on);
-  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) sums.add(*next++, on);
+  for (const SaturatedEdge& saturated : state.saturated.edges()) sums.add(*next++, saturated);
+  for (const SaturatedFace& saturated : state.saturated.faces()) sums.add(*next++, saturated);
   sums.finish(records);
 }
 
 void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& records) {
-  const Outlines& o = state.outlines();
+  const OutlineSurfaces& o = state.outlines();
   const OutlineSlopes& slopes = state.slopes;
   const double thickness = slopes.thickness;
   const size_t first = records.size();
@@ -253,17 +260,19 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   for (const auto& [edge, face, slope, piece, drag, push] : state.contacts) {
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
-    for (const int k : {edge, face}) {  // the faces look the other way
+    for (const int k : {edge, face}) {  // the tangent of the face is that of the contact
       record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }
-  for (const OutlinePlateaus::Edge& on : state.plateaus.edges()) {
-    const double slope = slopes(on.in, o.body[on.edge]);
-    record[on.edge].pressure += slope * o.bodies[on.in].depth / thickness * on.sum;
+  for (const SaturatedEdge& saturated : state.saturated.edges()) {
+    const double slope = slopes(saturated.body, o.body[saturated.edge]);
+    record[saturated.edge].pressure +=
+        slope * o.bodies[saturated.body].depth / thickness * saturated.sum;
   }
-  for (const OutlinePlateaus::Face& on : state.plateaus.faces()) {
-    const double slope = slopes(o.body[on.face], on.in);
-    record[on.face].pressure += slope / thickness * on.moment.area / o.length[on.face];
+  for (const SaturatedFace& saturated : state.saturated.faces()) {
+    const double slope = slopes(o.body[saturated.face], saturated.body);
+    record[saturated.face].pressure +=
+        slope / thickness * saturated.moment.area / o.length[saturated.face];
   }
 }
 

@@ -1,24 +1,24 @@
-// What outlines report of their contact: the patches, and the pressure on every edge.
+// The output of the contact of outlines: the patches, and the pressure on every edge.
 #pragma once
 
 #include <vector>
 
 #include "lib/contact/law/contact.hpp"
 #include "lib/contact/mesh/edge_face.hpp"
-#include "lib/contact/mesh/outline_plateaus.hpp"
 #include "lib/contact/mesh/outline_slopes.hpp"
+#include "lib/contact/mesh/saturated_regions.hpp"
 
 namespace apothem {
 
-/// Contact of outlines where they are now.
+/// The contacts of outlines at their present positions.
 struct OutlineState {
   const OutlineSlopes& slopes;
   const std::vector<EdgeFaceContact>& contacts;  ///< ascending by edge and face
-  const OutlinePlateaus& plateaus;
-  [[nodiscard]] const Outlines& outlines() const { return slopes.outlines; }
+  const SaturatedRegions& saturated;
+  [[nodiscard]] const OutlineSurfaces& outlines() const { return slopes.outlines; }
 };
 
-/// Adds a record for every patch, by ascending pairs of bodies.
+/// Adds a record for every patch, in ascending order of the pairs of bodies.
 void add_patch_records(const OutlineState& state, std::vector<ContactRecord>& records);
 
 /// Adds a record for every edge of the outlines.

@@ -1,5 +1,5 @@
-// The slip of edges against faces, and what friction does to the vertices, for several contacts at
-// a time. Private to outline_friction.
+// The slip of edges against faces, and the friction forces on the vertices, for several contacts at
+// a time. This header is private to outline_friction.cpp.
 #pragma once
 
 #include <array>
@@ -11,21 +11,23 @@
 
 namespace apothem {
 
-/// Friction on a vertex, x and y, N.
+/// The friction on a vertex, x and y, N.
 using VertexDrag = std::array<double, 2>;
 
-/// What is known of the slips of a block. With t, the unit tangent of the face, and n its inward
-/// normal: a force on the edge goes to both ends of the edge and of the face, and its part along t
-/// to the ends of the face along n as well. All are 0 where there is no contact.
+/// The slips of the contacts of a block. A force on the edge is distributed to both ends of the
+/// edge and of the face. With the unit tangent t of the face and its inward normal n, the part of
+/// the force along t also acts on the ends of the face along n. All entries are 0 where there is no
+/// contact.
 struct OutlineSlip {
   using Numbers = EdgeFaceBlock::Numbers;
-  /// Coefficients of the slip rate, weighted with the pressure, N; `turn` counts along n.
+  /// Coefficients of the slip rate, weighted with the pressure, N. `turn` is the one along n.
   Numbers at_p, at_q, at_b, turn;
   /// The slip rate of the edge against the face, times the normal force, N m/s.
   Numbers rate_x, rate_y;
 };
 
-/// Finds what does not depend on springs. `velocities` of the vertices, interleaved, m/s.
+/// Finds the slips, which do not depend on the springs. `velocities` has x and y of all vertices,
+/// interleaved, m/s.
 APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& touch,
                               const std::vector<double>& velocities, OutlineSlip& slip) {
   using Pack = PackOf<kBlock>;
@@ -35,14 +37,16 @@ APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& t
     Pack x, y;
   };
   const auto velocity = [&](const EdgeFaceBlock::Vertices& i) APOTHEM_LAMBDA {
-    using Pair = double __attribute__((vector_size(16)));
-    const auto of = [&](size_t l) APOTHEM_LAMBDA {
-      Pair v;
+    using TwoNumbers = double __attribute__((vector_size(16)));
+    const auto vertex_velocity = [&](size_t l) APOTHEM_LAMBDA {
+      TwoNumbers v;
       std::memcpy(&v, &velocities[2 * static_cast<size_t>(i[l])], sizeof v);
       return v;
     };
-    const Pack::Vector low = __builtin_shufflevector(of(0), of(1), 0, 1, 2, 3);
-    const Pack::Vector high = __builtin_shufflevector(of(2), of(3), 0, 1, 2, 3);
+    const Pack::Vector low =
+        __builtin_shufflevector(vertex_velocity(0), vertex_velocity(1), 0, 1, 2, 3);
+    const Pack::Vector high =
+        __builtin_shufflevector(vertex_velocity(2), vertex_velocity(3), 0, 1, 2, 3);
     return Velocity{Pack(__builtin_shufflevector(low, high, 0, 2, 4, 6)),
                     Pack(__builtin_shufflevector(low, high, 1, 3, 5, 7))};
   };
@@ -69,18 +73,19 @@ APOTHEM_INLINE void find_slip(const EdgeFaceBlock& block, const EdgeFaceTouch& t
   put(slip.rate_x, x + turning * tx), put(slip.rate_y, y + turning * ty);
 }
 
-/// Friction on the edges of a block over the normal forces of their springs.
+/// The friction on the edges of a block over the normal forces of their springs.
 struct SlipPull {
   EdgeFaceBlock::Numbers x, y;
 };
 
-/// The forces of a block on its vertices: of a lane a pack is x and y of p, x and y of q; and of a
-/// and b.
+/// The forces of a block on its vertices. For each lane one pack holds x and y on p, x and y on q,
+/// and another one those on a and b.
 struct SlipForces {
   FourOf<PackOf<4>> edge, face;
 };
 
-/// A force times the coefficients of the slip rate acts on the vertices.
+/// Finds the forces on the vertices, which are the friction times the coefficients of the slip
+/// rate.
 APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& slip,
                                const SlipPull& pull, SlipForces& forces) {
   using Pack = PackOf<kBlock>;
@@ -95,7 +100,7 @@ APOTHEM_INLINE void find_drags(const EdgeFaceTouch& touch, const OutlineSlip& sl
       forces.face);
 }
 
-/// Calls f(vertex, x, y) for each force, one after the other because they may share vertices.
+/// Calls f(vertex, x, y) for each force in turn; contacts may share vertices.
 template <class F>
 APOTHEM_INLINE void each_drag(const EdgeFaceBlock& block, const SlipForces& forces, const F& f) {
   for (size_t l = 0; l < kBlock; ++l) {

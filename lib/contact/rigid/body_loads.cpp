@@ -5,7 +5,7 @@
 namespace apothem {
 namespace {
 
-constexpr double kAddTime = 10;  // of a body, ns
+constexpr double kAddTime = 10;  // time for a body, ns
 
 }  // namespace
 
@@ -13,9 +13,9 @@ BodyLoads::BodyLoads(const Surfaces& surfaces, int threads)
     : surfaces_(surfaces),
       threads_(threads),
       sums_(static_cast<size_t>(surfaces.rigid_count())),
-      parts_(static_cast<size_t>(threads_.count())) {}
+      workers_(static_cast<size_t>(threads_.count())) {}
 
-void BodyLoads::take(std::span<const BoxPair> pairs) {
+void BodyLoads::set_pairs(std::span<const BoxPair> pairs) {
   if (threads_.count() == 1) return;
   first_partner_.resize(sums_.size());
   for (size_t i = 0; i < sums_.size(); ++i) first_partner_[i] = static_cast<RigidIndex>(i);
@@ -26,15 +26,16 @@ void BodyLoads::take(std::span<const BoxPair> pairs) {
 }
 
 void BodyLoads::end() {
-  for (Part& part : parts_) {
-    for (const LateLoad& late : part.late) sums_[static_cast<size_t>(late.body)].add(late.load);
-    part.begin(-1);
+  for (DeferredLoads& deferred_loads : workers_) {
+    for (const DeferredLoad& deferred : deferred_loads.deferred)
+      sums_[static_cast<size_t>(deferred.body)].add(deferred.load);
+    deferred_loads.begin(-1);
   }
 }
 
 void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> touching) {
   rates_.resize(sums_.size());
-  fastest_.assign(parts_.size(), 0.);
+  fastest_.assign(workers_.size(), 0.);
   threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int worker) {
     double fastest = 0;
     for (auto i = static_cast<size_t>(first); i < static_cast<size_t>(end); ++i) {
@@ -44,12 +45,12 @@ void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> to
       f[1] += sum.y;
       f[2] += sum.moment;
       if (!forces.beside.empty()) std::ranges::copy(sum.beside, &forces.beside[3 * i]);
-      rates_[i].own = rate_bound_of(sum.held, inverse_mass(i));
+      rates_[i].own = rate_bound_of(sum.stiffness, inverse_mass(i));
       fastest = std::max(fastest, rates_[i].own);
     }
     fastest_[static_cast<size_t>(worker)] = fastest;
   });
-  // Most steps end here: no pair is near the limit.
+  // In most steps no pair is near the limit, and the rates of partners are not needed.
   const double most = 2 * *std::ranges::max_element(fastest_);
   if (most > forces.lambda_limit) find_rates(forces.lambda_limit, touching);
   threads_.chunks(static_cast<int>(sums_.size()), kAddTime, [&](int first, int end, int) {
@@ -62,12 +63,12 @@ void BodyLoads::add_to(const ForceViews& forces, std::span<const PairInTouch> to
   });
 }
 
-// The largest rate of a partner that can move, of each body: see stiffness.hpp. Rates are exact
-// above the limit, so that they do not shorten the step in vain.
+// Finds for each body the largest rate of its partners that can move, see stiffness.hpp. Rates are
+// exact above the limit, so that bounds do not shorten the step without need.
 void BodyLoads::find_rates(double limit, std::span<const PairInTouch> touching) {
   const auto sharpen = [&](size_t i) {
     if (rates_[i].exact) return;
-    rates_[i].own = rate_of(sums_[i].held, inverse_mass(i));
+    rates_[i].own = rate_of(sums_[i].stiffness, inverse_mass(i));
     rates_[i].exact = true;
   };
   for (const PairInTouch& pair : touching) {

@@ -1,8 +1,8 @@
-// What all touching pairs do to each rigid body, summed in the order of the pairs.
+// The loads of all touching pairs on each rigid body, summed in the order of the pairs.
 //
-// A thread adds what its pairs do to a body at once, unless the body may also touch in an earlier
-// pair, which another thread works on. Such loads wait until all threads are done. So every sum is
-// taken in the order of the pairs and has the same bits for any number of threads.
+// A thread adds a load to its body immediately, unless the body may also touch in an earlier pair,
+// which another thread works on. Such loads are deferred until all threads are done. So every sum
+// is taken in the order of the pairs and has the same bits for any number of threads.
 #pragma once
 
 #include <array>
@@ -22,43 +22,45 @@ class BodyLoads {
  public:
   BodyLoads(const Surfaces& surfaces, int threads);
 
-  /// The pairs that may touch, ascending.
-  void take(std::span<const BoxPair> pairs);
-  /// Begins a step of one thread, whose first pair has `first` as its first body; -1 if no other
-  /// thread has earlier pairs.
-  void begin(int worker, RigidIndex first) { parts_[static_cast<size_t>(worker)].begin(first); }
+  /// Sets the pairs that may touch, which ascend.
+  void set_pairs(std::span<const BoxPair> pairs);
+  /// Begins the work of one thread in a step. `first` is the first body of its first pair, or -1 if
+  /// no other thread has earlier pairs.
+  void begin(int worker, RigidIndex first) { workers_[static_cast<size_t>(worker)].begin(first); }
   void add(int worker, RigidIndex body, const BodyLoad& load) {
-    Part& part = parts_[static_cast<size_t>(worker)];
-    if (part.first >= 0 && first_partner_[static_cast<size_t>(body)] <= part.first) {
-      part.late.push_back({load, body});
+    DeferredLoads& deferred_loads = workers_[static_cast<size_t>(worker)];
+    if (deferred_loads.first >= 0 &&
+        first_partner_[static_cast<size_t>(body)] <= deferred_loads.first) {
+      deferred_loads.deferred.push_back({load, body});
     } else {
       sums_[static_cast<size_t>(body)].add(load);
     }
   }
-  /// After all threads are done.
+  /// Adds the deferred loads, after all threads are done.
   void end();
-  /// Adds the sums to the forces and their bounds, and forgets them.
+  /// Adds the sums to the forces and to the bounds of the rates, and clears the sums.
   void add_to(const ForceViews& forces, std::span<const PairInTouch> touching);
 
  private:
-  struct LateLoad {
+  struct DeferredLoad {
     BodyLoad load;
     RigidIndex body;
   };
-  // Of one thread.
-  struct Part {
+  // The loads that one thread has deferred.
+  struct DeferredLoads {
     RigidIndex first = -1;
-    std::vector<LateLoad> late;
+    std::vector<DeferredLoad> deferred;
     void begin(RigidIndex body) {
       first = body;
-      late.clear();
+      deferred.clear();
     }
   };
 
-  // Of a body: w^2 of what its own contacts hold, and the largest one of its partners, 1/s^2.
+  // The squared frequency w^2 of the contact stiffness of a body, and the largest one of its
+  // partners, 1/s^2.
   struct Rate {
     double own = 0, partner = 0;
-    bool exact = false;  // own is not a bound
+    bool exact = false;  // true if `own` is exact, and not an upper bound
   };
   [[nodiscard]] const std::array<double, 3>& inverse_mass(size_t body) const {
     return surfaces_.rigid(static_cast<RigidIndex>(body)).inverse_mass;
@@ -67,11 +69,12 @@ class BodyLoads {
 
   const Surfaces& surfaces_;
   Threads threads_;
-  std::vector<BodyLoad> sums_;             // of each rigid body
-  std::vector<RigidIndex> first_partner_;  // of each: itself or the least one that it may touch
-  std::vector<Part> parts_;
-  std::vector<Rate> rates_;      // of each rigid body
-  std::vector<double> fastest_;  // of these, by each thread
+  std::vector<BodyLoad> sums_;             // sum of the loads of each rigid body
+  std::vector<RigidIndex> first_partner_;  // for each body, the lowest number among itself and the
+                                           // bodies that it may touch
+  std::vector<DeferredLoads> workers_;
+  std::vector<Rate> rates_;      // rates of each rigid body
+  std::vector<double> fastest_;  // largest rate found by each thread
 };
 
 }  // namespace apothem

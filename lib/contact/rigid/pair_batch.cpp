@@ -8,34 +8,34 @@
 namespace apothem {
 namespace {
 
-// Error of the sum of a patch's normal forces, in units of eps x size / reference length x own
-// length: twice the worst of a million pairs (docs/verification.md).
+// Error of the sum of the normal forces of a patch, in units of eps times size over reference
+// length times own length: twice the worst value of a million pairs (docs/verification.md).
 constexpr double kForceError = 1.2;
-// A contact that is narrower than this part of its depth is a point.
+// A contact whose breadth over its depth is smaller than this is a point.
 constexpr double kNarrow = 1e-9;
 
-// A number of each lane; a plain number is that of the first one.
+// Reads one number for each lane; a single number is that of the first lane.
 template <class F>
-APOTHEM_INLINE void read_lanes(double& number, const F& of) {
-  number = of(0);
+APOTHEM_INLINE void read_lanes(double& number, const F& value) {
+  number = value(0);
 }
 template <int lanes, class F>
-APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& of) {
-  pack = pack_of<lanes>(of);
+APOTHEM_INLINE void read_lanes(PackOf<lanes>& pack, const F& value) {
+  pack = pack_of<lanes>(value);
 }
-// A truth value of each lane, from 1 or 0.
+// Reads one truth value for each lane, from 1 or 0.
 template <class F>
-APOTHEM_INLINE void read_lanes(bool& truth, const F& of) {
-  truth = of(0) > 0;
+APOTHEM_INLINE void read_lanes(bool& truth, const F& value) {
+  truth = value(0) > 0;
 }
 template <int lanes, class F>
-APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& of) {
+APOTHEM_INLINE void read_lanes(MaskOf<lanes>& mask, const F& value) {
   PackOf<lanes> number;
-  read_lanes(number, of);
+  read_lanes(number, value);
   mask = number > PackOf<lanes>(0.);
 }
 
-// The mass centre of a minus that of b; `lanes` have these numbers.
+// Reads the mass centre of a minus that of b for the pairs of `lanes`.
 template <class Real, class Lane>
 APOTHEM_INLINE void read_between(const Surfaces& surfaces, const Lane* lanes,
                                  VectorOf<Real>& between) {
@@ -51,11 +51,11 @@ template <class Real>
 APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<Real>& p) {
   bool same = true;
   for (int k = 1; k < lanes_of<Real>; ++k) same = same && work[k].law == work[0].law;
-  const auto number = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+  const auto number = [&](Real& result, const auto& value) APOTHEM_LAMBDA {
     if (same) {
-      to = Real(of(*work[0].law));
+      result = Real(value(*work[0].law));
     } else {
-      read_lanes(to, [&](int k) APOTHEM_LAMBDA { return of(*work[k].law); });
+      read_lanes(result, [&](int k) APOTHEM_LAMBDA { return value(*work[k].law); });
     }
   };
   number(p.normal_stiffness,
@@ -67,7 +67,7 @@ APOTHEM_INLINE void read_law(const PairWork* work, double thickness, PatchStep<R
   number(p.coefficient, [](const PairLaw& l) APOTHEM_LAMBDA { return l.friction.coefficient; });
 }
 
-// The integrals of a pair and where its bodies are, which its load needs.
+// Reads the integrals of a pair and the positions of its bodies, which its load needs.
 template <class Real>
 APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, PatchStep<Real>& p) {
   const Surfaces& surfaces = scene.surfaces;
@@ -85,7 +85,7 @@ APOTHEM_INLINE void read_pair(const PairScene& scene, const PairWork* work, Patc
   p.centre = {four[2], four[3]};
   integral(kLengthNumbers);
   const Real length_a = four[0], length_b = four[1];
-  // Inverse masses and slope.
+  // A row of Surfaces::Rigid holds the inverse masses and the slope.
   read_rows([&](int k) APOTHEM_LAMBDA { return surfaces.rigid(work[k].a).inverse_mass.data(); },
             four);
   const Real slope_a = four[3];
@@ -111,10 +111,11 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
     return scene.surfaces.rigid(work[k].a).radius + scene.surfaces.rigid(work[k].b).radius;
   });
   p.force_error = Real(kForceError * std::numeric_limits<double>::epsilon()) * radii * p.slopes;
-  const auto rate = [&](Real& to, const auto& of) APOTHEM_LAMBDA {
+  const auto rate = [&](Real& result, const auto& value) APOTHEM_LAMBDA {
     const double* const all = scene.now->pose_rate.data();
-    read_lanes(to, [&](int k) APOTHEM_LAMBDA {
-      return of(all + 3 * static_cast<size_t>(work[k].a), all + 3 * static_cast<size_t>(work[k].b));
+    read_lanes(result, [&](int k) APOTHEM_LAMBDA {
+      return value(all + 3 * static_cast<size_t>(work[k].a),
+                   all + 3 * static_cast<size_t>(work[k].b));
     });
   };
   rate(p.rate.x, [](const double* a, const double* b) APOTHEM_LAMBDA { return a[0] - b[0]; });
@@ -131,17 +132,17 @@ APOTHEM_INLINE void read_memory(const PairScene& scene, const PairWork* work, Pa
 }
 
 template <class Real>
-APOTHEM_INLINE void hold(const PairWork* work, const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
-                         BodyStiffnessOf<Real>& b) {
+APOTHEM_INLINE void add_strip_stiffness(const PairWork* work, const PatchStep<Real>& p,
+                                        BodyStiffnessOf<Real>& a, BodyStiffnessOf<Real>& b) {
   FourOf<Real> four;
   read_rows([&](int k)
                 APOTHEM_LAMBDA { return integral_numbers(*work[k].integral) + kBreadthNumbers; },
             four);
   const ContactStrip<Real> strip{four[0], four[1]};
-  strip.hold(p, a, b);
+  strip.add_stiffness(p, a, b);
 }
 
-// Force and moments of a pair, with those beside the normal force.
+// Force and moments of a pair, including those of friction.
 template <class Real>
 APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
                                               const PairVectorOf<Real>& beside) {
@@ -149,19 +150,19 @@ APOTHEM_INLINE PairVectorOf<Real> whole_force(const PatchStep<Real>& p,
   return PairVectorOf<Real>{k * p.force.x, k * p.force.y, k * p.moment_a, k * p.moment_b} + beside;
 }
 
-// The numbers of a load stand in a row.
-static_assert(offsetof(BodyLoad, held) == 3 * sizeof(double) &&
+// The numbers of a load are contiguous, so that they can be written as rows.
+static_assert(offsetof(BodyLoad, stiffness) == 3 * sizeof(double) &&
               sizeof(BodyLoad) == 12 * sizeof(double));
 template <int lanes, class F>
 APOTHEM_INLINE void write_load(const PackOf<lanes>& x, const PackOf<lanes>& y,
                                const PackOf<lanes>& moment,
-                               const BodyStiffnessOf<PackOf<lanes>>& held,
-                               const std::array<PackOf<lanes>, 3>& beside, const F& to) {
-  write_rows({x, y, moment, held.xx}, [&](int k) APOTHEM_LAMBDA { return &to(k).x; });
-  write_rows({held.xy, held.yy, held.xt, held.yt},
-             [&](int k) APOTHEM_LAMBDA { return &to(k).held.xy; });
-  write_rows({held.tt, beside[0], beside[1], beside[2]},
-             [&](int k) APOTHEM_LAMBDA { return &to(k).held.tt; });
+                               const BodyStiffnessOf<PackOf<lanes>>& stiffness,
+                               const std::array<PackOf<lanes>, 3>& beside, const F& load) {
+  write_rows({x, y, moment, stiffness.xx}, [&](int k) APOTHEM_LAMBDA { return &load(k).x; });
+  write_rows({stiffness.xy, stiffness.yy, stiffness.xt, stiffness.yt},
+             [&](int k) APOTHEM_LAMBDA { return &load(k).stiffness.xy; });
+  write_rows({stiffness.tt, beside[0], beside[1], beside[2]},
+             [&](int k) APOTHEM_LAMBDA { return &load(k).stiffness.tt; });
 }
 
 }  // namespace
@@ -172,13 +173,14 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
   std::array<PairWork, kComparedLanes> all;
   std::array<PatchFriction<double>, kComparedLanes> friction_of;
   std::ranges::copy(work, all.begin());
-  std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // for nobody
+  std::fill(all.begin() + std::ssize(work), all.end(), work.back());  // padding
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     PatchStep<Pack> p;
     PatchFriction<Pack> found;
     read_pair(scene, all.data(), p);
     read_memory(scene, all.data(), p);
-    // What the spring of one patch of several did before is not known: it may have been elsewhere.
+    // The previous force of the spring of one patch among several is not known, because the patch
+    // may have been elsewhere.
     p.friction_before = p.force_at_point(p.spring * p.normal.turned());
     rub(p, scene.dt, found);
     scatter(found, [&](int k) APOTHEM_LAMBDA -> PatchFriction<double>& { return friction_of[k]; });
@@ -188,7 +190,7 @@ void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
 }
 
 bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
-                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to) {
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& dashpots) {
   const RigidIndex a = bodies.first, b = bodies.second;
   PatchStep<double> p;
   const PairWork work{.a = a, .b = b, .integral = &patch, .law = &law, .load = nullptr};
@@ -210,29 +212,30 @@ bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>
     dashpot.spring = spring;
     dashpot.coefficient = law.friction.coefficient;
   }
-  // The strip of the contact as two dashpots that resist its turning as a spread one does.
+  // The strip of the contact is represented by two dashpots that resist its rotation as a uniformly
+  // distributed one does.
   const double apart = patch.breadth / std::sqrt(12.), off = point.dot(across) - patch.middle;
   const bool both = apart > kNarrow * pressed / stiffness;
-  const double share = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
+  const double weight = both ? std::clamp((1 + off / apart) / 2, 0., 1.) : 0;
   const std::array<double, 2> along{both ? -off - apart : 0, both ? apart - off : 0};
-  const std::array<double, 2> shares{1 - share, share};
+  const std::array<double, 2> weights{1 - weight, weight};
   for (const size_t k : {0, 1}) {
-    const double part = both ? .5 : shares[k];  // of the stiffness
-    dashpot.across[k] =
-        Dashpot::Normal::of(part * normal_rate, shares[k] * pressed, part * stiffness, patch.depth);
+    const double part = both ? .5 : weights[k];  // fraction of the stiffness
+    dashpot.across[k] = Dashpot::Normal::of(part * normal_rate, weights[k] * pressed,
+                                            part * stiffness, patch.depth);
   }
-  to.add(dashpot);
-  to.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);
-  to.add_rigid(b, -1, {behind + along[0] * across, behind + along[1] * across}, behind);
+  dashpots.add(dashpot);
+  dashpots.add_rigid(a, 1, {point + along[0] * across, point + along[1] * across}, point);
+  dashpots.add_rigid(b, -1, {behind + along[0] * across, behind + along[1] * across}, behind);
   return true;
 }
 
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
-               const BodyStiffness& held_a, const BodyStiffness& held_b) {
+               const BodyStiffness& body_stiffness_a, const BodyStiffness& body_stiffness_b) {
   PatchStep<double> p;
   read_pair(scene, &work, p);
-  BodyStiffness a = held_a, b = held_b;
-  hold(&work, p, a, b);
+  BodyStiffness a = body_stiffness_a, b = body_stiffness_b;
+  add_strip_stiffness(&work, p, a, b);
   const PairForce f = whole_force(p, friction);
   *work.load = {{f.x, f.y, f.a, a, {friction.x, friction.y, friction.a}},
                 {-f.x, -f.y, f.b, b, {-friction.x, -friction.y, friction.b}},
@@ -258,16 +261,16 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
       now(k).stiffness = friction.stiffness.v[k];
       now(k).tangent = {friction.tangent.x.v[k], friction.tangent.y.v[k]};
       now(k).push = p.push.v[k];
-      work[k].book->energy = energy.v[k];
-      work[k].book->loss = friction.lost.v[k];
+      work[k].ledger->energy = energy.v[k];
+      work[k].ledger->loss = friction.lost.v[k];
     }
   }
-  hold(work, p, friction.held_a, friction.held_b);
+  add_strip_stiffness(work, p, friction.body_stiffness_a, friction.body_stiffness_b);
   const PairVectorOf<Pack>& beside = friction.force;
   const PairVectorOf<Pack> f = whole_force(p, beside);
-  write_load(f.x, f.y, f.a, friction.held_a, {beside.x, beside.y, beside.a},
+  write_load(f.x, f.y, f.a, friction.body_stiffness_a, {beside.x, beside.y, beside.a},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_a; });
-  write_load(-f.x, -f.y, f.b, friction.held_b, {-beside.x, -beside.y, beside.b},
+  write_load(-f.x, -f.y, f.b, friction.body_stiffness_b, {-beside.x, -beside.y, beside.b},
              [&](int k) APOTHEM_LAMBDA -> BodyLoad& { return work[k].load->on_b; });
   const Pack normal = p.normal_stiffness * p.size;
   for (int k = 0; k < kAtOnce; ++k) {
@@ -279,12 +282,12 @@ APOTHEM_INLINE void PairBatch::step(const PairScene& scene) {
 
 void PairBatch::flush(const PairScene& scene) {
   if (count_ == 0) return;
-  // Lanes that are left over do the last pair again, for nobody.
-  PairWork again = work_[static_cast<size_t>(count_ - 1)];
-  again.load = &spare_.load;
-  again.now = &spare_.now;
-  again.book = &spare_.book;
-  std::fill(work_.begin() + count_, work_.end(), again);
+  // The remaining lanes are padding: they repeat the last pair, and their results are not used.
+  PairWork padding = work_[static_cast<size_t>(count_ - 1)];
+  padding.load = &padding_.load;
+  padding.now = &padding_.now;
+  padding.ledger = &padding_.ledger;
+  std::fill(work_.begin() + count_, work_.end(), padding);
   with_widest([&](auto /*lanes*/) APOTHEM_LAMBDA {
     step(scene);
     return 0.;

@@ -1,5 +1,6 @@
-// Steps of touching pairs of rigid bodies, four at a time: friction of pairs that have one contact
-// patch, and the loads of all. The formulas are those of patch_laws.hpp and pair_load.hpp.
+// Steps of touching pairs of rigid bodies, four pairs at a time: the friction of pairs with one
+// contact patch, and the loads of all pairs. The formulas are those of patch_laws.hpp and
+// pair_load.hpp.
 #pragma once
 
 #include <array>
@@ -14,49 +15,50 @@
 
 namespace apothem {
 
-/// How the two rigid bodies of a pair move against each other.
+/// The relative velocity of the two rigid bodies of a pair.
 inline PairRate pair_rate(const Kinematics& now, RigidIndex a, RigidIndex b) {
   const double* va = &now.pose_rate[3 * static_cast<size_t>(a)];
   const double* vb = &now.pose_rate[3 * static_cast<size_t>(b)];
   return {va[0] - vb[0], va[1] - vb[1], va[2], vb[2]};
 }
 
-/// What all pairs of a step have in common.
+/// The data that all pairs of a step share.
 struct PairScene {
   const Surfaces& surfaces;
   double thickness;                 ///< m
-  const Kinematics* now = nullptr;  ///< not needed without friction
+  const Kinematics* now = nullptr;  ///< null without friction
   double dt = 0;                    ///< s
 };
 
-/// What a patch remembers that was not there in the step before.
+/// The spring of a patch that did not exist in the step before.
 inline const Spring kNoSpring{};
 
-/// A pair, or one of its contact patches, what it remembers, and where its results go.
+/// A pair, or one of its contact patches, with its memory and the places of its results.
 struct PairWork {
   RigidIndex a, b;
   const PairIntegral* integral;
   const PairLaw* law;
   PairLoad* load;
-  const Spring* before = &kNoSpring;  ///< in the step before
-  bool begins = true;                 ///< the pair had no patch in the step before
-  Spring* now = nullptr;              ///< but for its key; null without friction
-  PairBook* book = nullptr;           ///< null without friction
+  const Spring* before = &kNoSpring;  ///< the spring in the step before
+  bool begins = true;                 ///< true if the pair had no patch in the step before
+  Spring* now = nullptr;  ///< the spring of this step, without its key; null without friction
+  PairLedger* ledger = nullptr;  ///< null without friction
 };
 
-/// Friction of so many contact patches, kComparedLanes at most. Those of `work` are not written to.
+/// Finds the friction of work.size() contact patches, at most kComparedLanes. The results that
+/// `work` points to are not written.
 void find_patch_friction(const PairScene& scene, std::span<const PairWork> work,
                          PatchFriction<double>* friction);
-/// The dashpots of a contact patch of two bodies; false if it has none, because its force has no
-/// direction. `spring`: force of the friction spring in it, N.
+/// Adds the dashpots of a contact patch of two bodies. Returns false if it has none, because its
+/// force has no direction. `spring` is the force of the friction spring in the patch, N.
 bool add_dashpot(const PairScene& scene, const std::pair<RigidIndex, RigidIndex>& bodies,
-                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& to);
-/// The load of a pair with this friction beside the normal force. `held_a`, `held_b`: how its
-/// friction springs hold the bodies.
+                 const PairIntegral& patch, const PairLaw& law, double spring, Dashpots& dashpots);
+/// Finds the load of a pair from its normal force and the given friction. The last two arguments
+/// are the stiffnesses of its friction springs for the two bodies.
 void load_pair(const PairScene& scene, const PairWork& work, const PairForce& friction,
-               const BodyStiffness& held_a, const BodyStiffness& held_b);
+               const BodyStiffness& body_stiffness_a, const BodyStiffness& body_stiffness_b);
 
-/// Pairs of at most one contact patch, collected until there are enough of them.
+/// Pairs with at most one contact patch, collected until a pack of them is full.
 class PairBatch {
  public:
   void add(const PairScene& scene, bool rough, const PairWork& work) {
@@ -65,7 +67,7 @@ class PairBatch {
     work_[static_cast<size_t>(count_)] = work;
     if (++count_ == kAtOnce) flush(scene);
   }
-  /// Takes all pairs that have been added a step further.
+  /// Computes the step of all pairs that have been added.
   void flush(const PairScene& scene);
 
  private:
@@ -79,8 +81,8 @@ class PairBatch {
   struct {
     PairLoad load;
     Spring now;
-    PairBook book;
-  } spare_ = {};
+    PairLedger ledger;
+  } padding_ = {};
 };
 
 }  // namespace apothem

@@ -1,4 +1,4 @@
-// The pair kernel on lists of polygons: normal contact by integrals along edges
+// Normal contact of all pairs of a list of polygons, by integrals along edges
 // (geometry/integrals/edge_integral.hpp).
 #pragma once
 
@@ -14,19 +14,20 @@
 
 namespace apothem {
 
-/// Beyond this potential an edge is about to cross the centre of the other polygon, where the
+/// Above this potential an edge is about to cross the centre of the other polygon, beyond which the
 /// potential falls again.
 inline constexpr double kDeepestPhi = 0.95;
 
 /// A pair that touches.
 struct PairInTouch {
   SurfaceIndex a, b;
-  int number;      ///< in the list of all that touch
-  int worker;      ///< that has found it
-  int split = -1;  ///< number among the pairs that are split into contact patches; -1 if it is not
+  int number;  ///< index in the list of all touching pairs
+  int worker;  ///< thread that has found the pair
+  /// Index among the pairs that are split into contact patches; -1 if it is not split.
+  int list_index = -1;
 };
 
-/// The pairs of a list that touch, and their integrals.
+/// The touching pairs of a list of pairs, and their integrals.
 class PairIntegrals {
  public:
   /// Which touching pairs are split into contact patches.
@@ -35,10 +36,10 @@ class PairIntegrals {
   PairIntegrals(const Surfaces& surfaces, int threads, Split split = Split::none)
       : surfaces_(surfaces), threads_(threads), split_(split), workers_(threads_.count()) {}
 
-  void take(std::span<const BoxPair> pairs);
-  /// Integrals of all pairs; the result of a pair depends on that pair alone. Calls found(pair,
-  /// integral, worker) for each that touches, in ascending order within each thread; the lower
-  /// worker has the lower pairs.
+  void set_pairs(std::span<const BoxPair> pairs);
+  /// Computes the integrals of all pairs; the result of a pair depends on that pair alone. Calls
+  /// found(pair, integral, worker) for each touching pair, in ascending order within each thread;
+  /// threads with lower numbers have lower pairs.
   template <class F>
   void evaluate(const F& found) {
     begin();
@@ -56,109 +57,114 @@ class PairIntegrals {
     collect();
   }
 
-  /// The pairs in reach.
+  /// The number of pairs in the list.
   [[nodiscard]] size_t candidates() const { return pairs_.size(); }
-  /// The pairs that touch, ascending.
+  /// The touching pairs, ascending.
   [[nodiscard]] const std::vector<PairInTouch>& touching() const { return touching_; }
-  /// Of the whole pair, for unit stiffness: force on a, moments about the reference points.
+  /// The integrals of the whole pair for unit stiffness. Moments are about the reference points.
   [[nodiscard]] const PairIntegral& integral(const PairInTouch& pair) const {
-    const Worker& worker = workers_[static_cast<size_t>(pair.worker)];
+    const PairWorkspace& worker = workers_[static_cast<size_t>(pair.worker)];
     return worker.integrals[static_cast<size_t>(pair.number - worker.first)];
   }
-  /// A bound of the penetration of a touching pair, m.
+  /// An upper bound of the penetration of a touching pair, m.
   [[nodiscard]] double deepest(const PairInTouch& pair, const PairIntegral& integral) const;
-  /// The patches of a pair: the whole pair if it is not split.
+  /// The patches of a pair; the whole pair if it is not split.
   [[nodiscard]] std::span<const PairIntegral> patches(const PairInTouch& pair) const {
-    const Parts* const parts = parts_of(pair);
-    if (!parts || parts->first_patch < 0) return {&integral(pair), 1};
-    return std::span(workers_[static_cast<size_t>(parts->worker)].patches)
-        .subspan(static_cast<size_t>(parts->first_patch), static_cast<size_t>(parts->patches));
+    const PatchRanges* const ranges = patch_ranges_of(pair);
+    if (!ranges || ranges->first_patch < 0) return {&integral(pair), 1};
+    return std::span(workers_[static_cast<size_t>(ranges->worker)].patches)
+        .subspan(static_cast<size_t>(ranges->first_patch), static_cast<size_t>(ranges->patches));
   }
-  /// The runs of a pair; none if it is not split.
-  [[nodiscard]] std::span<const RunPlace> runs(const PairInTouch& pair) const {
-    const Parts* const parts = parts_of(pair);
-    if (!parts) return {};
-    return std::span(workers_[static_cast<size_t>(parts->worker)].runs)
-        .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
+  /// The boundary segments of a pair; none if it is not split.
+  [[nodiscard]] std::span<const SegmentPlace> segments(const PairInTouch& pair) const {
+    const PatchRanges* const ranges = patch_ranges_of(pair);
+    if (!ranges) return {};
+    return std::span(workers_[static_cast<size_t>(ranges->worker)].segments)
+        .subspan(static_cast<size_t>(ranges->first_segment), static_cast<size_t>(ranges->segments));
   }
-  /// The same with their integrals, where all pairs are split.
-  [[nodiscard]] std::span<const BoundaryRun> whole_runs(const PairInTouch& pair) const {
-    const Parts* const parts = parts_of(pair);
-    if (!parts || split_ != Split::all) return {};
-    return std::span(workers_[static_cast<size_t>(parts->worker)].whole_runs)
-        .subspan(static_cast<size_t>(parts->first_run), static_cast<size_t>(parts->runs));
+  /// The boundary segments with their integrals, if all pairs are split.
+  [[nodiscard]] std::span<const BoundarySegment> whole_segments(const PairInTouch& pair) const {
+    const PatchRanges* const ranges = patch_ranges_of(pair);
+    if (!ranges || split_ != Split::all) return {};
+    return std::span(workers_[static_cast<size_t>(ranges->worker)].whole_segments)
+        .subspan(static_cast<size_t>(ranges->first_segment), static_cast<size_t>(ranges->segments));
   }
-  /// How many pairs are split.
-  [[nodiscard]] size_t split_pairs() const { return parts_.size(); }
+  /// The number of pairs that are split.
+  [[nodiscard]] size_t split_pairs() const { return patch_ranges_.size(); }
 
-  /// Energy of all pairs for unit thickness, N. Not for every step.
+  /// The energy of all pairs for unit thickness, N. It is too slow for every step.
   [[nodiscard]] double energy(const PairTable& table) const;
 
-  /// The record of a pair; k is the normal stiffness times the thickness, N/m.
+  /// The contact record of a pair; k is the normal stiffness times the thickness, N/m.
   [[nodiscard]] Contact contact(KernelKind kernel, const PairInTouch& pair, double k) const;
-  /// If the pair is so deep that its potentials are about to fall again.
+  /// True if the pair is so deep that its potentials are about to fall again.
   [[nodiscard]] bool too_deep(const PairInTouch& pair, const PairIntegral& integral) const;
 
  private:
-  static constexpr int kFirstMargin = -6;
+  static constexpr int kFirstExponent = -6;
   static constexpr double kPairTime = 200;  // ns
 
-  // Edges of a pair that are near the other body, and where the bodies were when they were found.
-  struct Near {
+  // The Verlet list of a pair: the edges that are near the other body, and the positions of the
+  // bodies when the list was made.
+  struct VerletList {
     NearEdges edges;
     double angle_a = 0;
     Vec2 between = Vec2::Zero();
     double angle_b = 0;
-    std::int16_t share = kFirstMargin;  // the margin asked for: this power of two inradii
-    std::int16_t age = 0;               // evaluations since then
+    // The requested skin is 2^skin_exponent times the smaller inradius.
+    std::int16_t skin_exponent = kFirstExponent;
+    std::int16_t age = 0;  // evaluations since the list was made
   };
-  // What a pair is split into, among what a thread has found.
-  struct Parts {
-    int patches, runs;
-    int worker, first_patch, first_run;  // first_patch < 0 if the only patch is the whole pair
+  // The patches and boundary segments of a pair, as ranges of the lists of a thread.
+  struct PatchRanges {
+    int patches, segments;
+    // `first_patch` is negative if the only patch is the whole pair.
+    int worker, first_patch, first_segment;
   };
-  struct Worker {
+  struct PairWorkspace {
     PatchWorkspace workspace;
     NearEdgesWorkspace near_edges;
-    std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // numbers of those collected
-    // Of the touching pairs that it has found. The first worker's results begin the list of all.
+    std::array<size_t, ConvexPairs::kAtOnce> convex_pairs;  // indices of the collected convex pairs
+    // The touching pairs that the thread has found. The results of the first thread are the
+    // beginning of the list of all.
     std::vector<PairInTouch> results;
-    std::vector<PairIntegral> integrals;  // of these
-    int first = 0;                        // number of the first one in the list of all
-    // Of those that it has split.
-    std::vector<Parts> parts;
-    std::vector<RunPlace> runs;
-    std::vector<BoundaryRun> whole_runs;  // the same, where all pairs are split
+    std::vector<PairIntegral> integrals;  // their integrals
+    int first = 0;                        // index of the first one in the list of all
+    // The pairs that the thread has split.
+    std::vector<PatchRanges> ranges;
+    std::vector<SegmentPlace> segments;
+    // The same segments with integrals, if all pairs are split.
+    std::vector<BoundarySegment> whole_segments;
     std::vector<PairIntegral> patches;
-    // Of the pair at hand.
-    std::vector<BoundaryRun> pair_runs;
+    // The segments and patches of the present pair.
+    std::vector<BoundarySegment> pair_segments;
     std::vector<PairIntegral> pair_patches;
   };
   void begin();
   size_t evaluate_some(size_t first, size_t end, int worker);
   void evaluate_convex(int worker);
-  void note_margin(size_t pair, const Vec2& between);
-  void add(size_t pair, const PairIntegral& integral, int worker, int split);
+  void note_distance(size_t pair, const Vec2& between);
+  void add(size_t pair, const PairIntegral& integral, int worker, int list_index);
   void collect();
   void evaluate_alone(size_t pair, const PlacedPotential& view_a, const PlacedPotential& view_b,
                       int worker);
   [[nodiscard]] std::vector<PairInTouch>& results_of(int worker) {
     return worker == 0 ? touching_ : workers_[static_cast<size_t>(worker)].results;
   }
-  [[nodiscard]] const Parts* parts_of(const PairInTouch& pair) const {
-    return pair.split < 0 ? nullptr : &parts_[static_cast<size_t>(pair.split)];
+  [[nodiscard]] const PatchRanges* patch_ranges_of(const PairInTouch& pair) const {
+    return pair.list_index < 0 ? nullptr : &patch_ranges_[static_cast<size_t>(pair.list_index)];
   }
-  void find_near(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
+  void update_verlet_list(size_t pair, const Vec2& between, NearEdgesWorkspace& workspace);
 
   const Surfaces& surfaces_;
   Threads threads_;
   Split split_;
   std::vector<BoxPair> pairs_;
-  std::vector<Near> near_;  // of each pair
+  std::vector<VerletList> verlet_lists_;  // Verlet list of each pair
   std::vector<PairInTouch> touching_;
-  std::vector<Parts> parts_;              // of the pairs that are split
-  mutable std::vector<double> energies_;  // of each of these, when they are asked for, N
-  std::vector<Worker> workers_;
+  std::vector<PatchRanges> patch_ranges_;  // of each pair that is split
+  mutable std::vector<double> energies_;   // energy of each touching pair, found when asked for, N
+  std::vector<PairWorkspace> workers_;
 };
 
 }  // namespace apothem

@@ -1,5 +1,5 @@
-// What a touching pair of rigid bodies does to its bodies: the force, and how stiff the contact
-// holds them, as formulas for numbers and for packs of them.
+// The load of a touching pair of rigid bodies on its bodies: the force and the stiffness of the
+// contact, as formulas for numbers and for packs of numbers.
 #pragma once
 
 #include <array>
@@ -11,53 +11,54 @@
 
 namespace apothem {
 
-/// What contacts do to a rigid body: the force, N, its moment about the mass centre, N m, how they
-/// resist its displacement, and what of the force and the moment friction and damping do.
+/// The load of contacts on a rigid body: the force, N, its moment about the mass centre, N m, the
+/// stiffness of the contacts, and the parts of force and moment due to friction and damping.
 struct BodyLoad {
   double x = 0, y = 0, moment = 0;
-  BodyStiffness held;
+  BodyStiffness stiffness;
   std::array<double, 3> beside = {};
 
   void add(const BodyLoad& other) {
     x += other.x;
     y += other.y;
     moment += other.moment;
-    held.add(other.held, 1);
+    stiffness.add(other.stiffness, 1);
     for (size_t k = 0; k < 3; ++k) beside[k] += other.beside[k];
   }
 };
 
-/// The loads of a pair, with its friction and damping.
+/// The loads of a pair, including friction and damping.
 struct PairLoad {
   BodyLoad on_a, on_b;
-  double normal;  ///< size of the normal force, N
+  double normal;  ///< magnitude of the normal force, N
   RigidIndex a, b;
 };
 
-/// A contact as a strip across its line of action, which holds the bodies of a pair.
+/// The stiffness of a contact, represented by a strip across its line of action.
 template <class Real>
 struct ContactStrip {
-  Real breadth, middle;  // across the force: see PairIntegral
+  Real breadth, middle;  // extent across the force and its middle, see PairIntegral
 
-  /// Adds to `springs`, how friction springs hold a body, how the contact does.
-  APOTHEM_INLINE void hold(const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
-                           BodyStiffnessOf<Real>& b) const {
+  /// Adds the stiffness of the contact to the stiffnesses of both bodies.
+  APOTHEM_INLINE void add_stiffness(const PatchStep<Real>& p, BodyStiffnessOf<Real>& a,
+                                    BodyStiffnessOf<Real>& b) const {
     const Real zero(0.), one(1.);
-    const Real stiffness = p.normal_stiffness * p.slopes;  // as Contact::stiffness
-    // Of the pushes of the edges: 1 if all have one direction.
-    const Real share = p.size / p.weight;
-    const Real aligned = select(share < one, share, one);
+    const Real stiffness = p.normal_stiffness * p.slopes;  // see Contact::stiffness
+    // The resultant over the sum of the magnitudes of the edges' forces: 1 if all have the same
+    // direction.
+    const Real alignment = p.size / p.weight;
+    const Real aligned = select(alignment < one, alignment, one);
     const Real aside = square_root(one - aligned * aligned);
     const Real across = aside * aside * stiffness;
-    // Flanks give way along the force: each edge resists by the cosine of its angle to it. Where
-    // the pushes of the edges cancel, the force has no direction that says anything.
+    // Each edge contributes with the cosine of its angle to the force, so that flanks contribute
+    // less. Where the forces of the edges cancel, the direction of the resultant has no meaning.
     const Real along = select(aligned > aside, aligned, aside) * stiffness;
     const Truth<Real> pushes = p.size > zero;
     const VectorOf<Real> normal{select(pushes, p.normal.x, zero), select(pushes, p.normal.y, zero)};
     const VectorOf<Real> tangent = normal.turned();
-    // Where the resultant acts says little: boundary that is hardly inside is as stiff as any
-    // other.
-    const VectorOf<Real> at = middle * tangent;
+    // The strip is centred at the middle of the extent and not at the loading point: boundary that
+    // is hardly inside is as stiff as any other.
+    const VectorOf<Real> middle_point = middle * tangent;
     const Real spread = along * breadth * breadth / Real(12.);
     const auto body = [&](BodyStiffnessOf<Real>& springs, const VectorOf<Real>& point,
                           const VectorOf<Real>& centre) APOTHEM_LAMBDA {
@@ -67,8 +68,8 @@ struct ContactStrip {
       sum.tt = sum.tt + spread;
       springs.add(sum, one);
     };
-    body(a, at, p.centre);
-    body(b, at + p.between, p.centre + p.between);
+    body(a, middle_point, p.centre);
+    body(b, middle_point + p.between, p.centre + p.between);
   }
 };
 

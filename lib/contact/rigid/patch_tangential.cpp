@@ -7,13 +7,13 @@
 namespace apothem {
 namespace {
 
-constexpr size_t kPairsAheadOfStep = 8;  // that are fetched, for large scenes
+constexpr size_t kPairsAheadOfStep = 8;  // number of pairs that are prefetched, for large scenes
 
-// The force of a spring after a slip in m. What it loses is the mean force times the slip that it
-// does not follow.
-double follow(const CoulombSpring<double>& spring, double force, double slip, PairBook& book) {
+// The force of a spring after a slip in m. The spring loses the mean force times the part of the
+// slip that it does not follow.
+double follow(const CoulombSpring<double>& spring, double force, double slip, PairLedger& ledger) {
   const double trial = spring.trial(force, slip), next = spring.within(trial);
-  book.loss += (force + next) * (trial - next) / (2 * spring.stiffness);
+  ledger.loss += (force + next) * (trial - next) / (2 * spring.stiffness);
   return next;
 }
 
@@ -38,35 +38,36 @@ void PatchTangential::begin_step(const Kinematics& now, double dt) {
   make_room();
 }
 
-// Every pair has its place in the lists, so that threads do not wait for each other.
+// Every pair gets its range in the lists, so that threads need not wait for each other.
 void PatchTangential::make_room() {
   const std::vector<PairInTouch>& touching = pairs_.touching();
-  books_.assign((touching.size() + kBlock - 1) / kBlock, {});
+  ledgers_.assign((touching.size() + kBlock - 1) / kBlock, {});
   for (Range& range : ranges_) range.ended.clear();
-  places_.clear();
-  Place end{touching.size(), 0};
+  offsets_.clear();
+  ListOffsets end{touching.size(), 0};
   if (pairs_.split_pairs() > 0) {
     end = {};
     for (const PairInTouch& pair : touching) {
-      places_.push_back(end);
-      const size_t runs = pairs_.runs(pair).size();
-      end.spring += per_edge_ ? runs : pairs_.patches(pair).size();
-      if (table_.between(pair.a, pair.b).rough()) end.run += runs;
+      offsets_.push_back(end);
+      const size_t segments = pairs_.segments(pair).size();
+      end.spring += per_edge_ ? segments : pairs_.patches(pair).size();
+      if (table_.between(pair.a, pair.b).rough()) end.segment += segments;
     }
-    places_.push_back(end);
+    offsets_.push_back(end);
   }
   springs_ = memory_.make_room(end.spring);
-  runs_ = memory_.runs().make_room(end.run);
+  segments_ = memory_.segments().make_room(end.segment);
 }
 
 void PatchTangential::end_step() {
   for (const Range& range : ranges_) {
     for (const double lost : range.ended) memory_.lose(lost);
   }
-  for (const PairBook& book : books_) memory_.add(book);
+  for (const PairLedger& ledger : ledgers_) memory_.add(ledger);
 }
 
-// Of a pair that touches no more: in the first half of this step its last force has still acted.
+// The energy lost by the springs of a pair that no longer touches. In the first half of this step
+// its last force has still acted.
 double PatchTangential::lost_at_end(std::span<const Spring> springs) const {
   double energy = 0;
   PairForce force;
@@ -78,22 +79,24 @@ double PatchTangential::lost_at_end(std::span<const Spring> springs) const {
   return energy - scene_.dt / 2 * force.power(pair_rate(kinematics_, pair.a, pair.b));
 }
 
-// Where the last step has put them, unless there has been an evaluation or an undone step since.
+// The springs of a pair. The guess is their index in the last step, which is right unless there has
+// been an evaluation or an undone step since.
 std::span<Spring> PatchTangential::springs_of(const PairInTouch& pair) const {
   const auto number = static_cast<size_t>(pair.number);
-  const size_t guess = number < places_.size() ? place_of(number).spring : number;
+  const size_t guess = number < offsets_.size() ? offsets_of(number).spring : number;
   return records_of_pair(memory_.springs(), {polygon_kernel, pair.a, pair.b, 0}, guess);
 }
 
-std::optional<PairForce> PatchTangential::friction_of(RigidIndex a, RigidIndex b,
-                                                      std::span<const Spring> springs,
-                                                      std::span<const PatchRun> runs) const {
+std::optional<PairForce> PatchTangential::friction_of(
+    RigidIndex a, RigidIndex b, std::span<const Spring> springs,
+    std::span<const PatchSegment> segments) const {
   const ContactKey pair{polygon_kernel, a, b, 0};
   const std::span<const Spring> all = records_of_pair(springs, pair);
-  const bool alone =
-      per_edge_ ? std::ranges::all_of(records_of_pair(runs, pair),
-                                      [](const PatchRun& run) { return run.place.patch == 0; })
-                : all.size() == 1;
+  const bool alone = per_edge_ ? std::ranges::all_of(records_of_pair(segments, pair),
+                                                     [](const PatchSegment& segment) {
+                                                       return segment.place.patch == 0;
+                                                     })
+                               : all.size() == 1;
   if (!alone) return {};
   PairForce sum;
   for (const Spring& spring : all) sum = sum + spring.on_bodies;
@@ -112,16 +115,18 @@ void PatchTangential::keep_push(const PairInTouch& pair, size_t patch, double pu
   if (patch < springs.size()) springs[patch].push = push;
 }
 
-void PatchTangential::add_to(std::span<ContactRecord> patches, std::span<const BoundaryRun> runs,
+void PatchTangential::add_to(std::span<ContactRecord> patches,
+                             std::span<const BoundarySegment> segments,
                              const PairInTouch& pair) const {
   const std::span<const Spring> springs = springs_of(pair);
   for (size_t i = 0; i < springs.size(); ++i) {
-    const int patch = per_edge_ ? runs[i].patch : springs[i].key.part;
+    const int patch = per_edge_ ? segments[i].patch : springs[i].key.part;
     patches[static_cast<size_t>(patch)].tangential += springs[i].force * springs[i].tangent;
   }
 }
 
-// Pairs that have ended between those of this range and of the next one belong to it.
+// Pairs that have ended and lie between the pairs of this range and those of the next one belong to
+// this range.
 void PatchTangential::Range::begin(size_t first, size_t end) {
   const std::vector<PairInTouch>& touching = all_.pairs_.touching();
   const auto key = [&](size_t number) -> ContactKey {
@@ -137,42 +142,43 @@ void PatchTangential::Range::finish() {
       [&](std::span<const Spring> springs) { ended.push_back(all_.lost_at_end(springs)); });
 }
 
-void PatchTangential::Range::step_block(size_t first, size_t end, PairBook& book) {
+void PatchTangential::Range::step_block(size_t first, size_t end, PairLedger& ledger) {
   const std::vector<PairInTouch>& touching = all_.pairs_.touching();
   const size_t count = end - first;
   loads.resize(count);
-  books_.resize(count);
+  ledgers_.resize(count);
   for (size_t k = 0; k < count; ++k) {
     const size_t i = first + k;
     if (i + kPairsAheadOfStep < touching.size()) all_.fetch(touching[i + kPairsAheadOfStep]);
-    step_pair(i, loads[k], books_[k]);
+    step_pair(i, loads[k], ledgers_[k]);
   }
   batch_.flush(all_.scene_);
-  for (const PairBook& pair : books_) book.add(pair);
+  for (const PairLedger& pair : ledgers_) ledger.add(pair);
 }
 
-// Begins to bring what a pair needs to the cache.
+// Prefetches the data of a pair.
 void PatchTangential::fetch(const PairInTouch& pair) const {
   const auto* const integral = reinterpret_cast<const char*>(&pairs_.integral(pair));
-  for (size_t at = 0; at < sizeof(PairIntegral); at += 64) __builtin_prefetch(integral + at);
+  for (size_t byte = 0; byte < sizeof(PairIntegral); byte += 64)
+    __builtin_prefetch(integral + byte);
   surfaces_.fetch_inertia(pair.b);
   __builtin_prefetch(&kinematics_.pose_rate[3 * static_cast<size_t>(pair.b)]);
 }
 
-void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& book) {
+void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairLedger& ledger) {
   const PairInTouch& touching = all_.pairs_.touching()[number];
   const ContactKey key{polygon_kernel, touching.a, touching.b, 0};
   const PairLaw& law = all_.table_.between(touching.a, touching.b);
   before_ = walk_.find(
       key, [&](std::span<const Spring> springs) { ended.push_back(all_.lost_at_end(springs)); });
-  const size_t first = all_.place_of(number).spring;
-  now_ = all_.springs_.subspan(first, all_.place_of(number + 1).spring - first);
+  const size_t first = all_.offsets_of(number).spring;
+  now_ = all_.springs_.subspan(first, all_.offsets_of(number + 1).spring - first);
   PairWork work{.a = touching.a,
                 .b = touching.b,
                 .integral = &all_.pairs_.integral(touching),
                 .law = &law,
                 .load = &load};
-  book = {};
+  ledger = {};
   if (!law.rough()) {
     for (size_t j = 0; j < now_.size(); ++j) {
       now_[j] = {.key = {key.law, key.a, key.b, static_cast<int>(j)}};
@@ -180,12 +186,12 @@ void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& 
     batch_.add(all_.scene_, false, work);
     return;
   }
-  work.book = &book;
+  work.ledger = &ledger;
   bool alone = before_.size() <= 1;
-  if (touching.split >= 0 || !alone) {
+  if (touching.list_index >= 0 || !alone) {
     patches_ = all_.pairs_.patches(touching);
-    runs_ = all_.pairs_.runs(touching);
-    keep_runs(key, number);
+    segments_ = all_.pairs_.segments(touching);
+    keep_segments(key, number);
     alone = alone && patches_.size() == 1 && !all_.per_edge_;
   }
   if (alone) {
@@ -199,26 +205,27 @@ void PatchTangential::Range::step_pair(size_t number, PairLoad& load, PairBook& 
   step_patches(touching, work);
 }
 
-void PatchTangential::Range::keep_runs(const ContactKey& pair, size_t number) const {
-  PatchRun* to = all_.runs_.data() + all_.place_of(number).run;
+void PatchTangential::Range::keep_segments(const ContactKey& pair, size_t number) const {
+  PatchSegment* next = all_.segments_.data() + all_.offsets_of(number).segment;
   int part = 0;
-  for (const RunPlace& run : runs_) *to++ = {{pair.law, pair.a, pair.b, part++}, run};
+  for (const SegmentPlace& segment : segments_)
+    *next++ = {{pair.law, pair.a, pair.b, part++}, segment};
 }
 
 void PatchTangential::Range::step_patches(const PairInTouch& touching, const PairWork& pair) {
   const PairScene& scene = all_.scene_;
   Sum sum{.rate = pair_rate(*scene.now, pair.a, pair.b)};
   if (all_.per_edge_) {
-    per_edge(pair, all_.pairs_.whole_runs(touching), sum);
+    per_edge(pair, all_.pairs_.whole_segments(touching), sum);
   } else {
-    find_shares({polygon_kernel, pair.a, pair.b, 0});
-    inherit();
+    match_patches({polygon_kernel, pair.a, pair.b, 0});
+    transfer_springs();
     step_springs(pair, sum);
   }
-  load_pair(scene, pair, sum.force, sum.held_a, sum.held_b);
+  load_pair(scene, pair, sum.force, sum.body_stiffness_a, sum.body_stiffness_b);
 }
 
-// One spring for each patch.
+// Updates one spring for each patch.
 void PatchTangential::Range::step_springs(const PairWork& pair, Sum& sum) {
   friction_.resize(patches_.size());
   std::array<PairWork, kComparedLanes> work;
@@ -235,61 +242,61 @@ void PatchTangential::Range::step_springs(const PairWork& pair, Sum& sum) {
   for (size_t j = 0; j < patches_.size(); ++j) {
     const PatchFriction<double>& friction = friction_[j];
     sum.force = sum.force + friction.force;
-    sum.held_a.add(friction.held_a, 1);
-    sum.held_b.add(friction.held_b, 1);
+    sum.body_stiffness_a.add(friction.body_stiffness_a, 1);
+    sum.body_stiffness_b.add(friction.body_stiffness_b, 1);
     now_[j] = {.key = {polygon_kernel, pair.a, pair.b, static_cast<int>(j)},
                .force = friction.spring,
                .stiffness = friction.stiffness,
                .tangent = {friction.tangent.x, friction.tangent.y},
                .push = patch_springs_[j].push,
                .on_bodies = friction.force};
-    pair.book->energy += now_[j].energy();
+    pair.ledger->energy += now_[j].energy();
   }
-  pair.book->loss = lost_by_balance(pair, sum);
+  pair.ledger->loss = lost_by_balance(pair, sum);
 }
 
-// What the patches before hand down to those of now: everything to the only heir, otherwise in
-// proportion to the normal forces of those that share boundary with it. Forces are neither invented
-// nor lost.
-void PatchTangential::Range::find_shares(const ContactKey& pair) {
+// Contact matching: finds the fraction of each earlier patch's spring that goes to each present
+// patch. If only one present patch shares boundary with it, that patch gets all of it; otherwise
+// the fractions are proportional to the normal forces. Forces are neither created nor lost.
+void PatchTangential::Range::match_patches(const ContactKey& pair) {
   if (before_.empty()) return;
-  runs_before_.clear();
-  const std::span<const PatchRun> runs = all_.memory_.runs().before();
-  for (const PatchRun& run : records_of_pair(runs, pair)) {
-    runs_before_.push_back(run.place);
+  segments_before_.clear();
+  const std::span<const PatchSegment> segments = all_.memory_.segments().before();
+  for (const PatchSegment& segment : records_of_pair(segments, pair)) {
+    segments_before_.push_back(segment.place);
   }
-  const size_t heirs = patches_.size();
-  shared_length(runs_before_, static_cast<int>(before_.size()), runs_, static_cast<int>(heirs),
-                shares_);
+  const size_t count = patches_.size();
+  shared_length(segments_before_, static_cast<int>(before_.size()), segments_,
+                static_cast<int>(count), fractions_);
   for (size_t i = 0; i < before_.size(); ++i) {
-    double* const share = shares_.data() + i * heirs;
+    double* const fraction = fractions_.data() + i * count;
     double sum = 0;
-    for (size_t j = 0; j < heirs; ++j) {
-      share[j] = share[j] > 0 ? patches_[j].force.norm() : 0;
-      sum += share[j];
+    for (size_t j = 0; j < count; ++j) {
+      fraction[j] = fraction[j] > 0 ? patches_[j].force.norm() : 0;
+      sum += fraction[j];
     }
-    for (size_t j = 0; j < heirs; ++j) share[j] = sum > 0 ? share[j] / sum : 0;
+    for (size_t j = 0; j < count; ++j) fraction[j] = sum > 0 ? fraction[j] / sum : 0;
   }
 }
 
-void PatchTangential::Range::inherit() {
+void PatchTangential::Range::transfer_springs() {
   patch_springs_.assign(patches_.size(), {});
   for (size_t i = 0; i < before_.size(); ++i) {
     const Spring& old = before_[i];
     for (size_t j = 0; j < patches_.size(); ++j) {
-      const double share = shares_[i * patches_.size() + j];
-      if (!(share > 0)) continue;
+      const double fraction = fractions_[i * patches_.size() + j];
+      if (!(fraction > 0)) continue;
       Vec2 tangent = tangent_of(patches_[j].force);
       if (tangent == Vec2::Zero()) tangent = old.tangent;
-      Spring& heir = patch_springs_[j];
-      heir.force += share * old.force * tangent.dot(old.tangent);
-      heir.stiffness += share * old.stiffness;
-      heir.push += share * old.push;
+      Spring& spring = patch_springs_[j];
+      spring.force += fraction * old.force * tangent.dot(old.tangent);
+      spring.stiffness += fraction * old.stiffness;
+      spring.push += fraction * old.push;
     }
   }
 }
 
-// What friction has taken from the bodies and the springs do not store.
+// The energy that friction has taken from the bodies and the springs do not store.
 double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& sum) const {
   PairForce force_before;
   for (const Spring& spring : before_) force_before = force_before + spring.on_bodies;
@@ -297,13 +304,13 @@ double PatchTangential::Range::lost_by_balance(const PairWork& pair, const Sum& 
   power += force_before.power(sum.rate);
   double lost = -all_.scene_.dt / 2 * power;
   for (const Spring& spring : before_) lost += spring.energy();
-  return lost - pair.book->energy;
+  return lost - pair.ledger->energy;
 }
 
-// The older law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges that slope
-// against the motion meet a false tangential force.
-void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const BoundaryRun> runs,
-                                      Sum& sum) {
+// The older friction law, for comparison (Eq. 9): a spring along every edge of the overlap. Edges
+// that are inclined to the motion get a false tangential force.
+void PatchTangential::Range::per_edge(const PairWork& pair,
+                                      std::span<const BoundarySegment> segments, Sum& sum) {
   const Vec2 between = all_.surfaces_.between(pair.a, pair.b);
   const PairRate& rate = sum.rate;
   const double stiffness = pair.law->one_stiffness() * all_.thickness_;
@@ -311,29 +318,31 @@ void PatchTangential::Range::per_edge(const PairWork& pair, std::span<const Boun
   const int edges_of_a = all_.surfaces_.shapes().view(pair.a).size;
   auto next = now_.begin();
   auto old = before_.begin();
-  const auto end_one = [&] { pair.book->loss += (old++)->energy(); };  // an edge is free again
-  for (const BoundaryRun& run : runs) {
+  // Books the loss of the spring of an edge that no longer touches.
+  const auto end_one = [&] { pair.ledger->loss += (old++)->energy(); };
+  for (const BoundarySegment& segment : segments) {
     const ContactKey key{polygon_kernel, pair.a, pair.b,
-                         run.of_a ? run.edge : edges_of_a + run.edge};
+                         segment.of_a ? segment.edge : edges_of_a + segment.edge};
     while (old != before_.end() && old->key < key) end_one();
     double before = 0;
     if (old != before_.end() && old->key == key) before = (old++)->force;
-    const Vec2 tangent = tangent_of(run.force);
-    const Vec2 behind = run.centre + between;
-    const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, run.centre) - cross(rate.b, behind);
-    const double force = follow({stiffness, friction_limit(pair.law->friction.coefficient,
-                                                           normal_stiffness * run.force.norm())},
-                                before, slip.dot(tangent) * all_.scene_.dt, *pair.book);
-    const double arm_a = cross(run.centre, tangent), arm_b = cross(behind, tangent);
+    const Vec2 tangent = tangent_of(segment.force);
+    const Vec2 behind = segment.centre + between;
+    const Vec2 slip = Vec2(rate.x, rate.y) + cross(rate.a, segment.centre) - cross(rate.b, behind);
+    const double force = follow(
+        {stiffness,
+         friction_limit(pair.law->friction.coefficient, normal_stiffness * segment.force.norm())},
+        before, slip.dot(tangent) * all_.scene_.dt, *pair.ledger);
+    const double arm_a = cross(segment.centre, tangent), arm_b = cross(behind, tangent);
     *next = {.key = key,
              .force = force,
              .stiffness = stiffness,
              .tangent = tangent,
              .on_bodies = force * PairForce{tangent.x(), tangent.y(), arm_a, -arm_b}};
     sum.force = sum.force + next->on_bodies;
-    pair.book->energy += (next++)->energy();
-    sum.held_a.add(stiffness, tangent.x(), tangent.y(), arm_a);
-    sum.held_b.add(stiffness, tangent.x(), tangent.y(), arm_b);
+    pair.ledger->energy += (next++)->energy();
+    sum.body_stiffness_a.add(stiffness, tangent.x(), tangent.y(), arm_a);
+    sum.body_stiffness_b.add(stiffness, tangent.x(), tangent.y(), arm_b);
   }
   while (old != before_.end()) end_one();
 }

@@ -7,10 +7,10 @@ namespace apothem {
 
 namespace {
 
-// Of a touching pair, ns.
+// Time for a touching pair, ns.
 constexpr double kLoadTime = 100;
 
-// What friction and damping need.
+// The pairs that friction and damping need to be split.
 PairIntegrals::Split split(const ContactLaw& law, const PairTable& table) {
   if (!table.rough() && !table.damped()) return PairIntegrals::Split::none;
   return law.friction_law == FrictionLaw::per_edge ? PairIntegrals::Split::all
@@ -26,7 +26,7 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
       table_(table),
       thickness_(thickness),
       pairs_(surfaces, threads, split(law, table)),
-      onset_(surfaces, table, thickness, threads),
+      events_(surfaces, table, thickness, threads),
       threads_(threads),
       found_(static_cast<size_t>(threads_.count())),
       loads_(surfaces, threads) {
@@ -36,14 +36,14 @@ PolygonKernel::PolygonKernel(const Surfaces& surfaces, const ContactLaw& law,
 }
 
 void PolygonKernel::evaluate() {
-  for (Found& found : found_) found.summary = {.relative = 0};
+  for (Found& found : found_) found.summary = {.inradius_ratio = 0};
   pairs_.evaluate([&](const PairInTouch& pair, const PairIntegral& integral, int worker) {
     found_[static_cast<size_t>(worker)].summary.include(
         pairs_.deepest(pair, integral),
         std::min(surfaces_.inradius(pair.a), surfaces_.inradius(pair.b)),
         pairs_.too_deep(pair, integral) ? 1 : integral.largest_phi);
   });
-  summary_ = {.relative = 0};
+  summary_ = {.inradius_ratio = 0};
   for (const Found& found : found_) summary_.include(found.summary);
 }
 
@@ -55,7 +55,7 @@ void PolygonKernel::visit_contacts(double least, const ContactVisitor& visit) co
 
 Contact PolygonKernel::contact_of(const PairInTouch& pair) const {
   Contact contact = pairs_.contact(KernelKind::polygon_kernel, pair, stiffness(pair.a, pair.b));
-  if (pairs_.too_deep(pair, pairs_.integral(pair))) contact.share = 1;
+  if (pairs_.too_deep(pair, pairs_.integral(pair))) contact.relative_depth = 1;
   return contact;
 }
 
@@ -63,9 +63,9 @@ double PolygonKernel::penetration(const Contact& c, double floor) {
   const PlacedPotential view_a = surfaces_.shapes().view(c.a);
   const PlacedPotential view_b = surfaces_.shapes().view(c.b);
   const Vec2 between = surfaces_.between(c.a, c.b);
-  contact_patches(view_a, view_b, between, patch_workspace_, runs_, patches_);
+  contact_patches(view_a, view_b, between, patch_workspace_, segments_, patches_);
   deepest_.assign(patches_.size(), floor);
-  find_penetrations(view_a, view_b, between, runs_, penetration_workspace_, deepest_);
+  find_penetrations(view_a, view_b, between, segments_, penetration_workspace_, deepest_);
   return deepest_.empty() ? floor : *std::max_element(deepest_.begin(), deepest_.end());
 }
 
@@ -78,12 +78,13 @@ ContactFault PolygonKernel::fault(const Contact& c) const {
           c.a, c.b, surfaces_.reference(c.a) + loading_point(pair)};
 }
 
-void PolygonKernel::take(std::span<const BoxPair> pairs) {
-  pairs_.take(pairs);
-  loads_.take(pairs);
+void PolygonKernel::set_pairs(std::span<const BoxPair> pairs) {
+  pairs_.set_pairs(pairs);
+  loads_.set_pairs(pairs);
 }
 
-double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& /*memory*/) {
+double PolygonKernel::update_friction(const Kinematics& now, double dt,
+                                      FrictionMemory& /*memory*/) {
   if (!tangential_) return 0;
   tangential_->begin_step(now, dt);
   sum_loads([&](int first, int end, int worker) {
@@ -91,7 +92,7 @@ double PolygonKernel::slide(const Kinematics& now, double dt, FrictionMemory& /*
                       [&](std::span<const PairLoad> loads) { add_block(loads, worker); });
   });
   tangential_->end_step();
-  return 0;  // it books itself what its springs lose
+  return 0;  // the losses of the springs have been booked
 }
 
 void PolygonKernel::add_forces(const ForceViews& forces) {
@@ -123,7 +124,7 @@ void PolygonKernel::sum_loads(const Part& part) {
   }
 }
 
-// The loads of pairs in scenes without friction.
+// Finds the loads of pairs in scenes without friction.
 void PolygonKernel::find_normal_loads(int first, int end, int worker) {
   const PairScene scene{surfaces_, thickness_};
   Found& found = found_[static_cast<size_t>(worker)];
@@ -143,12 +144,12 @@ void PolygonKernel::find_normal_loads(int first, int end, int worker) {
   }
 }
 
-// Calls f(pair, number of the patch, integrals) for all patches of damped pairs.
+// Calls f(pair, index of the patch, integrals) for all patches of damped pairs.
 template <class F>
 void PolygonKernel::each_patch(const F& f) const {
   for (const PairInTouch& pair : pairs_.touching()) {
     if (!table_.between(pair.a, pair.b).damped()) continue;
-    if (pair.split < 0) {
+    if (pair.list_index < 0) {
       f(pair, size_t{0}, pairs_.integral(pair));
       continue;
     }
@@ -157,23 +158,24 @@ void PolygonKernel::each_patch(const F& f) const {
   }
 }
 
-void PolygonKernel::add_dashpots(const Kinematics& /*now*/, Dashpots& to) {
+void PolygonKernel::add_dashpots(const Kinematics& /*now*/, Dashpots& dashpots) {
   const PairScene scene{surfaces_, thickness_};
   damped_.clear();
   each_patch([&](const PairInTouch& pair, size_t i, const PairIntegral& patch) {
     const PairLaw& law = table_.between(pair.a, pair.b);
     const double spring = tangential_ && law.rough() ? tangential_->spring_in(pair, i) : 0;
-    damped_.push_back(add_dashpot(scene, {pair.a, pair.b}, patch, law, spring, to));
+    damped_.push_back(add_dashpot(scene, {pair.a, pair.b}, patch, law, spring, dashpots));
   });
 }
 
-void PolygonKernel::keep_pushes(const Dashpots& from, size_t& next, FrictionMemory& /*memory*/) {
+void PolygonKernel::keep_pushes(const Dashpots& dashpots, size_t& next,
+                                FrictionMemory& /*memory*/) {
   auto damped = damped_.begin();
   pushes_.clear(), drags_.clear();
   each_patch([&](const PairInTouch& pair, size_t i, const PairIntegral&) {
     const bool known = *damped++ != 0;
-    pushes_.push_back(known ? from.normal_force(next) : 0);
-    drags_.push_back(known ? from.tangential_force(next) : 0);
+    pushes_.push_back(known ? dashpots.normal_force(next) : 0);
+    drags_.push_back(known ? dashpots.tangential_force(next) : 0);
     if (tangential_) tangential_->keep_push(pair, i, pushes_.back());
     next += known;
   });
@@ -199,7 +201,7 @@ void PolygonKernel::add_force_sizes(std::span<double> of_bodies) const {
 void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
   PatchWorkspace workspace;
   PenetrationWorkspace penetration_workspace;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> segments;
   std::vector<PairIntegral> patches;
   std::vector<double> deepest;
   size_t dashpot = 0;
@@ -208,9 +210,9 @@ void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
     const PlacedPotential view_a = surfaces_.shapes().view(a);
     const PlacedPotential view_b = surfaces_.shapes().view(b);
     const Vec2 between = surfaces_.between(a, b);
-    contact_patches(view_a, view_b, between, workspace, runs, patches);
+    contact_patches(view_a, view_b, between, workspace, segments, patches);
     deepest.assign(patches.size(), 0);
-    find_penetrations(view_a, view_b, between, runs, penetration_workspace, deepest);
+    find_penetrations(view_a, view_b, between, segments, penetration_workspace, deepest);
     const size_t first = records.size();
     for (size_t i = 0; i < patches.size(); ++i) {
       const PairIntegral& patch = patches[i];
@@ -219,7 +221,7 @@ void PolygonKernel::add_records(std::vector<ContactRecord>& records) const {
                          patch.largest_phi});
     }
     const std::span<ContactRecord> of_pair = std::span(records).subspan(first);
-    if (tangential_) tangential_->add_to(of_pair, runs, pair);
+    if (tangential_) tangential_->add_to(of_pair, segments, pair);
     if (!table_.between(a, b).damped()) continue;
     for (ContactRecord& record : of_pair) {
       if (dashpot == pushes_.size()) break;

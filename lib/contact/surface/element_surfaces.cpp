@@ -11,18 +11,18 @@ void ElementSurfaces::add(const Mesh& mesh, const Boundary& boundary, NodeIndex 
                           BodyIndex body, const PotentialChoice& choice, PlacedShapes& shapes) {
   std::vector<ElementIndex> outermost;
   std::set<std::pair<int, int>> edges;
-  std::vector<double> share(mesh.nodes.size());
+  std::vector<double> tributary(mesh.nodes.size());
   for (const BoundaryLoop& loop : boundary.loops) {
     outermost.insert(outermost.end(), loop.elements.begin(), loop.elements.end());
     for (size_t i = 0; i < loop.nodes.size(); ++i) {
       const int p = loop.nodes[i], q = loop.nodes[i + 1 == loop.nodes.size() ? 0 : i + 1];
       const double half = (mesh.nodes[q] - mesh.nodes[p]).norm() / 2;
-      share[p] += half, share[q] += half;
+      tributary[p] += half, tributary[q] += half;
       edges.emplace(p, q);
     }
   }
-  for (int n = 0; n < static_cast<int>(share.size()); ++n) {
-    if (share[n] > 0) shares_.push_back({first_node + n, body, share[n]});
+  for (int n = 0; n < static_cast<int>(tributary.size()); ++n) {
+    if (tributary[n] > 0) tributary_lengths_.push_back({first_node + n, body, tributary[n]});
   }
   std::sort(outermost.begin(), outermost.end());
   outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
@@ -55,7 +55,7 @@ void ElementSurfaces::place(const Kinematics& now, SurfaceIndex first, PlacedSha
       const double* u = &now.displacement[2 * static_cast<size_t>(nodes_[corner])];
       return {u[0], u[1]};
     };
-    // Differences before sums: no digit is lost far from the origin.
+    // Differences are taken before sums, so that no digit is lost far from the origin.
     const Vec2& origin = start_[element.corners];
     const Vec2 carried = moved(element.corners);
     const double x = origin.x() + carried.x(), y = origin.y() + carried.y();

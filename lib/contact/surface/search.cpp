@@ -8,9 +8,9 @@
 namespace apothem {
 namespace {
 
-constexpr double kLookTime = 2;    // of a box, ns
-constexpr double kGrowTime = 4;    // of a surface, ns
-constexpr double kChoiceTime = 4;  // of a pair, ns
+constexpr double kLookTime = 2;    // time for a box, ns
+constexpr double kGrowTime = 4;    // time for a surface, ns
+constexpr double kChoiceTime = 4;  // time for a pair, ns
 
 }  // namespace
 
@@ -91,8 +91,8 @@ void Search::search_all(Surfaces& surfaces, const Threads& threads) {
   grid_.find_pairs(kept_, near_, threads);
 }
 
-// Gives new boxes to the surfaces that have left the inner half of the margins of theirs. The
-// others need none for as long again, so searches do not come more often for it.
+// Renews the boxes of those surfaces that have left the inner half of the skin of theirs. The other
+// boxes last for as long again, so that searches do not become more frequent.
 bool Search::search_again(const Surfaces& surfaces, const Threads& threads) {
   const std::vector<Box>& boxes = surfaces.shapes().boxes();
   if (kept_.size() != boxes.size()) return false;

@@ -7,7 +7,7 @@ namespace apothem {
 
 namespace {
 
-constexpr double kPlaceTime = 30;  // of a polygon, ns
+constexpr double kPlaceTime = 30;  // time for a polygon, ns
 
 double angle_of(const Kinematics& now, RigidIndex i) {
   return now.pose[3 * static_cast<size_t>(i) + 2];
@@ -62,9 +62,9 @@ double Surfaces::mobility(BodyIndex body, const Kinematics& now, const Vec2& poi
   const Body& mesh = deformable_[static_cast<size_t>(body - rigid_count())];
   Vec2 centre = Vec2::Zero();
   if (mesh.inertia.inverse_mass[2] > 0) {
-    for (size_t i = 0; i < mesh.inertia.shares.size(); ++i) {
+    for (size_t i = 0; i < mesh.inertia.mass_fractions.size(); ++i) {
       const double* const u = &now.displacement[2 * (static_cast<size_t>(mesh.first_node) + i)];
-      centre += mesh.inertia.shares[i] * (mesh.nodes[i] + Vec2(u[0], u[1]));
+      centre += mesh.inertia.mass_fractions[i] * (mesh.nodes[i] + Vec2(u[0], u[1]));
     }
   }
   return mobility_at(mesh.inertia.inverse_mass, point - centre, along);
@@ -112,7 +112,7 @@ void Surfaces::place(const Kinematics& now, const Threads& threads) {
       if (other != one && !place_polygon(other, now, angles[1])) finite = false;
     }
   });
-  if (!finite) place_all(now);  // says which one it is
+  if (!finite) place_all(now);  // throws with the number of the body
   place_meshes(now, threads);
 }
 

@@ -35,7 +35,7 @@ struct Heap : Bodies {
     evaluate();
     REQUIRE_FALSE(contacts->fault());
     REQUIRE(contacts->contacts().size() > 3);
-    slide(0);
+    update_friction(0);
     node_velocity = v;
     pose_rate.assign(rate.begin(), rate.end());
   }
@@ -44,7 +44,7 @@ struct Heap : Bodies {
   }
 };
 
-// A block dragged over a row of cells of 1 m, at a depth as a share of half a cell, k = 1: mean of
+// A block dragged over a row of cells of 1 m, at a depth relative to half a cell, k = 1: mean of
 // the friction over mu times the normal force, after the first four cells.
 struct Drag {
   double mu, tangential_stiffness, depth;
@@ -67,7 +67,7 @@ double dragged(ContactSurface surface, ElementShape shape, const Drag& drag) {
   for (int step = 0; step < 4000; ++step) {
     for (size_t i = first; i < u.size(); i += 2) u[i] += dt;
     bodies.evaluate();
-    bodies.contacts->slide(bodies.kinematics(), dt);
+    bodies.contacts->update_friction(bodies.kinematics(), dt);
     if (step < 2000) continue;
     const std::vector<ContactRecord> records = bodies.contacts->records();
     tangential -= on_body(records, 1, &ContactRecord::tangential).x();
@@ -88,7 +88,7 @@ TEST_CASE("friction of elements keeps linear and angular momentum", "[element_fr
         Heap heap(random, shape, distribution, {.7, 2});
         const std::vector<double> normal = heap.node_force;
         const Resultant pressed = heap.on_rigid(0);
-        heap.slide(.01);
+        heap.update_friction(.01);
         const Resultant rigid = heap.on_rigid(0);
         const Vec2 at(heap.pose[0], heap.pose[1]);
         Vec2 sum = rigid.force - pressed.force;
@@ -121,7 +121,7 @@ TEST_CASE("rigid motion of all elements together is no slip", "[element_friction
       }
       const Vec2 centre = drift + cross(spin, Vec2(heap.pose[0], heap.pose[1]));
       heap.pose_rate = {centre.x(), centre.y(), spin};
-      heap.slide(1);
+      heap.update_friction(1);
       const std::span<const Spring> springs = heap.contacts->friction().springs();
       REQUIRE(springs.size() > 3);
       for (const Spring& s : springs) CHECK(std::abs(s.force) < 1e-13);
@@ -145,7 +145,7 @@ TEST_CASE("elements stick with k_s, slip at mu times the normal force, and remem
 
   // The wall moves by 1 mm under the element: the spring takes it back, and the element along.
   bodies.pose_rate = {1e-3, 0, 0};
-  bodies.slide(1);
+  bodies.update_friction(1);
   CHECK(bodies.on_rigid(0).force.x() == Approx(-.5 * .6 * 1e-3).epsilon(1e-12));
   CHECK(bodies.contacts->force_on(1).x() == Approx(.5 * .6 * 1e-3).epsilon(1e-12));
   CHECK(memory.energy() == Approx(.5 * .6 * 1e-6 / 2).epsilon(1e-12));
@@ -176,7 +176,7 @@ TEST_CASE("elements stick with k_s, slip at mu times the normal force, and remem
   CHECK(other.contacts->friction_loss() == memory.loss());
 
   bodies.pose_rate = {1, 0, 0};
-  bodies.slide(1);
+  bodies.update_friction(1);
   CHECK(bodies.on_rigid(0).force.x() == Approx(-.5 * normal).epsilon(1e-12));
   CHECK(memory.loss() > 0);
 
@@ -184,13 +184,13 @@ TEST_CASE("elements stick with k_s, slip at mu times the normal force, and remem
   bodies.pose[1] = -.6;
   bodies.evaluate();
   bodies.pose_rate = {0, 0, 0};
-  bodies.slide(1);
+  bodies.update_friction(1);
   CHECK(memory.springs().empty());
   CHECK(memory.loss() == Approx(whole).epsilon(1e-14));
 
   Bodies none = element_on_wall(0);
   none.pose_rate = {1, 0, 0};
-  none.slide(1);
+  none.update_friction(1);
   CHECK(none.contacts->friction().springs().empty());
 }
 

@@ -244,7 +244,7 @@ TEST_CASE("a tip dragged over a row of elements meets their borders", "[element_
     const auto [tangential, loss] = drag(ContactSurface::element, depth);
     const auto [none, even] = drag(ContactSurface::body, depth);
     CAPTURE(depth, tangential, loss, none, even);
-    // On a border the elements' share of the force is half of what it is elsewhere.
+    // On a border the elements' part of the force is half of what it is elsewhere.
     const double sine = std::sqrt(.5), r_tip = std::sqrt(2.) - 1, r_element = .5;
     CHECK(loss == Approx(.5 / (1 + sine * r_element / r_tip)).epsilon(1e-10));
     CHECK(tangential == Approx(.17).margin(.005));

@@ -33,10 +33,10 @@ TEST_CASE("friction of outlines keeps linear and angular momentum", "[outline_fr
     ++pairs;
     const std::vector<double> normal = pair->node_force;
     move_at_random(random, pair->node_velocity);
-    pair->slide(.01);
+    pair->update_friction(.01);
     const double size = spring_sum(*pair->contacts);
     REQUIRE(size > 0);
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     Vec2 sum = Vec2::Zero();
     double moment = 0, largest = 0;
     for (int k = 0; k < o.size(); ++k) {
@@ -60,14 +60,14 @@ TEST_CASE("rigid motion of the pair as a whole is no slip", "[outline_friction][
   for (int i = 0; i < scaled(200); ++i) {
     auto pair = random_pair(random, 8, .6, law_of(1, {10, 1}));
     if (!pair) continue;
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     const Vec2 drift(random.uniform(-1, 1), random.uniform(-1, 1));
     const double spin = random.uniform(-1, 1);
     for (int k = 0; k < o.size(); ++k) {
       const Vec2 at = drift + cross(spin, Vec2(o.x[k], o.y[k]));
       pair->node_velocity[2 * o.node[k]] = at.x(), pair->node_velocity[2 * o.node[k] + 1] = at.y();
     }
-    pair->slide(1);
+    pair->update_friction(1);
     REQUIRE_FALSE(pair->contacts->friction().springs().empty());
     double stiffest = 0;  // where pushes cancel a spring has hardly any stiffness
     for (const Spring& s : pair->contacts->friction().springs())
@@ -90,7 +90,7 @@ TEST_CASE("a block dragged over a row of edges meets mu times the normal force",
   for (int step = 0; step < 2000; ++step) {
     for (size_t i = 2 * nodes_a; i < v.size(); i += 2) pair.displacement[i] += dt * speed;
     pair.evaluate();
-    pair.slide(dt);
+    pair.update_friction(dt);
     const double share = -friction_on(pair, 1).x() / (mu * normal_on(pair, 1).y());
     // At the ends the neighbourhoods reach around the corners, and hold a part of the flanks.
     CHECK(share <= 1.003);
@@ -122,7 +122,7 @@ TEST_CASE("friction gives back no more than it was given", "[outline_friction][c
       for (size_t i = first; i < v.size(); ++i) pair.displacement[i] += dt * v[i];
       pair.evaluate();
       // Half the work by the force before, half by the force after the slip.
-      pair.slide(dt);
+      pair.update_friction(dt);
       const Vec2 on = friction_on(pair, 1);
       work -= dt / 2 * (on + before).dot(Vec2(vx, vy));
       before = on;
@@ -145,7 +145,7 @@ TEST_CASE("bodies without friction cost and feel none", "[outline_friction][cont
   }
   const std::vector<double> normal = pair->node_force;
   move_at_random(random, pair->node_velocity);
-  pair->slide(1);
+  pair->update_friction(1);
   CHECK(pair->contacts->friction().springs().empty());
   CHECK(spring_sum(*pair->contacts) == 0);
   CHECK((pair->node_force == normal));
@@ -164,7 +164,7 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   };
   Bodies bodies = block_on_floor();
   bodies.pose_rate = {1e-3, 0, 0};
-  bodies.slide(1);
+  bodies.update_friction(1);
   const FrictionMemory& memory = bodies.contacts->friction();
   // Stick: both bodies in turn, k_s (l/r_t + l/r_c) times the slip along the faces of the floor and
   // the block's bottom. The block's sides count as far as they are near these and pressed with
@@ -181,7 +181,7 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   // Moment about the world's origin: that of the rigid body is about its centre.
   const Resultant on_floor = bodies.on_rigid(0);
   double moment = on_floor.moment + cross(Vec2(bodies.pose[0], bodies.pose[1]), on_floor.force);
-  const Outlines& o = bodies.contacts->surfaces().outlines();
+  const OutlineSurfaces& o = bodies.contacts->surfaces().outlines();
   for (int i = o.bodies[1].first; i < o.bodies[1].end; ++i) {
     moment += cross(o.point(i), bodies.on_node(o.node[i]));
   }
@@ -202,8 +202,8 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   // The next step goes on where the springs are.
   Bodies twin = block_on_floor();
   twin.pose_rate = bodies.pose_rate;
-  for (int step = 0; step < 2; ++step) twin.slide(1);
-  other.slide(1);
+  for (int step = 0; step < 2; ++step) twin.update_friction(1);
+  other.update_friction(1);
   CHECK((other.node_force == twin.node_force));
   CHECK((other.rigid_force == twin.rigid_force));
   CHECK(other.contacts->friction_loss() == twin.contacts->friction_loss());
@@ -213,7 +213,7 @@ TEST_CASE("friction of a rigid body: memory restored, springs lost with the cont
   bodies.pose[1] = -.6;
   bodies.evaluate();
   bodies.pose_rate = {0, 0, 0};
-  bodies.slide(1);
+  bodies.update_friction(1);
   CHECK(memory.springs().empty());
   CHECK(memory.loss() == Approx(energy).epsilon(1e-14));
   CHECK(memory.energy() == 0);

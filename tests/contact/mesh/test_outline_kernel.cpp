@@ -19,23 +19,24 @@ std::set<std::pair<int, int>> touching(const Contacts& contacts) {
   std::set<std::pair<int, int>> pairs;
   for (const Contact& c : contacts.contacts()) {
     REQUIRE(c.kernel == outline_kernel);
-    if (c.share > 1) continue;  // inside a top
+    if (c.relative_depth > 1) continue;  // inside a saturated region
     pairs.emplace(c.a, c.b);
   }
   return pairs;
 }
 
 // Every edge against every face of other bodies.
-std::set<std::pair<int, int>> touching_of_all(const Outlines& o) {
+std::set<std::pair<int, int>> touching_of_all(const OutlineSurfaces& o) {
   std::set<std::pair<int, int>> pairs;
   for (int e = 0; e < o.size(); ++e) {
     for (int f = 0; f < o.size(); ++f) {
       const bool rigid = o.bodies[o.body[e]].is_rigid() && o.bodies[o.body[f]].is_rigid();
       if (o.body[e] == o.body[f] || rigid) continue;
       CollarPiece<double> piece;
-      CollarCrossings<double> top;
+      CollarCrossings<double> crossings;
       const int q = o.next[e];
-      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, top) && piece.deepest > 0)
+      if (collar_piece(o.face(f), o.x[e], o.y[e], o.x[q], o.y[q], piece, crossings) &&
+          piece.deepest > 0)
         pairs.emplace(e, f);
     }
   }
@@ -108,7 +109,7 @@ TEST_CASE("bodies that meet, part and meet again feel what they would at first s
     REQUIRE(touching(*bodies.contacts) == touching(*fresh.contacts));
     REQUIRE(bodies.contacts->energy() == fresh.contacts->energy());
     REQUIRE((bodies.node_force == fresh.node_force));
-    deep += deepest_share(*fresh.contacts) > 1;
+    deep += largest_relative_depth(*fresh.contacts) > 1;
     (fresh.contacts->contacts().empty() ? apart : touched)++;
   }
   CHECK(touched > 200);
@@ -136,14 +137,14 @@ TEST_CASE("a rigid body feels what its polygon feels", "[outline_kernel][contact
     bodies.add_ring(b.vertices(), r_b);
     bodies.join();
     bodies.evaluate();
-    const double share = deepest_share(*bodies.contacts);
+    const double share = largest_relative_depth(*bodies.contacts);
     if (!(share > .02) || share > .98) continue;
     // Only where the collars are the roofs.
     std::vector<double> first = first_nodes(a.vertices());
     for (const double h : first_nodes(b.vertices())) first.push_back(h);
-    const Outlines& o = bodies.contacts->surfaces().outlines();
+    const OutlineSurfaces& o = bodies.contacts->surfaces().outlines();
     if (std::ranges::any_of(bodies.contacts->contacts(), [&](const Contact& c) {
-          return c.share * o.depth[c.b] > first[c.b];
+          return c.relative_depth * o.depth[c.b] > first[c.b];
         })) {
       continue;
     }
@@ -187,7 +188,7 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   const Mesh mesh = rectangle_mesh({2, 1}, {4, 4}, {0, 0}, ElementShape::quadrilateral);
   CHECK(boundary_inradius(mesh, boundary(mesh)) == Approx(.125));
   Bodies bodies(law_of(2), .01, .5);
-  // 1 mm into the top.
+  // 1 mm into the upper side.
   const Polygon tip({{0, 0}, {.2, 1}, {-.2, 1}});
   bodies.add_rigid(about_origin(tip, length_choice(.15)), {1.1, .999, 0});
   bodies.add_mesh(mesh, {}, 0, 3);
@@ -207,11 +208,11 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
   const double expected = 2 * .5 * d * d * slope * (1 / .125 + std::sin(std::atan(slope)) / .15);
   CHECK(on_tip.force.y() == Approx(expected).epsilon(1e-10));
   const std::vector<Contact> contacts = bodies.contacts->contacts();
-  const auto worst =
-      std::max_element(contacts.begin(), contacts.end(),
-                       [](const Contact& p, const Contact& q) { return p.share < q.share; });
+  const auto worst = std::max_element(
+      contacts.begin(), contacts.end(),
+      [](const Contact& p, const Contact& q) { return p.relative_depth < q.relative_depth; });
   const double limit = bodies.contacts->surfaces().outlines().depth[worst->b];
-  CHECK(worst->share == Approx(d / limit).epsilon(1e-9));
+  CHECK(worst->relative_depth == Approx(d / limit).epsilon(1e-9));
 
   // A corner node carries half of two edges.
   std::vector<double> mass(mesh.nodes.size() + 3, 1e9);
@@ -225,7 +226,7 @@ TEST_CASE("outlines of meshes: nodes, holes, references", "[outline_kernel][cont
 TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
           "[outline_kernel][contact]") {
   const auto depth_of = [](const Mesh& mesh, std::optional<double> reference = {}) {
-    Outlines outlines;
+    OutlineSurfaces outlines;
     outlines.add_mesh(mesh, boundary(mesh), 0, reference);
     return outlines.bodies[0].depth;
   };
@@ -253,7 +254,7 @@ TEST_CASE("the collar is as deep as r, or a part of the smallest thickness",
   CHECK(smallest_thickness({round, hole}, 9) == Approx(.2).epsilon(.01));
   // A given r, and a rigid body: half of its thickness.
   CHECK(depth_of(bar(1, 10, ElementShape::quadrilateral), .2) == .2);
-  Outlines outlines;
+  OutlineSurfaces outlines;
   outlines.add_rigid(comb, 0, .4);
   CHECK(outlines.bodies[0].depth == Approx(.1));
   outlines.add_rigid(samples::block(0, 0, 4, 1).vertices(), 1, .5);
@@ -267,7 +268,7 @@ TEST_CASE("a body pushed through the collar meets a constant pressure there",
   for (const double d : {.1, .2, .4, .7}) {
     const OutlinePair pair(bar, split(samples::block(-.8, -d, .7, 2).vertices(), 4), .125, .125);
     CAPTURE(d);
-    CHECK((deepest_share(*pair.contacts) > 1) == (d > .125));
+    CHECK((largest_relative_depth(*pair.contacts) > 1) == (d > .125));
     CHECK_FALSE(pair.contacts->fault());
     // On the stamp, and on the bar, whose edges go into the sides of the stamp as well.
     const double h = std::min(d, .125);
@@ -345,7 +346,7 @@ Slid slide_strips(int threads, bool search_often) {
     }
     if (search_often) bodies.contacts->forget_search();
     bodies.evaluate();
-    bodies.slide(.01);
+    bodies.update_friction(.01);
   }
   Slid found{bodies.node_force,
              bodies.rigid_force,
@@ -384,7 +385,7 @@ TEST_CASE("what touches is the same for any number of threads",
     std::vector<double>& u = bodies.displacement;
     for (size_t i = 0; i < u.size(); ++i) u[i] = 1e-4 * std::sin(static_cast<double>(i));
     bodies.evaluate();
-    CHECK_FALSE(bodies.contacts->find_onsets(bodies.kinematics(), {}, 0));
+    CHECK_FALSE(bodies.contacts->find_event_impulses(bodies.kinematics(), {}, 0));
     JsonWriter archive;
     archive("contacts", *bodies.contacts);
     const std::string saved = archive.json().dump();
@@ -448,7 +449,7 @@ TEST_CASE("energy of a bounce of two soft bodies converges with the step squared
       for (const double w : v) energy += w * w / 2;
       if (start < 0) start = energy;
       worst = std::max(worst, std::abs(energy - start) / start);
-      deepest = std::max(deepest, deepest_share(*pair.contacts));
+      deepest = std::max(deepest, largest_relative_depth(*pair.contacts));
     }
     for (int i = 0; i < 2 * n; ++i) {
       spin += cross(x0[i] + Vec2(u[2 * i], u[2 * i + 1]), Vec2(v[2 * i], v[2 * i + 1]));
@@ -518,7 +519,7 @@ TEST_CASE("what bodies that are near nothing leave out changes no bit",
     searched->contacts->forget_search();  // as Contacts::refresh does
     searched->contacts->search_if_stale();
     searched->contacts->evaluate();
-    for (Bodies* b : {bodies.get(), searched.get()}) b->slide(dt);
+    for (Bodies* b : {bodies.get(), searched.get()}) b->update_friction(dt);
 
     const size_t active = bodies->contacts->surfaces().outlines().active().size();
     least = std::min(least, active), most = std::max(most, active);

@@ -101,7 +101,7 @@ TEST_CASE("a folded body: nodal forces are the gradient of the energy, and momen
     const double size = body.largest_force();
     if (!(size > 1e-9)) continue;
     ++touch;
-    deep += deepest_share(*body.contacts) > 1;
+    deep += largest_relative_depth(*body.contacts) > 1;
     NumberRing<Complex> ring(body.ring);
     size_t k = 0;
     for (size_t j = 0; j < ring.size(); ++j) {
@@ -233,7 +233,7 @@ TEST_CASE("an inner corner whose collar leaves the body is named", "[self_contac
   CHECK_FALSE(notch(.4, .3));
   CHECK_FALSE(notch(.3, .3));
   CHECK_FALSE(notch(.05, 3));
-  const std::optional<Outlines::Notch> closed = notch(.05, .3);
+  const std::optional<OutlineSurfaces::Notch> closed = notch(.05, .3);
   REQUIRE(closed);
   CHECK(closed->vertex == 4);
   CHECK(closed->angle == Approx(2 * std::atan(.05 / .7)));

@@ -40,7 +40,7 @@ Bodies random_heap(samples::Random& random, const ContactLaw& law, int across, i
 void step(Bodies& bodies, double dt) {
   for (size_t i = 0; i < bodies.pose.size(); ++i) bodies.pose[i] += dt * bodies.pose_rate[i];
   bodies.evaluate();
-  bodies.slide(dt);
+  bodies.update_friction(dt);
 }
 
 Vec2 place_of(const Bodies& bodies, RigidIndex i) {
@@ -92,7 +92,7 @@ TEST_CASE("two rigid bodies feel what the edge method says of their polygons",
     CHECK(bodies.contacts->energy() == Approx(k * pair.volume.energy).epsilon(1e-11));
     CHECK(contacts[0].depth == Approx(integral.depth).epsilon(1e-11));
     if (!bodies.contacts->fault()) {
-      CHECK(contacts[0].share == Approx(integral.largest_phi).epsilon(1e-11));
+      CHECK(contacts[0].relative_depth == Approx(integral.largest_phi).epsilon(1e-11));
     }
     const PlacedShapes& shapes = bodies.contacts->surfaces().shapes();
     CHECK(contacts[0].stiffness == Approx(k * (integral.own_length_a * shapes.slope(1) +
@@ -159,10 +159,10 @@ TEST_CASE("swapping two rigid bodies swaps their forces to the last bit",
       bodies.add_rigid(swapped ? a : b, swapped ? at_a : at_b, {1, 1, 2});
       bodies.join();
       bodies.evaluate();
-      bodies.slide(0);
+      bodies.update_friction(0);
       const std::vector<double> normal = bodies.rigid_force;
       for (size_t k = 0; k < 6; ++k) bodies.pose_rate[k] = rate[swapped ? (k + 3) % 6 : k];
-      bodies.slide(.01);
+      bodies.update_friction(.01);
       return std::tuple(normal, bodies.rigid_force, spring_sum(*bodies.contacts));
     };
     const auto [normal, rough, springs] = forces(false);
@@ -246,7 +246,7 @@ TEST_CASE("a body that stands on two feet has two patches, each with its own spr
     Bodies bodies = table_on_floor(rough ? law_of(3, {.5, .7}) : law_of(3), depth);
     const Contacts& contacts = *bodies.contacts;
     bodies.pose_rate = {0, 0, 0, 1e-3, 0, 0};
-    bodies.slide(1);
+    bodies.update_friction(1);
     CHECK(contacts.contacts().size() == 1);  // one pair
     const std::vector<ContactRecord> records = contacts.records();
     const PatchResult expected =
@@ -285,7 +285,7 @@ TEST_CASE("a body that stands on two feet has two patches, each with its own spr
     bodies.pose_rate = {0, 0, 0, 0, 0, 0};
     bodies.pose[5] = records[0].point.x() < 0 ? .12 : -.12;
     bodies.evaluate();
-    bodies.slide(1);
+    bodies.update_friction(1);
     const std::vector<ContactRecord> rest = contacts.records();
     REQUIRE(rest.size() == 1);
     CHECK(rest[0].point.x() * records[0].point.x() > 0);
@@ -309,7 +309,7 @@ TEST_CASE("pairs are told with the integrals that are kept, also while their lis
     }
   }
   PairIntegrals pairs(bodies.contacts->surfaces(), 1, PairIntegrals::Split::not_convex);
-  pairs.take(neighbours);
+  pairs.set_pairs(neighbours);
   std::vector<PairIntegral> told;
   pairs.evaluate(
       [&](const PairInTouch&, const PairIntegral& integral, int) { told.push_back(integral); });
@@ -358,7 +358,7 @@ TEST_CASE("a slide that was tried leaves nothing behind", "[polygon_kernel][fric
         bodies.pose[c] = pose[c] + dt * bodies.pose_rate[c];
       }
       bodies.evaluate();
-      bodies.contacts->try_slide(bodies.kinematics(), dt);
+      bodies.contacts->try_friction(bodies.kinematics(), dt);
       bodies.find_forces();
     }
     bodies.contacts->drop_trial();
@@ -401,7 +401,7 @@ TEST_CASE("polygons deep in each other are noticed before their potentials fall 
       CHECK(std::abs(fault->place.x()) < 1e-9);
       CHECK(fault->depth > 0);
     }
-    CHECK((deepest_share(*bodies.contacts) >= 1) == fault.has_value());
+    CHECK((largest_relative_depth(*bodies.contacts) >= 1) == fault.has_value());
     return fault ? std::optional(fault->kind) : std::nullopt;
   };
   using Kind = ContactFault::Kind;

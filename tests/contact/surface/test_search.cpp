@@ -51,14 +51,15 @@ bool may_touch(const Surfaces& s, SurfaceIndex i, SurfaceIndex j) {
 }
 
 // An edge of one body meets a face of the other one's collar.
-bool outlines_touch(const Outlines& o, BodyIndex a, BodyIndex b) {
+bool outlines_touch(const OutlineSurfaces& o, BodyIndex a, BodyIndex b) {
   for (const auto& [p, q] : {std::pair(a, b), std::pair(b, a)}) {
     for (int e = o.bodies[p].first; e < o.bodies[p].end; ++e) {
       for (int f = o.bodies[q].first; f < o.bodies[q].end; ++f) {
         CollarPiece<double> piece;
-        CollarCrossings<double> top;
+        CollarCrossings<double> crossings;
         const Vec2 from = o.point(e), to = o.point(o.next[e]);
-        if (collar_piece(o.face(f), from.x(), from.y(), to.x(), to.y(), piece, top)) return true;
+        if (collar_piece(o.face(f), from.x(), from.y(), to.x(), to.y(), piece, crossings))
+          return true;
       }
     }
   }

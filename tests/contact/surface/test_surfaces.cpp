@@ -209,7 +209,7 @@ TEST_CASE("springs name the bodies that they are between", "[surfaces][contact]"
     Pile pile(surface);
     pile.law.friction = {.5, 1};
     Served expected = served(pile);
-    pile.slide(1);
+    pile.update_friction(1);
     Served found;
     for (const Spring& spring : pile.contacts->springs()) {
       const auto [a, b] = pile.contacts->bodies(spring.key);

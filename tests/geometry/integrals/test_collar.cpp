@@ -42,12 +42,12 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, double depth) {
     const CollarFace<Complex> face =
         CollarFace<Complex>{t.x[i], t.y[i], t.x[q], t.y[q], tx[i], ty[i], length[i],
                             a.x,    a.y,    b.x,    b.y,    depth, 0}
-            .with_plain();
+            .with_regular_depth();
     for (size_t e = 0; e < m; ++e) {
       CollarPiece<Complex> piece;
-      CollarCrossings<Complex> top;
+      CollarCrossings<Complex> crossings;
       const size_t g = (e + 1) % m;
-      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, top)) sum += piece.height;
+      if (collar_piece(face, c.x[e], c.y[e], c.x[g], c.y[g], piece, crossings)) sum += piece.height;
     }
   }
   return sum;
@@ -56,7 +56,7 @@ Complex volume(const ComplexRing& c, const ComplexRing& t, double depth) {
 // Largest |f + dE/dx| over largest |f|.
 double gradient_error(const OutlinePair& pair) {
   ComplexRing a = complex_ring(pair.a), b = complex_ring(pair.b);
-  const std::vector<Outlines::Body>& bodies = pair.contacts->surfaces().outlines().bodies;
+  const std::vector<OutlineSurfaces::Body>& bodies = pair.contacts->surfaces().outlines().bodies;
   const auto slope = [&] {
     const double h = 1e-40;
     return -(volume(b, a, bodies[0].depth) / pair.reference_a +
@@ -193,7 +193,7 @@ TEST_CASE("a tip dragged over a flat row of edges meets no tangential force", "[
       const OutlinePair pair(split(samples::block(-1, -.5, 1, 0).vertices(), parts), tip, .02, .02);
       const Vec2 force = pair.on(1).force;
       REQUIRE(force.y() > 0);
-      REQUIRE(deepest_share(*pair.contacts) < 1);
+      REQUIRE(largest_relative_depth(*pair.contacts) < 1);
       worst = std::max(worst, std::abs(force.x() / force.y()));
       // Apex on flat.
       CHECK(force.y() == Approx(d * d * (1 + std::sqrt(.5)) / .02).epsilon(1e-11));
@@ -217,8 +217,8 @@ TEST_CASE("convex and reflex corners of many angles", "[collar]") {
                                 {.01 - std::sin(1.1 * tilt), -.06 + std::cos(1.1 * tilt)}};
     const OutlinePair pair(notch, tip, .5, .3);
     CAPTURE(opening);
-    REQUIRE(deepest_share(*pair.contacts) > 0);
-    REQUIRE(roof_share(pair) < 1);
+    REQUIRE(largest_relative_depth(*pair.contacts) > 0);
+    REQUIRE(roof_ratio(pair) < 1);
     CHECK(gradient_error(pair) < 1e-12);
     const Polygon a(notch), b(tip);
     const PairResult exact = overlap_method(a, make_potential(a, length_choice(.5)), b,
@@ -254,15 +254,16 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
       std::vector<Vec2> moved = b;
       for (Vec2& v : moved) v += k * grid * step;
       pair.emplace(a, moved, .3, .4);
-      if (deepest_share(*pair->contacts) > 1e-6) break;
+      if (largest_relative_depth(*pair->contacts) > 1e-6) break;
     }
-    if (!pair || deepest_share(*pair->contacts) < 1e-6 || deepest_share(*pair->contacts) >= 1)
+    if (!pair || largest_relative_depth(*pair->contacts) < 1e-6 ||
+        largest_relative_depth(*pair->contacts) >= 1)
       continue;
     // Overlapping parts of faces beyond the heights at which they shrink to a point cancel each
     // other; what remains may be small against them.
-    const Outlines& o = pair->contacts->surfaces().outlines();
+    const OutlineSurfaces& o = pair->contacts->surfaces().outlines();
     if (std::ranges::any_of(pair->contacts->contacts(), [&](const Contact& c) {
-          return c.share * o.depth[c.b] > o.plain[c.b];
+          return c.relative_depth * o.depth[c.b] > o.regular_depth[c.b];
         })) {
       continue;
     }
@@ -271,7 +272,7 @@ TEST_CASE("outlines on a lattice: vertices on vertices, edges and bisectors", "[
     const double size = pair->largest_force();
     worst = std::max({worst, (on_a.force + on_b.force).norm() / size,
                       std::abs(on_a.moment + on_b.moment) / size});
-    if (i % 20 != 0 || !(roof_share(*pair) < 1)) continue;
+    if (i % 20 != 0 || !(roof_ratio(*pair) < 1)) continue;
     try {
       const Polygon first(pair->a), second(pair->b);
       const PairResult exact = overlap_method(first, make_potential(first, length_choice(.3)),
@@ -292,11 +293,11 @@ TEST_CASE("NaN is never a miss", "[collar]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const CollarFace<double> face{0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, .5, .4};
   CollarPiece<double> piece;
-  CollarCrossings<double> top;
-  CHECK(collar_piece(face, nan, .1, .5, .1, piece, top));
-  CHECK(collar_piece(face, .5, .1, .5, nan, piece, top));
+  CollarCrossings<double> crossings;
+  CHECK(collar_piece(face, nan, .1, .5, .1, piece, crossings));
+  CHECK(collar_piece(face, .5, .1, .5, nan, piece, crossings));
   CHECK(std::isnan(piece.sum));
-  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, top));
+  CHECK_FALSE(collar_piece(face, .2, -.1, .5, -.1, piece, crossings));
 }
 
 namespace {
@@ -325,7 +326,7 @@ struct EdgeAndFace {
                               t.x(), t.y(), (b - a).norm(), ma.x,
                               ma.y,  mb.x,  mb.y,           random.uniform(.1, 2),
                               0}
-               .with_plain();
+               .with_regular_depth();
     p = {place(3), place(3)}, q = {place(3), place(3)};
   }
 };
@@ -345,11 +346,12 @@ void compare_packs(int count) {
       return each([&](const EdgeAndFace& e) { return e.face.*number; });
     };
     using Face = CollarFace<double>;
-    const CollarFace<Pack> faces{of_face(&Face::ax),     of_face(&Face::ay),  of_face(&Face::bx),
-                                 of_face(&Face::by),     of_face(&Face::tx),  of_face(&Face::ty),
-                                 of_face(&Face::length), of_face(&Face::max), of_face(&Face::may),
-                                 of_face(&Face::mbx),    of_face(&Face::mby), of_face(&Face::depth),
-                                 of_face(&Face::plain)};
+    const CollarFace<Pack> faces{
+        of_face(&Face::ax),           of_face(&Face::ay),  of_face(&Face::bx),
+        of_face(&Face::by),           of_face(&Face::tx),  of_face(&Face::ty),
+        of_face(&Face::length),       of_face(&Face::max), of_face(&Face::may),
+        of_face(&Face::mbx),          of_face(&Face::mby), of_face(&Face::depth),
+        of_face(&Face::regular_depth)};
     const CollarPieces<Pack> found =
         collar_pieces(faces, each([](const EdgeAndFace& e) { return e.p.x(); }),
                       each([](const EdgeAndFace& e) { return e.p.y(); }),
@@ -358,19 +360,20 @@ void compare_packs(int count) {
     for (int l = 0; l < lanes; ++l) {
       const EdgeAndFace& e = all[static_cast<size_t>(l)];
       CollarPiece<double> piece;
-      CollarCrossings<double> top;
-      const bool meets = collar_piece(e.face, e.p.x(), e.p.y(), e.q.x(), e.q.y(), piece, top);
-      if (found.deep.m[l] != 0) {
+      CollarCrossings<double> crossings;
+      const bool meets = collar_piece(e.face, e.p.x(), e.p.y(), e.q.x(), e.q.y(), piece, crossings);
+      if (found.general.m[l] != 0) {
         ++deep;
         REQUIRE(found.met.m[l] == 0);
         continue;
       }
-      REQUIRE(top.count == 0);
+      REQUIRE(crossings.count == 0);
       REQUIRE(meets == (found.met.m[l] != 0));
       if (!meets) continue;
       ++met;
       const Vec2 along(e.face.tx, e.face.ty), start(e.face.ax, e.face.ay);
-      leaving += std::max(cross(along, e.p - start), cross(along, e.q - start)) > e.face.plain;
+      leaving +=
+          std::max(cross(along, e.p - start), cross(along, e.q - start)) > e.face.regular_depth;
       const std::array of_pack{found.from.v[l],   found.to.v[l],     found.sum.v[l],
                                found.first.v[l],  found.area.v[l],   found.along.v[l],
                                found.height.v[l], found.deepest.v[l]};

@@ -43,7 +43,8 @@ struct Sum {
   }
 };
 
-// Every run in exactly one patch, every patch the sum of its runs, and all together the pair.
+// Checks that every segment is in one patch, that every patch is the sum of its segments, and that
+// all patches together are the pair.
 // Returns the largest difference in units of round-off: eps (size/r) own length, and size.
 double worst_sum(const test::PatchResult& split, const PairIntegral& pair, double size,
                  double steepest) {
@@ -52,16 +53,16 @@ double worst_sum(const test::PatchResult& split, const PairIntegral& pair, doubl
   double worst = 0;
   Sum all;
   double own_a = 0, own_b = 0;
-  std::vector<Sum> by_run(split.patches.size());
-  for (const BoundaryRun& run : split.runs) {
-    REQUIRE(run.patch >= 0);
-    REQUIRE(run.patch < static_cast<int>(split.patches.size()));
-    REQUIRE(run.from >= 0);
-    REQUIRE(run.from <= run.to);
-    REQUIRE(run.to <= 1);
-    REQUIRE(is_finite(run.start + run.end + run.force + run.centre));
-    by_run[run.patch].add(run);
-    (run.of_a ? own_a : own_b) += run.length;
+  std::vector<Sum> by_segment(split.patches.size());
+  for (const BoundarySegment& segment : split.segments) {
+    REQUIRE(segment.patch >= 0);
+    REQUIRE(segment.patch < static_cast<int>(split.patches.size()));
+    REQUIRE(segment.from >= 0);
+    REQUIRE(segment.from <= segment.to);
+    REQUIRE(segment.to <= 1);
+    REQUIRE(is_finite(segment.start + segment.end + segment.force + segment.centre));
+    by_segment[segment.patch].add(segment);
+    (segment.of_a ? own_a : own_b) += segment.length;
   }
   for (size_t i = 0; i < split.patches.size(); ++i) {
     const PairIntegral& p = split.patches[i];
@@ -70,7 +71,7 @@ double worst_sum(const test::PatchResult& split, const PairIntegral& pair, doubl
     Sum alone;
     alone.add(p);
     all.add(p);
-    worst = std::max(worst, alone.difference(by_run[i]));
+    worst = std::max(worst, alone.difference(by_segment[i]));
   }
   Sum expected;
   expected.add(pair);
@@ -242,10 +243,10 @@ TEST_CASE("convex polygons have one patch, pair_integral's to the last bit", "[p
     EdgeWorkspace memory;
     const PairIntegral whole = pair_integral(pair.view(0), pair.view(1), offset, memory);
     test::PatchResult s;
-    contact_patches(pair.view(0), pair.view(1), offset, workspace(), s.runs, s.patches);
+    contact_patches(pair.view(0), pair.view(1), offset, workspace(), s.segments, s.patches);
     REQUIRE(s.patches.size() == (whole.touching() ? 1 : 0));
     if (!whole.touching()) {
-      REQUIRE(s.runs.empty());
+      REQUIRE(s.segments.empty());
       continue;
     }
     const PairIntegral& p = s.patches[0];
@@ -281,7 +282,7 @@ TEST_CASE("degenerate pairs lose no run and split nothing that hangs together", 
     const PairIntegral pair =
         pair_integral(placed.view(0), placed.view(1), offset, workspace().edge);
     test::PatchResult s;
-    contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches);
+    contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.segments, s.patches);
     REQUIRE(pair.touching() == !s.patches.empty());
     if (!pair.touching()) continue;
     ++touching;
@@ -339,7 +340,7 @@ TEST_CASE("swapping the polygons negates each patch's force to the last bit", "[
     const test::PatchResult ab = test::edge_patches(a.polygon, a.potential, moved, b.potential);
     const test::PatchResult ba = test::edge_patches(moved, b.potential, a.polygon, a.potential);
     REQUIRE(ab.patches.size() == ba.patches.size());
-    REQUIRE(ab.runs.size() == ba.runs.size());
+    REQUIRE(ab.segments.size() == ba.segments.size());
     for (const PairIntegral& p : ab.patches) {
       ++patches;
       REQUIRE(std::any_of(ba.patches.begin(), ba.patches.end(), [&](const PairIntegral& q) {
@@ -383,32 +384,33 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
       placed.place(0, 0, 0, s * motion.turn);
       const Vec2 offset = motion.from + s * (motion.to - motion.from) - stand;
       std::swap(last, now);
-      contact_patches(placed.view(0), placed.view(1), offset, workspace(), now.runs, now.patches);
+      contact_patches(placed.view(0), placed.view(1), offset, workspace(), now.segments,
+                      now.patches);
       const int before = static_cast<int>(last.patches.size());
       const int after = static_cast<int>(now.patches.size());
       most = std::max(most, after);
       if (step == 0) continue;
-      const std::vector<RunPlace> earlier(last.runs.begin(), last.runs.end());
-      const std::vector<RunPlace> present(now.runs.begin(), now.runs.end());
+      const std::vector<SegmentPlace> earlier(last.segments.begin(), last.segments.end());
+      const std::vector<SegmentPlace> present(now.segments.begin(), now.segments.end());
       shared_length(earlier, before, present, after, table);
       if (before != after) {
         ++changes;
         continue;
       }
-      // As many as before: each goes on as one, and is still about where it was.
+      // Every patch continues as one patch, which is near its earlier position.
       for (int i = 0; i < before; ++i) {
-        int heirs = 0, parents = 0;
+        int successors = 0, predecessors = 0;
         for (int j = 0; j < after; ++j) {
-          heirs += table[i * after + j] > 0;
-          parents += table[j * after + i] > 0;
+          successors += table[i * after + j] > 0;
+          predecessors += table[j * after + i] > 0;
           if (table[i * after + j] > 0) {
             ++kept;
             CHECK((last.patches[i].centre - now.patches[j].centre).norm() < .1);
           }
         }
         INFO("step " << step << ", patch " << i << " of " << before);
-        CHECK(heirs == 1);
-        CHECK(parents == 1);
+        CHECK(successors == 1);
+        CHECK(predecessors == 1);
       }
     }
     CHECK(most > 1);
@@ -418,12 +420,12 @@ TEST_CASE("patches keep their identity from step to step", "[patches]") {
 }
 
 TEST_CASE("shared length", "[patches]") {
-  const std::vector<RunPlace> before{
+  const std::vector<SegmentPlace> before{
       {true, 0, 0, .1, .5, .8}, {true, 0, 1, .7, .9, .4}, {false, 2, 0, 0, 1, 3}};
-  const std::vector<RunPlace> now{{true, 0, 0, .4, .8, .8},
-                                  {true, 1, 0, .4, .8, .8},
-                                  {false, 2, 1, .5, .5, 0},
-                                  {false, 2, 1, .75, 1, .75}};
+  const std::vector<SegmentPlace> now{{true, 0, 0, .4, .8, .8},
+                                      {true, 1, 0, .4, .8, .8},
+                                      {false, 2, 1, .5, .5, 0},
+                                      {false, 2, 1, .75, 1, .75}};
   std::vector<double> table;
   shared_length(before, 2, now, 2, table);
   REQUIRE(table.size() == 4);
@@ -431,7 +433,7 @@ TEST_CASE("shared length", "[patches]") {
   CHECK(table[2] == Approx(.2));
   CHECK(table[1] == Approx(.75));
   CHECK(table[3] == 0);
-  shared_length(before, 2, std::vector<RunPlace>{now[2]}, 2, table);
+  shared_length(before, 2, std::vector<SegmentPlace>{now[2]}, 2, table);
   CHECK(table[1] > 0);  // without length, but inside
   shared_length({}, 0, now, 2, table);
   CHECK(table.empty());
@@ -445,12 +447,12 @@ TEST_CASE("patches of coordinates that are not finite", "[patches]") {
   placed.place(0, 0, 0, 0);
   placed.place(1, 0, 0, std::nan(""));
   test::PatchResult s;
-  contact_patches(placed.view(0), placed.view(1), {.1, .1}, workspace(), s.runs, s.patches);
+  contact_patches(placed.view(0), placed.view(1), {.1, .1}, workspace(), s.segments, s.patches);
   REQUIRE(s.patches.size() == 1);
   CHECK(s.patches[0].touching());
   CHECK(!std::isfinite(s.patches[0].weight));
   placed.place(1, 0, 0, 0);
-  contact_patches(placed.view(0), placed.view(1), {std::nan(""), 0}, workspace(), s.runs,
+  contact_patches(placed.view(0), placed.view(1), {std::nan(""), 0}, workspace(), s.segments,
                   s.patches);
   REQUIRE(s.patches.size() == 1);
   CHECK(s.patches[0].touching());
@@ -461,8 +463,9 @@ TEST_CASE("a polygon inside the other is one patch", "[patches]") {
   for (Vec2& v : ring) v *= .2;
   const test::PatchResult inside = split(Polygon(ring), Polygon(test::cross_ring(3)));
   REQUIRE(inside.patches.size() == 1);
-  CHECK(inside.runs.size() == 12);
-  for (const BoundaryRun& run : inside.runs) CHECK((run.of_a && run.from == 0 && run.to == 1));
+  CHECK(inside.segments.size() == 12);
+  for (const BoundarySegment& segment : inside.segments)
+    CHECK((segment.of_a && segment.from == 0 && segment.to == 1));
 }
 
 TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][near]") {
@@ -487,12 +490,12 @@ TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][ne
     Vec2 offset(random.uniform(-2, 2), random.uniform(-2, 2));
     placed.place(0, 0, 0, angle_a);
     placed.place(1, 0, 0, angle_b);
-    const double margin = random.integer(0, 1) ? random.uniform(0, .2) : 1e-3;
+    const double skin = random.integer(0, 1) ? random.uniform(0, .2) : 1e-3;
     NearEdgesWorkspace near_memory;
-    NearEdges near = near_edges(placed.view(0), placed.view(1), offset, margin, near_memory);
-    REQUIRE(near.margin > 0);
-    // Bodies move by less than the margin.
-    const double moves = .99 * near.margin / 3;
+    NearEdges near = near_edges(placed.view(0), placed.view(1), offset, skin, near_memory);
+    REQUIRE(near.skin > 0);
+    // Bodies move by less than the skin.
+    const double moves = .99 * near.skin / 3;
     const double direction = random.uniform(0, 6);
     offset += moves * Vec2(std::cos(direction), std::sin(direction));
     placed.place(0, 0, 0, angle_a + moves / placed.radius(0));
@@ -520,9 +523,10 @@ TEST_CASE("near edges are all that a pair needs, to the last bit", "[patches][ne
       REQUIRE(p.inside_b == whole.inside_b);
     };
     same(pair_integral(placed.view(0), placed.view(1), offset, memory, near));
-    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches,
+    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.segments, s.patches,
                          near));
-    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.runs, s.patches));
+    same(contact_patches(placed.view(0), placed.view(1), offset, workspace(), s.segments,
+                         s.patches));
   }
   INFO(apart << " apart, " << touching << " touching, " << skipped << " with edges left out");
   CHECK(apart > pairs / 10);

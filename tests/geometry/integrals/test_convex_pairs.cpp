@@ -92,15 +92,15 @@ TEST_CASE("convex pairs have the same bits many at a time, alone, and edge by ed
       NearEdges near_alone, near_swapped;
       single.add(a, b, offset, near_alone);
       check_same(single.evaluate()[0], found[k]);
-      CHECK(near_alone.margin == near[k].margin);
+      CHECK(near_alone.skin == near[k].skin);
       single.add(b, a, -offset, near_swapped);
       const PairIntegral& swapped = single.evaluate()[0];
       CHECK(swapped.force == -found[k].force);
       CHECK(swapped.moment_a == found[k].moment_b);
       CHECK(swapped.moment_b == found[k].moment_a);
       touching += found[k].touching();
-      apart += near[k].margin > 0;
-      CHECK(!(found[k].touching() && near[k].margin > 0));
+      apart += near[k].skin > 0;
+      CHECK(!(found[k].touching() && near[k].skin > 0));
       if (a.radius * 4 < b.radius || b.radius * 4 < a.radius) continue;
       // Without a radius a polygon is none of those that go together.
       a.radius = b.radius = 0;
@@ -125,13 +125,13 @@ TEST_CASE("the margin of convex pairs is a bound of their distance", "[convex]")
     shapes.place(1, 0, 0, 0);
     NearEdges near;
     pairs.add(shapes.view(0), shapes.view(1), c.offset, near);
-    if (pairs.evaluate()[0].touching() || near.margin == 0) continue;
+    if (pairs.evaluate()[0].touching() || near.skin == 0) continue;
     ++apart;
-    // Moved by almost the margin, whatever the direction, they still do not touch.
+    // Polygons that are moved by almost the skin in any direction still do not touch.
     for (int k = 0; k < 8; ++k) {
       const double direction = k * M_PI / 4;
       const Vec2 moved =
-          c.offset + .999 * near.margin * Vec2(std::cos(direction), std::sin(direction));
+          c.offset + .999 * near.skin * Vec2(std::cos(direction), std::sin(direction));
       NearEdges again;
       pairs.add(shapes.view(0), shapes.view(1), moved, again);
       CHECK(!pairs.evaluate()[0].touching());

@@ -27,7 +27,7 @@ PotentialChoice choice_of(Field field, Reference reference = Reference::roof, do
 
 int cases(int count) { return test::long_run() ? 10 * count : test::scaled(count); }
 
-// The difference of two results of a pair, each as a share of its scale. A force may have an error
+// The difference of two results of a pair, each relative to its scale. A force may have an error
 // of round-off in the positions, which is larger where the potential is steep.
 struct Difference {
   double force, moment, energy, area, length;

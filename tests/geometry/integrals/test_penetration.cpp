@@ -23,12 +23,12 @@ std::vector<double> of_patches(const Polygon& a, const Polygon& b) {
   shapes.place(0, 0, 0, 0), shapes.place(1, 0, 0, 0);
   PatchWorkspace patch_workspace;
   PenetrationWorkspace workspace;
-  std::vector<BoundaryRun> runs;
+  std::vector<BoundarySegment> segments;
   std::vector<PairIntegral> patches;
   const Vec2 offset = a.origin() - b.origin();
-  contact_patches(shapes.view(0), shapes.view(1), offset, patch_workspace, runs, patches);
+  contact_patches(shapes.view(0), shapes.view(1), offset, patch_workspace, segments, patches);
   std::vector<double> deepest(patches.size());
-  find_penetrations(shapes.view(0), shapes.view(1), offset, runs, workspace, deepest);
+  find_penetrations(shapes.view(0), shapes.view(1), offset, segments, workspace, deepest);
   return deepest;
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("reference lengths of the distance field", "[distance-field]") {
   CHECK_FALSE(circle.capped());
   const Potential roof = make_potential(cross, field_choice(Reference::roof));
   CHECK(roof.steepest == Approx(2).epsilon(1e-14));
-  CHECK(roof.top == Approx(std::sqrt(2.0)).epsilon(1e-14));  // a plateau
+  CHECK(roof.top == Approx(std::sqrt(2.0)).epsilon(1e-14));  // saturated
   CHECK(roof.capped());
   CHECK(make_potential(cross, field_choice(Reference::length, 1)).top ==
         Approx(std::sqrt(.5)).epsilon(1e-14));

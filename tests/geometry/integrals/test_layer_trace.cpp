@@ -1,4 +1,4 @@
-// phi along edges in the collar of a polygon, against all of its roof or of its distance field.
+// phi along edges in the boundary layer of a polygon, against its whole roof or distance field.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -28,13 +28,13 @@ Total total(const PlacedEdge& edge, double s0, double s1, const SegmentMoments<d
   return {moments.sum, moments.first, (s1 - s0) * std::hypot(edge.ex, edge.ey), moments.largest};
 }
 
-// The largest difference of an edge's integrals in the collar from those by all of the potential;
-// `shallow` counts the edges that have some in the collar. Where edges lie on each other, their
-// lengths may count or not.
+// The largest difference of an edge's integrals by the boundary layer from those by the whole
+// potential; `shallow` counts the edges with segments in the layer. Where edges lie on each other,
+// their lengths may count or not.
 double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2& offset,
                   EdgeWorkspace& workspace, int& shallow, bool with_lengths) {
-  CollarTrace& collar = workspace.collar;
-  collar.find(x, y, offset.x(), offset.y(), kAll, kAll);
+  LayerTrace& trace = workspace.layer_trace;
+  trace.find(x, y, offset.x(), offset.y(), kAll, kAll);
   if (y.roof) workspace.nodes.place(y);
   double worst = 0;
   size_t r = 0, listed = 0;
@@ -46,19 +46,19 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
       to.sum += part.sum, to.first += part.first, to.length += part.length;
       to.largest = std::max(to.largest, part.largest);
     };
-    edge_detail::walk_deep(
+    edge_detail::walk_whole_potential(
         y, edge, workspace,
         [&](double s0, int, double s1, int, const SegmentMoments<double>& moments) {
           add(all, s0, s1, moments);
         });
     bool deep = false;
-    if (listed < collar.edges().size() && collar.edges()[listed].index == e) {
-      const CollarTrace::Edge& found = collar.edges()[listed++];
-      deep = found.deep;
-      if (!deep) shallow += found.runs_end > r;
-      for (; r < found.runs_end; ++r) {
-        const CollarTrace::Run& run = collar.runs()[r];
-        add(here, run.s0, run.s1, run.moments);
+    if (listed < trace.edges().size() && trace.edges()[listed].index == e) {
+      const LayerEdge& found = trace.edges()[listed++];
+      deep = found.beyond_layer;
+      if (!deep) shallow += found.segments_end > r;
+      for (; r < found.segments_end; ++r) {
+        const LayerSegment& segment = trace.segments()[r];
+        add(here, segment.s0, segment.s1, segment.moments);
       }
     }
     if (deep) continue;
@@ -69,7 +69,7 @@ double difference(const PlacedPotential& x, const PlacedPotential& y, const Vec2
   return worst;
 }
 
-TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
+TEST_CASE("phi in the boundary layer is that of the whole potential", "[layer]") {
   test::SeededRandom random(17);
   EdgeWorkspace workspace;
   int shallow = 0;
@@ -94,7 +94,7 @@ TEST_CASE("phi in the collar is that of the whole potential", "[collar]") {
 }
 
 // Edges on edges, vertices on edges and on vertices.
-TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
+TEST_CASE("phi in the boundary layer where polygons lie on each other", "[layer]") {
   EdgeWorkspace workspace;
   int shallow = 0;
   const Polygon cross = samples::cross_of_squares(), l = samples::l_shape();
@@ -116,10 +116,10 @@ TEST_CASE("phi in the collar where polygons lie on each other", "[collar]") {
   CHECK(shallow > 1000);
 }
 
-TEST_CASE("cells of a cross", "[collar]") {
+TEST_CASE("cells of a cross", "[layer]") {
   const Polygon cross = samples::cross_of_squares();
   for (const Field field : {Field::roof, Field::distance}) {
-    const CollarCells cells = *make_potential(cross, {.field = field}).cells;
+    const BoundaryLayer cells = *make_potential(cross, {.field = field}).layer;
     int reflex = 0;
     for (int i = 0; i < cross.size(); ++i) {
       reflex += cells.reflex(i);
@@ -131,15 +131,15 @@ TEST_CASE("cells of a cross", "[collar]") {
   }
 }
 
-TEST_CASE("cells at vertices that are almost straight are not used", "[collar]") {
+TEST_CASE("cells at vertices that are almost straight are not used", "[layer]") {
   std::vector<Vec2> ring = samples::l_shape().vertices();
   const Vec2 middle = (ring[0] + ring[1]) / 2;
   ring.insert(ring.begin() + 1, middle);
   const Polygon polygon(ring);
   const Potential potential = make_potential(polygon, {.field = Field::distance});
-  CHECK(potential.cells->depth[0] == 0);
-  CHECK(potential.cells->depth[1] == 0);
-  CHECK(potential.cells->depth[3] > 0);
+  CHECK(potential.layer->depth[0] == 0);
+  CHECK(potential.layer->depth[1] == 0);
+  CHECK(potential.layer->depth[3] > 0);
   // Contact there is found all the same.
   PlacedShapes placed;
   placed.place(placed.add(potential), 0, 0, 0);
@@ -155,7 +155,7 @@ TEST_CASE("cells at vertices that are almost straight are not used", "[collar]")
 }
 
 // With other numbers of its vertices a cell is another lane of another pack.
-TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
+TEST_CASE("the bits of a cell do not depend on its lane", "[layer]") {
   const std::vector<Vec2> ring = samples::cross_of_squares().vertices();
   test::SeededRandom random(18);
   const Potential other = make_potential(samples::cross_of_squares());
@@ -164,7 +164,7 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
       const double turn_x = random.uniform(0, 6), turn_y = random.uniform(0, 6);
       const double direction = random.uniform(0, 6);
       const Vec2 between = random.uniform(2, 2.6) * Vec2(std::cos(direction), std::sin(direction));
-      std::vector<CollarTrace::Run> first;
+      std::vector<LayerSegment> first;
       for (int shift = 0; shift < 12; ++shift) {
         std::vector<Vec2> turned = ring;
         std::rotate(turned.begin(), turned.begin() + shift, turned.end());
@@ -175,12 +175,12 @@ TEST_CASE("the bits of a cell do not depend on its lane", "[collar]") {
         PlacedShapes placed;
         placed.place(placed.add(other), 0, 0, turn_x);
         placed.place(placed.add(potential), 0, 0, turn_y);
-        CollarTrace collar;
-        collar.find(placed.view(0), placed.view(1), between.x(), between.y(), kAll, kAll);
-        if (shift == 0) first = collar.runs();
-        REQUIRE(collar.runs().size() == first.size());
+        LayerTrace trace;
+        trace.find(placed.view(0), placed.view(1), between.x(), between.y(), kAll, kAll);
+        if (shift == 0) first = trace.segments();
+        REQUIRE(trace.segments().size() == first.size());
         for (size_t r = 0; r < first.size(); ++r) {
-          const CollarTrace::Run &p = first[r], &q = collar.runs()[r];
+          const LayerSegment &p = first[r], &q = trace.segments()[r];
           REQUIRE((p.s0 == q.s0 && p.s1 == q.s1 && p.moments.sum == q.moments.sum &&
                    p.moments.first == q.moments.first && p.moments.largest == q.moments.largest));
         }

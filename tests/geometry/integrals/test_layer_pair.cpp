@@ -1,4 +1,4 @@
-// Pairs of which few edges are near each other, against the runs of each edge by itself.
+// Pairs of polygons with few near edges, against the segments of each edge alone.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -52,7 +52,7 @@ bool same(const PairIntegral& p, const PairIntegral& q) {
          p.inside_a == q.inside_a && p.inside_b == q.inside_b;
 }
 
-bool same(const BoundaryRun& r, const BoundaryRun& s) {
+bool same(const BoundarySegment& r, const BoundarySegment& s) {
   return r.of_a == s.of_a && r.edge == s.edge && r.patch == s.patch && r.from == s.from &&
          r.to == s.to && r.start == s.start && r.end == s.end && r.force == s.force &&
          r.moment_a == s.moment_a && r.moment_b == s.moment_b && r.weight == s.weight &&
@@ -61,7 +61,7 @@ bool same(const BoundaryRun& r, const BoundaryRun& s) {
 
 }  // namespace
 
-TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", "[collar][near]") {
+TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", "[layer][near]") {
   test::SeededRandom random(7);
   PatchWorkspace memory;
   for (const Field field : {Field::roof, Field::distance}) {
@@ -74,23 +74,25 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
       Touching t(potential, random, std::pow(10, random.uniform(-7, -1)));
       const PlacedPotential a = t.placed.view(0), b = t.placed.view(1);
       PatchResult alone, found;
-      const PairIntegral whole = contact_patches(a, b, t.offset, memory, alone.runs, alone.patches);
+      const PairIntegral whole =
+          contact_patches(a, b, t.offset, memory, alone.segments, alone.patches);
       const PairIntegral pair =
-          contact_patches(a, b, t.offset, memory, found.runs, found.patches, t.near);
+          contact_patches(a, b, t.offset, memory, found.segments, found.patches, t.near);
       REQUIRE(same(pair, whole));
       REQUIRE(same(pair_integral(a, b, t.offset, memory.edge, t.near), whole));
       REQUIRE(found.patches.size() == alone.patches.size());
       for (size_t p = 0; p < alone.patches.size(); ++p) {
         REQUIRE(same(found.patches[p], alone.patches[p]));
       }
-      REQUIRE(found.runs.size() == alone.runs.size());
-      for (size_t r = 0; r < alone.runs.size(); ++r) REQUIRE(same(found.runs[r], alone.runs[r]));
-      if (!memory.edge.pair.find(a, b, t.offset, t.near)) continue;
+      REQUIRE(found.segments.size() == alone.segments.size());
+      for (size_t r = 0; r < alone.segments.size(); ++r)
+        REQUIRE(same(found.segments[r], alone.segments[r]));
+      if (!memory.edge.layer_pair.find(a, b, t.offset, t.near)) continue;
       ++by_pair;
       split += alone.patches.size() > 1;
       // Runs that go on from one cell to the next.
-      for (const CollarPair::Run& run : memory.edge.pair.runs()) {
-        across += run.edge0 >= 0 && run.edge1 >= 0 && run.edge0 != run.edge1;
+      for (const LayerPair::PairSegment& segment : memory.edge.layer_pair.segments()) {
+        across += segment.edge0 >= 0 && segment.edge1 >= 0 && segment.edge0 != segment.edge1;
       }
     }
     CAPTURE(by_pair, across, split);
@@ -101,12 +103,12 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
 }
 
 // A cell that is not to be used, an edge that is deeper than its cell, and too many edges.
-TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
+TEST_CASE("pairs that boundary layers of few edges do not decide", "[layer][near]") {
   test::SeededRandom random(8);
   const Polygon cross = samples::cross_of_squares();
   const Potential potential =
       translated(make_potential(cross, PotentialChoice{}), area_moments(cross).centroid);
-  CollarPair pair;
+  LayerPair pair;
   int deep = 0;
   for (int i = 0; i < test::scaled(100); ++i) {
     Touching t(potential, random, .01);
@@ -114,8 +116,8 @@ TEST_CASE("pairs that the collars of few edges do not tell", "[collar][near]") {
     PlacedPotential b = t.placed.view(1);
     CHECK_FALSE(pair.find(a, b, t.offset, {}));
     if (!pair.find(a, b, t.offset, t.near)) continue;
-    CollarCells cells = *b.cells;
-    b.cells = &cells;
+    BoundaryLayer cells = *b.layer;
+    b.layer = &cells;
     for (double& depth : cells.depth) depth = 1e-6;
     deep += !pair.find(a, b, t.offset, t.near);
     for (double& depth : cells.depth) depth = 0;

@@ -3,11 +3,12 @@
 
 namespace apothem {
 
-std::optional<Buried> find_buried(const Outlines& o, const std::vector<std::uint8_t>& absent) {
+std::optional<EngulfedBody> find_engulfed(const OutlineSurfaces& o,
+                                          const std::vector<std::uint8_t>& absent) {
   std::vector<Loops> loops;
-  std::vector<double> reach;  // of the potentials, m
+  std::vector<double> reach;  // depth to which the potential of each body reaches, m
   std::vector<Box> boxes;
-  for (const Outlines::Body& body : o.bodies) {
+  for (const OutlineSurfaces::Body& body : o.bodies) {
     Loops& of_body = loops.emplace_back();
     reach.push_back(body.depth);
     for (int i = body.first, first = i; i < body.end; first = i) {
@@ -24,8 +25,10 @@ std::optional<Buried> find_buried(const Outlines& o, const std::vector<std::uint
   BoxGrid().find_pairs(boxes, pairs);
   for (const auto& [a, b] : pairs) {
     if (o.bodies[a].is_rigid() && o.bodies[b].is_rigid()) continue;
-    if (const auto place = deep_vertex(loops[a], loops[b], reach[b])) return Buried{a, b, *place};
-    if (const auto place = deep_vertex(loops[b], loops[a], reach[a])) return Buried{b, a, *place};
+    if (const auto place = deep_vertex(loops[a], loops[b], reach[b]))
+      return EngulfedBody{a, b, *place};
+    if (const auto place = deep_vertex(loops[b], loops[a], reach[a]))
+      return EngulfedBody{b, a, *place};
   }
   return {};
 }

@@ -1,4 +1,4 @@
-#include "geometry/potential/collar_cells.hpp"
+#include "geometry/potential/boundary_layer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,33 +10,33 @@
 namespace apothem {
 namespace {
 
-constexpr double kSafe = .99;  // share of the height at which the front meets itself
-// Vertices that turn by less (sine) have no bisector that round-off leaves in its place, and edges
-// that are shorter (share of the polygon's extent) no two bisectors in their order.
+constexpr double kSafe = .99;  // depth of a cell over the height at which the front meets itself
+// At a vertex with a smaller turn (sine), round-off moves the bisector too much. At an edge shorter
+// than this fraction of the polygon's extent, round-off may exchange the two bisectors.
 constexpr double kLeastTurn = 1e-4;
 constexpr double kShortest = 1e-6;
 
-// Cells up to the given heights (phi) over their edges.
-CollarCells cells_of(const Polygon& polygon, const std::vector<double>& heights) {
+// The layer whose cells reach up to the given heights (phi) over their edges.
+BoundaryLayer layer_of(const Polygon& polygon, const std::vector<double>& heights) {
   const int n = polygon.size();
   const double shortest = kShortest * bounding_box(polygon).extent();
-  CollarCells cells;
-  cells.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
-  cells.side.assign(cells.depth.size() + 1, 1);
-  // phi is limited to 1, and no cell is used beyond that.
-  for (int e = 0; e < n; ++e) cells.depth[e] = kSafe * std::min(heights[e], 1.);
+  BoundaryLayer layer;
+  layer.depth.assign(static_cast<size_t>(n) + kReadBehind, 0);
+  layer.side.assign(layer.depth.size() + 1, 1);
+  // Cells end at phi = 1, because phi is limited to 1.
+  for (int e = 0; e < n; ++e) layer.depth[e] = kSafe * std::min(heights[e], 1.);
   for (int e = 0; e < n; ++e) {
     const int before = previous(e, n);
-    const Vec2 in = polygon[e] - polygon[before], out = polygon.after(e) - polygon[e];
-    const double turn = cross(in, out) / (in.norm() * out.norm());
-    cells.side[e] = turn < 0 ? -1 : 1;
-    if (!(std::abs(turn) > kLeastTurn)) cells.depth[before] = cells.depth[e] = 0;
-    if (!(out.norm() > shortest)) {
-      cells.depth[before] = cells.depth[e] = cells.depth[next(e, n)] = 0;
+    const Vec2 incoming = polygon[e] - polygon[before], outgoing = polygon.after(e) - polygon[e];
+    const double turn = cross(incoming, outgoing) / (incoming.norm() * outgoing.norm());
+    layer.side[e] = turn < 0 ? -1 : 1;
+    if (!(std::abs(turn) > kLeastTurn)) layer.depth[before] = layer.depth[e] = 0;
+    if (!(outgoing.norm() > shortest)) {
+      layer.depth[before] = layer.depth[e] = layer.depth[next(e, n)] = 0;
     }
   }
-  cells.side[n] = cells.side[0];
-  return cells;
+  layer.side[n] = layer.side[0];
+  return layer;
 }
 
 double distance(const Vec2& point, const Vec2& from, const Vec2& along) {
@@ -52,7 +52,7 @@ double distance(const Polygon& polygon, int e, int k) {
 
 }  // namespace
 
-CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
+BoundaryLayer boundary_layer(const Polygon& polygon, const Roof& roof) {
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n), HUGE_VAL);
   for (int e = 0; e < n; ++e) {
@@ -60,14 +60,14 @@ CollarCells collar_cells(const Polygon& polygon, const Roof& roof) {
       if (node >= n) heights[e] = std::min(heights[e], roof.values[node]);
     }
   }
-  return cells_of(polygon, heights);
+  return layer_of(polygon, heights);
 }
 
 // A point in front of an edge at the height h is nearer than h to another feature only if that is
 // nearer than 2 h to the edge. For neighbours the cells themselves decide. Heights end at 1/slope,
 // where phi = 1, and at a multiple of the edge's length, so that few edges have to be looked at.
-CollarCells collar_cells(const Polygon& polygon, double slope) {
-  constexpr double kHighest = 8;  // of its length
+BoundaryLayer boundary_layer(const Polygon& polygon, double slope) {
+  constexpr double kHighest = 8;  // largest height of a cell over the length of its edge
   const int n = polygon.size();
   std::vector<double> heights(static_cast<size_t>(n));  // m
   std::vector<Box> boxes(heights.size());
@@ -84,7 +84,7 @@ CollarCells collar_cells(const Polygon& polygon, double slope) {
     heights[k] = std::min(heights[k], height);
   }
   for (double& height : heights) height *= slope;
-  return cells_of(polygon, heights);
+  return layer_of(polygon, heights);
 }
 
 }  // namespace apothem

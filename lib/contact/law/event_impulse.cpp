@@ -1,4 +1,4 @@
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,17 @@ namespace apothem {
 namespace {
 
 constexpr std::array kSlope{-25. / 3, 48. / 3, -36. / 3, 16. / 3, -3. / 3};
-// Slopes need a part of a step without kinks: this one at least, which leaves 11 digits of them.
+// Slopes are taken over a part of the step without kinks that is at least this long; differences
+// then keep 11 digits.
 constexpr double kShortest = 1e-3;
 
-// Where other forces turn the bodies back within the step, the power of the mean force says little:
-// this part of them counts against it.
+// Where other forces reverse the motion within the step, the power of the mean force says little.
+// This fraction of the other forces counts against it.
 constexpr double kOthers = .25;
-constexpr double kLargestRest = .5;  // parts of the slopes' term of J that the rest may come to
+// Limit of the correction, relative to the term of J with the slopes.
+constexpr double kLargestRest = .5;
 
-// x^2 y / (x^2 + y^2): x^2/y, but finite where y is small.
+// Returns x^2 y / (x^2 + y^2), which is close to x^2/y but stays finite where y is small.
 double bounded_ratio(double x, double y) {
   const double scale = x * x + y * y;
   return scale > 0 ? x * x * y / scale : 0;
@@ -24,8 +26,8 @@ double bounded_ratio(double x, double y) {
 
 }  // namespace
 
-int find_onset_samples(std::span<const double> events, int panels,
-                       std::vector<OnsetSample>& samples) {
+int find_event_samples(std::span<const double> kinks, int panels,
+                       std::vector<EventSample>& samples) {
   samples.assign(1, {0});
   double from = 0, last_part = 0;
   const auto integrate_until = [&](double until) {
@@ -40,15 +42,15 @@ int find_onset_samples(std::span<const double> events, int panels,
     }
     from = samples.back().theta = until;
   };
-  for (const double event : events) integrate_until(event);
+  for (const double kink : kinks) integrate_until(kink);
   integrate_until(1);
   const size_t count = samples.size();
 
-  // Each slope uses the samples of the panel at its end of the step, if this is long enough. A kink
-  // right at the start, as where two bodies touch at first, counts to this step, as one right at
-  // the end does: so this step and the one before take the same slope. Where there are many panels
-  // the force may bend at once, and the slopes take samples of their own.
-  const double first_part = (events.empty() ? 1 : events.front()) / panels;
+  // Each slope uses the samples of the panel at its end of the step, if that panel is long enough.
+  // A kink exactly at the start, as where two bodies just touch at first, counts to this step, as
+  // one exactly at the end does; so this step and the one before use the same slope. With many
+  // panels the force may bend at once, and the slopes use samples of their own.
+  const double first_part = (kinks.empty() ? 1 : kinks.front()) / panels;
   const bool own = panels >= kManyPanels;
   for (size_t k = 0; k < 5; ++k) {
     const double theta = static_cast<double>(k) * kShortest / 4;
@@ -79,8 +81,8 @@ double Dynamics::lost_in_bend(double dt) const {
   return dt * dt / 12 * sum;
 }
 
-void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherForces& others,
-                    double inverse_mass, double velocity) {
+void EventResidual::add(const EventForces& f, const ImpulseParts& parts, const OtherForces& others,
+                        double inverse_mass, double velocity) {
   const double first = f.first + others.first;
   const double last = f.last + others.last;
   const double p0 = -dt_ * first / 2;
@@ -112,13 +114,13 @@ void OnsetRest::add(const OnsetForces& f, const OnsetParts& parts, const OtherFo
            (std::abs(f.mean) + kOthers * std::max(std::abs(others.first), std::abs(others.last)));
 }
 
-void OnsetRest::End::add(const End& other) {
+void EventResidual::End::add(const End& other) {
   along += other.along;
   aside += other.aside;
   pull += other.pull;
 }
 
-void OnsetRest::add(const OnsetRest& other) {
+void EventResidual::add(const EventResidual& other) {
   energy_ += other.energy_;
   first_.add(other.first_);
   last_.add(other.last_);
@@ -128,13 +130,13 @@ void OnsetRest::add(const OnsetRest& other) {
   gain_ += other.gain_;
 }
 
-double OnsetRest::End::energy() const {
+double EventResidual::End::energy() const {
   return -bounded_ratio(aside, along) / 12 + bounded_ratio(pull, along) / 48;
 }
 
-double OnsetRest::share() const {
+double EventResidual::correction() const {
   const double energy = this->energy();
-  // Where the bodies are about to turn back, no impulse along the force changes the energy.
+  // Where the motion is about to reverse, no impulse along the force changes the energy.
   const double scale = dt_ * std::max(power_ * power_, gain_ * gain_);
   if (!(scale > 0 && mean_ > 0)) return 0;
   const double once = -energy * power_ / scale;

@@ -1,4 +1,4 @@
-#include "lib/contact/surface/outlines.hpp"
+#include "lib/contact/surface/outline_surfaces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,10 @@
 namespace apothem {
 namespace {
 
-constexpr double kMoveTime = 3, kEdgeTime = 6;  // of a vertex, ns
-constexpr int kTogether = 16;    // bodies, so that what is known of them stays in the cache
-constexpr double kClear = 1e-9;  // of a depth: a point nearer to a line than this is not clear
+constexpr double kMoveTime = 3, kEdgeTime = 6;  // time for a vertex, ns
+constexpr int kTogether = 16;  // bodies placed together, so that their data stay in the cache
+// A point nearer to a line than this, relative to the depth, is not clear.
+constexpr double kClear = 1e-9;
 
 void include(Box& box, const Box& other) {
   box.include(other.x0, other.y0);
@@ -30,23 +31,23 @@ APOTHEM_INLINE Number load(const double* from) {
     return Number::load(from);
   }
 }
-APOTHEM_INLINE void store(double value, double* to) { *to = value; }
+APOTHEM_INLINE void store(double value, double* target) { *target = value; }
 template <int lanes>
-APOTHEM_INLINE void store(const PackOf<lanes>& value, double* to) {
-  value.store(to);
+APOTHEM_INLINE void store(const PackOf<lanes>& value, double* target) {
+  value.store(target);
 }
 template <class Number>
 APOTHEM_INLINE Number loaded(const std::vector<double>& from, int i) {
   return load<Number>(from.data() + i);
 }
 template <class Number>
-APOTHEM_INLINE void store(const Number& value, std::vector<double>& to, int i) {
-  store(value, to.data() + i);
+APOTHEM_INLINE void store(const Number& value, std::vector<double>& list, int i) {
+  store(value, list.data() + i);
 }
 
-// Tangents, bisectors and plain depths of outlines. Each member does one edge or vertex, or a pack
-// of them that follow each other in all arrays.
-template <class Of = Outlines>
+// Computes tangents, bisectors and regular depths of outlines. Each member function treats one edge
+// or vertex, or a pack of them that are consecutive in all arrays.
+template <class Of = OutlineSurfaces>
 struct EdgeGeometry {
   Of& o;
 
@@ -68,22 +69,22 @@ struct EdgeGeometry {
     store(m.y, o.my, i);
   }
   template <class Number>
-  APOTHEM_INLINE void plain(int i, int next) const {
+  APOTHEM_INLINE void find_regular_depth(int i, int next) const {
     const Number tx = loaded<Number>(o.tx, i), ty = loaded<Number>(o.ty, i);
     const Number alpha = loaded<Number>(o.mx, i) * tx + loaded<Number>(o.my, i) * ty;
     const Number beta = loaded<Number>(o.mx, next) * tx + loaded<Number>(o.my, next) * ty;
-    const Number event = collar_event(loaded<Number>(o.length, i), alpha, beta);
-    store(plain_depth(loaded<Number>(o.depth, i), event), o.plain, i);
+    const Number event = edge_event_height(loaded<Number>(o.length, i), alpha, beta);
+    store(regular_depth_of(loaded<Number>(o.depth, i), event), o.regular_depth, i);
   }
-  /// Raises `farthest` to how far a vertex of the top is from a place.
+  /// Raises `farthest` to the distance of a vertex of the offset curve from a given position.
   template <class Number>
-  APOTHEM_INLINE void stray(int i, const std::vector<double>& top_x,
-                            const std::vector<double>& top_y, double* farthest) const {
+  APOTHEM_INLINE void stray(int i, const std::vector<double>& offset_x,
+                            const std::vector<double>& offset_y, double* farthest) const {
     const Number h = loaded<Number>(o.depth, i);
     const Number x = loaded<Number>(o.x, i) + h * loaded<Number>(o.mx, i);
     const Number y = loaded<Number>(o.y, i) + h * loaded<Number>(o.my, i);
-    const Number dx = magnitude(x - loaded<Number>(top_x, i));
-    const Number dy = magnitude(y - loaded<Number>(top_y, i));
+    const Number dx = magnitude(x - loaded<Number>(offset_x, i));
+    const Number dy = magnitude(y - loaded<Number>(offset_y, i));
     Number most = load<Number>(farthest);
     most = select(dx > most, dx, most);
     most = select(dy > most, dy, most);
@@ -91,8 +92,8 @@ struct EdgeGeometry {
   }
 };
 
-// f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some may
-// be done twice.
+// Calls f(type of number, i) for i from `first` to `end` - 1, in packs where there are enough; some
+// indices may be treated twice.
 template <int lanes, class F>
 APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
   if (end - first < lanes) {
@@ -103,7 +104,7 @@ APOTHEM_INLINE void each_pack(int first, int end, const F& f) {
   f(std::type_identity<PackOf<lanes>>(), end - lanes);
 }
 
-// The area over the length of the boundary, m: no more than the inradius of the body.
+// The area over the length of the boundary, m, which is a lower bound of the inradius of the body.
 double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   double area = 0, length = 0;
   for (const std::vector<Vec2>& ring : rings) {
@@ -116,7 +117,7 @@ double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   return area / length;
 }
 
-// The smallest thickness of a body, m, or `most` if it is nowhere thinner.
+// The smallest thickness of a body, m, or `most` if the body is nowhere thinner.
 double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
   std::vector<std::vector<Vec2>> rings;
   for (const BoundaryLoop& loop : boundary.loops) {
@@ -129,8 +130,8 @@ double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
 
 }  // namespace
 
-void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
-                        std::optional<double> reference) {
+void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
+                               std::optional<double> reference) {
   const int first = size();
   std::vector<Vec2> places;
   std::vector<NodeIndex> nodes;
@@ -147,21 +148,22 @@ void Outlines::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex fi
     close_body({first, size(), -1, *reference, thickness / 2});
     return;
   }
-  // The collars of opposite sides must not reach through a body that is squeezed to half. A row of
-  // squares is four times half its r thick: less is never needed.
+  // The collars of opposite sides must not meet in a body that is squeezed to half its thickness. A
+  // row of square elements is 4 r thick, so thicknesses beyond that need not be measured.
   const double r = boundary_inradius(mesh, boundary);
   const double thickness = thickness_of(mesh, boundary, 4 * r);
   close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
 }
 
-void Outlines::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid, double reference) {
+void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid,
+                                double reference) {
   const int first = size();
   add_loop(vertices, {});
   close_body({first, size(), rigid, reference,
               std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2)});
 }
 
-void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
+void OutlineSurfaces::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {
   const int first = size();
   const int n = static_cast<int>(places.size());
   for (int i = 0; i < n; ++i) {
@@ -176,30 +178,32 @@ void Outlines::add_loop(const std::vector<Vec2>& places, std::span<const NodeInd
   loops.push_back({first, size(), static_cast<BodyIndex>(bodies.size())});
 }
 
-void Outlines::close_body(const Body& added) {
+void OutlineSurfaces::close_body(const Body& added) {
   const int first_loop = bodies.empty() ? 0 : bodies.back().end_loop;
   bodies.push_back(added);
   bodies.back().first_loop = first_loop;
   bodies.back().end_loop = static_cast<int>(loops.size());
   const size_t n = x.size();
-  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &plain}) v->resize(n);
+  for (std::vector<double>* v : {&mx, &my, &tx, &ty, &length, &regular_depth}) v->resize(n);
   depth.resize(n, added.depth);
   active_.push_back(static_cast<BodyIndex>(bodies.size()) - 1);
   is_active_.push_back(1);
   forget();
 }
 
-void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const Threads& threads) {
+void OutlineSurfaces::place(const Kinematics& now, const PlacedShapes& polygons,
+                            const Threads& threads) {
   std::atomic<bool> strayed = kept_.x.empty();
   const int count = static_cast<int>(bodies.size());
-  const double vertices = static_cast<double>(size()) / std::max(count, 1);  // of a body
+  // Mean number of vertices of a body.
+  const double vertices = static_cast<double>(size()) / std::max(count, 1);
   const auto place_some = [&](BodyIndex first, BodyIndex end) {
     for (BodyIndex b = first; b < end; ++b) {
       if (!move(bodies[b], now, polygons)) strayed = true;
     }
     const std::span<const BodyIndex> part = active(first, end);
     find_edges(part);
-    if (!strayed && have_tops_strayed(part)) strayed = true;
+    if (!strayed && have_offset_curves_strayed(part)) strayed = true;
   };
   threads.chunks(count, (kMoveTime + kEdgeTime) * vertices, [&](int first, int end, int) {
     for (int b = first; b < end; b += kTogether) place_some(b, std::min(b + kTogether, end));
@@ -208,14 +212,15 @@ void Outlines::place(const Kinematics& now, const PlacedShapes& polygons, const 
   strayed_ = strayed;
 }
 
-// The active bodies from `first` to `end` - 1.
-std::span<const BodyIndex> Outlines::active(BodyIndex first, BodyIndex end) const {
+// The active bodies with numbers from `first` to `end` - 1.
+std::span<const BodyIndex> OutlineSurfaces::active(BodyIndex first, BodyIndex end) const {
   const auto from = std::ranges::lower_bound(active_, first);
   return {from, std::lower_bound(from, active_.end(), end)};
 }
 
-// False if a vertex is not near where it was at the last search, or not at a finite place.
-bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
+// Moves the vertices of a body. Returns false if a vertex is not near its position at the last
+// search, or not at a finite position.
+bool OutlineSurfaces::move(Body& b, const Kinematics& now, const PlacedShapes& polygons) {
   const bool compare = !kept_.x.empty();
   const double limit = growth();
   bool near = true;
@@ -242,47 +247,46 @@ bool Outlines::move(Body& b, const Kinematics& now, const PlacedShapes& polygons
   return near;
 }
 
-void Outlines::require_finite() const {
+void OutlineSurfaces::require_finite() const {
   for (const Body& b : bodies) {
-    double all = 0;  // NaN if a place is not finite
+    double all = 0;  // NaN if a coordinate is not finite
     for (int i = b.first; i < b.end; ++i) all += 0 * x[i] + 0 * y[i];
     if (all != 0) throw NotFinite(body[b.first]);
   }
 }
 
-// The edges of a body follow each other, but for those that close a line.
-void Outlines::find_edges(std::span<const BodyIndex> of) {
+// The edges of a body are consecutive, except for those that close a line.
+void OutlineSurfaces::find_edges(std::span<const BodyIndex> among) {
   const EdgeGeometry<> g{*this};
   with_widest([&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
-    for (const BodyIndex b : of) {
-      const Body& at = bodies[static_cast<size_t>(b)];
-      const std::span<const Loop> lines = std::span(loops).subspan(
-          static_cast<size_t>(at.first_loop), static_cast<size_t>(at.end_loop - at.first_loop));
+    for (const BodyIndex b : among) {
+      const Body& vertices = bodies[static_cast<size_t>(b)];
+      const std::span<const Loop> lines =
+          std::span(loops).subspan(static_cast<size_t>(vertices.first_loop),
+                                   static_cast<size_t>(vertices.end_loop - vertices.first_loop));
       each_pack<lanes>(
-          at.first,
-          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.tangent<N>(i, i + 1);
-          });
+          vertices.first, vertices.end - 1,
+          [&]<class N>(std::type_identity<N>, int i)
+              __attribute__((always_inline)) { g.tangent<N>(i, i + 1); });
       for (const Loop& l : lines) g.tangent<double>(l.end - 1, l.first);
       each_pack<lanes>(
-          at.first + 1,
-          at.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+          vertices.first + 1,
+          vertices.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
             g.bisector<N>(i, i - 1);
           });
       for (const Loop& l : lines) g.bisector<double>(l.first, l.end - 1);
       each_pack<lanes>(
-          at.first,
-          at.end - 1, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.plain<N>(i, i + 1);
-          });
-      for (const Loop& l : lines) g.plain<double>(l.end - 1, l.first);
+          vertices.first, vertices.end - 1,
+          [&]<class N>(std::type_identity<N>, int i)
+              __attribute__((always_inline)) { g.find_regular_depth<N>(i, i + 1); });
+      for (const Loop& l : lines) g.find_regular_depth<double>(l.end - 1, l.first);
     }
     return 0.;
   });
 }
 
-void Outlines::find_boxes(double growth) {
+void OutlineSurfaces::find_boxes(double growth) {
   const int n = size();
   edge_boxes.resize(n), face_boxes.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -291,25 +295,26 @@ void Outlines::find_boxes(double growth) {
     box.include(x[i], y[i]);
     box.include(x[j], y[j]);
     edge_boxes[i] = box.grown(growth);
-    for (const Vec2& corner : {top(i), top(j)}) box.include(corner.x(), corner.y());
+    for (const Vec2& corner : {offset_point(i), offset_point(j)})
+      box.include(corner.x(), corner.y());
     face_boxes[i] = box.grown(growth);
   }
 }
 
-// Bodies do not overlap as long as their vertices are in boxes that are apart. This is known of
-// bodies that are not active without a look at their faces.
-bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
-  const EdgeGeometry<const Outlines> g{*this};
+// Bodies do not overlap as long as their vertices are in separate boxes. For bodies that are not
+// active this is known without their faces.
+bool OutlineSurfaces::have_offset_curves_strayed(std::span<const BodyIndex> among) const {
+  const EdgeGeometry<const OutlineSurfaces> g{*this};
   const double limit = growth();
   const auto look = [&](auto /*lanes*/) __attribute__((always_inline)) {
     constexpr int lanes = kComparedLanes;
     for (const BodyIndex b : among) {
-      const Body& of = bodies[static_cast<size_t>(b)];
+      const Body& vertices = bodies[static_cast<size_t>(b)];
       std::array<double, lanes> farthest{};
       each_pack<lanes>(
-          of.first,
-          of.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
-            g.template stray<N>(i, kept_.top_x, kept_.top_y, farthest.data());
+          vertices.first,
+          vertices.end, [&]<class N>(std::type_identity<N>, int i) __attribute__((always_inline)) {
+            g.template stray<N>(i, kept_.offset_x, kept_.offset_y, farthest.data());
           });
       if (!(*std::ranges::max_element(farthest) <= limit)) return 1.;
     }
@@ -318,7 +323,7 @@ bool Outlines::have_tops_strayed(std::span<const BodyIndex> among) const {
   return with_widest(look) != 0;
 }
 
-void Outlines::activate(std::span<const BoxPair> pairs) {
+void OutlineSurfaces::activate(std::span<const BoxPair> pairs) {
   is_active_.assign(bodies.size(), 0);
   for (const auto& [a, b] : pairs) is_active_[a] = is_active_[b] = 1;
   active_.clear();
@@ -327,7 +332,7 @@ void Outlines::activate(std::span<const BoxPair> pairs) {
   }
 }
 
-void Outlines::prepare_search() {
+void OutlineSurfaces::prepare_search() {
   const int count = static_cast<int>(bodies.size());
   std::vector<BodyIndex> others;
   for (BodyIndex b = 0; b < count; ++b) {
@@ -337,23 +342,25 @@ void Outlines::prepare_search() {
   find_boxes(growth());
   strayed_ = false;
   kept_.x = x, kept_.y = y;
-  kept_.top_x.resize(x.size()), kept_.top_y.resize(x.size());
+  kept_.offset_x.resize(x.size()), kept_.offset_y.resize(x.size());
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
-    kept_.top_x[i] = top(i).x(), kept_.top_y[i] = top(i).y();
+    kept_.offset_x[i] = offset_point(i).x(), kept_.offset_y[i] = offset_point(i).y();
     include(body_boxes[body[i]], edge_boxes[i]);
     include(body_boxes[body[i]], face_boxes[i]);
   }
 }
 
-void Outlines::prepare_search_at(const std::vector<double>& px, const std::vector<double>& py) {
+void OutlineSurfaces::prepare_search_at(const std::vector<double>& px,
+                                        const std::vector<double>& py) {
   x = px, y = py;
   find_edges(active_);
   prepare_search();
 }
 
-std::optional<Outlines::Notch> Outlines::closed_notch() const {
-  constexpr double kSharp = 3;  // length of the bisector, over the height: an angle of 39 degrees
+std::optional<OutlineSurfaces::Notch> OutlineSurfaces::closed_notch() const {
+  // Length of the bisector over the height, which is 3 at an angle of 39 degrees.
+  constexpr double kSharp = 3;
   std::optional<Notch> found;
   double longest = kSharp * kSharp;
   each_active_vertex([&](int i) {
@@ -361,22 +368,22 @@ std::optional<Outlines::Notch> Outlines::closed_notch() const {
     if (node[i] < 0 || !(square > longest)) return;
     const int before = previous[i];
     const bool reflex = tx[before] * ty[i] - ty[before] * tx[i] < 0;
-    if (!reflex || winding(top(i), body[i]) > 0) return;
+    if (!reflex || winding(offset_point(i), body[i]) > 0) return;
     longest = square;
     found = {i, 2 * std::asin(1 / std::sqrt(square))};
   });
   return found;
 }
 
-int Outlines::winding(const Vec2& p, BodyIndex b, bool of_top, bool* clear) const {
+int OutlineSurfaces::winding(const Vec2& p, BodyIndex b, bool of_offset_curve, bool* clear) const {
   int sum = 0;
   for (int i = bodies[b].first; i < bodies[b].end; ++i) {
-    const Vec2 from = (of_top ? top(i) : point(i)) - p;
-    const Vec2 to = (of_top ? top(next[i]) : point(next[i])) - p;
-    const bool up = to.y() > 0;
-    if ((from.y() > 0) == up) continue;
-    const double side = cross(from, to);
-    if (clear && std::abs(side) < kClear * depth[i] * (to - from).norm()) *clear = false;
+    const Vec2 start = (of_offset_curve ? offset_point(i) : point(i)) - p;
+    const Vec2 end = (of_offset_curve ? offset_point(next[i]) : point(next[i])) - p;
+    const bool up = end.y() > 0;
+    if ((start.y() > 0) == up) continue;
+    const double side = cross(start, end);
+    if (clear && std::abs(side) < kClear * depth[i] * (end - start).norm()) *clear = false;
     if (up ? side > 0 : side < 0) sum += up ? 1 : -1;
   }
   return sum;

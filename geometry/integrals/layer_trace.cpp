@@ -1,4 +1,4 @@
-#include "geometry/integrals/collar_trace.hpp"
+#include "geometry/integrals/layer_trace.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -14,19 +14,19 @@ using namespace edge_detail;
 
 namespace {
 
-// The box of a polygon, so much larger that rounding lets nothing outside reach into it.
+// The box of a polygon, enlarged so that no point outside reaches into it by rounding.
 Box reach_of(const PlacedPotential& p, double dx, double dy) {
   const Box box = box_of(p, {dx, dy});
   return box.grown(kFarAway * box.extent());
 }
 
-// The sides of a box beyond which a point lies: a bit for each of the four.
+// The sides of a box beyond which a point lies, with one bit for each of the four.
 unsigned beyond(const Box& box, double x, double y) {
   return unsigned{x < box.x0} | unsigned{x > box.x1} << 1 | unsigned{y < box.y0} << 2 |
          unsigned{y > box.y1} << 3;
 }
 
-// Calls f(edge) for the edges whose boxes are not apart from another one.
+// Calls f(edge) for the edges whose boxes are not apart from the box `reach`.
 template <class F>
 void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& reach, const F& f) {
   unsigned start = beyond(reach, p.x[0] + dx, p.y[0] + dy);
@@ -39,24 +39,25 @@ void for_each_edge(const PlacedPotential& p, double dx, double dy, const Box& re
 
 }  // namespace
 
-void CollarTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
-                       std::uint64_t near_x, std::uint64_t near_y, bool use) {
+void LayerTrace::find(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy,
+                      std::uint64_t near_x, std::uint64_t near_y, bool use) {
   distance_ = y.distance != nullptr;
   list_edges(x, y, dx, dy, near_x);
   if (!use) {
-    runs_.clear();
-    for (Edge& edge : edges_) edge.deep = true, edge.runs_end = 0;
+    segments_.clear();
+    for (LayerEdge& edge : edges_) edge.beyond_layer = true, edge.segments_end = 0;
     return;
   }
   list_windows(x, y, dx, dy, near_y);
   while (!trace(x, y, dx, dy)) {
   }
-  find_deep(x, y, dx, dy);
+  find_beyond(x, y, dx, dy);
 }
 
-// If nothing is known, edges are left out whose boxes are apart from the other polygon's.
-void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
-                             double dy, std::uint64_t near) {
+// Lists the edges that may enter y. If nothing is known, edges whose boxes are apart from that of y
+// are left out.
+void LayerTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                            double dy, std::uint64_t near) {
   edges_.clear();
   const auto add = [&](int e) { edges_.push_back({e, PlacedEdge(x, y, e, dx, dy), false, 0}); };
   if (near != NearEdges::kAll) {
@@ -66,35 +67,37 @@ void CollarTrace::list_edges(const PlacedPotential& x, const PlacedPotential& y,
   }
 }
 
-// Finds the other edges that are not all in the collar. The boundary of x is one line: an edge that
-// is deeper all along follows one that leaves the collar, or another one like itself. Cells that
-// only such edges reach may be unknown; so what follows a deep edge is deep as well, as long as it
-// begins inside.
-void CollarTrace::find_deep(const PlacedPotential& x, const PlacedPotential& y, double dx,
-                            double dy) {
+// Finds the remaining edges that are not entirely in the layer. The boundary of x is one line: an
+// edge that is deeper than the layer everywhere follows an edge that leaves the layer, or another
+// such edge. Cells that only such edges reach may be unknown. So an edge that follows one beyond
+// the layer is beyond the layer as well if it begins inside y.
+void LayerTrace::find_beyond(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                             double dy) {
   if (edges_.empty()) return;
-  const auto begins_inside = [&](const Edge& edge) {
+  const auto begins_inside = [&](const LayerEdge& edge) {
     return encloses(y, Vec2::Zero(), {x.x[edge.index] + dx, x.y[edge.index] + dy});
   };
-  // Where all edges are deeper, none of them follows another one.
+  // If all edges are beyond the layer, no edge that leaves the layer precedes them, and the first
+  // one has to be tested.
   const bool round = static_cast<int>(edges_.size()) == x.size;
-  if (round && runs_.empty() && !edges_[0].deep) edges_[0].deep = begins_inside(edges_[0]);
-  const Edge* before = nullptr;
-  for (Edge& edge : edges_) {
-    const bool follows = before && before->deep && before->index + 1 == edge.index;
-    if (follows && !edge.deep) edge.deep = begins_inside(edge);
+  if (round && segments_.empty() && !edges_[0].beyond_layer)
+    edges_[0].beyond_layer = begins_inside(edges_[0]);
+  const LayerEdge* before = nullptr;
+  for (LayerEdge& edge : edges_) {
+    const bool follows = before && before->beyond_layer && before->index + 1 == edge.index;
+    if (follows && !edge.beyond_layer) edge.beyond_layer = begins_inside(edge);
     before = &edge;
   }
-  if (!before->deep || before->index != x.size - 1 || edges_[0].index != 0) return;
+  if (!before->beyond_layer || before->index != x.size - 1 || edges_[0].index != 0) return;
   for (size_t i = 0; i < edges_.size() && edges_[i].index == static_cast<int>(i); ++i) {
-    if (edges_[i].deep) break;
-    edges_[i].deep = begins_inside(edges_[i]);
-    if (!edges_[i].deep) break;
+    if (edges_[i].beyond_layer) break;
+    edges_[i].beyond_layer = begins_inside(edges_[i]);
+    if (!edges_[i].beyond_layer) break;
   }
 }
 
-void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
-                               double dy, std::uint64_t near) {
+void LayerTrace::list_windows(const PlacedPotential& x, const PlacedPotential& y, double dx,
+                              double dy, std::uint64_t near) {
   windows_.clear();
   const auto add = [&](int c) {
     if (windows_.empty() || c >= windows_.back().first + kPack) windows_.push_back({c, 0});
@@ -107,15 +110,15 @@ void CollarTrace::list_windows(const PlacedPotential& x, const PlacedPotential& 
   for_each_edge(y, 0, 0, reach_of(x, dx, dy), add);
 }
 
-// The last window that begins with the cell or before it, or null.
-CollarTrace::Window* CollarTrace::window_of(int cell) {
+// The last window that begins at the cell or before it, or null.
+LayerTrace::Window* LayerTrace::window_of(int cell) {
   const auto behind = std::upper_bound(windows_.begin(), windows_.end(), cell,
                                        [](int c, const Window& w) { return c < w.first; });
   return behind == windows_.begin() ? nullptr : &*(behind - 1);
 }
 
-// Lists the cell; false if it was listed before.
-bool CollarTrace::add_cell(int cell) {
+// Lists a cell. Returns false if it was listed before.
+bool LayerTrace::add_cell(int cell) {
   Window* const window = window_of(cell);
   if (window && cell < window->first + kPack) {
     const unsigned bit = 1u << (cell - window->first);
@@ -123,21 +126,23 @@ bool CollarTrace::add_cell(int cell) {
     window->cells |= bit;
     return added;
   }
-  const auto at = window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
-  windows_.insert(at, {cell, 1});
+  const auto position =
+      window ? windows_.begin() + (window - windows_.data()) + 1 : windows_.begin();
+  windows_.insert(position, {cell, 1});
   return true;
 }
 
-// The same for the cells on both sides of one in which an edge has ended.
-bool CollarTrace::add_neighbours(const PlacedPotential& y, int cell) {
+// Lists the cells on both sides of a cell in which an edge has ended. Returns false if both were
+// listed before.
+bool LayerTrace::add_neighbours(const PlacedPotential& y, int cell) {
   const bool before = add_cell(previous(cell, y.size));
   const bool after = add_cell(next(cell, y.size));
   return before || after;
 }
 
-// Whether an edge of x touches an edge of y, whose cell is not to be used, but for round-off.
-bool CollarTrace::touches(const PlacedPotential& y, int c) const {
-  constexpr double kNear = 1e-9;  // phi
+// True if the present edge touches edge c of y up to round-off, whose cell must not be used.
+bool LayerTrace::touches(const PlacedPotential& y, int c) const {
+  constexpr double kNear = 1e-9;  // round-off of phi
   const auto height = [&](double px, double py) {
     return y.gx[c] * (px - y.x[c]) + y.gy[c] * (py - y.y[c]);
   };
@@ -146,7 +151,7 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   };
   const double a = height(edge_->px, edge_->py), b = height(end_x_, end_y_);
   if (std::min(a, b) > kNear || std::max(a, b) < -kNear) return false;
-  // The part of the edge that is near the line.
+  // The part of the present edge that is near the line of edge c.
   const double s = (kNear - a) / (b - a), t = (-kNear - a) / (b - a);
   const bool level = !(std::abs(b - a) > kNear);
   const double s0 = level ? 0 : std::clamp(std::min(s, t), 0., 1.);
@@ -156,21 +161,21 @@ bool CollarTrace::touches(const PlacedPotential& y, int c) const {
   return std::max(u, v) >= -kNear && std::min(u, v) <= foot(y.x[c + 1], y.y[c + 1]) + kNear;
 }
 
-// The pieces of an edge in the cells of a window.
-APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential& y,
-                                                           const Window& window) {
+// Finds the pieces of the present edge in the cells of a window.
+APOTHEM_INLINE LayerTrace::Found LayerTrace::trace_cells(const PlacedPotential& y,
+                                                         const Window& window) {
   const auto line = [&](int i) APOTHEM_LAMBDA {
     const int k = window.first + i;
     return CellLine{Pack::load(y.x + k), Pack::load(y.y + k), Pack::load(y.gx + k),
                     Pack::load(y.gy + k)};
   };
   const Pack zero(0.);
-  const CellShapes cells{Pack::load(y.cells->depth.data() + window.first),
-                         Pack::load(y.cells->side.data() + window.first),
-                         Pack::load(y.cells->side.data() + window.first + 1)};
+  const CellShapes cells{Pack::load(y.layer->depth.data() + window.first),
+                         Pack::load(y.layer->side.data() + window.first),
+                         Pack::load(y.layer->side.data() + window.first + 1)};
   const Pack::Mask listed = listed_lanes(window.cells);
   for (unsigned rest = bits(listed & (cells.depth == zero)); rest != 0; rest &= rest - 1) {
-    if (touches(y, window.first + std::countr_zero(rest))) return Found::deep;
+    if (touches(y, window.first + std::countr_zero(rest))) return Found::beyond;
   }
   CellParts parts;
   if (!find_parts(cell_heights(line, edge_->px, edge_->py, distance_),
@@ -200,13 +205,13 @@ APOTHEM_INLINE CollarTrace::Found CollarTrace::trace_cells(const PlacedPotential
   return Found::all;
 }
 
-APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
-                                             double dx, double dy) {
-  // The cell in which the edge before has ended, or -1. An edge that does not begin there begins on
-  // a border, in a cell that need not be listed, or need not be so deep.
+APOTHEM_INLINE bool LayerTrace::trace_edges(const PlacedPotential& x, const PlacedPotential& y,
+                                            double dx, double dy) {
+  // `ended` is the cell in which the edge before has ended, or -1. An edge that does not begin
+  // there begins on a border, in a cell that may be unlisted or too shallow.
   int ended = -1, last = -1;
   bool first_begins = false;
-  for (Edge& listed : edges_) {
+  for (LayerEdge& listed : edges_) {
     const int e = listed.index;
     const PlacedEdge& edge = listed.placed;
     edge_ = &edge;
@@ -219,34 +224,34 @@ APOTHEM_INLINE bool CollarTrace::trace_edges(const PlacedPotential& x, const Pla
     }
     if (distance_ && found == Found::all) found = trace_sectors(y);
     if (found == Found::neighbour) return false;
-    listed.deep = found == Found::deep;
-    if (!listed.deep && count_ > 0) close_pieces(y);
-    listed.runs_end = runs_.size();
-    bool begins = listed.deep;
+    listed.beyond_layer = found == Found::beyond;
+    if (!listed.beyond_layer && count_ > 0) close_pieces(y);
+    listed.segments_end = segments_.size();
+    bool begins = listed.beyond_layer;
     int ends = -1;
-    for (size_t i = 0; i < count_ && !listed.deep; ++i) {
+    for (size_t i = 0; i < count_ && !listed.beyond_layer; ++i) {
       begins = begins || (pieces_[i].s0 == 0 && pieces_[i].end0 == kEdge);
       if (pieces_[i].end1 == kEdge) ends = pieces_[i].cell;
     }
     if (e == 0) first_begins = begins;
     if (last + 1 == e && ended >= 0 && !begins) {
       if (add_neighbours(y, ended)) return false;
-      listed.deep = encloses(y, Vec2::Zero(), {edge.px, edge.py});
+      listed.beyond_layer = encloses(y, Vec2::Zero(), {edge.px, edge.py});
     }
     last = e, ended = ends;
   }
   const bool round = last == x.size - 1 && edges_[0].index == 0;
   if (round && ended >= 0 && !first_begins) {
     if (add_neighbours(y, ended)) return false;
-    edges_[0].deep = encloses(y, Vec2::Zero(), {edges_[0].placed.px, edges_[0].placed.py});
+    edges_[0].beyond_layer = encloses(y, Vec2::Zero(), {edges_[0].placed.px, edges_[0].placed.py});
   }
   return true;
 }
 
-// False if there are more cells than were known.
-bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
-  runs_.clear();
-  // A cell has one piece, and so has the sector of each of its two vertices.
+// Traces all edges. Returns false if more cells were found, so that the trace must be repeated.
+bool LayerTrace::trace(const PlacedPotential& x, const PlacedPotential& y, double dx, double dy) {
+  segments_.clear();
+  // Each cell has at most one piece, and so has the sector of each of its two vertices.
   if (const size_t most = size_t{3} * kPack * windows_.size(); pieces_.size() < most)
     pieces_.resize(most);
   bool done = true;
@@ -257,14 +262,15 @@ bool CollarTrace::trace(const PlacedPotential& x, const PlacedPotential& y, doub
   return done;
 }
 
-// Whether the piece stays in the collar, and the cells next to it are looked at as well.
-CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Piece& piece,
-                                              int before, int after) {
-  if (piece.end0 == kTop || piece.end1 == kTop) return Found::deep;
+// Checks whether a piece stays in the layer and whether the adjacent cells are listed; cells that
+// are not are added.
+LayerTrace::Found LayerTrace::check_borders(const PlacedPotential& y, const Piece& piece,
+                                            int before, int after) {
+  if (piece.end0 == kDepthLimit || piece.end1 == kDepthLimit) return Found::beyond;
   Found found = Found::all;
   const auto enter = [&](double v, int cell, bool by_sector) {
-    if (!(v < y.cells->depth[cell])) {
-      if (found == Found::all) found = Found::deep;
+    if (!(v < y.layer->depth[cell])) {
+      if (found == Found::all) found = Found::beyond;
     } else if (!by_sector) {
       if (add_cell(cell)) found = Found::neighbour;
     }
@@ -276,9 +282,9 @@ CollarTrace::Found CollarTrace::check_borders(const PlacedPotential& y, const Pi
   return found;
 }
 
-// The pieces in the sectors of the vertices of all cells.
-CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
-  int last = -1;  // vertex
+// Finds the pieces of the present edge in the sectors of the vertices of all cells.
+LayerTrace::Found LayerTrace::trace_sectors(const PlacedPotential& y) {
+  int last = -1;  // last vertex that was treated
   const bool begins_at_zero = !windows_.empty() && windows_[0].first == 0;
   for (const Window& window : windows_) {
     for (int k = 0; k < kPack; ++k) {
@@ -296,7 +302,7 @@ CollarTrace::Found CollarTrace::trace_sectors(const PlacedPotential& y) {
   return Found::all;
 }
 
-CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int vertex) {
+LayerTrace::Found LayerTrace::trace_sector(const PlacedPotential& y, int vertex) {
   const PlacedEdge& edge = *edge_;
   Piece& piece = pieces_[count_];
   piece = {.s0 = 0,
@@ -309,8 +315,9 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
            .arc = true,
            .foot = 0,
            .square = 0};
-  // Behind the end of the edge before the vertex, and before the start of the other one.
-  const auto cut = [&](int e, double sign, bool closed, End by) {
+  // The sector lies beyond the end of the edge before the vertex and beyond the start of the edge
+  // after it.
+  const auto cut = [&](int e, double sign, bool closed, End cause) {
     const auto foot = [&](double px, double py) {
       return sign * (y.gy[e] * (px - y.x[vertex]) - y.gx[e] * (py - y.y[vertex]));
     };
@@ -319,32 +326,32 @@ CollarTrace::Found CollarTrace::trace_sector(const PlacedPotential& y, int verte
     if (a_inside && b_inside) return true;
     if (!a_inside && !b_inside) return false;
     const double s = a / (a - b);
-    if (a_inside && s < piece.s1) piece.s1 = s, piece.end1 = by;
-    if (b_inside && s > piece.s0) piece.s0 = s, piece.end0 = by;
+    if (a_inside && s < piece.s1) piece.s1 = s, piece.end1 = cause;
+    if (b_inside && s > piece.s0) piece.s0 = s, piece.end0 = cause;
     return piece.s0 < piece.s1;
   };
   if (!cut(vertex - 1, 1, true, kBorderBefore)) return Found::all;
   if (!cut(vertex, -1, false, kBorderAfter)) return Found::all;
   const int before = previous(vertex, y.size);
-  const double depth = std::min(y.cells->depth[before], y.cells->depth[vertex]);
+  const double depth = std::min(y.layer->depth[before], y.layer->depth[vertex]);
   const double slope = y.distance->slope;
   const double rx = y.x[vertex] - edge.px, ry = y.y[vertex] - edge.py;
   const double e2 = edge.ex * edge.ex + edge.ey * edge.ey;
   const double side = (edge.ex * ry - edge.ey * rx) * slope;
   piece.foot = (rx * edge.ex + ry * edge.ey) / e2;
   piece.square = side * side / e2;
-  const auto at = [&](double s) {
+  const auto square_at = [&](double s) {
     return piece.square + e2 * slope * slope * ((s - piece.foot) * (s - piece.foot));
   };
-  if (!(at(std::clamp(piece.foot, piece.s0, piece.s1)) < depth * depth)) return Found::all;
-  piece.v0 = std::sqrt(at(piece.s0)), piece.v1 = std::sqrt(at(piece.s1));
-  if (!(piece.v0 < depth && piece.v1 < depth)) return Found::deep;
+  if (!(square_at(std::clamp(piece.foot, piece.s0, piece.s1)) < depth * depth)) return Found::all;
+  piece.v0 = std::sqrt(square_at(piece.s0)), piece.v1 = std::sqrt(square_at(piece.s1));
+  if (!(piece.v0 < depth && piece.v1 < depth)) return Found::beyond;
   ++count_;
   return check_borders(y, piece, before, vertex);
 }
 
-// Puts the pieces of an edge in order, and together to runs.
-void CollarTrace::close_pieces(const PlacedPotential& y) {
+// Sorts the pieces of an edge and joins them to segments.
+void LayerTrace::close_pieces(const PlacedPotential& y) {
   const auto behind = [](const Piece& p, const Piece& q) {
     return p.s0 > q.s0 || (p.s0 == q.s0 && p.cell > q.cell);
   };
@@ -353,25 +360,26 @@ void CollarTrace::close_pieces(const PlacedPotential& y) {
       std::swap(pieces_[j], pieces_[j - 1]);
     }
   }
-  // Where the next cell has no piece, the edge passes a vertex up to round-off.
+  // If the next cell has no piece, the edge passes a vertex up to round-off.
   const auto crossed = [](const Piece& piece, End end) { return end == kEdge ? -1 : piece.cell; };
   const auto border = [](End end) { return end == kBorderBefore || end == kBorderAfter; };
-  Run* run = nullptr;
+  LayerSegment* segment = nullptr;
   for (size_t i = 0; i < count_; ++i) {
     const Piece& piece = pieces_[i];
-    if (!(run && run->s1 == piece.s0 && border(pieces_[i - 1].end1) && border(piece.end0))) {
-      run = &runs_.emplace_back();
-      run->s0 = piece.s0;
-      run->edge0 = crossed(piece, piece.end0);
+    if (!(segment && segment->s1 == piece.s0 && border(pieces_[i - 1].end1) &&
+          border(piece.end0))) {
+      segment = &segments_.emplace_back();
+      segment->s0 = piece.s0;
+      segment->edge0 = crossed(piece, piece.end0);
     }
-    run->s1 = piece.s1;
-    run->edge1 = crossed(piece, piece.end1);
+    segment->s1 = piece.s1;
+    segment->edge1 = crossed(piece, piece.end1);
     if (piece.arc) {
       const double length = std::sqrt(edge_->ex * edge_->ex + edge_->ey * edge_->ey);
       add_root(piece.square, length * y.distance->slope, piece.foot, piece.s0, piece.v0, piece.s1,
-               piece.v1, run->moments);
+               piece.v1, segment->moments);
     } else {
-      run->moments.add(piece.s0, piece.v0, piece.s1, piece.v1);
+      segment->moments.add(piece.s0, piece.v0, piece.s1, piece.v1);
     }
   }
 }

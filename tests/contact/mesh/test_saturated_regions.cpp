@@ -62,7 +62,7 @@ TEST_CASE("beyond the collar: nodal forces are the gradient of the energy, and m
     const OutlinePair pair = random_overlap(random);
     const double size = pair.largest_force();
     if (!(size > 0)) continue;
-    if (deepest_share(*pair.contacts) > 1) ++deep;
+    if (largest_relative_depth(*pair.contacts) > 1) ++deep;
     NumberRing<Complex> a(pair.a), b(pair.b);
     size_t k = 0;
     for (NumberRing<Complex>* ring : {&a, &b}) {

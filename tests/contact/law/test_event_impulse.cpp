@@ -1,4 +1,4 @@
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,11 +8,11 @@ using namespace apothem;
 namespace {
 
 template <class Force>
-OnsetForces sampled(const std::vector<double>& events, int panels, const Force& force) {
-  std::vector<OnsetSample> samples;
-  const int inside = find_onset_samples(events, panels, samples);
-  OnsetForces f;
-  for (const OnsetSample& s : samples) f.add(s, force(s.theta));
+EventForces sampled(const std::vector<double>& events, int panels, const Force& force) {
+  std::vector<EventSample> samples;
+  const int inside = find_event_samples(events, panels, samples);
+  EventForces f;
+  for (const EventSample& s : samples) f.add(s, force(s.theta));
   f.first = force(samples.front().theta);
   f.last = force(samples[static_cast<size_t>(inside) - 1].theta);
   return f;
@@ -30,7 +30,7 @@ TEST_CASE("samples of a step integrate and differentiate polynomials between kin
         const double u = t - kink;
         return t < kink ? 2 + u * u * u * u - 3 * u : 2 + 5 * u - u * u * u * u;
       };
-      const OnsetForces f = sampled({kink}, panels, force);
+      const EventForces f = sampled({kink}, panels, force);
       const double a = kink, b = 1 - kink;
       const double before = 2 * a + std::pow(a, 5) / 5 + 1.5 * a * a;
       const double behind = 2 * b + 2.5 * b * b - std::pow(b, 5) / 5;
@@ -44,9 +44,9 @@ TEST_CASE("samples of a step integrate and differentiate polynomials between kin
 }
 
 TEST_CASE("a smooth step misses no impulse", "[onset]") {
-  const OnsetForces f = sampled({}, 1, [](double t) { return 1 + 2 * t - 3 * t * t; });
+  const EventForces f = sampled({}, 1, [](double t) { return 1 + 2 * t - 3 * t * t; });
   CHECK(f.missing() == Approx(0).margin(1e-14));
-  const OnsetForces g = sampled({.4, .4, .7}, 1, [](double t) { return 1 + 2 * t; });
+  const EventForces g = sampled({.4, .4, .7}, 1, [](double t) { return 1 + 2 * t; });
   CHECK(g.missing() == Approx(0).margin(1e-14));
 }
 
@@ -54,19 +54,19 @@ TEST_CASE("a smooth step misses no impulse", "[onset]") {
 // the spring and v^2 without it. The energies agree if the first is multiplied by a constant, which
 // is 1 + (w h)^2/6 to the order h^2.
 TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[onset]") {
-  const auto error = [](double h, double share) {
+  const auto error = [](double h, double fraction) {
     const double w2 = 1, speed = 1;
-    // Onset: free until 1 - share of the step.
-    double v = speed, x = share * h * v;
+    // The contact begins at 1 - fraction of the step.
+    double v = speed, x = fraction * h * v;
     const auto spring = [&](double place) { return place > 0 ? -w2 * place : 0; };
     const auto step = [&](double from, double velocity, double event) {
-      const OnsetForces f =
+      const EventForces f =
           sampled({event}, 1, [&](double t) { return spring(from + t * h * velocity); });
-      OnsetRest rest(h);
+      EventResidual rest(h);
       rest.add(f, {f.missing()}, {0, 0}, 1, velocity);
-      return h * (f.last / 2 + f.missing() + rest.share() * f.mean);
+      return h * (f.last / 2 + f.missing() + rest.correction() * f.mean);
     };
-    v += step(x - h * v, v, 1 - share);
+    v += step(x - h * v, v, 1 - fraction);
     double fx = spring(x);
     // The whole contact, and its release.
     for (int i = 0; i < 100000; ++i) {
@@ -79,9 +79,9 @@ TEST_CASE("the rest of a linear onset and release is removed to the order 6", "[
     }
     return std::abs(v * v / (speed * speed) - 1);
   };
-  for (const double share : {.1, .37, .62, .9}) {
-    CAPTURE(share);
-    const double coarse = error(.4, share), fine = error(.1, share);
+  for (const double fraction : {.1, .37, .62, .9}) {
+    CAPTURE(fraction);
+    const double coarse = error(.4, fraction), fine = error(.1, fraction);
     CHECK(coarse < 3e-5);
     CHECK(fine < 1e-8);
   }

@@ -1,5 +1,5 @@
-// Which pairs have begun or ended to touch within a step, so that their impulses need a correction
-// (onset_rule.hpp). The same for rigid bodies and for meshes.
+// Detects contact events: pairs that began or ended to touch within a step, so that their impulses
+// need a correction (event_impulse.hpp). Rigid bodies and meshes use the same detector.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +9,20 @@
 #include <vector>
 
 #include "lib/archive/archive.hpp"
-#include "lib/contact/law/onset_rule.hpp"
+#include "lib/contact/law/event_impulse.hpp"
 
 namespace apothem {
 
-/// A pair that touches: which vertices are inside the partner, as numbers that differ where the
-/// sets do, the length of the boundaries inside, m, and whether the bodies are so deep in each
-/// other that the force does not follow from the edges near surfaces alone.
+/// A pair that touches: hashes of the sets of vertices inside the partner, the length of the
+/// boundaries inside, m, and whether one body reaches into the saturated region of the other one,
+/// so that the force does not follow from the edges near the surfaces alone.
 struct TouchingPair {
   int a, b;
   std::uint64_t inside_a, inside_b;
   double length;
-  double size, moment;  ///< of the normal force, N, and its moment over a length of the bodies, N;
-                        ///< or 0, not known
-  bool deep = false;
+  double size, moment;  ///< normal force, N, and its moment over a length of the bodies, N; 0 if
+                        ///< they are not known
+  bool is_saturated = false;
 
   [[nodiscard]] bool same_pair(const TouchingPair& other) const {
     return a == other.a && b == other.b;
@@ -30,8 +30,8 @@ struct TouchingPair {
   [[nodiscard]] bool same_vertices(const TouchingPair& other) const {
     return inside_a == other.inside_a && inside_b == other.inside_b;
   }
-  /// True if the force is the same but for so little that what a step misses of its impulse cannot
-  /// matter: with a change of the part e of it, e^2/4 of the energy of the contact.
+  /// True if the force has changed so little that its missing impulse cannot matter: a relative
+  /// change e costs e^2/4 of the energy of the contact.
   [[nodiscard]] bool same_force(const TouchingPair& other) const {
     constexpr double kSame = 5e-4;
     const double most = kSame * std::max(size, other.size);
@@ -43,38 +43,40 @@ struct TouchingPair {
   }
   void fields(Archive& archive) {
     archive("a", a)("b", b)("inside_a", inside_a)("inside_b", inside_b)("length", length);
-    archive("size", size)("moment", moment)("deep", deep);
+    archive("size", size)("moment", moment)("deep", is_saturated);
   }
 };
 
 /// A pair whose contact has changed within a step.
 struct PairChange {
   int a, b;
-  int panels;       ///< of the samples
-  int now, before;  ///< its number in the lists of the step and of the step before, or -1
+  int panels;       ///< number of panels of the samples
+  int now, before;  ///< index in the lists of this step and of the step before, or -1
 };
 
-class OnsetWatch {
+class EventDetector {
  public:
-  /// What touched becomes what touched before; the empty list is to be filled, ascending.
+  /// The pairs of this step become those of the step before. Returns the empty list of this step,
+  /// to be filled in ascending order.
   std::vector<TouchingPair>& begin_step() {
     std::swap(now_, before_);
     now_.clear();
     return now_;
   }
 
-  /// Calls changed(change), ascending, for every pair whose vertices inside each other have
-  /// changed, unless its force has not. The stiffness of a pair grows with the boundary of one
-  /// inside the other: where this changes by more than sudden(a, b), m, within a step, as where a
-  /// body lands nearly flat, the force is not smooth even if no vertex enters or leaves. `panels`
-  /// of the samples: more where it changes by much of itself. Steps that begin or end with the
-  /// bodies deep in each other are left as they are.
+  /// Calls changed(change), in ascending order, for every pair whose sets of vertices inside each
+  /// other have changed, unless the force is practically the same. The stiffness of a pair grows
+  /// with the length of boundary inside the other body. Where this length changes by more than
+  /// sudden(a, b), m, within a step, as where a body lands nearly flat, the force is not smooth
+  /// even if no vertex enters or leaves; more panels are used where it changes by a large fraction
+  /// of itself. Pairs that reach into a saturated region at the start or at the end of the step are
+  /// skipped.
   template <class Sudden, class Changed>
   void compare(const Sudden& sudden, const Changed& changed) const {
     auto old = before_.begin();
     const auto judge = [&](const TouchingPair& pair, bool same, double change, bool is_now,
                            bool was_before) {
-      if (pair.deep) return;
+      if (pair.is_saturated) return;
       PairChange found{pair.a, pair.b, 1, is_now ? static_cast<int>(&pair - now_.data()) : -1,
                        was_before ? static_cast<int>(old - before_.begin()) : -1};
       if (change > sudden(pair.a, pair.b)) {
@@ -89,7 +91,7 @@ class OnsetWatch {
         judge(*old, false, old->length, false, true);
       }
       const bool known = old != before_.end() && old->same_pair(pair);
-      if (!known || (!old->deep && !old->same_force(pair))) {
+      if (!known || (!old->is_saturated && !old->same_force(pair))) {
         judge(pair, known && old->same_vertices(pair),
               std::abs(pair.length - (known ? old->length : 0)), true, known);
       }

@@ -1,4 +1,4 @@
-#include "lib/contact/rigid/onset.hpp"
+#include "lib/contact/rigid/polygon_events.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,15 +10,17 @@
 namespace apothem {
 namespace {
 
-constexpr double kSudden = .03;      // change of the boundary inside, of an inradius
-constexpr double kAtFirst = 1e-9;    // a potential that is round-off where a run starts
+// Change of the length inside that counts as sudden, relative to the inradius.
+constexpr double kSudden = .03;
+// Largest potential that counts as round-off at the start of a simulation.
+constexpr double kAtFirst = 1e-9;
 constexpr double kPairTime = 2000;   // ns
-constexpr int kMostLooks = 1 << 14;  // for crossings of vertices and edges
-constexpr size_t kMostEvents = 8;
-constexpr double kAtOnce = 1e-3;  // of the step
-constexpr int kMostPanels = 8;    // of a step with kinks
+constexpr int kMostLooks = 1 << 14;  // largest number of pairs of a vertex and an edge to be tested
+constexpr size_t kMostKinks = 8;
+constexpr double kAtOnce = 1e-3;  // kinks closer than this fraction of the step are one
+constexpr int kMostPanels = 8;    // largest number of panels of a step with kinks
 
-// Calls f(coordinate, number in a load, sign) for the coordinates of both bodies of a pair.
+// Calls f(coordinate, index in a load, sign) for the coordinates of both bodies of a pair.
 template <class F>
 void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
   const size_t of_a = 3 * static_cast<size_t>(a), of_b = 3 * static_cast<size_t>(b);
@@ -28,11 +30,11 @@ void each_coordinate(RigidIndex a, RigidIndex b, const F& f) {
 
 }  // namespace
 
-struct Onset::Path {
+struct PolygonEvents::Path {
   RigidIndex a, b;
-  std::array<double, 3> rate_a, rate_b;  // of the pose, in a whole step
-  double angle_a, angle_b;               // at its end
-  Vec2 between;                          // at its end
+  std::array<double, 3> rate_a, rate_b;  // change of the pose in the whole step
+  double angle_a, angle_b;               // angles at the end of the step
+  Vec2 between;                          // a relative to b at the end of the step
 
   [[nodiscard]] double turn_a(double theta) const { return angle_a - (1 - theta) * rate_a[2]; }
   [[nodiscard]] double turn_b(double theta) const { return angle_b - (1 - theta) * rate_b[2]; }
@@ -42,8 +44,8 @@ struct Onset::Path {
   }
 };
 
-bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
-                 const Kinematics& now, const Dynamics& dynamics, double dt) {
+bool PolygonEvents::find(const PairIntegrals& pairs, const PatchTangential* tangential,
+                         const Kinematics& now, const Dynamics& dynamics, double dt) {
   std::vector<TouchingPair>& now_touching = watch_.begin_step();
   tangential_ = tangential;
   for (const PairInTouch& result : pairs.touching()) {
@@ -70,13 +72,13 @@ bool Onset::find(const PairIntegrals& pairs, const PatchTangential* tangential,
               find_pair(changed_[i], now, dynamics, dt, workers_[static_cast<size_t>(worker)]);
         }
       });
-  book_loss(now, dynamics, dt);
+  find_friction_loss(now, dynamics, dt);
   return !impulses_.empty();
 }
 
-// The work of friction in the impulses, with the velocities when half of what these parts change is
-// done, after all other parts.
-void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
+// Finds the work of friction in the impulses. The velocities are those after all other impulses and
+// after half of the change by the friction.
+void PolygonEvents::find_friction_loss(const Kinematics& now, const Dynamics& dynamics, double dt) {
   loss_ = 0;
   if (!tangential_) return;
   all_.resize(now.pose_rate.size());
@@ -91,7 +93,8 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
     double power = 0;
     each_coordinate(i.a, i.b, [&](size_t c, size_t k, double sign) {
       const double weight = dynamics.weight.empty() ? 0 : dynamics.weight[c];
-      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];  // for dt / 2
+      // Mean force during dt / 2.
+      const double pushed = dynamics.after[c] + weight + 2 * all_[c] - parts_[c];
       const double speed = now.pose_rate[c] + dt / 2 * dynamics.inverse_mass[c] * pushed;
       power += sign * i.friction[k] * speed;
     });
@@ -102,17 +105,20 @@ void Onset::book_loss(const Kinematics& now, const Dynamics& dynamics, double dt
   }
 }
 
-// What friction lacks: it goes with the normal force. Not where the pair has several patches, each
-// of which has friction by itself.
-Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
-                                 size_t inside) const {
-  constexpr double kVanishes = 1e-3;  // of the mean force
+// Finds the missing impulse of friction, which is proportional to the normal force. It is left out
+// for pairs with several patches, each of which has friction of its own.
+PolygonEvents::Load PolygonEvents::find_friction(const PairChange& pair,
+                                                 const SampleWorkspace& worker,
+                                                 size_t inside) const {
+  // A force below this fraction of the mean force is about to vanish.
+  constexpr double kVanishes = 1e-3;
   Load friction{};
   if (!table_.between(pair.a, pair.b).rough()) return friction;
   const std::optional<PairForce> none = PairForce{};
-  const std::array at{pair.before >= 0 ? tangential_->friction_before(pair.a, pair.b) : none,
-                      pair.now >= 0 ? tangential_->friction(pair.a, pair.b) : none};
-  if (!at[0] || !at[1]) return friction;
+  const std::array known_friction{
+      pair.before >= 0 ? tangential_->friction_before(pair.a, pair.b) : none,
+      pair.now >= 0 ? tangential_->friction(pair.a, pair.b) : none};
+  if (!known_friction[0] || !known_friction[1]) return friction;
   const auto size = [&](size_t i) {
     const Load& load = worker.loads[i];
     return std::sqrt(load[0] * load[0] + load[1] * load[1]);
@@ -121,21 +127,21 @@ Onset::Load Onset::find_friction(const PairChange& pair, const Worker& worker,
   double mean = 0;
   for (size_t i = 0; i < inside; ++i) mean += worker.samples[i].mean * size(i);
   const double lacks = mean - (ends[0] + ends[1]) / 2;
-  // A force that is about to vanish says nothing of the rest of the step.
+  // A force that is about to vanish says nothing about the rest of the step.
   const double least = kVanishes * 2 * mean;
   const double known = (ends[0] > least ? 1 : 0) + (ends[1] > least ? 1 : 0);
   for (const size_t end : {0, 1}) {
     if (!(ends[end] > least)) continue;
-    const double share = lacks / ends[end] / known;
-    const PairForce& force = *at[end];
-    friction[0] += share * force.x, friction[1] += share * force.y;
-    friction[2] += share * force.a, friction[3] += share * force.b;
+    const double fraction = lacks / ends[end] / known;
+    const PairForce& force = *known_friction[end];
+    friction[0] += fraction * force.x, friction[1] += fraction * force.y;
+    friction[2] += fraction * force.a, friction[3] += fraction * force.b;
   }
   return friction;
 }
 
-// The loads at all samples, those of convex polygons together.
-void Onset::find_loads(const Path& path, Worker& worker) const {
+// Finds the loads at all samples. Those of convex polygons are evaluated several at a time.
+void PolygonEvents::find_loads(const Path& path, SampleWorkspace& worker) const {
   const PlacedShapes& shapes = surfaces_.shapes();
   const double k = table_.between(path.a, path.b).normal_stiffness * thickness_;
   worker.loads.clear();
@@ -147,29 +153,30 @@ void Onset::find_loads(const Path& path, Worker& worker) const {
   const auto evaluate = [&] {
     for (const PairIntegral& pair : together.evaluate()) add(pair);
   };
-  for (const OnsetSample& sample : worker.samples) {
-    const auto at = static_cast<size_t>(together.count());
+  for (const EventSample& sample : worker.samples) {
+    const auto index = static_cast<size_t>(together.count());
     const auto [turn_a, turn_b] =
         sine_cosine({path.turn_a(sample.theta), path.turn_b(sample.theta)});
-    const PlacedPotential a = shapes.turn(path.a, turn_a, worker.turned[2 * at]);
-    const PlacedPotential b = shapes.turn(path.b, turn_b, worker.turned[2 * at + 1]);
+    const PlacedPotential a = shapes.turn(path.a, turn_a, worker.turned[2 * index]);
+    const PlacedPotential b = shapes.turn(path.b, turn_b, worker.turned[2 * index + 1]);
     const Vec2 offset = path.offset(sample.theta);
     if (!ConvexPairs::serves(a) || !ConvexPairs::serves(b)) {
       add(pair_integral(a, b, offset, worker.edges));
       continue;
     }
-    worker.near[at] = {};
-    together.add(a, b, offset, worker.near[at]);
+    worker.near[index] = {};
+    together.add(a, b, offset, worker.near[index]);
     if (together.full()) evaluate();
   }
   evaluate();
 }
 
-// Where a vertex of one polygon crosses an edge of the other one: heights are linear in theta, but
-// for the rotation of a step. False if there are many, or many to look for: each is then a small
-// part of the force, and samples at equal distances do as well.
-bool Onset::find_events(const Path& path, Worker& worker) const {
-  worker.events.clear();
+// Finds the kinks of the force, where a vertex of one polygon crosses an edge of the other one.
+// Heights are linear in theta except for the rotation within a step. Returns false if there are
+// many kinks, or too many candidates: each kink then concerns a small part of the force, and
+// equidistant samples are sufficient.
+bool PolygonEvents::find_kinks(const Path& path, SampleWorkspace& worker) const {
+  worker.kinks.clear();
   const PlacedShapes& shapes = surfaces_.shapes();
   if (shapes.view(path.a).size * shapes.view(path.b).size > kMostLooks) return false;
   const auto [turn_a, turn_b] = sine_cosine({path.turn_a(0), path.turn_b(0)});
@@ -177,23 +184,25 @@ bool Onset::find_events(const Path& path, Worker& worker) const {
   const PlacedPotential b0 = shapes.turn(path.b, turn_b, worker.start_b);
   const PlacedPotential a1 = shapes.view(path.a);
   const PlacedPotential b1 = shapes.view(path.b);
-  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.events);
-  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.events);
-  std::ranges::sort(worker.events);
-  if (worker.events.size() <= kMostEvents) return true;
-  // Where many vertices cross at once, as the teeth of a comb that lands, they are one event.
+  find_crossings(a0, a1, b0, b1, path.offset(0), path.offset(1), worker.kinks);
+  find_crossings(b0, b1, a0, a1, -path.offset(0), -path.offset(1), worker.kinks);
+  std::ranges::sort(worker.kinks);
+  if (worker.kinks.size() <= kMostKinks) return true;
+  // Where many vertices cross at once, as the teeth of a comb that lands, they count as one kink.
   const auto same = [](double a, double b) { return b - a < kAtOnce; };
-  worker.events.erase(std::unique(worker.events.begin(), worker.events.end(), same),
-                      worker.events.end());
-  if (worker.events.size() <= kMostEvents) return true;
-  worker.events.clear();
+  worker.kinks.erase(std::unique(worker.kinks.begin(), worker.kinks.end(), same),
+                     worker.kinks.end());
+  if (worker.kinks.size() <= kMostKinks) return true;
+  worker.kinks.clear();
   return false;
 }
 
-// Vertices of x, at `offset` from y, and edges of y, at the start and at the end of the step.
-void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
-                           const PlacedPotential& y0, const PlacedPotential& y1,
-                           const Vec2& offset0, const Vec2& offset1, std::vector<double>& events) {
+// Finds where vertices of x cross edges of y. Coordinates are given at the start (0) and at the end
+// (1) of the step; `offset` leads from y to x.
+void PolygonEvents::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
+                                   const PlacedPotential& y0, const PlacedPotential& y1,
+                                   const Vec2& offset0, const Vec2& offset1,
+                                   std::vector<double>& kinks) {
   constexpr double kRound = 1e-9;
   Box all;
   for (int j = 0; j < y1.size; ++j) {
@@ -212,20 +221,22 @@ void Onset::find_crossings(const PlacedPotential& x0, const PlacedPotential& x1,
       const double h1 = y1.gx[j] * (p1.x() - y1.x[j]) + y1.gy[j] * (p1.y() - y1.y[j]);
       const double theta = crossing(h0, h1);
       if (theta < 0) continue;
-      const auto at = [&](const double* q0, const double* q1, int k) {
+      const auto interpolated = [&](const double* q0, const double* q1, int k) {
         return q0[k] + theta * (q1[k] - q0[k]);
       };
       const Vec2 p = p0 + theta * (p1 - p0);
-      const Vec2 from(at(y0.x, y1.x, j), at(y0.y, y1.y, j));
-      const Vec2 edge = Vec2(at(y0.x, y1.x, j + 1), at(y0.y, y1.y, j + 1)) - from;
+      const Vec2 from(interpolated(y0.x, y1.x, j), interpolated(y0.y, y1.y, j));
+      const Vec2 edge =
+          Vec2(interpolated(y0.x, y1.x, j + 1), interpolated(y0.y, y1.y, j + 1)) - from;
       const double along = edge.dot(p - from) / edge.squaredNorm();
-      if (along > -kRound && along < 1 + kRound) events.push_back(theta);
+      if (along > -kRound && along < 1 + kRound) kinks.push_back(theta);
     }
   }
 }
 
-Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
-                                const Dynamics& dynamics, double dt, Worker& worker) const {
+PolygonEvents::Impulse PolygonEvents::find_pair(const PairChange& pair, const Kinematics& now,
+                                                const Dynamics& dynamics, double dt,
+                                                SampleWorkspace& worker) const {
   const RigidIndex a = pair.a, b = pair.b;
   const auto rate = [&](RigidIndex i) { return &now.pose_rate[3 * static_cast<size_t>(i)]; };
   const auto step = [&](RigidIndex i) {
@@ -233,13 +244,12 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   };
   const Path path{
       a, b, step(a), step(b), surfaces_.pose(a)[2], surfaces_.pose(b)[2], surfaces_.between(a, b)};
-  const bool few = find_events(path, worker);
-  const int most = kMostPanels / (static_cast<int>(worker.events.size()) + 1);
+  const bool few = find_kinks(path, worker);
+  const int most = kMostPanels / (static_cast<int>(worker.kinks.size()) + 1);
   const int panels = std::clamp(few ? pair.panels : kFewPanels, 1, std::max(most, 1));
-  const auto inside =
-      static_cast<size_t>(find_onset_samples(worker.events, panels, worker.samples));
+  const auto inside = static_cast<size_t>(find_event_samples(worker.kinks, panels, worker.samples));
   find_loads(path, worker);
-  std::array<OnsetForces, 4> forces;
+  std::array<EventForces, 4> forces;
   for (size_t i = 0; i < worker.samples.size(); ++i) {
     const Load& load = worker.loads[i];
     for (size_t k = 0; k < 4; ++k) {
@@ -252,11 +262,11 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   Load missing;
   for (size_t k = 0; k < 4; ++k) missing[k] = forces[k].missing();
   const auto rest_of = [&](RigidIndex body, size_t moment, double sign) {
-    OnsetRest rest(dt);
+    EventResidual rest(dt);
     for (const size_t axis : {0, 1, 2}) {
       const size_t k = axis < 2 ? axis : moment;
       const size_t c = 3 * static_cast<size_t>(body) + axis;
-      OnsetForces f = forces[k];
+      EventForces f = forces[k];
       const double own = axis < 2 ? sign : 1;
       for (double* x : {&f.first, &f.last, &f.mean, &f.start_slope, &f.end_slope}) *x *= own;
       rest.add(f, {own * missing[k], own * friction[k]}, dynamics.others(c, f),
@@ -264,12 +274,12 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
     }
     return rest;
   };
-  OnsetRest rest = rest_of(a, 2, 1);
+  EventResidual rest = rest_of(a, 2, 1);
   rest.add(rest_of(b, 3, -1));
-  const double share = rest.share();
-  for (size_t k = 0; k < 4; ++k) missing[k] += share * forces[k].mean + friction[k];
-  // Moments of forces at earlier positions do not balance at the end of the step. What is left over
-  // goes half and half to both bodies, so that the angular momentum is kept.
+  const double correction = rest.correction();
+  for (size_t k = 0; k < 4; ++k) missing[k] += correction * forces[k].mean + friction[k];
+  // Moments of forces at earlier positions do not balance at the end of the step. Half of the
+  // difference goes to each body, so that the angular momentum is conserved.
   const auto balance = [&](Load& part) {
     const double couple = cross(path.between, Vec2(part[0], part[1])) + (part[2] + part[3]);
     part[2] -= couple / 2;
@@ -279,7 +289,7 @@ Onset::Impulse Onset::find_pair(const PairChange& pair, const Kinematics& now,
   return {a, b, missing, friction};
 }
 
-void Onset::add(double scale, std::span<double> forces) const {
+void PolygonEvents::add(double scale, std::span<double> forces) const {
   for (const Impulse& i : impulses_) {
     double* fa = &forces[3 * static_cast<size_t>(i.a)];
     double* fb = &forces[3 * static_cast<size_t>(i.b)];
