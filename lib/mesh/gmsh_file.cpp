@@ -65,7 +65,8 @@ class Rows {
     return n;
   }
   void require_end() const {
-    if (!row_.empty()) fail("\"" + std::string(row_) + "\" is left over at the end of the line");
+    if (!row_.empty())
+      fail(std::string(1, '"').append(row_) + "\" is left over at the end of the line");
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include "geometry/exact/overlap.hpp"
 #include "geometry/integrals/contact_patches.hpp"
+#include "geometry/integrals/placement.hpp"
 
 namespace apothem::test {
 

@@ -45,10 +45,10 @@ TEST_CASE("whole numbers in a list come back from an archive, also from one that
   writer("numbers", numbers);
   std::vector<int> read;
   const nlohmann::json json = writer.json();
-  JsonLoader(json)("numbers", read);
+  JsonLoader{json}("numbers", read);
   CHECK(read == numbers);
   const nlohmann::json doubles{{"numbers", {3.0, 0.0, -7.0}}};
-  JsonLoader(doubles)("numbers", read);
+  JsonLoader{doubles}("numbers", read);
   CHECK(read == numbers);
 }
 

@@ -249,7 +249,7 @@ TEST_CASE("a body that stands on two feet has two patches, each with its own spr
     bodies.update_friction(1);
     CHECK(contacts.contacts().size() == 1);  // one pair
     const std::vector<ContactRecord> records = contacts.records();
-    const PatchResult expected =
+    const test::PatchResult expected =
         edge_patches(kFloor, make_potential(kFloor), samples::shifted(kTable, {0, -depth}),
                      make_potential(samples::shifted(kTable, {0, -depth})));
     REQUIRE(expected.patches.size() == 2);

@@ -5,6 +5,7 @@
 #include "apps/cases/samples.hpp"
 #include "geometry/integrals/contact_patches.hpp"
 #include "tests/geometry/nonconvex_pairs.hpp"
+#include "tests/geometry/patches.hpp"
 #include "tests/support.hpp"
 
 namespace apothem {
@@ -73,7 +74,7 @@ TEST_CASE("crosses that touch with few edges: the bits of each edge by itself", 
     for (int i = 0; i < pairs; ++i) {
       Touching t(potential, random, std::pow(10, random.uniform(-7, -1)));
       const PlacedPotential a = t.placed.view(0), b = t.placed.view(1);
-      PatchResult alone, found;
+      test::PatchResult alone, found;
       const PairIntegral whole =
           contact_patches(a, b, t.offset, memory, alone.segments, alone.patches);
       const PairIntegral pair =
