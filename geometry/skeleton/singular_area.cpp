@@ -147,8 +147,8 @@ class Crest {
   }
 
   void add_to(SingularArea& result) {
-    std::vector<bool> isolated(level_.nodes().size(), false);
-    const int count = static_cast<int>(level_.nodes().size());
+    const int count = static_cast<int>(level_.skeleton().nodes.size());
+    std::vector<bool> isolated(count, false);
     for (int i = 0; i < count; ++i) isolated[groups_.find(i)] = level_.side(groups_.find(i)) == 0;
     for (const Skeleton::Arc& arc : level_.skeleton().arcs) {
       if (level_.above(arc.start)) isolated[groups_.find(arc.end)] = false;

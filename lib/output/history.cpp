@@ -65,6 +65,10 @@ std::string header(const Columns& columns) {
 
 }  // namespace
 
+std::string history_header(const Model& model, const OutputSettings& settings) {
+  return header(history_columns(model, settings));
+}
+
 HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
                              const OutputSettings& settings, const Parts& parts)
     : model_(model),
@@ -75,7 +79,7 @@ HistoryWriter::HistoryWriter(const std::string& folder, const Model& model,
   if (parts[0].size > 0) return;
   energy_.rows = header(kEnergyColumns);
   momentum_.rows = header(kMomentumColumns);
-  history_.rows = header(history_columns(model, settings));
+  history_.rows = history_header(model, settings);
   flush();
 }
 

@@ -27,6 +27,9 @@ struct Observed {
   std::vector<RegionSums> regions = {};  ///< of the model
 };
 
+/// The first line of history.csv, with its end.
+std::string history_header(const Model& model, const OutputSettings& settings);
+
 /// Writes the three files of a run.
 class HistoryWriter {
  public:

@@ -194,7 +194,8 @@ std::string bad_line(const std::string& file, std::int64_t size) {
 
 }  // namespace
 
-HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress) {
+HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress,
+                                        const std::string& header) {
   HistoryWriter::Parts parts;
   if (progress.histories.size() != parts.size()) {
     throw SceneError(folder, 0, "", "holds a checkpoint of a run without histories; run it anew");
@@ -219,6 +220,14 @@ HistoryWriter::Parts required_histories(const std::string& folder, const RunProg
       fail(fmt::format("is not as the run has written it, in its first {} bytes{}", kept.size,
                        bad_line(file, kept.size)));
     }
+  }
+  const std::string file = folder + "/" + kHistoryFiles[0];
+  std::string first;
+  std::ifstream stream(file, std::ios::binary);
+  if (std::getline(stream, first); first + '\n' != header) {
+    throw SceneError(file, 0, "",
+                     "has other columns than this version writes; go on with the version that "
+                     "began the run, or run it anew with --overwrite");
   }
   return parts;
 }

@@ -74,7 +74,8 @@ HistoryWriter::Parts Run::resume() {
   lock_folder(*files_, folder);
   HistoryWriter::Parts histories;
   const std::string fault = use_checkpoint(folder, [&](const std::string& file) {
-    histories = required_histories(folder, read_progress(file));
+    histories = required_histories(folder, read_progress(file),
+                                   history_header(scene_.model, scene_.output));
     go_on(file);
     refuse_other_beginning();
   });
