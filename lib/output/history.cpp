@@ -3,6 +3,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -10,7 +11,6 @@
 #include "lib/model/columns.hpp"
 #include "lib/system/input_file.hpp"
 #include "lib/text/csv.hpp"
-#include "lib/text/decimal.hpp"
 
 namespace apothem {
 namespace {
@@ -182,17 +182,22 @@ HistoryTable read_history(const std::string& file) {
         unit == std::string::npos ? "" : cell.substr(unit + 2, cell.rfind(']') - unit - 2));
   }
   table.columns.resize(table.names.size());
-  if (table.names.empty()) throw std::runtime_error(file + ": has no names of columns");
+  if (line.empty()) throw std::runtime_error(file + ": has no names of columns");
   for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
-    const std::vector<std::string> cells = csv_cells(line, file, number);
-    for (size_t i = 0; i < table.columns.size(); ++i) {
-      const auto value =
-          cells.size() == table.columns.size() ? find_decimal(cells[i]) : std::nullopt;
-      if (!value) {
+    // Rows are many, and hold what the program writes of a run that has become unstable: inf and
+    // nan.
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    for (std::vector<double>& column : table.columns) {
+      double value = 0;
+      const auto [next, error] = std::from_chars(at, end, value);
+      const bool last = &column == &table.columns.back();
+      if (error != std::errc() || (last ? next != end : next == end || *next != ',')) {
         throw std::runtime_error(
             fmt::format("{}:{}: is not a row of {} numbers", file, number, table.columns.size()));
       }
-      table.columns[i].push_back(*value);
+      column.push_back(value);
+      at = next + 1;
     }
   }
   return table;

@@ -58,7 +58,7 @@ TEST_CASE("discs that collide obliquely keep energy with order 2, and momenta", 
 }
 
 TEST_CASE("discs that rub by their elements keep momenta, and the ledger knows the loss",
-          "[surface]") {
+          "[surface][slow]") {
   for (const Shape shape : {Shape::quads, Shape::triangles, Shape::voronoi}) {
     Model model = empty_model();
     model.contact.surface = ContactSurface::element;

@@ -73,7 +73,7 @@ TEST_CASE("the error of a reversal falls as the root of the stiffness", "[fricti
   CHECK(std::abs(soft / stiff) == Approx(10).epsilon(.15));
 }
 
-TEST_CASE("a block starts to slide at atan(mu)", "[friction]") {
+TEST_CASE("a block starts to slide at atan(mu)", "[friction][slow]") {
   const double coefficient = .5;
   for (const auto& [share, slides] : {std::pair(.999, false), std::pair(1.001, true)}) {
     Model model = incline(std::atan(coefficient) * share, coefficient, 0, 1.25e9);

@@ -100,7 +100,7 @@ TEST_CASE("blocks of any shape slide by theory on tilted slopes", "[friction]") 
   }
 }
 
-TEST_CASE("blocks of any shape slip at atan(mu) on tilted slopes", "[friction]") {
+TEST_CASE("blocks of any shape slip at atan(mu) on tilted slopes", "[friction][slow]") {
   for (const auto& [coefficient, block] : {std::pair(.3, test::flat_block()),
                                            {.8, test::flat_block()},
                                            {.4, hexagon()},

@@ -325,7 +325,7 @@ TEST_CASE("nodal values are interpolated within elements", "[field]") {
   CHECK(checked > 800);
 }
 
-TEST_CASE("elements of any shape leave no pixel out", "[field]") {
+TEST_CASE("elements of any shape leave no pixel out", "[field][slow]") {
   for (const Mesh& mesh :
        {distorted(quad_grid(40, 20, 2, 1), .3), triangles(distorted(quad_grid(31, 17, 2, 1), .3)),
         voronoi_cells(300, 2, 1, 0), merged_cells(voronoi_cells(200, 2, 1, 2))}) {
@@ -362,7 +362,7 @@ TEST_CASE("a value that is no number is grey, not a crash", "[field]") {
   CHECK(patch_of(pixels, kGrey).count > 10000);
 }
 
-TEST_CASE("the size of an SVG does not follow that of the mesh", "[field]") {
+TEST_CASE("the size of an SVG does not follow that of the mesh", "[field][slow]") {
   std::vector<size_t> sizes;
   for (const int n : {10, 100}) {
     Frame frame = at_rest(n);

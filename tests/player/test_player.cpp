@@ -396,7 +396,7 @@ std::string output_of(const std::string& command, const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("a movie has all frames of its run", "[player]") {
+TEST_CASE("a movie has all frames of its run", "[player][slow]") {
   const Folder folder;
   const std::string scene = folder.write("scene.json", kScene);
   REQUIRE(test::run({"run", scene, "-o", folder / "out", "--quiet"}, folder).code == 0);

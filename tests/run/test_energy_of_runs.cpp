@@ -118,7 +118,7 @@ TEST_CASE("extremes are those of every step, beside a mesh as well", "[run][ener
 // Blocks fall on each other at 5 and 10 m/s, where contacts begin and end in every step. Impulses
 // of such contacts have made up to a tenth of the energy where dashpots take most of the speed in a
 // step.
-TEST_CASE("a dense flow of damped blocks makes no energy at long steps", "[run][energy]") {
+TEST_CASE("a dense flow of damped blocks makes no energy at long steps", "[run][energy][slow]") {
   const Folder folder;
   const std::vector<double> accuracies = kSanitized ? std::vector{.1} : std::vector{.1, .03, .004};
   for (const double ratio : {.5, 1.}) {

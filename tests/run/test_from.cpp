@@ -319,7 +319,7 @@ TEST_CASE("a static run goes on where another one has ended, with its friction",
   CHECK(content(folder / "parts/energy.csv") == content(folder / "second/energy.csv"));
 }
 
-TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from]") {
+TEST_CASE("a dynamic run begins in the equilibrium of a static one", "[run][from][slow]") {
   const Folder folder;
   Run first(scene_of(folder, pulled_block(kPull, kRamp,
                                           R"({ "mode": "static", "end": 2, "load_steps": 16,

@@ -141,7 +141,7 @@ TEST_CASE("the pile of a benchmark is dense, and the time is divided among the p
   CHECK(shares == Approx(1));
 }
 
-TEST_CASE("benchmark compares two programs case by case", "[benchmark]") {
+TEST_CASE("benchmark compares two programs case by case", "[benchmark][slow]") {
   const Folder folder;
   const Result r = run(
       {"benchmark", "--quick", "--repeat", "2", "--filter", "^(quad_pair_near_miss|force/T3/1000)$",

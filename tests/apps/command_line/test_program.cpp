@@ -35,7 +35,7 @@ std::string scene(const std::string& time, const std::string& bodies_extra = "")
 
 }  // namespace
 
-TEST_CASE("help and usage", "[program]") {
+TEST_CASE("help and usage", "[program][slow]") {
   const Folder folder;
   CHECK(run({"--help"}, folder).code == 0);
   CHECK(run({"--version"}, folder).out.starts_with("apothem "));
@@ -202,7 +202,7 @@ TEST_CASE("a static run writes a row and a frame per load step", "[program]") {
   CHECK(ended.out.find("has ended before") != std::string::npos);
 }
 
-TEST_CASE("Ctrl-C ends the search for a settled start, and no run has begun", "[program]") {
+TEST_CASE("Ctrl-C ends the search for a settled start, and no run has begun", "[program][slow]") {
   const Folder folder;
   const Result r = run({"run", test::kSource + "/data/scenes/slope-stands.json", "--set",
                         "contact.friction.coefficient=0.56", "-o", folder / "out"},
@@ -465,7 +465,7 @@ TEST_CASE("a run that is killed goes on from its last checkpoint, bit for bit", 
         Json::parse(content(folder / "parts/run.json"))["final_state_hash"]);
 }
 
-TEST_CASE("a run may begin with the last state of another one", "[program]") {
+TEST_CASE("a run may begin with the last state of another one", "[program][slow]") {
   const Folder folder;
   const std::string file = folder.write("fall.json", scene(R"({ "end": 0.1 })"));
   REQUIRE(run({"run", file, "-o", folder / "one"}, folder).code == 0);
@@ -584,7 +584,7 @@ TEST_CASE("a body that folds onto itself stops with the place", "[program]") {
   CHECK(content(folder / "tongs/frames.pvd").find("bodies_000001.vtu") != std::string::npos);
 }
 
-TEST_CASE("bodies that begin outside of the world are counted", "[program]") {
+TEST_CASE("bodies that begin outside of the world are counted", "[program][slow]") {
   const Folder folder;
   const auto run_with = [&](const std::string& box) {
     const std::string file = folder.write("world.json", R"({
@@ -605,7 +605,7 @@ TEST_CASE("bodies that begin outside of the world are counted", "[program]") {
   CHECK(run_with("[[6,6],[7,7]]").find("2 bodies begin outside of the world") != std::string::npos);
 }
 
-TEST_CASE("a run that fails where an inner corner has closed names the corner", "[program]") {
+TEST_CASE("a run that fails where an inner corner has closed names the corner", "[program][slow]") {
   const Folder folder;
   const std::string file = folder.write("slit.json", R"({
     "materials": { "rubber": { "density": 1000, "young": 1e5, "poisson": 0.2, "law": "neo_hookean" }, "steel": { "density": 8000 } },
@@ -726,7 +726,7 @@ TEST_CASE("until behind the end of the scene ends with the scene", "[program]") 
   CHECK(content(folder / "short/frames.pvd").find("bodies_000006") == std::string::npos);
 }
 
-TEST_CASE("the same scene gives the same bits", "[program]") {
+TEST_CASE("the same scene gives the same bits", "[program][slow]") {
   const Folder folder;
   std::vector<Json> results;
   for (const char* threads : {"1", "1", "2"}) {

@@ -55,7 +55,7 @@ TEST_CASE("run --picture draws the end, and picture draws it again", "[program][
             .code == 0);
 }
 
-TEST_CASE("a picture that cannot be made has one reason and leaves no file", "[program]") {
+TEST_CASE("a picture that cannot be made has one reason and leaves no file", "[program][slow]") {
   const Folder folder;
   const std::string scene = folder.write("fall.json", kFallToDraw), out = folder / "fall";
   REQUIRE(run({"run", scene, "-o", out}, folder).code == 0);

@@ -236,7 +236,7 @@ TEST_CASE("more vertices than the limit are refused, and a batch goes on", "[pro
   CHECK(list[1]["area"] == 4);
 }
 
-TEST_CASE("a big polygon shows its progress and ends on Ctrl-C", "[program][polygon]") {
+TEST_CASE("a big polygon shows its progress and ends on Ctrl-C", "[program][polygon][slow]") {
   const Folder folder;
   // A comb has as many largest inscribed circles as teeth, which takes a minute.
   const std::string file =
@@ -288,7 +288,7 @@ TEST_CASE("every public ring is described or refused", "[program][polygon]") {
   }
 }
 
-TEST_CASE("pictures and VTK files are complete or not there", "[program][polygon]") {
+TEST_CASE("pictures and VTK files are complete or not there", "[program][polygon][slow]") {
   const Folder folder;
   const std::string file = folder.write("q.json", kQuad);
   const Result table =

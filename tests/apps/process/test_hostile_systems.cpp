@@ -62,7 +62,7 @@ TEST_CASE("memory that ends anywhere is one sentence and exit code 4", "[hostile
   CHECK(without > 0);
 }
 
-TEST_CASE("few descriptors are one sentence and exit code 4", "[hostile]") {
+TEST_CASE("few descriptors are one sentence and exit code 4", "[hostile][slow]") {
   const Folder folder;
   const std::string scene = pile(folder);
   int without = 0;
@@ -79,7 +79,8 @@ TEST_CASE("few descriptors are one sentence and exit code 4", "[hostile]") {
   CHECK(without > 0);
 }
 
-TEST_CASE("closed screens are no place for results, nor results for the screen", "[hostile]") {
+TEST_CASE("closed screens are no place for results, nor results for the screen",
+          "[hostile][slow]") {
   const Folder folder;
   const std::string scene = pile(folder);
   const Result r = run({"run", scene, "-o", folder / "a"}, folder, {.closed_screens = true});

@@ -101,7 +101,7 @@ std::vector<Victim> victims() {
 }  // namespace
 
 // A few kills of each kind; 200 with APOTHEM_LONG=1.
-TEST_CASE("a run that is killed at random ends with the same files", "[survival]") {
+TEST_CASE("a run that is killed at random ends with the same files", "[survival][slow]") {
   std::mt19937 random(41);
   for (const Victim& victim : victims()) {
     INFO(victim.name);
@@ -130,7 +130,7 @@ TEST_CASE("a run that is killed at random ends with the same files", "[survival]
 }
 
 TEST_CASE("the runs of a sweep that is killed end with it, and the same command goes on",
-          "[survival][sweep]") {
+          "[survival][sweep][slow]") {
   const Folder folder;
   const std::string scene = folder.write("scene.json", victims()[0].text);
   const auto sweep = [&](const char* study) {
@@ -157,7 +157,7 @@ TEST_CASE("the runs of a sweep that is killed end with it, and the same command 
   }
 }
 
-TEST_CASE("of many that start at the same time in a folder one runs", "[survival]") {
+TEST_CASE("of many that start at the same time in a folder one runs", "[survival][slow]") {
   const Folder folder;
   const std::string scene = folder.write("scene.json", victims()[0].text);
   REQUIRE(run({"run", scene, "-o", folder / "whole", "--quiet"}, folder).code == 0);
@@ -186,7 +186,7 @@ TEST_CASE("of many that start at the same time in a folder one runs", "[survival
   check_same_files(folder / "whole", folder / "parts");
 }
 
-TEST_CASE("a run that is killed twenty times ends as if it had not been", "[survival]") {
+TEST_CASE("a run that is killed twenty times ends as if it had not been", "[survival][slow]") {
   const Folder folder;
   std::string text = hopper("remove", kStops);
   const std::string frames = "\"frames\": 6";

@@ -257,7 +257,7 @@ TEST_CASE("a run that ends before its picture leaves a report", "[reproduce]") {
   CHECK_FALSE(std::filesystem::exists(folder / "out/fig-7/fields.png"));
 }
 
-TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reproduce]") {
+TEST_CASE("broken panels of fields end with exit code 2 and one line", "[reproduce][slow]") {
   const Folder folder;
   const std::string data = data_folder(folder);
   for (const auto& [what, by, place] :
@@ -315,7 +315,7 @@ TEST_CASE("the stress of the impacted beam is that of the independent code", "[r
   CHECK(std::filesystem::exists(folder / "out/fig-28/fields.png"));
 }
 
-TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[reproduce]") {
+TEST_CASE("unknown and broken figures end with exit code 2 and one line", "[reproduce][slow]") {
   const Folder folder;
   const std::string data = data_folder(folder);
   const Result unknown = run({"reproduce", "fig-17", "--data", data}, folder);

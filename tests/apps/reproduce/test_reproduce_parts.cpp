@@ -46,7 +46,7 @@ Result reproduce_all(const Folder& folder, const std::vector<std::string>& more 
 
 }  // namespace
 
-TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]") {
+TEST_CASE("words, verdict and difference from a reference curve", "[reproduce][slow]") {
   const Folder folder;
   const std::string figure = R"({ "title": "Fall", "paper": "A stone & its fall.", "about": "Ours.",
   "open": [ { "question": "How high?", "choice": "It does not matter." } ],
@@ -95,7 +95,7 @@ TEST_CASE("words, verdict and difference from a reference curve", "[reproduce]")
   }
 }
 
-TEST_CASE("runs that are there are kept, others are done again", "[reproduce]") {
+TEST_CASE("runs that are there are kept, others are done again", "[reproduce][slow]") {
   const Folder folder;
   folder_of(folder, R"({ "title": "Fall", "numbers": ["fall"] })");
   CHECK(reproduce_all(folder).out.find("fall done (0.") != std::string::npos);
@@ -141,7 +141,7 @@ TEST_CASE("potentials over polygons, and their numbers", "[reproduce]") {
   }
 }
 
-TEST_CASE("a study becomes curves and comparisons", "[reproduce]") {
+TEST_CASE("a study becomes curves and comparisons", "[reproduce][slow]") {
   const Folder folder;
   const std::string figure = R"({ "title": "Study",
   "studies": [ { "name": "falls", "commands": [ ["sweep", "{data}/scenes/fall.json", "--vary", "time.end=0.01,0.2,0.3", "--quiet", "-o", "{out}"] ],

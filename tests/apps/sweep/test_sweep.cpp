@@ -178,7 +178,7 @@ TEST_CASE("a sweep runs all combinations and writes its tables", "[sweep]") {
   for (const auto& [key, time] : before) CHECK(after.at(key) == time);
 }
 
-TEST_CASE("runs of a scene that has changed are done anew", "[sweep]") {
+TEST_CASE("runs of a scene that has changed are done anew", "[sweep][slow]") {
   const Pull pull;
   REQUIRE(pull.sweep().code == 0);
   const auto before = times_of(pull.study);
@@ -197,7 +197,7 @@ TEST_CASE("runs of a scene that has changed are done anew", "[sweep]") {
   CHECK(says(pull.sweep({"--set", "time.safety=0.2"}).err, "9 of 9 runs are done anew"));
 }
 
-TEST_CASE("a file that the scene names belongs to it", "[sweep]") {
+TEST_CASE("a file that the scene names belongs to it", "[sweep][slow]") {
   const Folder folder;
   const auto square = [&](const char* size) {
     folder.write("stone.json", std::string("[[0,0],[") + size + ",0],[1,1],[0,1]]");
@@ -226,7 +226,7 @@ TEST_CASE("a file that the scene names belongs to it", "[sweep]") {
   CHECK(says(run(shared, folder).err, "2 of 2 runs are done anew"));
 }
 
-TEST_CASE("shards give the tables of one go, also at the same time", "[sweep]") {
+TEST_CASE("shards give the tables of one go, also at the same time", "[sweep][slow]") {
   const Pull pull;
   REQUIRE(run(pull.command(pull.folder / "whole"), pull.folder).code == 0);
   const Result first = pull.sweep({"--shard", "1/4"});
@@ -315,7 +315,7 @@ TEST_CASE("a run that crashes takes no other down", "[sweep][slow]") {
   CHECK(run(again, folder).code == 0);
 }
 
-TEST_CASE("Ctrl-C stops the runs with checkpoints, and the same command goes on", "[sweep]") {
+TEST_CASE("Ctrl-C stops the runs with checkpoints, and the same command goes on", "[sweep][slow]") {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Folder folder;
     const std::string scene = folder.write("long.json", kLongFall);
@@ -391,7 +391,7 @@ TEST_CASE("all runs may begin with the state of another run, and tables give row
   CHECK(column(folder / "study/runs.csv", "time [s]") == Words{"0.5", "1"});
 }
 
-TEST_CASE("each run may begin with the fitting run of another study", "[sweep]") {
+TEST_CASE("each run may begin with the fitting run of another study", "[sweep][slow]") {
   const Folder folder;
   std::string text = kLongFall;
   text.replace(text.find("2e-"), 4, "1e-2");
@@ -425,7 +425,7 @@ TEST_CASE("each run may begin with the fitting run of another study", "[sweep]")
   CHECK(says(none.err, "0 finished runs"));
 }
 
-TEST_CASE("mistakes are named with their remedy before anything runs", "[sweep]") {
+TEST_CASE("mistakes are named with their remedy before anything runs", "[sweep][slow]") {
   const Folder folder;
   const std::string scene = folder.write("pull.json", kPulledCells);
   const std::string vary = "materials.rock.poisson=0.1,0.2";

@@ -195,7 +195,7 @@ TEST_CASE("elements stick with k_s, slip at mu times the normal force, and remem
 }
 
 TEST_CASE("friction of elements is lost on every border, that of boundary edges is not",
-          "[element_friction][contact]") {
+          "[element_friction][contact][slow]") {
   using enum ElementShape;
   // A pair's normal force rises and falls linearly over two cells; the spring rises with the ratio
   // rho of its stiffness to mu times that slope, and meets the limit on its way down.

@@ -360,7 +360,7 @@ Slid slide_strips(int threads, bool search_often) {
 }  // namespace
 
 TEST_CASE("friction and damping of outlines have the same bits for any number of threads",
-          "[outline_kernel][outline_friction][contact]") {
+          "[outline_kernel][outline_friction][contact][slow]") {
   const Slid one = slide_strips(1, false);
   REQUIRE(Threads(2).worth(static_cast<int>(one.springs.size()), 80));
   CHECK(one.loss != 0);
@@ -369,7 +369,7 @@ TEST_CASE("friction and damping of outlines have the same bits for any number of
 }
 
 TEST_CASE("what touches is the same for any number of threads",
-          "[outline_kernel][onset][contact]") {
+          "[outline_kernel][onset][contact][slow]") {
   // Strips on strips, with more units of candidates than one thread works on.
   constexpr int kStrips = 6, kCells = 1500;
   std::string before;

@@ -228,7 +228,7 @@ double energy(const VoronoiMesh& voronoi) {
 
 }  // namespace
 
-TEST_CASE("every shape is tiled exactly", "[voronoi]") {
+TEST_CASE("every shape is tiled exactly", "[voronoi][slow]") {
   for (const Shape& shape : shapes()) {
     const Polygon region(shape.ring);
     for (const int cells : {1, 2, 3, 20, 150}) {
@@ -361,7 +361,7 @@ TEST_CASE("lattices have their known cells", "[voronoi]") {
   CHECK(regular >= 7 * 8);
 }
 
-TEST_CASE("Lloyd's iteration lowers the energy and evens out the cells", "[voronoi]") {
+TEST_CASE("Lloyd's iteration lowers the energy and evens out the cells", "[voronoi][slow]") {
   for (const Ring& ring : {square(), Ring{{0, 0}, {9, 0}, {4, 3}}}) {
     const Polygon region(ring);
     std::vector<Vec2> sites = random_sites(region, 60, 2);

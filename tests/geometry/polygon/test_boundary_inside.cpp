@@ -51,7 +51,8 @@ const Polygon kCorner({{0, 0}, {8, 0}, {8, 4}, {4, 4}, {4, 8}, {0, 8}});
 
 }  // namespace
 
-TEST_CASE("own lengths of polygons that share an edge from outside are zero", "[own-length]") {
+TEST_CASE("own lengths of polygons that share an edge from outside are zero",
+          "[own-length][slow]") {
   check(kSquare, samples::block(4, 0, 8, 4), 0, 0);  // the whole edge
   check(kSquare, samples::block(4, 1, 8, 9), 0, 0);  // parts of both
   check(kSquare, samples::block(4, 4, 8, 8), 0, 0);  // a vertex
@@ -68,7 +69,7 @@ TEST_CASE("own lengths count edges shared from inside for both", "[own-length]")
   check(kCorner, samples::block(0, 0, 8, 2), 12, 20);
 }
 
-TEST_CASE("own lengths where edges are shared from both sides", "[own-length]") {
+TEST_CASE("own lengths where edges are shared from both sides", "[own-length][slow]") {
   // The block fills the corner, lies on one of its edges from outside, and overlaps with the rest.
   check(kCorner, samples::block(2, 4, 6, 6), 2, 6);
   // A U holds a block that lies on its bottom from outside and bites into one of its legs.

@@ -274,7 +274,7 @@ TEST_CASE("force of the distance field is minus the gradient of the energy", "[d
   }
 }
 
-TEST_CASE("work of the distance field on closed paths", "[distance-field]") {
+TEST_CASE("work of the distance field on closed paths", "[distance-field][slow]") {
   test::check_closed_paths(field_choice());
 }
 

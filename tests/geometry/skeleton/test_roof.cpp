@@ -105,7 +105,9 @@ TEST_CASE("non-convex force is minus the gradient of the energy", "[roof]") {
   }
 }
 
-TEST_CASE("work of non-convex contact on closed paths", "[roof]") { test::check_closed_paths({}); }
+TEST_CASE("work of non-convex contact on closed paths", "[roof][slow]") {
+  test::check_closed_paths({});
+}
 
 TEST_CASE("swap and shift of non-convex pairs, to the last bit", "[roof]") {
   test::SeededRandom random(44);

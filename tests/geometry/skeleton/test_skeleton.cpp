@@ -220,7 +220,7 @@ TEST_CASE("roof heights known by hand, in every variant", "[skeleton]") {
   }
 }
 
-TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skeleton]") {
+TEST_CASE("stars, combs, spirals, slivers and many sides pass the laws", "[skeleton][slow]") {
   for (const Polygon& polygon :
        {star(5, .4), star(17, .9), star(8, .1), samples::comb(3, 3), samples::comb(20, 3),
         spiral(1, 12), spiral(4, 12), regular(1000), Polygon({{0, 0}, {1, 0}, {.3, 1e-6}})}) {
