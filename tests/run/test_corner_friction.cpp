@@ -106,7 +106,7 @@ std::vector<std::pair<double, double>> forces(const Scene& scene) {
 
 TEST_CASE("a tip that is dragged over a floor has mu times the normal force", "[friction][mesh]") {
   Dice dice(42);
-  const int cases = long_run() ? 200 : 24;
+  const int cases = long_run() ? 200 : kSanitized ? 2 : 24;
   for (int i = 0; i < cases; ++i) {
     const Kind kind = static_cast<Kind>(i % 3);
     const double degree = std::numbers::pi / 180;
@@ -178,7 +178,7 @@ double moved_by(const Run& run) {
 }  // namespace
 
 TEST_CASE("a stool slides down a slope as a point does, and stands below the friction angle",
-          "[friction][mesh]") {
+          "[friction][mesh][slow]") {
   Dice dice(7);
   for (const bool meshed_body : {false, true}) {
     for (const double steep : {.9, 1.7}) {
