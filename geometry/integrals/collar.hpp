@@ -302,7 +302,8 @@ APOTHEM_INLINE CollarPieces<Number> collar_pieces(const CollarFace<Number>& f, c
   const auto negative = [](const Number& x)
                             APOTHEM_LAMBDA -> Mask { return real_part(x) < Real(0.); };
   const auto is_regular = [&](const Number& p, const Number& q) APOTHEM_LAMBDA -> Mask {
-    return (real_part(p) <= f.regular_depth) & (real_part(q) <= f.regular_depth);
+    const Mask at_p = real_part(p) <= f.regular_depth, at_q = real_part(q) <= f.regular_depth;
+    return at_p & at_q;
   };
   const detail::CollarSides<Number> side(f, px, py, qx, qy);
   const auto& [pax, pay, pbx, pby, hp, hq, ap, aq, bp, bq] = side;

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <exception>
 #include <filesystem>
-#include <ranges>
 #include <string_view>
 
 #include "lib/mesh/boundary.hpp"
@@ -167,7 +166,8 @@ void FrameWriter::write(const FrameContents& frame) {
   }
   // A list is replaced as a whole, since readers and a kill may come at any moment. That of the
   // bodies comes last: what it lists is complete in all series.
-  for (const size_t s : needed | std::views::reverse) {
+  for (size_t i = needed.size(); i-- > 0;) {
+    const size_t s = needed[i];
     write_file(fmt::format("{}/{}", folder_, kSeries[s].list),
                fmt::format("{}{}", lists_[s], kListEnd));
   }
