@@ -186,6 +186,7 @@ void FrameWriter::make_last() {
 
 std::vector<std::string> frame_lists() {
   std::vector<std::string> names;
+  names.reserve(kSeries.size());
   for (const Series& series : kSeries) names.emplace_back(series.list);
   return names;
 }
