@@ -5,7 +5,6 @@
 #include <limits>
 #include <tuple>
 
-#include "geometry/integrals/placement.hpp"
 #include "geometry/polygon/segment.hpp"
 
 namespace apothem {

@@ -64,12 +64,18 @@ class DistanceOutline {
     const auto near = [&](const Point& p, const Point& q) {
       return abs(p.x - q.x) <= same && abs(p.y - q.y) <= same;
     };
-    vertex_.clear();
+    vertex_.clear(), last_.clear();
     for (int i = 0; i < field.size; ++i) {
       const Point p{field.x[i], field.y[i]};
-      if (vertex_.empty() || !near(p, vertex_.back())) vertex_.push_back(p);
+      if (vertex_.empty() || !near(p, vertex_.back())) {
+        vertex_.push_back(p), last_.push_back(p);
+      } else {
+        last_.back() = p;
+      }
     }
-    while (vertex_.size() > 1 && near(vertex_.back(), vertex_.front())) vertex_.pop_back();
+    while (vertex_.size() > 1 && near(vertex_.back(), vertex_.front())) {
+      vertex_.pop_back(), last_.pop_back();
+    }
     n_ = static_cast<int>(vertex_.size());
     normal_.resize(n_);
     length_.resize(n_);
@@ -82,7 +88,7 @@ class DistanceOutline {
       normal_[i] = {-d.y / length_[i], d.x / length_[i]};
     }
     for (int i = 0; i < n_; ++i) {
-      turn_[i] = side(before(i), after(i));
+      turn_[i] = turn_at(i);
       if (turn_[i] < 0) reflex_.push_back(i);
     }
   }
@@ -158,13 +164,24 @@ class DistanceOutline {
 
   // The side of the line of edge i that vertex v is on: 1 in front, 0 on the line, -1 behind.
   [[nodiscard]] int side(int i, int v) const {
-    const Point &p = vertex_[i], &q = vertex_[after(i)], &r = vertex_[v];
+    return side(vertex_[i], vertex_[after(i)], vertex_[v]);
+  }
+  // The side of the line from p to q that r is on.
+  static int side(const Point& p, const Point& q, const Point& r) {
     if constexpr (std::is_same_v<Real, double>) {
       return orientation({p.x, p.y}, {q.x, q.y}, {r.x, r.y});
     } else {
       const Real area = cross(q - p, r - p);
       return (area > 0) - (area < 0);
     }
+  }
+  // The turn at vertex i. Vertices that became one may have bent the edge before it so that the
+  // outline turns back exactly onto itself. Then the last one of them tells whether the vertex is
+  // a tip or the end of a slit.
+  [[nodiscard]] int turn_at(int i) const {
+    const int turn = side(before(i), after(i));
+    const bool back = turn == 0 && dot(normal_[before(i)], normal_[i]) < 0;
+    return back ? side(last_[before(i)], vertex_[i], vertex_[after(i)]) : turn;
   }
   // Whether a part of edge j is in front of the line of edge i.
   [[nodiscard]] bool in_front(int i, int j) const {
@@ -187,6 +204,7 @@ class DistanceOutline {
 
   int n_ = 0;
   std::vector<Point> vertex_, normal_;
+  std::vector<Point> last_;  // of the vertices that have become this one
   std::vector<Real> length_;
   std::vector<int> turn_;    // per vertex: 1 where the outline turns left, -1 right, 0 straight on
   std::vector<int> reflex_;  // vertices with a right turn

@@ -122,7 +122,7 @@ class PlacedShapes {
   std::vector<Shape> shapes_;
   std::vector<double> body_;            // x, y, gx, gy of each shape in the body frame
   std::vector<double> inverse_length_;  // inverse length of each edge of deforming shapes, 1/m
-  // X, y, gx, gy of each shape, rotated, relative to the reference point.
+  // x, y, gx, gy of each shape, rotated, relative to the reference point.
   std::vector<double> placed_;
   std::vector<Box> boxes_;  // box of each shape in the coordinates of the model
 };

@@ -1,5 +1,5 @@
 // Potentials of polygons at their given positions, for single evaluations of a contact. This header
-// is private to edge_integral.cpp, contact_patches.cpp and penetration.cpp.
+// is private to edge_integral.cpp and penetration.cpp.
 #pragma once
 
 #include <algorithm>

@@ -10,11 +10,11 @@ namespace apothem {
 /// The numbers from 0 to `count` - 1, each at first in a set of its own.
 class DisjointSets {
  public:
-  explicit DisjointSets(size_t count = 0) { reset(count); }
-  /// Begins anew in the same memory.
+  explicit DisjointSets(size_t count = 0) : parent_(count) { reset(count); }
+  /// Begins anew in the same memory, which grows by doubling.
   void reset(size_t count) {
-    parent_.resize(count);
-    std::iota(parent_.begin(), parent_.end(), 0);
+    if (parent_.size() < count) parent_.resize(2 * count);
+    std::iota(parent_.begin(), parent_.begin() + static_cast<std::ptrdiff_t>(count), 0);
   }
   /// The number that stands for the set of i.
   int find(int i) {

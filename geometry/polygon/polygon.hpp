@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/point.hpp"
 
 namespace apothem {
@@ -40,7 +41,7 @@ class Polygon {
   [[nodiscard]] const std::vector<Vec2>& vertices() const { return vertices_; }
   [[nodiscard]] const Vec2& operator[](int i) const { return vertices_[i]; }
   /// The vertex that follows vertex i; vertex 0 follows the last one.
-  [[nodiscard]] const Vec2& after(int i) const { return vertices_[i + 1 == size() ? 0 : i + 1]; }
+  [[nodiscard]] const Vec2& after(int i) const { return vertices_[next(i, size())]; }
 
   /// Index of the first reflex vertex, that is, one with an interior angle above 180 degrees. There
   /// is none if the polygon is convex. The test is exact.

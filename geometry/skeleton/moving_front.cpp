@@ -1,7 +1,8 @@
 #include "geometry/skeleton/moving_front.hpp"
-#include "geometry/polygon/random_numbers.hpp"
 
 #include <cmath>
+
+#include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem {
 namespace {

@@ -1,9 +1,10 @@
 #include "lib/fem/spectrum.hpp"
-#include "geometry/polygon/random_numbers.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
+
+#include "geometry/polygon/random_numbers.hpp"
 
 namespace apothem {
 namespace {

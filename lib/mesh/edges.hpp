@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "lib/mesh/mesh.hpp"
 
 namespace apothem {

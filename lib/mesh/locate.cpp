@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/segment.hpp"
-#include "lib/mesh/edges.hpp"
 #include "lib/mesh/measure.hpp"
 
 namespace apothem {

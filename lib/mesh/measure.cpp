@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/execution/elementary.hpp"
-#include "lib/mesh/edges.hpp"
 
 namespace apothem {
 
@@ -43,11 +43,7 @@ double smallest_sine(const Mesh& mesh, std::span<const int> ring) {
   return smallest;
 }
 
-double mesh_size(const Mesh& mesh) {
-  Box box;
-  for (const Vec2& p : mesh.nodes) box.include(p.x(), p.y());
-  return box.extent();
-}
+double mesh_size(const Mesh& mesh) { return box_of(mesh.nodes).extent(); }
 
 MeshQuality mesh_quality(const Mesh& mesh) {
   MeshQuality q{};

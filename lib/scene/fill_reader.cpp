@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <optional>
 
-#include "geometry/packing/block_shapes.hpp"
 #include "geometry/packing/voronoi_blocks.hpp"
 #include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/hilbert.hpp"
-#include "lib/execution/elementary.hpp"
 #include "lib/fem/kinds.hpp"
+#include "lib/scene/block_reader.hpp"
 #include "lib/scene/body_reader.hpp"
 #include "lib/scene/polygon_value.hpp"
 #include "lib/scene/value_maker.hpp"
@@ -26,21 +24,8 @@ constexpr int kMostBlocks = 10'000'000;
 // What a body and an element of a scene take in memory, measured with meshes of squares, bytes.
 constexpr double kBodyBytes = 4e3, kElementBytes = 1.1e3;
 constexpr double kTouching = 1e-7;  // of the size of a cell
-constexpr double kSharpest = 50 * M_PI / 180, kBluntest = 130 * M_PI / 180;  // of quadrilaterals
-
-// A number that is drawn for each block.
-using Draw = std::function<double(RandomNumbers&)>;
-
-// One of the shapes that blocks are drawn from.
-struct Shape {
-  double weight = 1;
-  std::function<std::vector<Vec2>(RandomNumbers&)> ring;  // of area 1
-  std::optional<double> own_diameter;                     // m
-};
 
 enum class Arranged { random, lattice, dense, voronoi };
-
-double disc_area(double diameter) { return M_PI / 4 * diameter * diameter; }
 
 // Cells may touch what surrounds them.
 std::vector<Vec2> shrunk(const std::vector<Vec2>& ring, double share) {
@@ -55,7 +40,8 @@ std::vector<Vec2> shrunk(const std::vector<Vec2>& ring, double share) {
 // Reads one fill and makes its bodies.
 class Fill {
  public:
-  Fill(const JsonReader& in, const JsonValue& value) : in_(in), value_(value), make_(value) {}
+  Fill(const JsonReader& in, const JsonValue& value)
+      : in_(in), value_(value), make_(value), blocks_(in) {}
 
   Filled read(std::vector<std::vector<Vec2>>& obstacles) {
     JsonObject object(in_, value_);
@@ -80,7 +66,7 @@ class Fill {
     if (arranged_ == Arranged::voronoi) {
       cells(object, seed ? static_cast<std::uint64_t>(in_.count(*seed)) : 1);
     } else {
-      shapes(object);
+      blocks(object);
     }
     object.finish();
     if (arranged_ == Arranged::voronoi) {
@@ -108,25 +94,6 @@ class Fill {
   }
 
  private:
-  // [from, to], or one number for both.
-  [[nodiscard]] std::array<double, 2> range(const JsonValue& value, double least, double most,
-                                            const std::string& unit) const {
-    std::array<double, 2> bounds{};
-    if (value.type() == JsonValue::Type::number) {
-      bounds = {value.number(), value.number()};
-    } else {
-      const std::vector<double> given = in_.numbers(value, 2, "[from, to] in " + unit);
-      bounds = {given[0], given[1]};
-    }
-    if (!(bounds[0] >= least && bounds[1] <= most && bounds[0] <= bounds[1])) {
-      in_.fail(value,
-               most < HUGE_VAL
-                   ? fmt::format("must be ascending, from {:g} to {:g} {}", least, most, unit)
-                   : fmt::format("must be ascending, {:g} {} or more", least, unit));
-    }
-    return bounds;
-  }
-
   void mesh(const JsonValue* value) {
     if (!value) return;
     JsonObject object(in_, *value);
@@ -172,26 +139,8 @@ class Fill {
     }
   }
 
-  void shapes(JsonObject& object) {
-    const JsonValue& list = object.required("shapes", "[{\"quadrilateral\": {}}, ...]");
-    if (in_.array(list).empty()) in_.fail(list, "must hold at least one shape");
-    for (const JsonValue& item : list.items()) shapes_.push_back(shape(item));
-    const JsonValue* size = object.optional("diameter");
-    if (size) {
-      diameter_ = diameter(*size);
-    } else if (!std::all_of(shapes_.begin(), shapes_.end(),
-                            [](const Shape& s) { return s.own_diameter.has_value(); })) {
-      object.required("diameter",
-                      "of the disc of equal area, in m; only given polygons have a "
-                      "size of their own");
-    }
-    if (const JsonValue* v = object.optional("angle")) {
-      if (v->type() == JsonValue::Type::string) {
-        in_.choice(*v, {"random"});
-      } else {
-        angles_ = range(*v, -HUGE_VAL, HUGE_VAL, "rad");
-      }
-    }
+  void blocks(JsonObject& object) {
+    blocks_.read(object);
     const JsonValue* count = object.optional("count");
     const JsonValue* fraction = object.optional("solid_fraction");
     if (!count == !fraction) {
@@ -208,172 +157,15 @@ class Fill {
     }
   }
 
-  Shape shape(const JsonValue& value) const {
-    JsonObject object(in_, value);
-    Shape shape;
-    if (const JsonValue* v = object.optional("weight")) shape.weight = in_.positive(*v, "");
-    int kinds = 0;
-    if (const JsonValue* v = object.optional("polygon")) {
-      const Polygon polygon = read_polygon(in_, *v);
-      shape.own_diameter = std::sqrt(area_moments(polygon).area / disc_area(1));
-      shape.ring = [ring = normalised(polygon.vertices())](RandomNumbers&) { return ring; };
-      ++kinds;
-    }
-    if (const JsonValue* v = object.optional("quadrilateral"))
-      shape.ring = quadrilateral(*v), ++kinds;
-    if (const JsonValue* v = object.optional("polygon_random")) shape.ring = convex(*v), ++kinds;
-    if (const JsonValue* v = object.optional("cross")) {
-      JsonObject cross(in_, *v);
-      const JsonValue* arm = cross.optional("arm");
-      cross.finish();
-      shape.ring = [ring = cross_shape(arm ? in_.positive(*arm, "widths") : 1)](RandomNumbers&) {
-        return ring;
-      };
-      ++kinds;
-    }
-    object.finish();
-    if (kinds != 1) {
-      in_.fail(value, "must give one of polygon, quadrilateral, polygon_random, cross");
-    }
-    return shape;
-  }
-
-  std::function<std::vector<Vec2>(RandomNumbers&)> quadrilateral(const JsonValue& value) const {
-    JsonObject object(in_, value);
-    std::array<double, 2> angles{kSharpest, kBluntest};
-    if (const JsonValue* v = object.optional("angles")) {
-      angles = range(*v, 0, M_PI, "rad");
-      if (!(angles[0] < M_PI / 2 && angles[1] > M_PI / 2)) {
-        in_.fail(*v, "must include pi/2, the mean angle of every quadrilateral");
-      }
-      try {
-        RandomNumbers trial(1);
-        random_quadrilateral(trial, angles[0], angles[1]);
-      } catch (const std::invalid_argument& error) {
-        in_.fail(*v, error.what());
-      }
-    }
-    object.finish();
-    return [angles](RandomNumbers& random) {
-      return random_quadrilateral(random, angles[0], angles[1]);
-    };
-  }
-
-  std::function<std::vector<Vec2>(RandomNumbers&)> convex(const JsonValue& value) const {
-    JsonObject object(in_, value);
-    const JsonValue& number = object.required("corners", "[from, to], or one number");
-    const std::array<double, 2> corners = range(number, 3, 1000, "corners");
-    for (const double n : corners) {
-      if (n != std::floor(n)) in_.fail(number, "must be whole numbers");
-    }
-    std::array<double, 2> aspects{1, 1}, roundnesses{.5, .5};
-    if (const JsonValue* v = object.optional("aspect")) aspects = range(*v, 1, 1000, "");
-    if (const JsonValue* v = object.optional("roundness")) roundnesses = range(*v, 0, 1, "");
-    object.finish();
-    return [=](RandomNumbers& random) {
-      const int n = random.whole(static_cast<int>(corners[0]), static_cast<int>(corners[1]));
-      const double aspect = random.uniform(aspects[0], aspects[1]);
-      const double roundness = random.uniform(roundnesses[0], roundnesses[1]);
-      return random_polygon(random, n, aspect, roundness);
-    };
-  }
-
-  Draw diameter(const JsonValue& value) const {
-    if (value.type() == JsonValue::Type::number) {
-      return [d = in_.positive(value, "m")](RandomNumbers&) { return d; };
-    }
-    JsonObject object(in_, value);
-    Draw draw;
-    int kinds = 0;
-    if (const JsonValue* v = object.optional("uniform")) {
-      const std::array<double, 2> d = positive_range(*v);
-      draw = [d](RandomNumbers& random) { return random.uniform(d[0], d[1]); };
-      ++kinds;
-    }
-    if (const JsonValue* v = object.optional("uniform_area")) {
-      const std::array<double, 2> d = positive_range(*v);
-      draw = [d](RandomNumbers& random) {
-        return std::sqrt(random.uniform(d[0] * d[0], d[1] * d[1]));
-      };
-      ++kinds;
-    }
-    if (const JsonValue* v = object.optional("lognormal")) draw = lognormal(*v), ++kinds;
-    if (const JsonValue* v = object.optional("table")) draw = table(*v), ++kinds;
-    object.finish();
-    if (kinds != 1) {
-      in_.fail(value,
-               "must be a number in m, or give one of uniform, uniform_area, lognormal, "
-               "table");
-    }
-    return draw;
-  }
-
-  [[nodiscard]] std::array<double, 2> positive_range(const JsonValue& value) const {
-    const std::array<double, 2> bounds = range(value, 0, HUGE_VAL, "m");
-    if (!(bounds[0] > 0)) in_.fail(value, "must be positive lengths in m");
-    return bounds;
-  }
-
-  Draw lognormal(const JsonValue& value) const {
-    JsonObject object(in_, value);
-    const double median = in_.positive(object.required("median", "in m"), "m");
-    const double sigma =
-        in_.positive(object.required("sigma", "standard deviation of the logarithm"), "");
-    const JsonValue& limits = object.required("between", "[smallest, largest] in m");
-    const std::array<double, 2> between = positive_range(limits);
-    object.finish();
-    if (!(between[0] < median && median < between[1])) {
-      in_.fail(limits, "must have the median inside");
-    }
-    return [=](RandomNumbers& random) {
-      double d = 0;
-      do d = median * exponential(sigma * random.normal());
-      while (!(d >= between[0] && d <= between[1]));
-      return d;
-    };
-  }
-
-  Draw table(const JsonValue& value) const {
-    std::vector<std::array<double, 2>> rows;  // diameter, sum of the shares so far
-    double sum = 0;
-    for (const JsonValue& item : in_.array(value)) {
-      const std::vector<double> row =
-          in_.numbers(item, 2, "[diameter in m, share of the number of blocks]");
-      if (!(row[0] > 0 && row[1] > 0)) in_.fail(item, "must be two positive numbers");
-      rows.push_back({row[0], sum += row[1]});
-    }
-    if (rows.empty()) in_.fail(value, "must hold at least one row");
-    return [rows](RandomNumbers& random) {
-      const double share = random.uniform(0, rows.back()[1]);
-      size_t i = 0;
-      while (i + 1 < rows.size() && share >= rows[i][1]) ++i;
-      return rows[i][0];
-    };
-  }
-
-  [[nodiscard]] Block draw(RandomNumbers& random) const {
-    double weights = 0;
-    for (const Shape& s : shapes_) weights += s.weight;
-    double left = shapes_.size() > 1 ? random.uniform(0, weights) : 0;
-    size_t i = 0;
-    for (; i + 1 < shapes_.size() && left >= shapes_[i].weight; ++i) left -= shapes_[i].weight;
-    Block block;
-    block.shape = shapes_[i].ring(random);
-    const double d = diameter_ ? diameter_(random) : *shapes_[i].own_diameter;
-    block.scale = std::sqrt(disc_area(d));
-    block.angle = angles_[0] < angles_[1] ? random.uniform(angles_[0], angles_[1]) : angles_[0];
-    return block;
-  }
-
   std::vector<Block> draw_all(RandomNumbers& random, double area) const {
     std::vector<Block> blocks;
     if (count_) {
-      for (int i = 0; i < *count_; ++i) blocks.push_back(draw(random));
+      for (int i = 0; i < *count_; ++i) blocks.push_back(blocks_.draw(random));
       return blocks;
     }
     double solid = 0;
     while (true) {
-      Block next = draw(random);
+      Block next = blocks_.draw(random);
       const double with_it = solid + next.scale * next.scale, goal = fraction_ * area;
       if (with_it > goal && with_it - goal > goal - solid) return blocks;
       solid = with_it;
@@ -422,11 +214,10 @@ class Fill {
     double size = 0;
     for (const Block& b : blocks) size += b.scale / static_cast<double>(blocks.size());
     PackingSpace space = space_of(obstacles, blocks.empty() ? 1 : size);
-    const bool turns = angles_[0] < angles_[1];
-    const Arrangement found = arranged_ == Arranged::random
-                                  ? insert_at_random(space, random, blocks)
-                              : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
-                                                               : grow(space, random, blocks, turns);
+    const Arrangement found =
+        arranged_ == Arranged::random    ? insert_at_random(space, random, blocks)
+        : arranged_ == Arranged::lattice ? put_on_lattice(space, blocks)
+                                         : grow(space, random, blocks, blocks_.turn());
     refuse_shortfall(blocks, found, space.area());
     std::vector<std::vector<Vec2>> rings;
     rings.reserve(found.rings.size());
@@ -550,9 +341,7 @@ class Fill {
   double mesh_size_ = 0;
   const ElementName* element_ = nullptr;  // null: rigid
   VoronoiOptions cells_;
-  std::vector<Shape> shapes_;
-  Draw diameter_;
-  std::array<double, 2> angles_{0, 2 * M_PI};
+  BlockReader blocks_;
   std::optional<int> count_;
   double fraction_ = 0;
 };

@@ -1,6 +1,9 @@
 // Words, numbers and tables of text.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <limits>
+
 #include "lib/output/history.hpp"
 #include "lib/text/csv.hpp"
 #include "lib/text/decimal.hpp"
@@ -32,16 +35,19 @@ TEST_CASE("cells of CSV come back as they were", "[text]") {
   CHECK(csv_cell("plain text") == "plain text");
 }
 
-TEST_CASE("histories hold decimal numbers, as all tables", "[text]") {
+TEST_CASE("histories hold what a run writes, and what one writes that became unstable", "[text]") {
   const test::Folder folder;
   const auto file = [&](const std::string& rows) {
     return folder.write("history.csv", "time [s],a.x [m]\n" + rows);
   };
-  const HistoryTable table = read_history(file("0,1\n1e-3,+2\n2,3"));  // the last row is unfinished
+  const HistoryTable table = read_history(file("0,1\n1e-3,2\n2,3"));  // the last row is unfinished
   CHECK(table.names == std::vector<std::string>{"time", "a.x"});
   CHECK(table.units == std::vector<std::string>{"s", "m"});
   CHECK(table.columns == std::vector<std::vector<double>>{{0, 1e-3}, {1, 2}});
-  for (const char* row : {"0\n", "0,1,2\n", "0,inf\n", "0,nan\n", "0,0x1\n", "\n", "0,\n"}) {
+  const HistoryTable unstable = read_history(file("0,inf\n1,nan\n"));
+  CHECK(unstable.columns[1].front() == std::numeric_limits<double>::infinity());
+  CHECK(std::isnan(unstable.columns[1].back()));
+  for (const char* row : {"0\n", "0,1,2\n", "0,1e999\n", "0,0x1\n", "0,+1\n", "\n", "0,\n"}) {
     CHECK_THROWS_WITH(read_history(file(row)),
                       Catch::EndsWith("history.csv:2: is not a row of 2 numbers"));
   }

@@ -18,10 +18,10 @@ struct Contact {
   int a, b;
   double depth;    ///< lower bound of the penetration, m
   double at_most;  ///< upper bound, m; the penetration is known if both are equal
-  double
-      relative_depth;  ///< depth over the depth at which the potential ends; out of range from 1 on
-  double stiffness;    ///< upper bound of the derivative of the force by the depth, N/m
-                       ///< (docs/theory.md, Normal contact)
+  /// Depth over the depth at which the potential ends; out of range from 1 on.
+  double relative_depth;
+  double stiffness;  ///< upper bound of the derivative of the force by the depth, N/m
+                     ///< (docs/theory.md, Normal contact)
 };
 
 /// The forces in one contact patch, which is a connected part of the overlap of two bodies. Forces

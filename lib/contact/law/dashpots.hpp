@@ -75,8 +75,8 @@ class Dashpots {
       RigidIndex body;
       Vec2 direction;       ///< unit vector
       double inverse_mass;  ///< inverse mass along the direction, 1/kg
-      double
-          gain;  ///< change of the speed along the direction in this step by all other forces, m/s
+      /// Change of the speed along the direction in this step by all other forces, m/s.
+      double gain;
     };
     std::span<const Rail> rails = {};
   };

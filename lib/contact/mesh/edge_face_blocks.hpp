@@ -94,9 +94,8 @@ class EdgeFaceBlocks {
   [[nodiscard]] size_t group_count() const { return groups_.size(); }
   /// Each law belongs to one unit.
   [[nodiscard]] std::span<const EdgeFaceLaw> laws() const { return laws_; }
-  [[nodiscard]] int most_blocks() const {
-    return most_blocks_;
-  }  ///< largest number of blocks of a unit
+  /// The largest number of blocks of a unit.
+  [[nodiscard]] int most_blocks() const { return most_blocks_; }
 
   /// One entry for each block.
   [[nodiscard]] std::span<EdgeFaceTouch> touches() { return touches_; }

@@ -1,5 +1,5 @@
 // Edges against faces, several at a time: which of them meet, and the forces between them. This
-// header is private to outline_kernel.cpp.
+// header is private to outline_kernel, whose header includes it for its types.
 #pragma once
 
 #include <algorithm>

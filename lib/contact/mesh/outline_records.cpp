@@ -57,7 +57,8 @@ class PatchGroups {
     for (size_t i = 0; i < contacts_.size(); ++i) join_contact(i);
     join_saturated();
   }
-  /// The patch number of each contact. The numbers ascend with the pairs of bodies.
+  /// The patch number of each contact, then of each saturated edge and face. The numbers ascend
+  /// with the pairs of bodies.
   std::vector<int> numbers() { return groups_.numbers(keys_); }
 
  private:
@@ -260,7 +261,8 @@ void add_surface_records(const OutlineState& state, std::vector<SurfaceRecord>& 
   for (const auto& [edge, face, slope, piece, drag, push] : state.contacts) {
     record[edge].pressure += slope / thickness * piece.sum;
     record[face].pressure += slope / thickness * piece.area / o.length[face];
-    for (const int k : {edge, face}) {  // the tangent of the face is that of the contact
+    for (const int k :
+         {edge, face}) {  // force and tangent of the face are both opposite to the edge's
       record[k].traction -= drag.dot(Vec2(o.tx[face], o.ty[face])) / (o.length[k] * thickness);
     }
   }

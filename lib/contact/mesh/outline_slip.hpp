@@ -1,5 +1,5 @@
 // The slip of edges against faces, and the friction forces on the vertices, for several contacts at
-// a time. This header is private to outline_friction.cpp.
+// a time. This header is private to outline_friction, whose header includes it for its types.
 #pragma once
 
 #include <array>

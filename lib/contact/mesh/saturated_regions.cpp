@@ -49,22 +49,19 @@ SaturatedRegions::Base SaturatedRegions::base_of(int index, BodyIndex other,
     if (apart(own[i], o.body_boxes[other])) return {index, i, 0, of_offset_curve, true};
   }
   const OutlineSurfaces::Body& body = o.bodies[other];
-  const auto box_of = [&](const Vec2& a, const Vec2& b) {
-    Box box;
-    box.include(a.x(), a.y());
-    box.include(b.x(), b.y());
-    return box.grown(o.growth());
+  const auto grown_box = [&](const Vec2& a, const Vec2& b) {
+    return box_of(a, b).grown(o.growth());
   };
   const int count = loop.end - loop.first;
   for (int k = 0; k < std::min(kTrials, count); ++k) {
     const int i = loop.first +
                   static_cast<int>(static_cast<std::int64_t>(k) * count / std::min(kTrials, count));
     const Vec2 place = of_offset_curve ? o.offset_point(i) : o.point(i);
-    const Box box = box_of(place, place);
+    const Box box = grown_box(place, place);
     bool far = true;
     for (int j = body.first; far && j < body.end; ++j) {
       far = apart(box, of_offset_curve ? o.edge_boxes[j]
-                                       : box_of(o.offset_point(j), o.offset_point(o.next[j])));
+                                       : grown_box(o.offset_point(j), o.offset_point(o.next[j])));
     }
     if (far)
       return {index, i, winding(place, index, other, of_offset_curve), of_offset_curve, true};

@@ -33,7 +33,7 @@ class PatchTangential {
   /// Begins a step of dt (s), see Kernel::update_friction. `now` is used until the step ends.
   void begin_step(const Kinematics& now, double dt);
   /// Updates the friction of the touching pairs from `first` to `end`, in blocks of kBlock pairs,
-  /// and passes the loads of each block to take(loads).
+  /// and passes the loads of each block to consume(loads).
   template <class Consume>
   void step(int first, int end, int worker, const Consume& consume);
   /// Books the losses of friction.

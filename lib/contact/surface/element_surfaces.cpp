@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 
 void ElementSurfaces::add(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
@@ -15,7 +17,7 @@ void ElementSurfaces::add(const Mesh& mesh, const Boundary& boundary, NodeIndex 
   for (const BoundaryLoop& loop : boundary.loops) {
     outermost.insert(outermost.end(), loop.elements.begin(), loop.elements.end());
     for (size_t i = 0; i < loop.nodes.size(); ++i) {
-      const int p = loop.nodes[i], q = loop.nodes[i + 1 == loop.nodes.size() ? 0 : i + 1];
+      const int p = loop.nodes[i], q = after(loop.nodes, i);
       const double half = (mesh.nodes[q] - mesh.nodes[p]).norm() / 2;
       tributary[p] += half, tributary[q] += half;
       edges.emplace(p, q);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "geometry/spatial/loops.hpp"
 #include "lib/execution/dispatch.hpp"
 
@@ -17,11 +18,6 @@ constexpr double kMoveTime = 3, kEdgeTime = 6;  // time for a vertex, ns
 constexpr int kTogether = 16;  // bodies placed together, so that their data stay in the cache
 // A point nearer to a line than this, relative to the depth, is not clear.
 constexpr double kClear = 1e-9;
-
-void include(Box& box, const Box& other) {
-  box.include(other.x0, other.y0);
-  box.include(other.x1, other.y1);
-}
 
 template <class Number>
 APOTHEM_INLINE Number load(const double* from) {
@@ -109,7 +105,7 @@ double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   double area = 0, length = 0;
   for (const std::vector<Vec2>& ring : rings) {
     for (size_t i = 0; i < ring.size(); ++i) {
-      const Vec2& next = ring[i + 1 == ring.size() ? 0 : i + 1];
+      const Vec2& next = after(ring, i);
       area += cross(ring[i] - ring[0], next - ring[0]) / 2;
       length += (next - ring[i]).norm();
     }
@@ -170,8 +166,8 @@ void OutlineSurfaces::add_loop(const std::vector<Vec2>& places, std::span<const 
     x0_.push_back(places[i].x());
     y0_.push_back(places[i].y());
     node.push_back(nodes.empty() ? -1 : nodes[i]);
-    next.push_back(first + (i + 1 == n ? 0 : i + 1));
-    previous.push_back(first + (i == 0 ? n - 1 : i - 1));
+    next.push_back(first + apothem::next(i, n));
+    previous.push_back(first + apothem::previous(i, n));
     body.push_back(static_cast<BodyIndex>(bodies.size()));
   }
   x.resize(x0_.size()), y.resize(x0_.size());
@@ -295,8 +291,7 @@ void OutlineSurfaces::find_boxes(double growth) {
     box.include(x[i], y[i]);
     box.include(x[j], y[j]);
     edge_boxes[i] = box.grown(growth);
-    for (const Vec2& corner : {offset_point(i), offset_point(j)})
-      box.include(corner.x(), corner.y());
+    box.include(offset_point(i)), box.include(offset_point(j));
     face_boxes[i] = box.grown(growth);
   }
 }
@@ -346,8 +341,8 @@ void OutlineSurfaces::prepare_search() {
   body_boxes.assign(count, {});
   for (int i = 0; i < size(); ++i) {
     kept_.offset_x[i] = offset_point(i).x(), kept_.offset_y[i] = offset_point(i).y();
-    include(body_boxes[body[i]], edge_boxes[i]);
-    include(body_boxes[body[i]], face_boxes[i]);
+    body_boxes[body[i]].include(edge_boxes[i]);
+    body_boxes[body[i]].include(face_boxes[i]);
   }
 }
 

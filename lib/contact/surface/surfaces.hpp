@@ -66,7 +66,7 @@ class Surfaces {
   /// Adds the polygon of the next rigid body. The potential is relative to the mass centre and must
   /// outlive this object.
   void add_polygon(const Potential& potential, const Rigid& rigid);
-  /// Adds the boundary of the next deformable body: see Outlines::add_mesh.
+  /// Adds the boundary of the next deformable body: see OutlineSurfaces::add_mesh.
   void add_outline(const Mesh& mesh, NodeIndex first_node, std::optional<double> reference,
                    MeshInertia inertia = {});
   /// Adds the outermost elements of the next deformable body: see ElementSurfaces::add.

@@ -55,7 +55,7 @@ TEST_CASE("beyond the collar: the energy is that of the depth at all points", "[
 
 TEST_CASE("beyond the collar: nodal forces are the gradient of the energy, and momenta balance",
           "[plateau]") {
-  test::SeededRandom random(32);
+  samples::Random random(32);  // the same cases always: the bound is a measured one
   double worst = 0, worst_balance = 0;
   int deep = 0;
   for (int i = 0; i < scaled(400); ++i) {

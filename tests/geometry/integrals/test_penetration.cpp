@@ -150,13 +150,15 @@ TEST_CASE("what the potential measures bounds the penetration from both sides", 
     const Polygon a = any();
     const Polygon b =
         samples::shifted(any(), {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)});
-    const double found = penetration(a, b), depth = edge(a, b, choice).integral.depth;
+    const PairIntegral pair = edge(a, b, choice).integral;
+    const double found = penetration(a, b), depth = pair.depth;
     const double ratio =
         std::max(depth_ratio(make_potential(a, choice)), depth_ratio(make_potential(b, choice)));
     CHECK(depth <= found * (1 + 1e-9));
-    CHECK(found <= depth * ratio * (1 + 1e-9));
+    if (pair.largest_phi < 1) CHECK(found <= depth * ratio * (1 + 1e-9));  // 1 is phi's limit
     if (choice.field == Field::distance) CHECK(ratio == 1);
-    if (depth > 0 && ratio > 1) closest = std::max(closest, found / (depth * ratio));
+    if (pair.largest_phi < 1 && depth > 0 && ratio > 1)
+      closest = std::max(closest, found / (depth * ratio));
   }
   CHECK(closest > .7);
   CHECK(depth_ratio(make_potential(quad_q())) == 1);
@@ -180,7 +182,7 @@ TEST_CASE("the largest distance along a segment is found wherever it is", "[pene
     for (int k = 0; k <= kPoints; ++k) {
       most = std::max(most, boundary.at(p + k * (q - p) / kPoints));
     }
-    CHECK(found >= most);
+    CHECK(found >= most * (1 - 0x1p-51));  // both are rounded
     CHECK(found <= most + (q - p).norm() / kPoints);
     CHECK(boundary.largest(p, q, 2 * found) == 2 * found);
     CHECK(boundary.largest(p, q, .99 * found) == Approx(found).epsilon(1e-11));
