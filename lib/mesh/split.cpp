@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/mesh/edges.hpp"
 #include "lib/mesh/measure.hpp"
 
