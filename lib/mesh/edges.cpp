@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/polygon/cyclic.hpp"
 #include "lib/mesh/invalid_mesh.hpp"
 
 namespace apothem {

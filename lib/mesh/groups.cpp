@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/polygon/cyclic.hpp"
+
 namespace apothem {
 
 MeshGroup line_group(std::string name, std::vector<std::array<int, 2>> edges) {
