@@ -194,8 +194,7 @@ std::string bad_line(const std::string& file, std::int64_t size) {
 
 }  // namespace
 
-HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress,
-                                        const std::string& header) {
+HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress) {
   HistoryWriter::Parts parts;
   if (progress.histories.size() != parts.size()) {
     throw SceneError(folder, 0, "", "holds a checkpoint of a run without histories; run it anew");
@@ -221,6 +220,10 @@ HistoryWriter::Parts required_histories(const std::string& folder, const RunProg
                        bad_line(file, kept.size)));
     }
   }
+  return parts;
+}
+
+void refuse_other_columns(const std::string& folder, const std::string& header) {
   const std::string file = folder + "/" + kHistoryFiles[0];
   std::string first;
   std::ifstream stream(file, std::ios::binary);
@@ -229,7 +232,6 @@ HistoryWriter::Parts required_histories(const std::string& folder, const RunProg
                      "has other columns than this version writes; go on with the version that "
                      "began the run, or run it anew with --overwrite");
   }
-  return parts;
 }
 
 void remove_checkpoint(const std::string& folder) {

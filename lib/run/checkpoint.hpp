@@ -94,9 +94,10 @@ Scene read_saved_scene(const std::string& file);
 void read_state(const std::string& file, const std::string& scene_hash, Simulation& simulation,
                 RunProgress& progress);
 /// The histories in a folder that a run goes on with, which need not end there. Throws SceneError
-/// if they are not as they were, or if the first line of history.csv is not `header`.
-HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress,
-                                        const std::string& header);
+/// if they are not as they were.
+HistoryWriter::Parts required_histories(const std::string& folder, const RunProgress& progress);
+/// Throws SceneError if the first line of history.csv in the folder is not `header`.
+void refuse_other_columns(const std::string& folder, const std::string& header);
 
 /// Both of them.
 void remove_checkpoint(const std::string& folder);

@@ -74,9 +74,9 @@ HistoryWriter::Parts Run::resume() {
   lock_folder(*files_, folder);
   HistoryWriter::Parts histories;
   const std::string fault = use_checkpoint(folder, [&](const std::string& file) {
-    histories = required_histories(folder, read_progress(file),
-                                   history_header(scene_.model, scene_.output));
+    histories = required_histories(folder, read_progress(file));
     go_on(file);
+    refuse_other_columns(folder, history_header(scene_.model, scene_.output));
     refuse_other_beginning();
   });
   last_row_ = progress_.last_row, last_frame_ = progress_.last_frame;
