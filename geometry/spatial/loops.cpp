@@ -44,6 +44,23 @@ struct RingEdge {
   double before, turned;
 };
 
+constexpr double kSharp = .67;  // sine of half the angle of an inner corner
+
+// The parameter at which the ray p + h d leaves the region, or `most`.
+double way_out(const std::vector<std::vector<Vec2>>& rings, const Vec2& p, const Vec2& d,
+               double most) {
+  for (const std::vector<Vec2>& ring : rings) {
+    for (size_t j = 0; j < ring.size(); ++j) {
+      const Vec2 from = ring[j] - p, edge = after(ring, j) - ring[j];
+      const double across = cross(d, edge);
+      if (!(across > 0)) continue;  // only edges through which the ray goes out
+      const double h = cross(from, edge) / across, u = cross(from, d) / across;
+      if (h > 0 && h < most && u >= 0 && u <= 1) most = h;
+    }
+  }
+  return most;
+}
+
 // True if the boundary between both ends of a way across of the length t is that of a wedge or of a
 // round end. `between`: its length; `turning`: the angle by which it turns.
 bool tapers(double t, double between, double turning) {
@@ -111,6 +128,24 @@ double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double mo
     look(edges[a], edges[b]), look(edges[b], edges[a]);
   }
   return smallest;
+}
+
+std::optional<InnerCorner> lowest_inner_corner(const std::vector<std::vector<Vec2>>& rings,
+                                               double most) {
+  std::optional<InnerCorner> lowest;
+  for (const std::vector<Vec2>& corners : rings) {
+    for (size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 &p = corners[i], in = (p - before(corners, i)).normalized();
+      const Vec2 out = (after(corners, i) - p).normalized();
+      const double sine = (in + out).norm() / 2;  // of half the angle between the sides
+      if (!(cross(in, out) < 0 && sine < kSharp)) continue;
+      const double height = way_out(rings, p, (in - out).normalized() / sine, most);
+      if (!(height < most)) continue;
+      most = height;
+      lowest = {p, 2 * arc_tangent(sine, std::sqrt(1 - sine * sine)), height};
+    }
+  }
+  return lowest;
 }
 
 }  // namespace apothem

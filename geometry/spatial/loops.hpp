@@ -25,4 +25,15 @@ std::optional<Vec2> deep_vertex(const Loops& a, const Loops& b, double reach);
 /// the boundary between both ends, as in a wedge or a round end, it is not counted.
 double smallest_thickness(const std::vector<std::vector<Vec2>>& rings, double most);
 
+/// A reflex corner of a region with an angle below 84 degrees between its sides outside.
+struct InnerCorner {
+  Vec2 place;     ///< m
+  double angle;   ///< between its sides outside of the region, rad
+  double height;  ///< distance from its sides at which its bisector leaves the region, m
+};
+
+/// The one with the least `height`, if this is below `most` (m).
+std::optional<InnerCorner> lowest_inner_corner(const std::vector<std::vector<Vec2>>& rings,
+                                               double most);
+
 }  // namespace apothem

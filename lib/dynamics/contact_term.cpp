@@ -170,6 +170,20 @@ void ContactTerm::refuse_engulfed(const State& state) const {
       "bodies", -1);
 }
 
+std::string ContactTerm::describe_shallow_collars() const {
+  std::string text;
+  const OutlineSurfaces& outlines = contacts_.surfaces().outlines();
+  for (const auto& [body, corner] : outlines.shallow) {
+    const Vec2 world = corner.place + model_.origin;
+    text += fmt::format(
+        "; \"{}\" only {:.3g} m deep, because of its inner corner of {:.2g} degrees at ({:.6g}, "
+        "{:.6g}) m: two vertices there allow more",
+        name(body), outlines.bodies[body].depth, corner.angle * 180 / std::numbers::pi, world.x(),
+        world.y());
+  }
+  return text;
+}
+
 std::string ContactTerm::describe() const {
   const ContactLaw& law = model_.contact;
   std::string text = fmt::format(
@@ -180,6 +194,7 @@ std::string ContactTerm::describe() const {
     text += law.surface == ContactSurface::body ? "; meshes by the potentials of their boundaries"
                                                 : "; meshes by the potentials of their elements";
     if (touches_itself(model_)) text += ", also with themselves";
+    text += describe_shallow_collars();
   }
   text += pair_table(model_).rough()
               ? fmt::format("; friction, mu = {:g}", law.friction.coefficient)

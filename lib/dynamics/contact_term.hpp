@@ -102,6 +102,7 @@ class ContactTerm final : public Term {
     contacts_.add_event_impulses(2, {layout.of_rigid(forces), layout.of_nodes(forces), {}});
   }
   void refuse_engulfed(const State& state) const;
+  [[nodiscard]] std::string describe_shallow_collars() const;
   [[noreturn]] void refuse(const ContactFault& fault, const State& state) const;
   void note_peaks(const State& state);
   void refuse_passage(const State& state);

@@ -113,13 +113,10 @@ double least_inradius(const std::vector<std::vector<Vec2>>& rings) {
   return area / length;
 }
 
-// The smallest thickness of a body, m, or `most` if the body is nowhere thinner.
-double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
-  std::vector<std::vector<Vec2>> rings;
-  for (const BoundaryLoop& loop : boundary.loops) {
-    std::vector<Vec2>& ring = rings.emplace_back();
-    for (const int n : loop.nodes) ring.push_back(mesh.nodes[n]);
-  }
+// The smallest thickness of a body, m, or `most` if the body is nowhere thinner. `rings` are those
+// of the boundary.
+double thickness_of(const Mesh& mesh, const Boundary& boundary,
+                    const std::vector<std::vector<Vec2>>& rings, double most) {
   if (least_inradius(rings) < most / 2) most = std::min(most, 2 * mesh_inradius(mesh, boundary));
   return smallest_thickness(rings, most);
 }
@@ -129,34 +126,44 @@ double thickness_of(const Mesh& mesh, const Boundary& boundary, double most) {
 void OutlineSurfaces::add_mesh(const Mesh& mesh, const Boundary& boundary, NodeIndex first_node,
                                std::optional<double> reference) {
   const int first = size();
-  std::vector<Vec2> places;
+  std::vector<std::vector<Vec2>> rings;
   std::vector<NodeIndex> nodes;
   for (const BoundaryLoop& loop : boundary.loops) {
-    places.clear(), nodes.clear();
+    std::vector<Vec2>& ring = rings.emplace_back();
+    nodes.clear();
     for (const int n : loop.nodes) {
-      places.push_back(mesh.nodes[n]);
+      ring.push_back(mesh.nodes[n]);
       nodes.push_back(first_node + n);
     }
-    add_loop(places, nodes);
+    add_loop(ring, nodes);
   }
+  double r, reach;
   if (reference) {
-    const double thickness = thickness_of(mesh, boundary, 2 * *reference);
-    close_body({first, size(), -1, *reference, thickness / 2});
-    return;
+    r = *reference;
+    reach = thickness_of(mesh, boundary, rings, 2 * r) / 2;
+  } else {
+    // The collars of opposite sides must not meet in a body that is squeezed to half its thickness.
+    // A row of square elements is 4 r thick, so thicknesses beyond that need not be measured.
+    r = boundary_inradius(mesh, boundary);
+    reach = std::max(r / 2, thickness_of(mesh, boundary, rings, 4 * r) / 4);
   }
-  // The collars of opposite sides must not meet in a body that is squeezed to half its thickness. A
-  // row of square elements is 4 r thick, so thicknesses beyond that need not be measured.
-  const double r = boundary_inradius(mesh, boundary);
-  const double thickness = thickness_of(mesh, boundary, 4 * r);
-  close_body({first, size(), -1, r, std::max(r / 2, thickness / 4)});
+  // Nor must the collar leave the body at an inner corner when this has closed to half its angle.
+  if (const std::optional<InnerCorner> corner = lowest_inner_corner(rings, 2 * reach)) {
+    reach = corner->height / 2;
+    shallow.push_back({static_cast<BodyIndex>(bodies.size()), *corner});
+  }
+  close_body({first, size(), -1, r, reach});
 }
 
 void OutlineSurfaces::add_rigid(const std::vector<Vec2>& vertices, RigidIndex rigid,
                                 double reference) {
   const int first = size();
   add_loop(vertices, {});
-  close_body({first, size(), rigid, reference,
-              std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2)});
+  double reach = std::min(reference, smallest_thickness({vertices}, 2 * reference) / 2);
+  if (const std::optional<InnerCorner> corner = lowest_inner_corner({vertices}, reach)) {
+    reach = corner->height;
+  }
+  close_body({first, size(), rigid, reference, reach});
 }
 
 void OutlineSurfaces::add_loop(const std::vector<Vec2>& places, std::span<const NodeIndex> nodes) {

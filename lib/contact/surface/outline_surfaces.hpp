@@ -16,6 +16,7 @@
 #include "geometry/integrals/collar.hpp"
 #include "geometry/integrals/placed_shapes.hpp"
 #include "geometry/spatial/boxes.hpp"
+#include "geometry/spatial/loops.hpp"
 #include "lib/contact/law/kinematics.hpp"
 #include "lib/execution/elementary.hpp"
 #include "lib/execution/parallel.hpp"
@@ -39,7 +40,13 @@ class OutlineSurfaces {
     [[nodiscard]] bool is_rigid() const { return rigid >= 0; }
     [[nodiscard]] double slope() const { return 1 / reference; }  ///< slope of its potential, 1/m
   };
-  std::vector<Body> bodies;         ///< in the order of BodyIndex
+  std::vector<Body> bodies;  ///< in the order of BodyIndex
+  /// A body with a mesh whose collar is less deep because of an inner corner.
+  struct Shallow {
+    BodyIndex body;
+    InnerCorner corner;
+  };
+  std::vector<Shallow> shallow;
   std::vector<BodyIndex> body;      ///< body of each vertex
   std::vector<int> next, previous;  ///< next and previous vertex of each vertex
   std::vector<NodeIndex> node;      ///< node of each vertex; -1 on a rigid body

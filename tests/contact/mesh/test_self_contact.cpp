@@ -155,6 +155,36 @@ TEST_CASE("a strip folded flat on itself feels what two strips feel", "[self_con
   }
 }
 
+TEST_CASE("the collar stays in the body at sharp inner corners", "[self_contact][contact]") {
+  test::SeededRandom random(61);
+  for (int i = 0; i < scaled(40); ++i) {
+    const double angle = random.uniform(1, 80) * M_PI / 180, deep = random.uniform(.2, .5);
+    const double wide = deep * std::tan(angle / 2), at = random.uniform(.3, .7);
+    if (wide > .25) continue;
+    const Polygon notched(
+        {{0, 0}, {1, 0}, {1, .6}, {at + wide, .6}, {at, .6 - deep}, {at - wide, .6}, {0, .6}});
+    const Mesh mesh = fill_mesh(notched, {}, random.uniform(.05, .2), ElementShape::triangle);
+    Bodies body(self_law(), .05);
+    body.add_mesh(mesh);
+    body.join();
+    body.evaluate();
+    CAPTURE(angle, deep, at);
+    CHECK(body.contacts->contacts().empty());
+    CHECK(body.contacts->energy() == Approx(0).margin(1e-15));
+    // Nor does it leave the body when the corner has closed to half its angle, which is at most
+    // what the opposite side allows.
+    const OutlineSurfaces& outlines = body.contacts->surfaces().outlines();
+    const double height = (.6 - deep) * std::sin(angle / 2);
+    CHECK(outlines.bodies[0].depth <= height / 2 * (1 + 1e-12));
+    for (const auto& [of, corner] : outlines.shallow) {
+      CHECK(outlines.bodies[of].depth == corner.height / 2);
+      CHECK(corner.height == Approx(height).epsilon(1e-9));
+      CHECK(corner.angle == Approx(angle).epsilon(1e-9));
+      CHECK((corner.place - Vec2(at, .6 - deep)).norm() < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("meshes that do not cross themselves feel nothing", "[self_contact][contact]") {
   test::SeededRandom random(43);
   int bodies = 0;
