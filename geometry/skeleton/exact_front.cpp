@@ -25,7 +25,7 @@ struct Vertex {
   // What determines it besides the line of the edge after it or before it: those themselves, or,
   // between edges in line, the upright plane in which it moves, which may be none that is known.
   int plane_before, plane_after;
-  bool hits;       // may reach other edges: it is not convex
+  bool hits;  // may reach other edges: it is not convex
   bool fresh = true;
   int loop = kNone, next = kNone;  // the loop that it belongs to, and the vertex after it
   int born = 0;                    // step in which the piece from it to `next` came to be
@@ -193,9 +193,7 @@ class ExactFront {
     if (first < 0 || second < 0) return Where::outside;
     return first == 0 ? Where::start : second == 0 ? Where::end : Where::between;
   }
-  static bool known(const Triple& p) {
-    return std::find(p.begin(), p.end(), kNone) == p.end();
-  }
+  static bool known(const Triple& p) { return std::find(p.begin(), p.end(), kNone) == p.end(); }
   [[nodiscard]] bool meets(const Triple& here, int plane) const {
     return std::find(here.begin(), here.end(), plane) != here.end() ||
            planes_.concurrent(here, plane);
@@ -252,8 +250,8 @@ class ExactFront {
     for (const int i : loop.vertices) {
       Vertex& c = vertices_[i];
       if (!c.hits) continue;
-      const bool lost = c.hit && (vertices_[c.target].loop != c.loop ||
-                                  vertices_[c.target].next != c.target_end);
+      const bool lost =
+          c.hit && (vertices_[c.target].loop != c.loop || vertices_[c.target].next != c.target_end);
       if (c.fresh || lost) {
         c.fresh = false;
         c.hit.reset();
@@ -404,7 +402,8 @@ class ExactFront {
     return segments;
   }
 
-  // Makes a node of each set of vertices that takes part, and ends the arcs of these vertices there.
+  // Makes a node of each set of vertices that takes part, and ends the arcs of these vertices
+  // there.
   std::vector<int> add_nodes(const Loop& loop, const Fine& time, const std::vector<bool>& touched,
                              DisjointSets& same) {
     const int m = static_cast<int>(loop.vertices.size());
@@ -501,9 +500,9 @@ class ExactFront {
   int size_;
   ExactPlanes planes_;
   FineFrame frame_;
-  std::vector<FineLine> lines_;  // per edge of the polygon
+  std::vector<FineLine> lines_;               // per edge of the polygon
   std::vector<std::array<double, 3>> rough_;  // their tangents and offsets
-  bool sound_ = true;  // false once something has happened that cannot be
+  bool sound_ = true;                         // false once something has happened that cannot be
   int step_ = 0;
   std::vector<Vertex> vertices_;
   std::vector<Loop> loops_;
@@ -528,7 +527,8 @@ bool place_exactly(Skeleton& skeleton, const Polygon& polygon) {
   skeleton.roof_height = 0;
   for (size_t i = n; i < skeleton.nodes.size(); ++i) {
     if (faces_at[i].size() != 3) return false;
-    const FineLine &p = lines[faces_at[i][0]], &q = lines[faces_at[i][1]], &r = lines[faces_at[i][2]];
+    const FineLine &p = lines[faces_at[i][0]], &q = lines[faces_at[i][1]],
+                   &r = lines[faces_at[i][2]];
     const auto sine = [](const FineLine& a, const FineLine& b) -> Fine {
       return a.tx * b.ty - a.ty * b.tx;
     };

@@ -40,7 +40,8 @@ ExactPlanes::ExactPlanes(const Polygon& polygon) {
   }
   const int n = polygon.size();
   std::vector<std::array<Whole, 2>> points;
-  for (const Vec2& v : polygon.vertices()) points.push_back({whole(v.x(), unit), whole(v.y(), unit)});
+  for (const Vec2& v : polygon.vertices())
+    points.push_back({whole(v.x(), unit), whole(v.y(), unit)});
   for (int v = n - 1; v >= 0; --v) {  // small numbers make small products
     points[v][0] -= points[0][0];
     points[v][1] -= points[0][1];
@@ -97,8 +98,7 @@ bool ExactPlanes::is_zero(const Roots& sum) {
     }
     if (!known) classes.push_back({radicand, factor * radicand});
   }
-  return std::all_of(classes.begin(), classes.end(),
-                     [](const Class& c) { return c.factors == 0; });
+  return std::all_of(classes.begin(), classes.end(), [](const Class& c) { return c.factors == 0; });
 }
 
 ExactPlanes::Whole ExactPlanes::minor(const Plane& p, const Plane& q, const Plane& r) {

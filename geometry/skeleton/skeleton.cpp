@@ -190,10 +190,10 @@ class Search {
     return passes() && settled();
   }
 
-  // Gives the nodes the places that follow from the polygon as it is, rounded once. Where events may
-  // have coincided, the skeleton is constructed once more, exactly; there the one that was found
-  // may depend on how the edges are numbered. If neither obeys the laws, the one that was found is
-  // kept.
+  // Gives the nodes the places that follow from the polygon as it is, rounded once. Where events
+  // may have coincided, the skeleton is constructed once more, exactly; there the one that was
+  // found may depend on how the edges are numbered. If neither obeys the laws, the one that was
+  // found is kept.
   bool settled() {
     Skeleton found = found_;
     if (!has_near_ties(found_, polygon_) && place_exactly(found_, polygon_) &&
