@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/disjoint_sets.hpp"
@@ -50,9 +51,9 @@ struct Hit {
 struct Segment {
   int from, to;  // sets of vertices in the same place
   int edge;
-  int start = kNone;  // position of the vertex in which it starts, if it begins a piece
   bool gone = false;
   int follower = kNone, vertex = kNone;  // segment after it, vertex of the front in its start
+  int other = kNone;                     // another segment with the same start
 };
 
 class ExactFront {
@@ -199,28 +200,34 @@ class ExactFront {
            planes_.concurrent(here, plane);
   }
 
-  // True if doubles show that vertex c misses the piece from u on, or meets it after its first hit.
-  [[nodiscard]] bool misses(const Vertex& c, const Vertex& u, double now, double first) const {
-    const auto& [tx, ty, offset] = rough_[u.after];
-    const auto at = [&](const Vertex& p, double t) {
-      const auto& [x, y, vx, vy, since] = p.rough;
-      return std::array{x + (t - since) * vx, y + (t - since) * vy};
-    };
+  // True if doubles show that vertex c misses the piece from u on, or meets it after a time.
+  [[nodiscard]] bool misses(const Vertex& c, const Vertex& u, double now, double until) const {
     const Vertex& v = vertices_[u.next];
     if (!(c.fast < kFast && u.fast < kFast && v.fast < kFast)) return false;
-    const double rate = tx * c.rough[3] - ty * c.rough[2] - 1;
-    if (rate > kRough) return true;
-    if (rate > -kSlow) return false;
-    const auto [x, y] = at(c, now);
-    const double height = tx * y - ty * x - offset - now;
-    const double time = now - height / rate;
-    if (height < -kRough || time > first + kRough) return true;
-    const auto p = at(c, time), from = at(u, time), to = at(v, time);
-    return tx * (p[0] - from[0]) + ty * (p[1] - from[1]) < -kRough ||
-           tx * (to[0] - p[0]) + ty * (to[1] - p[1]) < -kRough;
+    const auto& [tx, ty, offset] = rough_[u.after];
+    const auto along = [tx = tx, ty = ty](const Vertex& p, double t) {
+      const auto& [x, y, vx, vy, since] = p.rough;
+      return tx * (x + (t - since) * vx) + ty * (y + (t - since) * vy);
+    };
+    const auto beside = [&](double t) {  // -1 before the piece, 1 behind it
+      const double place = along(c, t);
+      return place < along(u, t) - kRough ? -1 : place > along(v, t) + kRough ? 1 : 0;
+    };
+    const auto& [x, y, vx, vy, since] = c.rough;
+    const double rate = tx * vy - ty * vx - 1;
+    const double height =
+        tx * (y + (now - since) * vy) - ty * (x + (now - since) * vx) - offset - now;
+    if (rate > kRough || height < -kRough) return true;
+    if (rate < -kSlow) {
+      const double time = now - height / rate;
+      return time > until + kRough || beside(time) != 0;
+    }
+    const double last = std::min(until, 1.0) + kRough;  // no front lasts longer than 1
+    const int side = beside(now);
+    return height > kSlow * (last - now) + kRough || (side != 0 && beside(last) == side);
   }
-  // Doubles are asked about vertices that are slower than kFast and approach a line faster than
-  // kSlow. With an error of 1e-14 in a height, the time then has 3e-11, and a place 1e-9.
+  // Doubles are asked about vertices that are slower than kFast. Where one approaches a line faster
+  // than kSlow, the time has an error of 3e-11 for one of 1e-14 in the height, and a place 1e-9.
   static constexpr double kFast = 30, kSlow = 1e-2, kRough = 1e-7;
 
   // Looks whether vertex c hits the piece from u on before all that is known.
@@ -292,10 +299,13 @@ class ExactFront {
     const int m = static_cast<int>(loop.vertices.size());
     std::vector<bool> shrunk(m);
     std::vector<Hit> hits;
+    const Fine late = *time + kFineNoise;
     for (int i = 0; i < m; ++i) {
       const Vertex& v = vertices_[loop.vertices[i]];
-      if (v.shrink) shrunk[i] = same_time(*v.shrink, shrink_triple(v), *time, triple);
-      if (!v.hit) continue;
+      if (v.shrink && *v.shrink < late) {
+        shrunk[i] = same_time(*v.shrink, shrink_triple(v), *time, triple);
+      }
+      if (!v.hit || !(*v.hit < late)) continue;
       const Triple own = hit_triple(v, vertices_[v.target].after);
       if (same_time(*v.hit, own, *time, triple)) add_hits(loop, i, *time, triple, hits);
     }
@@ -393,11 +403,8 @@ class ExactFront {
       }
       for (; hit != hits.end() && hit->piece == i; ++hit) add(same.find(hit->at));
       add(same.find(next(i, m)));
-      if (segments.size() == first) {
-        sound_ = false;  // a piece of some length between two ends in the same place
-      } else {
-        segments[first].start = i;
-      }
+      // A piece of some length cannot have both ends in the same place.
+      if (segments.size() == first) sound_ = false;
     }
     return segments;
   }
@@ -445,12 +452,12 @@ class ExactFront {
   // Finds which segment follows on which, and the vertices between them.
   void follow(const Loop& loop, const Fine& time, std::vector<Segment>& segments,
               const std::vector<bool>& touched, const std::vector<int>& nodes) {
-    std::vector<std::vector<int>> leaving(loop.vertices.size());
+    std::vector<int> leaving(loop.vertices.size(), kNone);  // the last segment from each set
     for (int s = 0; s < static_cast<int>(segments.size()); ++s) {
-      leaving[segments[s].from].push_back(s);
+      segments[s].other = std::exchange(leaving[segments[s].from], s);
     }
     for (Segment& in : segments) {
-      for (const int out : leaving[in.to]) {
+      for (int out = leaving[in.to]; out != kNone; out = segments[out].other) {
         if (in.follower == kNone ||
             earlier(segments[out].edge, segments[in.follower].edge, in.edge)) {
           in.follower = out;
