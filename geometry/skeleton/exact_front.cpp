@@ -84,7 +84,7 @@ class ExactFront {
       if (++step_ > 8 * size_ + kProgressEvery) return std::nullopt;
       advance(loop);
       if (progress && step_ % kProgressEvery == 0) {
-        progress({"straight skeleton, exactly", std::nullopt});
+        progress({"straight skeleton", std::nullopt});
       }
     }
     if (!sound_) return std::nullopt;
