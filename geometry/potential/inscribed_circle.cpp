@@ -29,6 +29,7 @@
 #include <numeric>
 #include <random>
 
+#include "geometry/polygon/canonical_pose.hpp"
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/predicates.hpp"
 #include "geometry/polygon/triangulation.hpp"
@@ -406,27 +407,36 @@ bool before(const Vec2& p, const Vec2& q) {
 
 InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress) {
   if (polygon.size() <= kFewEdges && polygon.is_convex()) return inscribed_circle(polygon);
-  const double unit = std::exp2(std::ceil(std::log2(bounding_box(polygon).extent())));
+  const CanonicalPose pose(polygon);
+  const double extent = bounding_box(polygon).extent();
+  const double unit = std::exp2(std::ilogb(extent) + (std::ldexp(extent, -std::ilogb(extent)) > 1));
   using Start = Search::Start;
-  Search search(polygon, unit,
+  Search search(pose.polygon(), unit,
                 polygon.vertices().size() > kManyEdges ? Start::box : Start::triangles);
   if (!search.run(progress)) {
-    search = Search(polygon, unit, Start::triangles);
+    search = Search(pose.polygon(), unit, Start::triangles);
     search.run(progress);
   }
   if (!(search.radius() > kSmallest)) {
     throw InvalidPolygon("is thinner than double precision resolves", 0);
   }
-  std::vector<Centre> centres = search.centres();
-  for (Centre& c : centres) {
-    if (before(c.last, c.first)) std::swap(c.first, c.last);
+  const std::vector<Centre> centres = search.centres();
+  std::vector<Vec2> ends;
+  for (const Centre& c : centres) ends.insert(ends.end(), {c.first * unit, c.last * unit});
+  ends = pose.back(std::move(ends));
+  std::vector<Centre> placed;
+  for (size_t i = 0; i < ends.size(); i += 2) {
+    placed.push_back({ends[i], ends[i + 1]});
+    if (before(placed.back().last, placed.back().first)) {
+      std::swap(placed.back().first, placed.back().last);
+    }
   }
-  std::sort(centres.begin(), centres.end(),
+  std::sort(placed.begin(), placed.end(),
             [](const Centre& a, const Centre& b) { return before(a.first, b.first); });
   InscribedCircle circle{search.radius() * unit, {}};
-  for (const Centre& c : centres) {
-    circle.centres.push_back(c.first * unit);
-    if (c.last != c.first) circle.centres.push_back(c.last * unit);
+  for (const Centre& c : placed) {
+    circle.centres.push_back(c.first);
+    if (c.last != c.first) circle.centres.push_back(c.last);
   }
   return circle;
 }

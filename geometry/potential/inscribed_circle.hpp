@@ -10,8 +10,9 @@ namespace apothem {
 /// circle: isolated ones, and the two ends of each segment of centres (in a corridor with parallel
 /// walls), one after the other. Radii that differ by less than 1e-13 of the radius plus 4e-15 of
 /// the polygon's size count as equal. For convex polygons with up to 100 edges the function calls
-/// inscribed_circle. Throws InvalidPolygon if the polygon is thinner than double precision
-/// resolves.
+/// inscribed_circle. Others are searched in their canonical pose (canonical_pose.hpp), so that
+/// neither numbering nor mirrors nor quarter turns nor powers of two matter. Throws InvalidPolygon
+/// if the polygon is thinner than double precision resolves.
 InscribedCircle largest_inscribed_circle(const Polygon& polygon, const Progress& progress = {});
 
 }  // namespace apothem

@@ -7,6 +7,8 @@
 #include "geometry/polygon/cyclic.hpp"
 #include "geometry/polygon/random_numbers.hpp"
 #include "geometry/skeleton/convex_skeleton.hpp"
+#include "geometry/skeleton/exact_front.hpp"
+#include "geometry/skeleton/near_ties.hpp"
 #include "geometry/skeleton/polish.hpp"
 #include "geometry/skeleton/skeleton_search.hpp"
 #include "geometry/skeleton/wavefront.hpp"
@@ -69,6 +71,9 @@ struct Frame {
 // makes several nodes, and CGAL makes one.
 constexpr int kMany = 64;
 constexpr int kWavefrontAttempts = 3;
+
+// Polygons with more vertices than this are not constructed exactly, which takes n^2 steps.
+constexpr int kMostExact = 10000;
 
 struct Attempt {
   double jitter;  // largest movement of a vertex, as a share of the polygon's size
@@ -153,7 +158,7 @@ class Search {
  private:
   bool try_convex() {
     found_ = assemble(shrink_convex(polygon_));
-    return passes();
+    return passes() && settled();
   }
 
   // Each attempt moves the vertices in other directions.
@@ -182,7 +187,29 @@ class Search {
   bool corrected() {
     frame_.outward(found_, polygon_);
     polish(found_, polygon_);
-    return passes();
+    return passes() && settled();
+  }
+
+  // Gives the nodes the places that follow from the polygon as it is, rounded once. Where events
+  // may have coincided, the skeleton is constructed once more, exactly; there the one that was
+  // found may depend on how the edges are numbered. If neither obeys the laws, the one that was
+  // found is kept.
+  bool settled() {
+    Skeleton found = found_;
+    if (!has_near_ties(found_, polygon_) && place_exactly(found_, polygon_) &&
+        !broken_law(found_, polygon_)) {
+      return true;
+    }
+    if (polygon_.size() <= kMostExact) {
+      if (std::optional<SkeletonParts> parts = exact_skeleton(polygon_, progress_)) {
+        found_ = assemble(std::move(*parts));
+        found_.attempts = found.attempts;
+        found_.exact = true;
+        if (!broken_law(found_, polygon_)) return true;
+      }
+    }
+    found_ = std::move(found);
+    return true;
   }
 
   bool passes() {

@@ -9,6 +9,10 @@
 // lists. Otherwise the construction is repeated with the vertices moved by 1e-13 to 1e-9 of the
 // polygon's size. Polygons with more than 64 vertices are given to the trace of a wavefront
 // (wavefront.hpp) first, because CGAL's construction needs n^2 steps and n^2 memory.
+//
+// Neither tells what happens where events coincide. So where they may have, the skeleton is
+// constructed once more with joined events (exact_front.hpp). It then follows from the polygon
+// alone: not from how vertices are numbered, nor from mirrors, quarter turns and powers of two.
 #pragma once
 
 #include <cstddef>
@@ -47,7 +51,7 @@ struct Skeleton {
   std::vector<std::vector<int>> faces;
   double roof_height = 0;  ///< largest height of a node, m
   int attempts = 1;        ///< number of constructions until one passed the laws
-  bool exact = false;      ///< true if made with CGAL's exact constructions
+  bool exact = false;      ///< true if made with exact decisions about events
 };
 
 /// Position of node i in the coordinates of the polygon's vertices. For i < polygon.size() it is

@@ -29,6 +29,24 @@ void set_arcs(Skeleton& skeleton) {
 
 }  // namespace
 
+std::vector<int> face_of(int edge, int n, std::vector<FaceBorder>& borders) {
+  std::sort(borders.begin(), borders.end(),
+            [](const FaceBorder& p, const FaceBorder& q) { return p.from < q.from; });
+  std::vector<int> nodes{edge};
+  for (int at = next(edge, n); at != edge;) {
+    nodes.push_back(at);
+    const auto found =
+        std::lower_bound(borders.begin(), borders.end(), at,
+                         [](const FaceBorder& p, int from) { return p.from < from; });
+    if (found == borders.end() || found->from != at || nodes.size() > borders.size() + 1) {
+      return {};
+    }
+    at = found->to;
+  }
+  if (nodes.size() != borders.size() + 1) return {};
+  return nodes;
+}
+
 Skeleton assemble(SkeletonParts parts) {
   Skeleton skeleton;
   skeleton.nodes = std::move(parts.nodes);

@@ -22,11 +22,6 @@ constexpr double kMovement = 0x1p-46;
 constexpr double kMostChanges = 500;
 constexpr double kMoreChanges = 1e5;
 
-// A border of a face, from one node to the next one, counter-clockwise.
-struct Border {
-  int from, to;
-};
-
 class Wavefront {
  public:
   Wavefront(const Polygon& polygon, unsigned seed, double movement)
@@ -70,7 +65,7 @@ class Wavefront {
     if (!sound_ || static_cast<int>(nodes_.size()) != total) return std::nullopt;
     SkeletonParts parts{std::move(nodes_), {}};
     for (int f = 0; f < size_; ++f) {
-      parts.faces.push_back(face(f));
+      parts.faces.push_back(face_of(f, size_, borders_[f]));
       if (parts.faces.back().empty()) return std::nullopt;
     }
     return parts;
@@ -279,27 +274,6 @@ class Wavefront {
     changed_.clear();
   }
 
-  // ----------------------------------------------------------------------------------------------
-
-  // The nodes of a face, from its edge on. Empty if its borders do not form one loop.
-  std::vector<int> face(int edge) {
-    std::vector<Border>& borders = borders_[edge];
-    std::sort(borders.begin(), borders.end(),
-              [](const Border& p, const Border& q) { return p.from < q.from; });
-    std::vector<int> nodes{edge};
-    for (int at = next(edge, size_); at != edge;) {
-      nodes.push_back(at);
-      const auto found = std::lower_bound(borders.begin(), borders.end(), at,
-                                          [](const Border& p, int from) { return p.from < from; });
-      if (found == borders.end() || found->from != at || nodes.size() > borders.size() + 1) {
-        return {};
-      }
-      at = found->to;
-    }
-    if (nodes.size() != borders.size() + 1) return {};
-    return nodes;
-  }
-
   const Polygon& polygon_;
   int size_;
   bool sound_ = true;  // false once something has happened that cannot be
@@ -310,7 +284,7 @@ class Wavefront {
   EventQueue queue_;          // of triangles
   std::vector<int> changed_;  // triangles that have to be scheduled anew
   std::vector<Skeleton::Node> nodes_;
-  std::vector<std::vector<Border>> borders_;  // per face
+  std::vector<std::vector<FaceBorder>> borders_;  // per face
 };
 
 }  // namespace

@@ -1,0 +1,102 @@
+#include "geometry/polygon/canonical_pose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace apothem {
+namespace {
+
+constexpr int kGridDigits = 52;
+// Each of the three steps in which points are made symmetric halves a sum.
+constexpr int kHalvings = 3;
+
+bool precedes(const Vec2& p, const Vec2& q) {
+  return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+}
+
+std::vector<Vec2> image(const Polygon& polygon, const AxisMap& map) {
+  std::vector<Vec2> ring;
+  for (const Vec2& v : polygon.vertices()) ring.push_back(map(v));
+  if (map.mirrors()) std::reverse(ring.begin(), ring.end());
+  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), precedes), ring.end());
+  return ring;
+}
+
+struct Images {
+  std::vector<Vec2> first;
+  std::vector<AxisMap> maps;  // that lead to it
+};
+
+Images first_image(const Polygon& polygon) {
+  Images result;
+  for (const bool exchanged : {false, true}) {
+    for (const double x : {1., -1.}) {
+      for (const double y : {1., -1.}) {
+        const AxisMap map{exchanged, x, y};
+        std::vector<Vec2> ring = image(polygon, map);
+        const bool none = result.maps.empty();
+        if (!none && ring == result.first) {
+          result.maps.push_back(map);
+        } else if (none ||
+                   std::lexicographical_compare(ring.begin(), ring.end(), result.first.begin(),
+                                                result.first.end(), precedes)) {
+          result = {std::move(ring), {map}};
+        }
+      }
+    }
+  }
+  return result;
+}
+
+// The map that does what the first one does after the second one has been undone.
+AxisMap composed(const AxisMap& first, const AxisMap& second) {
+  const Vec2 x = first(second.undo({1, 0})), y = first(second.undo({0, 1}));
+  const Vec2 sum = x + y;
+  return {x.x() == 0, sum.x(), sum.y()};
+}
+
+}  // namespace
+
+CanonicalPose::CanonicalPose(const Polygon& polygon)
+    : polygon_([&] {
+        Images images = first_image(polygon);
+        map_ = images.maps.front();
+        // A half turn, a quarter turn and a mirror, in this order, make all symmetries there are.
+        std::array<const AxisMap*, kHalvings> steps{};
+        for (const AxisMap& image : images.maps) {
+          const AxisMap symmetry = composed(image, map_);
+          const bool half = !symmetry.exchanged && symmetry.x < 0 && symmetry.y < 0;
+          const bool same = !symmetry.exchanged && symmetry.x > 0 && symmetry.y > 0;
+          if (!same) steps[symmetry.mirrors() ? 2 : half ? 0 : 1] = &image;
+        }
+        for (const AxisMap* image : steps) {
+          if (image) symmetries_.push_back(composed(*image, map_));
+        }
+        return Polygon(std::move(images.first));
+      }()),
+      shift_(map_.undo(polygon_.origin()) - polygon.origin()) {}
+
+std::vector<Vec2> CanonicalPose::back(std::vector<Vec2> points) const {
+  const int size = std::ilogb(bounding_box(polygon_).extent()) + 1;
+  const int digits = symmetries_.empty() ? kGridDigits : kGridDigits - kHalvings;
+  for (Vec2& p : points) {
+    for (double& c : p) c = std::ldexp(std::round(std::ldexp(c, digits - size)), size - digits);
+  }
+  for (const AxisMap& symmetry : symmetries_) {
+    const Vec2 shift = symmetry(polygon_.origin()) - polygon_.origin();
+    std::vector<Vec2> images;
+    for (const Vec2& p : points) images.emplace_back(symmetry(p) + shift);
+    for (Vec2& p : points) {
+      p = (p + *std::min_element(images.begin(), images.end(),
+                                 [&](const Vec2& a, const Vec2& b) {
+                                   return (a - p).squaredNorm() < (b - p).squaredNorm();
+                                 })) /
+          2;
+    }
+  }
+  for (Vec2& p : points) p = map_.undo(p) + shift_;
+  return points;
+}
+
+}  // namespace apothem

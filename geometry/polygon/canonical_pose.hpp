@@ -1,0 +1,49 @@
+// A pose of a polygon that does not depend on where its ring starts, on its sense, on mirrors that
+// exchange the senses of the axes or the axes themselves, and on quarter turns. What is computed
+// in this pose and mapped back does not depend on them either, to the last bit.
+#pragma once
+
+#include <vector>
+
+#include "geometry/polygon/polygon.hpp"
+
+namespace apothem {
+
+/// One of the eight maps of the plane onto itself that keep the pair of axes.
+struct AxisMap {
+  bool exchanged = false;  ///< x and y, before the signs
+  double x = 1, y = 1;     ///< signs
+
+  Vec2 operator()(const Vec2& p) const {
+    return exchanged ? Vec2(x * p.y(), y * p.x()) : Vec2(x * p.x(), y * p.y());
+  }
+  [[nodiscard]] Vec2 undo(const Vec2& p) const {
+    return exchanged ? Vec2(y * p.y(), x * p.x()) : Vec2(x * p.x(), y * p.y());
+  }
+  [[nodiscard]] bool mirrors() const { return (x * y < 0) != exchanged; }
+};
+
+class CanonicalPose {
+ public:
+  explicit CanonicalPose(const Polygon& polygon);
+
+  /// The polygon in this pose: of its eight images, each from its leftmost and lowest vertex on,
+  /// the one that comes first in the order of coordinates.
+  [[nodiscard]] const Polygon& polygon() const { return polygon_; }
+
+  /// Points that have been computed in this pose, relative to the origin of the polygon there, in
+  /// the coordinates relative to the origin of the given polygon. They are rounded to multiples of
+  /// 2^-52 of the polygon's size, so that it does not matter to which vertex they are relative
+  /// where the vertices are such multiples. If the polygon is symmetric about the origin or a line
+  /// through it, its pose is not unique; the points are then rounded to 2^-49 of the size and made
+  /// as symmetric as the polygon is, each together with those nearest to its images.
+  [[nodiscard]] std::vector<Vec2> back(std::vector<Vec2> points) const;
+
+ private:
+  AxisMap map_;                      // into this pose
+  std::vector<AxisMap> symmetries_;  // of the polygon in this pose
+  Polygon polygon_;
+  Vec2 shift_;  // between the two origins
+};
+
+}  // namespace apothem

@@ -1,0 +1,32 @@
+// The straight skeleton of a polygon with coinciding events, exactly. This header is private to the
+// construction of the straight skeleton.
+//
+// The front moves from one event to the next. At the time of an event, what the polygon has become
+// is the interior of the region that the front encloses: edges without length and stretches where
+// two edges have met are no part of its border, and where several parts of the border touch in a
+// point, each edge that ends there continues with the edge that starts there and is its neighbour
+// in that interior. So whatever happens at the same place and time is one event with one node, and
+// its outcome depends on the region alone: not on an order, and not on how edges are numbered.
+//
+// Times and places have 100 digits. Where these cannot tell two of them apart, exact_planes.hpp
+// decides. Only vertices between edges in line that were no neighbours in the polygon are left to
+// the 100 digits; they divide faces of the same plane and do not enter the roof.
+#pragma once
+
+#include <optional>
+
+#include "geometry/polygon/polygon.hpp"
+#include "geometry/skeleton/skeleton_parts.hpp"
+
+namespace apothem {
+
+/// Returns the nodes and faces of the polygon's skeleton, rounded as fine_frame.hpp says, or
+/// nothing if the front got into a state that is not possible. It takes about n^2 steps and memory
+/// linear in n. `progress` is called after every hundred events and may throw.
+std::optional<SkeletonParts> exact_skeleton(const Polygon& polygon, const Progress& progress);
+
+/// Moves the inner nodes to where the planes of their faces meet, rounded like those of
+/// exact_skeleton. Returns false if a node does not have three faces, which alone determine it.
+bool place_exactly(Skeleton& skeleton, const Polygon& polygon);
+
+}  // namespace apothem

@@ -1,0 +1,161 @@
+// Events of a skeleton that coincide: what follows from rings full of them.
+#include <catch2/catch.hpp>
+
+#include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/skeleton/exact_front.hpp"
+#include "tests/geometry/skeleton/exact_wavefront.hpp"
+#include "tests/geometry/skeleton/tied_rings.hpp"
+
+using namespace apothem;
+using test::ExactWavefront;
+using test::Map;
+
+namespace {
+
+using Corner = std::array<double, 3>;                                // of a face: x, y and height
+using Faces = std::map<std::array<double, 4>, std::vector<Corner>>;  // by the ends of their edges
+
+// The faces of a skeleton of a mapped polygon, in the coordinates of the original.
+Faces faces_before(const Map& map, const Polygon& polygon, const Skeleton& skeleton) {
+  Faces faces;
+  for (int e = 0; e < polygon.size(); ++e) {
+    Vec2 a = map.undo(polygon[e]), b = map.undo(polygon.after(e));
+    if (std::pair(b.x(), b.y()) < std::pair(a.x(), a.y())) std::swap(a, b);
+    std::vector<Corner> corners;
+    for (const int i : skeleton.faces[e]) {
+      const Vec2 p = map.undo(world_point(polygon, skeleton.nodes, i));
+      corners.push_back({p.x(), p.y(), skeleton.nodes[i].height / map.scale});
+    }
+    std::sort(corners.begin(), corners.end());
+    faces[{a.x(), a.y(), b.x(), b.y()}] = corners;
+  }
+  return faces;
+}
+
+std::string text(const Polygon& polygon) {
+  std::string result;
+  for (const Vec2& v : polygon.vertices()) {
+    result += std::to_string(v.x()) + " " + std::to_string(v.y()) + ", ";
+  }
+  return result;
+}
+
+// Half of the last bit of a double.
+double half_ulp(double value) { return std::exp2(std::ilogb(value) - 53); }
+
+// True if the nodes of a face are those of the brute-force wavefront, rounded to nearest.
+bool agree(const std::set<ExactWavefront::Node>& nodes, const std::vector<int>& face,
+           const Skeleton& skeleton, const Polygon& polygon) {
+  using Rational = ExactWavefront::Rational;
+  const double half = std::exp2(std::ilogb(bounding_box(polygon).extent()) + 1 - 53);
+  const auto near = [](const Rational& exact, const Rational& rounded, double error) {
+    return abs(exact - rounded) <= error;
+  };
+  return nodes.size() == face.size() && std::all_of(face.begin(), face.end(), [&](int i) {
+           const Skeleton::Node& node = skeleton.nodes[i];
+           return std::any_of(nodes.begin(), nodes.end(), [&](const ExactWavefront::Node& exact) {
+             const auto& [x, y, time] = exact;
+             const Rational nx = Rational(node.point.x()) + polygon.origin().x();
+             const Rational ny = Rational(node.point.y()) + polygon.origin().y();
+             return near(x, nx, half) && near(y, ny, half) &&
+                    near(time, node.height, time == 0 ? 0 : half_ulp(node.height));
+           });
+         });
+}
+
+}  // namespace
+
+TEST_CASE("tied events: no map of the ring changes a bit of roof and faces", "[skeleton]") {
+  test::SeededRandom random(431);
+  for (int i = 0; i < (test::long_run() ? 10000 : test::scaled(240)); ++i) {
+    const Polygon polygon = test::random_tied(random, i);
+    const Skeleton skeleton = straight_skeleton(polygon);
+    const Faces faces = faces_before({}, polygon, skeleton);
+    for (const Map& map : test::maps()) {
+      INFO("ring " << i << ", " << map.name << ": " << text(polygon));
+      const Polygon image = map(polygon);
+      REQUIRE(faces_before(map, image, straight_skeleton(image)) == faces);
+    }
+  }
+}
+
+TEST_CASE("tied events: no map of the ring changes a bit of the inscribed circle", "[skeleton]") {
+  test::SeededRandom random(433);
+  using Centres = std::set<std::array<double, 2>>;
+  const auto centres_before = [](const Map& map, const Polygon& polygon,
+                                 const InscribedCircle& circle) {
+    Centres centres;
+    for (const Vec2& c : circle.centres) {
+      const Vec2 p = map.undo(polygon.origin() + c);
+      centres.insert({p.x(), p.y()});
+    }
+    return centres;
+  };
+  for (int i = 0; i < (test::long_run() ? 10000 : test::scaled(1000)); ++i) {
+    const Polygon polygon = test::random_tied(random, i);
+    if (polygon.is_convex()) continue;
+    const InscribedCircle circle = largest_inscribed_circle(polygon);
+    const Centres centres = centres_before({}, polygon, circle);
+    for (const Map& map : test::maps()) {
+      INFO("ring " << i << ", " << map.name << ": " << text(polygon));
+      const Polygon image = map(polygon);
+      const InscribedCircle other = largest_inscribed_circle(image);
+      REQUIRE(other.radius / map.scale == circle.radius);
+      REQUIRE(centres_before(map, image, other) == centres);
+    }
+  }
+}
+
+// The forces are sums along the edges, in the order of the edges, so their round-off depends on it.
+TEST_CASE("tied events: maps of pairs change forces by round-off only", "[skeleton]") {
+  test::SeededRandom random(434);
+  double worst = 0;
+  std::map<std::string, int> changed;  // pairs by map
+  for (int i = 0; i < (test::long_run() ? 1000 : test::scaled(200)); ++i) {
+    const Polygon a = test::random_tied(random, i), other = test::random_tied(random, i / 6);
+    const double reach = .3 * (bounding_box(a).extent() + bounding_box(other).extent());
+    const Vec2 shift(std::round(random.uniform(-reach, reach)),
+                     std::round(random.uniform(-reach, reach)));
+    const Polygon b = samples::shifted(other, shift);
+    const PairIntegral pair = test::edge(a, b).integral;
+    for (const Map& map : test::maps()) {
+      const PairIntegral image = test::edge(map(a), map(b)).integral;
+      const double error = (map.undo(image.force) - pair.force).norm();
+      INFO("pair " << i << ", " << map.name);
+      CHECK(error <= 1e-13 * pair.weight);
+      worst = std::max(worst, pair.weight > 0 ? error / pair.weight : error);
+      if (error > 0) ++changed[map.name];
+    }
+  }
+  if (!test::long_run()) return;
+  WARN("largest error " << worst);
+  for (const auto& [name, count] : changed) WARN(name << ": " << count << " forces changed");
+}
+
+TEST_CASE("without ties: both constructions have the same bits", "[skeleton]") {
+  test::SeededRandom random(435);
+  for (int i = 0; i < test::scaled(400); ++i) {
+    const Polygon polygon =
+        samples::random_star_shaped(random, random.integer(4, 40), random.uniform(.1, 1));
+    const Skeleton skeleton = straight_skeleton(polygon);
+    std::optional<SkeletonParts> parts = exact_skeleton(polygon, {});
+    INFO("polygon " << i);
+    REQUIRE(parts);
+    REQUIRE(faces_before({}, polygon, skeleton) ==
+            faces_before({}, polygon, assemble(std::move(*parts))));
+  }
+}
+
+TEST_CASE("tied events: the skeleton is that of a wavefront in rational numbers", "[skeleton]") {
+  test::SeededRandom random(432);
+  for (int i = 0; i < test::scaled(250); ++i) {
+    const Polygon polygon(test::random_rational(random, random.integer(2, i % 5 == 0 ? 30 : 12)));
+    INFO("ring " << i << ": " << text(polygon));
+    const Skeleton skeleton = straight_skeleton(polygon);
+    const ExactWavefront exact(polygon);
+    for (int e = 0; e < polygon.size(); ++e) {
+      INFO("edge " << e);
+      REQUIRE(agree(exact.faces()[e], skeleton.faces[e], skeleton, polygon));
+    }
+  }
+}
