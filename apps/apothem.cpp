@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("check")) return check_command(options.check);
   if (app.got_subcommand("mesh")) return mesh_command(options.mesh);
   if (app.got_subcommand("polygon")) return polygon_command(options.polygon);
+  if (app.got_subcommand("boolean")) return boolean_command(options.boolean);
   if (app.got_subcommand("accuracy")) return accuracy_command(options.accuracy);
   if (app.got_subcommand("benchmark")) return benchmark_command(options.benchmark);
   if (app.got_subcommand("reproduce")) return reproduce_command(options.reproduce);

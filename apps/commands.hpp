@@ -101,10 +101,22 @@ struct ContactOptions {
   std::optional<std::string> reference;
   std::string method = "edge";  ///< way to compute the contact
   double stiffness = 1;         ///< normal contact stiffness k_n, Pa
+  std::string shapes;           ///< what to write to `output`: "overlap"; empty: nothing
+  std::string output;           ///< file of shapes
   bool json = false;            ///< print JSON instead of a table
 };
 /// Computes the contact of two polygons, or of all pairs in a file.
 int contact_command(const ContactOptions& options);
+
+/// Options of `apothem boolean`.
+struct BooleanOptions {
+  std::string a, b;       ///< files of the two polygons
+  std::string operation;  ///< one of kBooleanOperations
+  std::string output;     ///< file of shapes; empty: WKT on standard output
+  bool json = false;      ///< print the result as JSON
+};
+/// Writes the union, intersection or difference of two polygons.
+int boolean_command(const BooleanOptions& options);
 
 /// Options of `apothem mesh`.
 struct MeshOptions {
@@ -125,7 +137,13 @@ struct PolygonOptions {
   std::string reference = "roof";  ///< reference length: a name or a length in m
   std::string vtk;                 ///< folder for VTK files; empty: none
   std::string picture;             ///< file for a picture; empty: none
-  bool json = false;               ///< print JSON instead of a table
+  std::string shapes;      ///< what to write to `output`, see polygon_output(); empty: nothing
+  std::string output;      ///< file of shapes
+  std::vector<double> at;  ///< x, y of a point to evaluate, m; empty: none
+  std::string points;      ///< CSV file of points to evaluate; empty: none
+  bool repair = false;     ///< repair the outlines of the file, and say their faults
+  std::optional<double> tolerance;  ///< of the repair, m
+  bool json = false;                ///< print JSON instead of a table
 };
 /// Prints and draws a polygon's properties and its potential.
 int polygon_command(const PolygonOptions& options);

@@ -48,16 +48,22 @@ set(APOTHEM_PUBLIC_HEADERS
   geometry/polygon/line_crossings.hpp
   geometry/polygon/point.hpp
   geometry/polygon/polygon.hpp
+  geometry/polygon/polygon_with_holes.hpp
   geometry/polygon/predicates.hpp
   geometry/polygon/progress.hpp
+  geometry/polygon/ring_moments.hpp
   geometry/polygon/segment_moments.hpp
   geometry/polygon/triangulation.hpp
   geometry/potential/boundary_layer.hpp
   geometry/potential/distance_field.hpp
   geometry/potential/inscribed_circle.hpp
   geometry/potential/piecewise_minimum.hpp
+  geometry/potential/point_values.hpp
   geometry/potential/potential.hpp
   geometry/potential/rare.hpp
+  geometry/regions/boolean.hpp
+  geometry/regions/repair.hpp
+  geometry/regions/ring_faults.hpp
   geometry/skeleton/roof.hpp
   geometry/skeleton/singular_area.hpp
   geometry/skeleton/skeleton.hpp

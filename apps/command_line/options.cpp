@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "geometry/regions/boolean.hpp"
 #include "lib/output/field.hpp"
 #include "lib/output/run_plot.hpp"
+#include "lib/output/shape_file.hpp"
 #include "lib/text/decimal.hpp"
 #include "version.hpp"
 
@@ -212,6 +214,18 @@ void add_check(CLI::App& app, CheckOptions& o) {
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
+// --output WHAT -o FILE, which go together. Returns the former.
+CLI::Option* add_shapes(CLI::App* sub, std::string& what, const std::vector<std::string>& choices,
+                        std::string& file) {
+  CLI::Option* shapes = sub->add_option("--output", what, "What to write to the file of -o")
+                            ->check(CLI::IsMember(choices));
+  CLI::Option* output =
+      sub->add_option("-o", file, std::string("File for what --output says: ") + kShapeFormats)
+          ->type_name("FILE")
+          ->needs(shapes);
+  return shapes->needs(output);
+}
+
 void add_contact(CLI::App& app, ContactOptions& o) {
   CLI::App* sub = app.add_subcommand("contact", "Contact force of two polygons");
   CLI::Option* a =
@@ -219,10 +233,11 @@ void add_contact(CLI::App& app, ContactOptions& o) {
           ->type_name("FILE");
   CLI::Option* b = sub->add_option("B", o.b, "The other polygon")->type_name("FILE");
   a->needs(b);
-  sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
-      ->type_name("FILE")
-      ->excludes(a)
-      ->excludes(b);
+  CLI::Option* batch =
+      sub->add_option("--batch", o.batch, "File with one pair per line: name n x y ... m x y ...")
+          ->type_name("FILE")
+          ->excludes(a)
+          ->excludes(b);
   sub->add_option("--potential", o.potential, "Contact potential")
       ->check(CLI::IsMember({"distance", "area"}))
       ->capture_default_str();
@@ -236,6 +251,26 @@ void add_contact(CLI::App& app, ContactOptions& o) {
   sub->add_option("--normal-stiffness,--stiffness", o.stiffness, "Normal stiffness k_n in Pa")
       ->check(kPositive)
       ->capture_default_str();
+  add_shapes(sub, o.shapes, {"overlap"}, o.output)->needs(a)->excludes(batch);
+  sub->add_flag("--json", o.json, "Print JSON");
+}
+
+void add_boolean(CLI::App& app, BooleanOptions& o) {
+  CLI::App* sub =
+      app.add_subcommand("boolean", "Union, intersection or difference of two polygons");
+  sub->add_option("A", o.a, "Polygon: WKT, GeoJSON, [[x,y],...] or {\"polygon\": ...}")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("B", o.b, "The other polygon")->type_name("FILE")->required();
+  std::vector<std::string> names;
+  for (const NamedOperation& known : kBooleanOperations) names.emplace_back(known.name);
+  sub->add_option("OPERATION", o.operation, "What to make of them; difference: A without B")
+      ->check(CLI::IsMember(names))
+      ->required();
+  sub->add_option("-o", o.output,
+                  std::string("File for the result: ") + kShapeFormats +
+                      " (default: WKT on standard output)")
+      ->type_name("FILE");
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
@@ -284,9 +319,49 @@ void add_polygon(CLI::App& app, PolygonOptions& o) {
   sub->add_option("--vtk", o.vtk, "Folder for faces.vtu and singular_area.vtu")
       ->type_name("DIR")
       ->excludes(batch);
-  sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+  CLI::Option* picture =
+      sub->add_option("--picture", o.picture, "Picture of the potential, .png or .svg")
+          ->type_name("FILE")
+          ->excludes(batch);
+  CLI::Option* shapes =
+      sub->add_option(
+             "--output", o.shapes,
+             "What to write to the file of -o: skeleton, faces, offset:D (the polygon with "
+             "its sides moved inwards by D in m), singular-area or incircle")
+          ->type_name("WHAT")
+          ->excludes(batch);
+  sub->add_option("-o", o.output,
+                  std::string("File for what --output or --repair give: ") + kShapeFormats)
       ->type_name("FILE")
       ->excludes(batch);
+  CLI::Option* at =
+      sub->add_option("--at", o.at,
+                      "Potential, gradient and distance from the boundary at a point, m, instead")
+          ->type_name("X,Y")
+          ->delimiter(',')
+          ->check(kDecimal)
+          ->expected(2)
+          ->excludes(batch);
+  CLI::Option* points =
+      sub->add_option("--points", o.points, "The same at the points of a CSV file: x,y in each row")
+          ->type_name("FILE")
+          ->excludes(batch)
+          ->excludes(at);
+  CLI::Option* repair =
+      sub->add_flag("--repair", o.repair,
+                    "List the faults of all outlines of the file (also .dxf and .csv) and repair "
+                    "them, instead")
+          ->excludes(batch);
+  sub->add_option(
+         "--tolerance", o.tolerance,
+         "Gaps that are closed, and distance by which outlines are simplified, m (default: "
+         "a millionth of the extent for gaps, no simplification)")
+      ->check(kPositive)
+      ->needs(repair);
+  for (CLI::Option* other : {picture, shapes}) {
+    for (CLI::Option* instead : {at, points, repair}) other->excludes(instead);
+  }
+  repair->excludes(at)->excludes(points);
   sub->add_flag("--json", o.json, "Print JSON");
 }
 
@@ -395,6 +470,7 @@ void add_commands(CLI::App& app, Options& options) {
   add_check(app, options.check);
   add_contact(app, options.contact);
   add_polygon(app, options.polygon);
+  add_boolean(app, options.boolean);
   add_mesh(app, options.mesh);
   add_accuracy(app, options.accuracy);
   add_benchmark(app, options.benchmark);

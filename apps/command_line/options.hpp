@@ -18,6 +18,7 @@ struct Options {
   CheckOptions check;
   ContactOptions contact;
   PolygonOptions polygon;
+  BooleanOptions boolean;
   MeshOptions mesh;
   AccuracyOptions accuracy;
   BenchmarkOptions benchmark;

@@ -6,7 +6,9 @@
 #include "apps/polygon/input.hpp"
 #include "geometry/exact/pair_methods.hpp"
 #include "geometry/integrals/penetration.hpp"
+#include "geometry/regions/boolean.hpp"
 #include "lib/contact/law/law.hpp"
+#include "lib/output/files.hpp"
 #include "lib/scene/json.hpp"
 #include "lib/scene/pair_file.hpp"
 #include "lib/scene/polygon_file.hpp"
@@ -114,6 +116,8 @@ int batch(const ContactOptions& options) {
 int contact_command(const ContactOptions& options) {
   if (!options.batch.empty()) return batch(options);
   if (options.b.empty()) throw UsageError("contact", "give two polygon files, or --batch FILE");
+  std::optional<ShapeFormat> format;
+  if (!options.output.empty()) format = shape_format_of(options.output);
   const Polygon a = polygon_of_file(options.a);
   const Polygon b = polygon_of_file(options.b);
   Json list;
@@ -121,6 +125,10 @@ int contact_command(const ContactOptions& options) {
     list = results(a, b, options);
   } catch (const InvalidPolygon& error) {
     throw SceneError(options.a + ", " + options.b, 0, "", error.what());
+  }
+  if (format) {
+    const auto overlap = boolean_operation(a, b, BooleanOperation::intersection);
+    write_file(options.output, shape_text(shapes_of(overlap), *format));
   }
   if (options.json) {
     fmt::print("{}\n", Json{{"normal_stiffness", options.stiffness}, {"results", list}}.dump(2));

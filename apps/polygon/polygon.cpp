@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -10,9 +11,11 @@
 #include "geometry/skeleton/singular_area.hpp"
 #include "lib/output/files.hpp"
 #include "lib/output/picture.hpp"
+#include "lib/output/polygon_shapes.hpp"
 #include "lib/output/polygon_vtk.hpp"
 #include "lib/scene/polygon_file.hpp"
 #include "lib/scene/ring_line.hpp"
+#include "lib/text/decimal.hpp"
 #include "lib/text/error.hpp"
 
 namespace apothem {
@@ -92,7 +95,7 @@ Json singular_json(const Polygon& polygon, const SingularArea& singular) {
 }
 
 Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
-  std::vector<Json> faces(polygon.size());  // in the order of the edges in the input
+  std::map<int, Json> faces;  // in the order of the edges in the input
   for (int e = 0; e < polygon.size(); ++e) {
     Json ring = Json::array();
     for (const int i : skeleton.faces[e]) {
@@ -102,7 +105,9 @@ Json faces_json(const Polygon& polygon, const Skeleton& skeleton) {
     const int edge = polygon.input_edge(e);
     faces[edge] = {{"edge", edge}, {"polygon", std::move(ring)}};
   }
-  return faces;
+  Json list = Json::array();
+  for (auto& [edge, face] : faces) list.push_back(std::move(face));
+  return list;
 }
 
 Json to_json(const Analysis& a) {
@@ -202,6 +207,54 @@ Analysis analyse_file(const std::string& file, const PotentialChoice& choice) {
   }
 }
 
+// What --output asks for.
+struct ShapeChoice {
+  std::string what;
+  double depth = 0;  // of an offset, m
+};
+
+ShapeChoice shape_choice(const std::string& text) {
+  const std::string offset = "offset:";
+  if (text.starts_with(offset)) {
+    const double depth = find_decimal(text.substr(offset.size())).value_or(0);
+    if (depth > 0) return {"offset", depth};
+    throw UsageError("--output", fmt::format("offset:D moves the sides inwards by D, a positive "
+                                             "length in m, not \"{}\"",
+                                             text.substr(offset.size())));
+  }
+  for (const char* known : {"skeleton", "faces", "singular-area", "incircle"}) {
+    if (text == known) return {text};
+  }
+  throw UsageError("--output", fmt::format("must be skeleton, faces, offset:D, singular-area or "
+                                           "incircle, not \"{}\"",
+                                           text));
+}
+
+std::vector<Shape> shapes_of(const Analysis& a, const ShapeChoice& choice) {
+  if (choice.what == "skeleton") return skeleton_shapes(a.polygon, a.skeleton);
+  if (choice.what == "faces") return face_shapes(a.polygon, a.skeleton);
+  if (choice.what == "offset") return offset_shapes(a.polygon, a.skeleton, choice.depth);
+  if (choice.what == "incircle") return circle_shapes(a.polygon, a.circle);
+  return singular_shapes(a.polygon, a.singular);
+}
+
+// Writes the picture and the files that are asked for.
+void write_files(const Analysis& a, const PolygonOptions& options, const std::string& reference,
+                 const std::optional<PictureFormat>& picture,
+                 const std::optional<ShapeChoice>& shapes) {
+  std::string text;
+  if (shapes) text = shape_text(shapes_of(a, *shapes), shape_format_of(options.output));
+  if (picture) {
+    write_file(options.picture,
+               draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, reference},
+                              *picture));
+  }
+  if (!options.vtk.empty()) {
+    write_polygon_vtk(options.vtk, a.polygon, a.skeleton, a.singular, a.reference);
+  }
+  if (shapes) write_file(options.output, text);
+}
+
 }  // namespace
 
 int polygon_command(const PolygonOptions& options) {
@@ -216,16 +269,19 @@ int polygon_command(const PolygonOptions& options) {
     throw UsageError("--picture",
                      fmt::format("must end in .png or .svg, not \"{}\"", options.picture));
   }
+  if (options.repair) return repair_outlines(options);
+  if (!options.at.empty() || !options.points.empty()) return evaluate_points(options, choice);
+  if (options.shapes.empty() != options.output.empty()) {
+    throw UsageError("polygon", "--output WHAT and -o FILE go together");
+  }
+  std::optional<ShapeChoice> shapes;
+  if (!options.shapes.empty()) {
+    shapes = shape_choice(options.shapes);
+    shape_format_of(options.output);
+  }
   const Analysis a = analyse_file(options.file, choice);
   const std::string name = reference_name(choice);
-  if (!options.picture.empty()) {
-    write_file(
-        options.picture,
-        draw_potential({a.polygon, a.skeleton, a.circle, a.singular, a.reference, name}, *format));
-  }
-  if (!options.vtk.empty()) {
-    write_polygon_vtk(options.vtk, a.polygon, a.skeleton, a.singular, a.reference);
-  }
+  write_files(a, options, name, format, shapes);
   if (options.json) {
     fmt::print("{}\n", text(to_json(a), 2));
   } else {

@@ -7,7 +7,11 @@
 #include "geometry/exact/pair_methods.hpp"
 #include "geometry/integrals/penetration.hpp"
 #include "geometry/meshing/voronoi.hpp"
+#include "geometry/polygon/predicates.hpp"
 #include "geometry/potential/inscribed_circle.hpp"
+#include "geometry/potential/point_values.hpp"
+#include "geometry/regions/boolean.hpp"
+#include "geometry/regions/repair.hpp"
 #include "geometry/skeleton/singular_area.hpp"
 
 namespace apothem::python {
@@ -15,17 +19,17 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-Polygon polygon_of(const Array& points) {
+std::vector<Vec2> points_of(const Array& points) {
   if (points.ndim() != 2 || points.shape(1) != 2) {
     throw std::invalid_argument("points must have the shape (n, 2)");
   }
   const auto at = points.unchecked<2>();
-  std::vector<Vec2> ring;
-  for (py::ssize_t i = 0; i < points.shape(0); ++i) ring.emplace_back(at(i, 0), at(i, 1));
-  // A closed ring of other libraries repeats its first point.
-  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  return Polygon(std::move(ring));
+  std::vector<Vec2> list;
+  for (py::ssize_t i = 0; i < points.shape(0); ++i) list.emplace_back(at(i, 0), at(i, 1));
+  return list;
 }
+
+Polygon polygon_of(const Array& points) { return Polygon(points_of(points)); }
 
 py::tuple pair(const Vec2& v) { return py::make_tuple(v.x(), v.y()); }
 
@@ -79,6 +83,39 @@ py::object singular_area_of(const Polygon& polygon, std::optional<double> depth)
                 rings_of(area.polygons, polygon.origin()));
 }
 
+py::object skeleton_object(const Polygon& polygon) {
+  const Skeleton skeleton = skeleton_of(polygon);
+  py::list lines, edges;
+  for (const Skeleton::Arc& arc : skeleton.arcs) {
+    if (arc.left < 0 || arc.right < 0) continue;
+    const Vec2 start = world_point(polygon, skeleton.nodes, arc.start);
+    const Vec2 end = world_point(polygon, skeleton.nodes, arc.end);
+    if (start == end) continue;  // where more than three faces meet
+    lines.append(array_of({start, end}));
+    edges.append(py::make_tuple(arc.left, arc.right));
+  }
+  return result("Skeleton", lines, edges);
+}
+
+py::list offset_of(const Polygon& polygon, double depth) {
+  const SingularArea area = singular_area(skeleton_of(polygon), depth);
+  py::list polygons;
+  for (std::vector<Vec2> ring : area.polygons) {
+    for (Vec2& v : ring) v += polygon.origin();
+    polygons.append(Polygon(std::move(ring)));
+  }
+  return polygons;
+}
+
+py::list polygons_with_holes(const std::vector<PolygonWithHoles>& polygons) {
+  py::list list;
+  for (const PolygonWithHoles& polygon : polygons) {
+    list.append(result("PolygonWithHoles", array_of(polygon.outer),
+                       rings_of(polygon.holes, Vec2(Vec2::Zero()))));
+  }
+  return list;
+}
+
 template <class Table>
 auto& named(const Table& table, const std::string& name, const char* what) {
   std::string names;
@@ -130,6 +167,68 @@ py::object contact(const Polygon& a, const Polygon& b, const std::string& method
                 p.own_length_a, p.own_length_b, k * p.weight, penetration(a, b), p.largest_phi);
 }
 
+// What a polygon and a potential of it are at points.
+std::vector<PointValues> values_at(const Polygon& polygon, const Array& array,
+                                   const std::string& potential, const std::string& field,
+                                   const py::object& reference) {
+  const PotentialChoice choice = choice_of(potential, field, reference);
+  const std::vector<Vec2> points = points_of(array);
+  const py::gil_scoped_release release;
+  const Potential made = make_potential(polygon, choice);
+  const PointEvaluator evaluate(polygon, made);
+  std::vector<PointValues> values;
+  for (const Vec2& point : points) values.push_back(evaluate(point));
+  return values;
+}
+
+py::array_t<double> potential_at(const Polygon& polygon, const Array& points,
+                                 const std::string& potential, const std::string& field,
+                                 const py::object& reference) {
+  std::vector<double> phi;
+  for (const PointValues& v : values_at(polygon, points, potential, field, reference)) {
+    phi.push_back(v.phi);
+  }
+  return py::array_t<double>(static_cast<py::ssize_t>(phi.size()), phi.data());
+}
+
+py::array_t<double> gradient_at(const Polygon& polygon, const Array& points,
+                                const std::string& potential, const std::string& field,
+                                const py::object& reference) {
+  std::vector<Vec2> gradients;
+  for (const PointValues& v : values_at(polygon, points, potential, field, reference)) {
+    gradients.push_back(v.gradient);
+  }
+  return array_of(gradients);
+}
+
+py::array_t<bool> contains(const Polygon& polygon, const Array& array) {
+  const std::vector<Vec2> points = points_of(array);
+  py::array_t<bool> inside(static_cast<py::ssize_t>(points.size()));
+  auto at = inside.mutable_unchecked<1>();
+  for (size_t i = 0; i < points.size(); ++i) {
+    at(static_cast<py::ssize_t>(i)) = strictly_inside(polygon.vertices(), points[i]);
+  }
+  return inside;
+}
+
+py::list boolean(const Polygon& a, const Polygon& b, const std::string& op) {
+  const BooleanOperation operation = named(kBooleanOperations, op, "op").operation;
+  return polygons_with_holes(boolean_operation(a, b, operation));
+}
+
+py::object repair_rings(const py::sequence& rings, double tolerance) {
+  if (!(tolerance >= 0 && std::isfinite(tolerance))) {
+    throw std::invalid_argument("tolerance must be 0 or more, in m");
+  }
+  Rings list;
+  for (const py::handle ring : rings) list.push_back(points_of(ring.cast<Array>()));
+  const Repaired repaired = repair(list, tolerance);
+  py::list faults;
+  for (const RingFault& fault : repaired.faults) faults.append(describe(fault));
+  return result("Repaired", polygons_with_holes(repaired.polygons), faults,
+                repaired.hausdorff_distance);
+}
+
 py::list overlap(const Polygon& a, const Polygon& b) {
   py::list list;
   for (const OverlapPolygon& part : overlap_polygons(a, b, a.origin())) {
@@ -149,16 +248,29 @@ py::object voronoi(const Polygon& region, int n, std::uint64_t seed, int lloyd,
                 array_of(sites, region.origin()));
 }
 
+void bind_values(py::class_<Polygon>& polygon) {
+  polygon
+      .def(
+          "potential", &potential_at, py::arg("points"), py::arg("potential") = "distance",
+          py::arg("field") = "roof", py::arg("reference") = "roof",
+          "The contact potential phi at points (k, 2), m: array (k), zero outside. The options are "
+          "those of contact().")
+      .def("gradient", &gradient_at, py::arg("points"), py::arg("potential") = "distance",
+           py::arg("field") = "roof", py::arg("reference") = "roof",
+           "The gradient of the potential at points (k, 2), m: array (k, 2), 1/m. It is zero "
+           "outside and where phi is limited to 1, and on the boundary that of the inside.");
+}
+
 void bind_polygon(py::module_& module) {
-  py::class_<Polygon>(module, "Polygon", R"(A simple polygon.
+  py::class_<Polygon> polygon(module, "Polygon", R"(A simple polygon.
 
 Polygon(points)
-    points: array (n, 2) of at least three vertices in either sense, m, without holes. A last point
-    that repeats the first one is left out.
+    points: array (n, 2) of at least three vertices in either sense, m, without holes. Points that
+    repeat the one before, or at the end the first one, are left out.
 
 Raises SceneError, with the number of the vertex, if the outline crosses or touches itself, or has no
-area.)")
-      .def(py::init(&polygon_of), py::arg("points"))
+area.)");
+  polygon.def(py::init(&polygon_of), py::arg("points"))
       .def_property_readonly(
           "points", [](const Polygon& p) { return array_of(p.vertices()); },
           "Copy (n, 2): vertices, counter-clockwise, m.")
@@ -178,7 +290,17 @@ area.)")
       .def("singular_area", &singular_area_of, py::arg("r") = py::none(),
            "Where the distance potential with the reference length r, m, by default the height of "
            "the roof, is 1: a SingularArea. Raises ValueError unless r > 0.")
+      .def("skeleton", &skeleton_object,
+           "The straight skeleton: a Skeleton. Raises SceneError if none is found.")
+      .def("offset", &offset_of, py::arg("d"),
+           "The polygon with its sides moved inwards by d, m, along its straight skeleton: a list "
+           "of polygons, which may be empty. Raises ValueError unless d > 0.")
+      .def(
+          "contains", &contains, py::arg("points"),
+          "Whether points (k, 2) lie inside and not on the boundary, decided exactly: array (k) of "
+          "bool.")
       .def("__len__", &Polygon::size);
+  bind_values(polygon);
 }
 
 }  // namespace
@@ -201,6 +323,16 @@ Raises SceneError if a polygon has no such potential, ValueError for a wrong opt
       "overlap", &overlap, py::arg("a"), py::arg("b"),
       "The components of the overlap of two polygons, exact up to the rounding of their "
       "vertices: list of arrays (k, 2), m, counter-clockwise. Empty if they do not overlap.");
+  module.def(
+      "boolean", &boolean, py::arg("a"), py::arg("b"), py::arg("op"),
+      R"(The "union", "intersection" or "difference" (a without b) of two polygons, decided exactly: a
+list of PolygonWithHoles, which may be empty. Coordinates of crossings are rounded once.)");
+  module.def("repair", &repair_rings, py::arg("rings"), py::arg("tolerance") = 0.,
+             R"(Makes valid polygons out of an outline: a Repaired.
+
+rings: list of arrays (k, 2), m: the outer ring and holes, which may cross, touch and repeat themselves.
+What they surround an odd number of times (the even-odd rule) is kept, exactly. tolerance: vertices are
+left out as long as the Hausdorff distance between the boundaries stays below it, m.)");
   module.def("voronoi", &voronoi, py::arg("region"), py::arg("n"), py::arg("seed") = 1,
              py::arg("lloyd") = 50, py::arg("shortest_edge") = .1,
              R"(Cuts a polygon into n Voronoi cells that tile it exactly: a VoronoiCells.

@@ -47,6 +47,8 @@ void say_imports(const Scene& scene) {
                               import.read_in_words(), import.scale, import.unit_source));
     const std::string left_out = import.left_out_in_words();
     if (!left_out.empty()) say("", "left out: " + left_out);
+    for (const std::string& fault : import.faults) say("", "fault: " + fault);
+    for (const std::string& name : import.renamed) say("", "renamed: " + name);
   }
 }
 

@@ -68,7 +68,9 @@ Json imports(const Scene& scene) {
                     {"scale", import.scale},
                     {"unit", import.unit_source},
                     {"read", import.read},
-                    {"left_out", left_out}});
+                    {"left_out", left_out},
+                    {"faults", import.faults},
+                    {"renamed", import.renamed}});
   }
   return list;
 }

@@ -12,7 +12,9 @@ namespace {
 
 // Throws InvalidPolygon unless the ring is a simple counter-clockwise polygon.
 void require_counter_clockwise(const std::vector<Vec2>& ring) {
-  if (Polygon(ring).input_index(1) != 1) throw InvalidPolygon("is clockwise", 0);
+  const Polygon polygon(ring);
+  if (polygon.vertices().size() != ring.size()) throw InvalidPolygon("repeats a vertex", 0);
+  if (polygon.input_index(1) != 1) throw InvalidPolygon("is clockwise", 0);
 }
 
 bool is_valid(const std::vector<Vec2>& ring) {

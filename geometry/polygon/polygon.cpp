@@ -9,102 +9,139 @@
 namespace apothem {
 namespace {
 
-std::string name(int i) { return "vertex " + std::to_string(i); }
-
 // Limits of the coordinates, m. Within them, squares and fourth powers stay far from overflow and
 // from the subnormal range.
 constexpr double kLargest = 1e60;
 constexpr double kSmallestSize = 1e-60;
 
-void require_usable_coordinates(const std::vector<Vec2>& ring) {
-  const int n = static_cast<int>(ring.size());
-  if (n < 3) {
-    throw InvalidPolygon("has " + std::to_string(n) + " vertices; a polygon needs at least 3",
-                         std::max(n - 1, 0));
-  }
-  Box box;
-  for (int i = 0; i < n; ++i) {
-    if (!is_finite(ring[i])) throw InvalidPolygon(name(i) + " is not finite", i);
-    if (!(ring[i].cwiseAbs().maxCoeff() < kLargest)) {
-      throw InvalidPolygon(name(i) + " has a coordinate beyond 1e60", i);
-    }
-    box.include(ring[i]);
-  }
-  if (box.extent() < kSmallestSize)
-    throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
-}
-
-void require_distinct_vertices(const std::vector<Vec2>& ring) {
-  const int n = static_cast<int>(ring.size());
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) { return std::pair(ring[i].x(), ring[i].y()); };
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return std::pair(key(i), i) < std::pair(key(j), j); });
-  // The error names the repetition that comes first along the ring.
-  int first = -1;
-  int repeated = n;
-  for (int k = 1; k < n; ++k) {
-    if (ring[order[k]] == ring[order[k - 1]] && order[k] < repeated) {
-      first = order[k - 1];
-      repeated = order[k];
-    }
-  }
-  if (repeated == n) return;
-  if (first == 0 && repeated == n - 1) {
-    throw InvalidPolygon(name(repeated) + " repeats vertex 0: leave out the closing vertex",
-                         repeated);
-  }
-  throw InvalidPolygon(name(repeated) + " repeats " + name(first), repeated);
-}
-
-void require_no_spike(const std::vector<Vec2>& ring) {
-  const int n = static_cast<int>(ring.size());
-  for (int i = 0; i < n; ++i) {
-    const Vec2& a = ring[previous(i, n)];
-    const Vec2& b = ring[i];
-    const Vec2& c = ring[next(i, n)];
-    if (orientation(a, b, c) != 0) continue;
-    // The three points are collinear. The boundary goes straight on if b lies between a and c;
-    // otherwise it turns back on itself. Coordinates are compared because that is exact, which the
-    // sign of a dot product would not be.
-    const int axis = a.x() != b.x() ? 0 : 1;
-    if ((a[axis] < b[axis]) != (b[axis] < c[axis])) {
-      throw InvalidPolygon(name(i) + " is a spike: the boundary turns back on itself", i);
-    }
-  }
-}
-
 // Rings with more vertices than this are first tested as a whole, in about n log n steps.
 constexpr size_t kMany = 256;
 
-void require_simple(const std::vector<Vec2>& ring) {
-  if (ring.size() > kMany && is_simple(ring)) return;
-  // The boxes of the edges are swept from left to right, and the exact test is made only where two
-  // boxes overlap.
-  const int n = static_cast<int>(ring.size());
-  std::vector<Box> boxes(n);
-  for (int i = 0; i < n; ++i) boxes[i] = box_of(ring[i], ring[next(i, n)]);
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return std::pair(boxes[i].x0, i) < std::pair(boxes[j].x0, j); });
-  for (int k = 0; k < n; ++k) {
-    const int i = order[k];
-    for (int l = k + 1; l < n && boxes[order[l]].x0 <= boxes[i].x1; ++l) {
-      const int j = order[l];
-      // Neighbours share their common vertex. That they share nothing else is what
-      // require_no_spike has tested.
-      if (apart(boxes[i], boxes[j]) || next(i, n) == j || next(j, n) == i) continue;
-      if (segments_meet(ring[i], ring[next(i, n)], ring[j], ring[next(j, n)])) {
-        throw InvalidPolygon("edge " + std::to_string(std::min(i, j)) + " and edge " +
-                                 std::to_string(std::max(i, j)) +
-                                 " cross or touch (edge i starts at vertex i)",
-                             std::max(i, j));
-      }
+using Merged = std::vector<std::array<int, 2>>;
+
+void require_usable_coordinates(const std::vector<Vec2>& ring) {
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const std::string name = "vertex " + std::to_string(i);
+    const int vertex = static_cast<int>(i);
+    if (!is_finite(ring[i])) throw InvalidPolygon(name + " is not finite", vertex);
+    if (!(ring[i].cwiseAbs().maxCoeff() < kLargest)) {
+      throw InvalidPolygon(name + " has a coordinate beyond 1e60", vertex);
     }
   }
 }
+
+// Leaves out vertices that are equal to the one before. Returns the indices that the others had, or
+// nothing if there are no such vertices.
+Merged merge_equal_neighbours(std::vector<Vec2>& ring) {
+  Merged merged;
+  std::vector<Vec2> different;
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const int vertex = static_cast<int>(i);
+    if (!different.empty() && ring[i] == different.back()) {
+      merged.back().back() = vertex;
+    } else {
+      different.push_back(ring[i]);
+      merged.push_back({vertex, vertex});
+    }
+  }
+  while (different.size() > 1 && different.back() == different.front()) {
+    different.pop_back();
+    merged.pop_back();
+  }
+  if (different.size() == ring.size()) return {};
+  ring = std::move(different);
+  return merged;
+}
+
+// The tests of a ring without equal neighbours. Errors name vertices and edges as they were given.
+class RingCheck {
+ public:
+  RingCheck(const std::vector<Vec2>& ring, const Merged& merged)
+      : ring_(ring), merged_(merged), n_(static_cast<int>(ring.size())) {}
+
+  void require_extent() const {
+    if (n_ < 3) {
+      throw InvalidPolygon("has " + std::to_string(n_) + (merged_.empty() ? "" : " different") +
+                               " vertices; a polygon needs at least 3",
+                           n_ > 0 ? vertex(n_ - 1) : 0);
+    }
+    if (box_of(ring_).extent() < kSmallestSize) {
+      throw InvalidPolygon("is smaller than 1e-60: all vertices agree", 0);
+    }
+  }
+
+  void require_distinct_vertices() const {
+    std::vector<int> order(n_);
+    std::iota(order.begin(), order.end(), 0);
+    const auto key = [&](int i) { return std::pair(ring_[i].x(), ring_[i].y()); };
+    std::sort(order.begin(), order.end(),
+              [&](int i, int j) { return std::pair(key(i), i) < std::pair(key(j), j); });
+    // The error names the repetition that comes first along the ring.
+    int first = -1;
+    int repeated = n_;
+    for (int k = 1; k < n_; ++k) {
+      if (ring_[order[k]] == ring_[order[k - 1]] && order[k] < repeated) {
+        first = order[k - 1];
+        repeated = order[k];
+      }
+    }
+    if (repeated == n_) return;
+    throw InvalidPolygon(name(repeated) + " repeats " + name(first), vertex(repeated));
+  }
+
+  void require_no_spike() const {
+    for (int i = 0; i < n_; ++i) {
+      const Vec2& a = ring_[previous(i, n_)];
+      const Vec2& b = ring_[i];
+      const Vec2& c = ring_[next(i, n_)];
+      if (orientation(a, b, c) != 0) continue;
+      // The three points are collinear. The boundary goes straight on if b lies between a and c;
+      // otherwise it turns back on itself. Coordinates are compared because that is exact, which
+      // the sign of a dot product would not be.
+      const int axis = a.x() != b.x() ? 0 : 1;
+      if ((a[axis] < b[axis]) != (b[axis] < c[axis])) {
+        throw InvalidPolygon(name(i) + " is a spike: the boundary turns back on itself", vertex(i));
+      }
+    }
+  }
+
+  void require_simple() const {
+    if (ring_.size() > kMany && is_simple(ring_)) return;
+    // The boxes of the edges are swept from left to right, and the exact test is made only where
+    // two boxes overlap.
+    std::vector<Box> boxes(n_);
+    for (int i = 0; i < n_; ++i) boxes[i] = box_of(ring_[i], ring_[next(i, n_)]);
+    std::vector<int> order(n_);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(),
+              [&](int i, int j) { return std::pair(boxes[i].x0, i) < std::pair(boxes[j].x0, j); });
+    for (int k = 0; k < n_; ++k) {
+      const int i = order[k];
+      for (int l = k + 1; l < n_ && boxes[order[l]].x0 <= boxes[i].x1; ++l) {
+        const int j = order[l];
+        // Neighbours share their common vertex. That they share nothing else is what
+        // require_no_spike has tested.
+        if (apart(boxes[i], boxes[j]) || next(i, n_) == j || next(j, n_) == i) continue;
+        if (segments_meet(ring_[i], ring_[next(i, n_)], ring_[j], ring_[next(j, n_)])) {
+          const int first = std::min(edge(i), edge(j)), second = std::max(edge(i), edge(j));
+          throw InvalidPolygon("edge " + std::to_string(first) + " and edge " +
+                                   std::to_string(second) +
+                                   " cross or touch (edge i starts at vertex i)",
+                               second);
+        }
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] int vertex(int i) const { return merged_.empty() ? i : merged_[i].front(); }
+  [[nodiscard]] int edge(int i) const { return merged_.empty() ? i : merged_[i].back(); }
+  [[nodiscard]] std::string name(int i) const { return "vertex " + std::to_string(vertex(i)); }
+
+  const std::vector<Vec2>& ring_;
+  const Merged& merged_;
+  int n_;
+};
 
 // True if a simple ring is clockwise. The test is exact: it takes the sense of the turn at the
 // leftmost one of the lowest vertices. There the interior angle is below 180 degrees.
@@ -122,9 +159,12 @@ bool is_clockwise(const std::vector<Vec2>& ring) {
 
 Polygon::Polygon(std::vector<Vec2> ring) : vertices_(std::move(ring)) {
   require_usable_coordinates(vertices_);
-  require_distinct_vertices(vertices_);
-  require_no_spike(vertices_);
-  require_simple(vertices_);
+  merged_ = merge_equal_neighbours(vertices_);
+  const RingCheck check(vertices_, merged_);
+  check.require_extent();
+  check.require_distinct_vertices();
+  check.require_no_spike();
+  check.require_simple();
   reversed_ = is_clockwise(vertices_);
   if (reversed_) std::reverse(vertices_.begin() + 1, vertices_.end());
 }

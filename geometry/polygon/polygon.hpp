@@ -2,6 +2,7 @@
 // constructed; all other code relies on that.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -30,8 +31,9 @@ class InvalidPolygon : public std::invalid_argument {
 /// degrees are allowed. Coordinates are in m.
 class Polygon {
  public:
-  /// Throws InvalidPolygon unless the ring has three or more finite, distinct vertices, no spike,
-  /// and no two edges that meet anywhere but at their common vertex. Coordinates beyond 1e60 and
+  /// Vertices that are equal to the one before, or at the end to the first one, are left out.
+  /// Throws InvalidPolygon unless the others are three or more finite, distinct vertices, without a
+  /// spike, and no two edges meet anywhere but at their common vertex. Coordinates beyond 1e60 and
   /// polygons smaller than 1e-60 are refused as well. A clockwise ring is reversed; its vertex 0
   /// stays the first one.
   explicit Polygon(std::vector<Vec2> ring);
@@ -48,10 +50,17 @@ class Polygon {
   [[nodiscard]] std::optional<int> first_reflex_vertex() const;
   [[nodiscard]] bool is_convex() const { return !first_reflex_vertex(); }
 
-  /// The index that vertex i had in the ring as it was given.
-  [[nodiscard]] int input_index(int i) const { return reversed_ && i > 0 ? size() - i : i; }
-  /// The index that edge e, from vertex e to vertex e + 1, had in the ring as it was given.
-  [[nodiscard]] int input_edge(int e) const { return reversed_ ? size() - 1 - e : e; }
+  /// The index that vertex i had in the ring as it was given; the first one of equal neighbours.
+  [[nodiscard]] int input_index(int i) const {
+    const int vertex = reversed_ && i > 0 ? size() - i : i;
+    return merged_.empty() ? vertex : merged_[vertex].front();
+  }
+  /// The index that edge e, from vertex e to vertex e + 1, had in the ring as it was given, where
+  /// equal neighbours have an edge of no length between them.
+  [[nodiscard]] int input_edge(int e) const {
+    const int edge = reversed_ ? size() - 1 - e : e;
+    return merged_.empty() ? edge : merged_[edge].back();
+  }
 
   /// Origin of the polygon's local coordinates, which is vertex 0. Local coordinates are
   /// differences of input coordinates, so they do not lose digits far from the origin of the world.
@@ -61,6 +70,9 @@ class Polygon {
 
  private:
   std::vector<Vec2> vertices_;
+  /// The first and the last index that each vertex of the ring as it was given had there. Empty if
+  /// no neighbours are equal.
+  std::vector<std::array<int, 2>> merged_;
   bool reversed_;
 };
 

@@ -50,7 +50,7 @@ bool is_simple(const std::vector<Vec2>& ring) {
                            CGAL::Exact_predicates_inexact_constructions_kernel());
 }
 
-bool strictly_inside(std::span<const Vec2> ring, const Vec2& p) {
+int side_of_ring(std::span<const Vec2> ring, const Vec2& p) {
   // The ray from p to the right is tested for crossings with all edges. Each edge counts with its
   // lower end but without its upper one, so that a vertex on the ray is counted correctly.
   bool inside = false;
@@ -59,11 +59,11 @@ bool strictly_inside(std::span<const Vec2> ring, const Vec2& p) {
     const Vec2& b = after(ring, i);
     if (std::max(a.y(), b.y()) < p.y() || std::min(a.y(), b.y()) > p.y()) continue;
     const int side = orientation(a, b, p);
-    if (side == 0 && between(a, b, p)) return false;
+    if (side == 0 && between(a, b, p)) return 0;
     if (a.y() <= p.y() && p.y() < b.y() && side > 0) inside = !inside;
     if (b.y() <= p.y() && p.y() < a.y() && side < 0) inside = !inside;
   }
-  return inside;
+  return inside ? 1 : -1;
 }
 
 }  // namespace apothem

@@ -28,8 +28,12 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 /// more distinct vertices and no spike. It takes about n log n steps.
 bool is_simple(const std::vector<Vec2>& ring);
 
-/// True if p lies inside the simple ring and not on it. The ring may be clockwise or
-/// counter-clockwise.
-bool strictly_inside(std::span<const Vec2> ring, const Vec2& p);
+/// Returns +1 if p lies inside the simple ring, 0 if it lies on it, and -1 if it lies outside. The
+/// ring may be clockwise or counter-clockwise.
+int side_of_ring(std::span<const Vec2> ring, const Vec2& p);
+/// True if p lies inside the simple ring and not on it.
+inline bool strictly_inside(std::span<const Vec2> ring, const Vec2& p) {
+  return side_of_ring(ring, p) > 0;
+}
 
 }  // namespace apothem

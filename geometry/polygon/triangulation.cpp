@@ -8,49 +8,94 @@
 #include "geometry/polygon/cyclic.hpp"
 
 namespace apothem {
+namespace {
 
-std::vector<Triangle> triangulate(const Polygon& polygon) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  using Vertex = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
-  using Face = CGAL::Triangulation_face_base_with_info_2<
-      bool, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-  using Triangulation =
-      CGAL::Constrained_Delaunay_triangulation_2<Kernel,
-                                                 CGAL::Triangulation_data_structure_2<Vertex, Face>,
-                                                 CGAL::No_constraint_intersection_tag>;
-  Triangulation triangulation;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Vertex = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
+// The info of a face is the number of rings around it, or -1 as long as it is not known.
+using Face =
+    CGAL::Triangulation_face_base_with_info_2<int, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<Vertex, Face>,
+                                               CGAL::No_constraint_intersection_tag>;
+
+// Inserts a ring whose vertices have the numbers `first`, `first` + 1 and so on.
+void insert(Triangulation& triangulation, const std::vector<Vec2>& ring, int first) {
   std::vector<Triangulation::Vertex_handle> vertices;
-  for (int i = 0; i < polygon.size(); ++i) {
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const size_t before = triangulation.number_of_vertices();
     const auto near = i == 0 ? Triangulation::Face_handle() : vertices.back()->face();
-    vertices.push_back(triangulation.insert({polygon[i].x(), polygon[i].y()}, near));
-    vertices.back()->info() = i;
+    vertices.push_back(triangulation.insert({ring[i].x(), ring[i].y()}, near));
+    const bool is_new = triangulation.number_of_vertices() > before;
+    if (is_new) vertices.back()->info() = first + static_cast<int>(i);
   }
-  for (int i = 0; i < polygon.size(); ++i) {
-    triangulation.insert_constraint(vertices[i], vertices[next(i, polygon.size())]);
+  for (size_t i = 0; i < ring.size(); ++i) {
+    triangulation.insert_constraint(vertices[i], after(vertices, i));
   }
+}
 
-  // A face lies outside if it can be reached from the infinite face without crossing an edge of the
-  // polygon. The info of these faces is set to false.
-  for (const auto face : triangulation.all_face_handles()) face->info() = true;
-  std::vector<Triangulation::Face_handle> outside{triangulation.infinite_face()};
-  outside.back()->info() = false;
-  while (!outside.empty()) {
-    const auto face = outside.back();
-    outside.pop_back();
+// Counts the rings around every face: those between it and the infinite face.
+void count_rings(Triangulation& triangulation) {
+  for (const auto face : triangulation.all_face_handles()) face->info() = -1;
+  std::vector<Triangulation::Face_handle> open{triangulation.infinite_face()};
+  open.back()->info() = 0;
+  // Faces behind a ring wait until all faces in front of it are known.
+  std::vector<Triangulation::Face_handle> behind;
+  while (!open.empty()) {
+    const auto face = open.back();
+    open.pop_back();
     for (int k = 0; k < 3; ++k) {
       const auto next = face->neighbor(k);
-      if (!next->info() || face->is_constrained(k)) continue;
-      next->info() = false;
-      outside.push_back(next);
+      if (next->info() >= 0) continue;
+      if (face->is_constrained(k)) {
+        behind.push_back(face);
+      } else {
+        next->info() = face->info();
+        open.push_back(next);
+      }
     }
+    if (!open.empty()) continue;
+    for (const auto& known : behind) {
+      for (int k = 0; k < 3; ++k) {
+        const auto next = known->neighbor(k);
+        if (next->info() >= 0) continue;
+        next->info() = known->info() + 1;
+        open.push_back(next);
+      }
+    }
+    behind.clear();
   }
+}
+
+std::vector<Triangle> triangles_of(Triangulation& triangulation) {
+  count_rings(triangulation);
   std::vector<Triangle> triangles;
   for (const auto face : triangulation.finite_face_handles()) {
-    if (!face->info()) continue;
+    if (face->info() % 2 == 0) continue;
     triangles.push_back(
         {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
   }
   return triangles;
+}
+
+}  // namespace
+
+std::vector<Triangle> triangulate(const Polygon& polygon) {
+  Triangulation triangulation;
+  insert(triangulation, polygon.vertices(), 0);
+  return triangles_of(triangulation);
+}
+
+std::vector<Triangle> triangulate(const PolygonWithHoles& polygon) {
+  Triangulation triangulation;
+  int first = 0;
+  for (const std::vector<Vec2>& ring : rings_of(polygon)) {
+    insert(triangulation, ring, first);
+    first += static_cast<int>(ring.size());
+  }
+  return triangles_of(triangulation);
 }
 
 }  // namespace apothem

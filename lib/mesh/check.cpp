@@ -123,6 +123,9 @@ class Check {
     }
     try {
       const Polygon polygon(ring);
+      if (polygon.vertices().size() != ring.size()) {
+        throw InvalidMesh::at_element(e, "has two neighbouring corners at one place");
+      }
       if (polygon.input_index(1) != 1) {
         throw InvalidMesh::at_element(e, "is inverted: its corners go clockwise");
       }

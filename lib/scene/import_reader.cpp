@@ -52,6 +52,10 @@ class Import {
       rules_.polygonize = in_.choice(*v, {"outlines", "polygonize"}) == 1;
     }
     if (const JsonValue* v = object.optional("tolerance")) rules_.tolerance = in_.positive(*v, "m");
+    if (const JsonValue* v = object.optional("repair")) rules_.repair = flag(*v);
+    if (const JsonValue* v = object.optional("faults")) {
+      rules_.skip_faults = in_.choice(*v, {"refuse", "skip"}) == 1;
+    }
     layers_ = object.optional("layers");
     read_body_keys(object);
     if (layers_ == nullptr) return;
@@ -59,6 +63,11 @@ class Import {
       in_.fail(*layers_, "must be {\"LAYER\": { keys of a body } or false, ...}");
     }
     for (size_t i = 0; i < layers_->items().size(); ++i) read_layer(i);
+  }
+
+  bool flag(const JsonValue& value) const {
+    if (value.type() != JsonValue::Type::boolean) in_.fail(value, "must be true or false");
+    return value.boolean();
   }
 
   void read_layer(size_t i) {
@@ -155,15 +164,34 @@ class Import {
   }
 
   // By the drawing where it names one outline only, and otherwise by numbers.
-  std::vector<std::string> names_of(const std::vector<Outline>& outlines) const {
+  std::vector<std::string> names_of(const std::vector<Outline>& outlines) {
     std::map<std::string, int> uses;
-    for (const Outline& outline : outlines) ++uses[outline.name];
+    for (const Outline& outline : outlines) ++uses[usable_name(outline.name)];
     std::vector<std::string> names;
     for (size_t i = 0; i < outlines.size(); ++i) {
-      const std::string& own = outlines[i].name;
+      const std::string own = usable_name(outlines[i].name);
+      if (own != outlines[i].name) {
+        report_.renamed.push_back(fmt::format("{}: the name \"{}\" to \"{}\"", outlines[i].place,
+                                              printable(outlines[i].name), own));
+      }
       names.push_back(name_ + "-" + (own.empty() || uses[own] > 1 ? std::to_string(i) : own));
     }
     return names;
+  }
+
+  // Names head columns of tables, which commas, quotes, brackets and line breaks would divide.
+  static std::string usable_name(std::string name) {
+    for (char& c : name) {
+      const auto code = static_cast<unsigned char>(c);
+      if (code < 32 || code == 127 || std::string(",\"[]").find(c) != std::string::npos) c = '_';
+    }
+    return name;
+  }
+  static std::string printable(std::string name) {
+    for (char& c : name) {
+      if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+    }
+    return name;
   }
 
   JsonValue body(const Outline& outline, const std::string& name) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace apothem {
 
@@ -15,6 +16,8 @@ struct ImportReport {
   std::map<std::string, int> read;  ///< how many of each kind of entity
   /// The same of what is left out, by the kind of entity and the reason.
   std::map<std::pair<std::string, std::string>, int> left_out;
+  std::vector<std::string> faults;   ///< what was repaired or left out, each with its place
+  std::vector<std::string> renamed;  ///< names that were replaced, and by what
 
   /// "2 LWPOLYLINE, 1 polygon"; empty if nothing is read.
   [[nodiscard]] std::string read_in_words() const;

@@ -12,6 +12,7 @@
 #include "geometry/polygon/ring_moments.hpp"
 #include "geometry/spatial/boxes.hpp"
 #include "lib/scene/faces.hpp"
+#include "lib/scene/shape_repair.hpp"
 
 namespace apothem {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kCovered = 0.01;
 // A hatch that covers this part of an outline, and is covered so, is the hatching of its area.
 constexpr double kSame = 0.99;
 constexpr double kTolerance = 1e-6;  // of the extent
+constexpr const char* kFaulty = "faulty";
 
 std::string shown_place(const std::string& place, const std::string& layer) {
   return layer.empty() ? place : fmt::format("{} on layer \"{}\"", place, layer);
@@ -50,9 +52,11 @@ class OutlineMaker {
 
   std::vector<Outline> make() {
     for (const DrawnShape& shape : shapes_) {
-      if (shape.kind == DrawnShape::Kind::area) add(shape);
-      if (shape.kind == DrawnShape::Kind::line && !rules_.polygonize) add_line(shape);
-      report_.read[shape.entity] += shape.further ? 0 : 1;
+      const bool read = unless_faulty(shape, [&] {
+        if (shape.kind == DrawnShape::Kind::area) add(shape);
+        if (shape.kind == DrawnShape::Kind::line && !rules_.polygonize) add_line(shape);
+      });
+      if (read) report_.read[shape.entity] += shape.further ? 0 : 1;
     }
     if (rules_.polygonize) add_faces();
     if (outlines_.empty()) {
@@ -64,11 +68,32 @@ class OutlineMaker {
                        (left_out.empty() ? "" : fmt::format(" (left out: {})", left_out)));
     }
     look_for_covered();
-    take_out_hatches();
+    count_hatches();
+    std::set<std::int32_t> numbers(hatches_);
+    numbers.insert(covered_.begin(), covered_.end());
+    take_out(numbers);
     return std::move(outlines_);
   }
 
  private:
+  // Does something with a shape, and returns true. If that finds a fault and faults are skipped, it
+  // lists the fault, counts the shape as left out, and returns false.
+  template <class Work>
+  bool unless_faulty(const DrawnShape& shape, const Work& work) {
+    if (!rules_.skip_faults) {
+      work();
+      return true;
+    }
+    try {
+      work();
+      return true;
+    } catch (const BadOutline& fault) {
+      report_.faults.emplace_back(fault.what());
+      report_.left_out[{shape.entity, kFaulty}] += shape.further ? 0 : 1;
+      return false;
+    }
+  }
+
   // Counts what is left out, and refuses what cannot be read and is not left out.
   bool is_left_out(const DrawnShape& shape) {
     using Kind = DrawnShape::Kind;
@@ -81,7 +106,7 @@ class OutlineMaker {
       reason = shape.remark;
     } else if (shape.kind == Kind::unsupported ||
                (shape.kind == Kind::unbounded && rules_.polygonize)) {
-      refuse(shape, shape.remark);
+      return !unless_faulty(shape, [&] { refuse(shape, shape.remark); });
     } else if (!rules_.polygonize && (shape.kind == Kind::label || shape.kind == Kind::unbounded)) {
       reason = "no outline";
     }
@@ -113,22 +138,53 @@ class OutlineMaker {
   }
 
   void add(const DrawnShape& shape) {
-    Outline outline{{}, shape.layer, shape.name, shape.place, shape.entity};
-    if (shape.rings.size() > 1 && !rules_.may_have_holes(shape.layer)) {
+    if (rules_.repair) {
+      add_repaired(shape);
+      return;
+    }
+    std::vector<std::vector<Vec2>> rings;
+    for (const auto& ring : shape.rings) rings.push_back(cleaned(ring));
+    add_rings(shape, std::move(rings));
+  }
+
+  void require_no_holes(const DrawnShape& shape) const {
+    if (rules_.may_have_holes(shape.layer)) return;
+    refuse(shape,
+           "has a hole, and rigid bodies have none; divide it into outlines without "
+           "holes, or give its bodies a \"mesh\"");
+  }
+
+  // An outline of valid rings: the outer one and holes.
+  void add_rings(const DrawnShape& shape, std::vector<std::vector<Vec2>> rings) {
+    if (rings.size() > 1) require_no_holes(shape);
+    std::vector<Polygon> polygons;
+    try {
+      for (const auto& ring : rings) polygons.emplace_back(ring);
+    } catch (const InvalidPolygon& error) {
       refuse(shape,
-             "has a hole, and rigid bodies have none; divide it into outlines without "
-             "holes, or give its bodies a \"mesh\"");
+             fmt::format("{}; correct the drawing there, or say \"repair\": true", error.what()));
     }
-    for (const auto& ring : shape.rings) {
-      outline.rings.push_back(cleaned(ring));
-      try {
-        const Polygon polygon(outline.rings.back());
-        if (outline.rings.size() == 1) polygons_.push_back(polygon);
-      } catch (const InvalidPolygon& error) {
-        refuse(shape, fmt::format("{}; correct the drawing there", error.what()));
+    polygons_.push_back(std::move(polygons.front()));
+    outlines_.push_back({std::move(rings), shape.layer, shape.name, shape.place, shape.entity});
+  }
+
+  void add_repaired(const DrawnShape& shape) {
+    try {
+      DrawnShape clean = shape;
+      for (auto& ring : clean.rings) ring = cleaned(ring);
+      const RepairedShape repaired = repair_shape(clean, rules_.tolerance.value_or(0));
+      if (repaired.result.polygons.empty()) refuse(shape, "surrounds nothing; take it out");
+      // All of its parts are taken or none of them.
+      for (const PolygonWithHoles& polygon : repaired.result.polygons) {
+        if (!polygon.holes.empty()) require_no_holes(shape);
       }
+      for (const PolygonWithHoles& polygon : repaired.result.polygons) {
+        add_rings(shape, rings_of(polygon));
+      }
+      report_.faults.insert(report_.faults.end(), repaired.faults.begin(), repaired.faults.end());
+    } catch (const InvalidPolygon& error) {
+      refuse(shape, fmt::format("{}; correct the drawing there", error.what()));
     }
-    outlines_.push_back(std::move(outline));
   }
 
   void add_faces() {
@@ -148,8 +204,10 @@ class OutlineMaker {
       const Vec2& corner = face.rings[0][0];
       face.place =
           fmt::format("the face with the corner ({:.6g}, {:.6g}) m", corner.x(), corner.y());
-      label(face);
-      add(face);
+      unless_faulty(face, [&] {
+        label(face);
+        add(face);
+      });
     }
   }
 
@@ -196,16 +254,27 @@ class OutlineMaker {
         hatches_.insert(second.entity == "HATCH" ? pair.second : pair.first);
         continue;
       }
-      refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
-                                 "move them apart, or leave a layer out",
-                                 100 * shared / smaller, shown_place(first.place, first.layer)));
+      if (rules_.skip_faults && covered_.count(pair.first)) continue;
+      DrawnShape shape{};
+      shape.place = second.place, shape.layer = second.layer, shape.entity = second.entity;
+      const bool apart = unless_faulty(shape, [&] {
+        refuse(second, fmt::format("covers {:.3g} % of {} (or is covered so); delete one of them, "
+                                   "move them apart, or leave a layer out",
+                                   100 * shared / smaller, shown_place(first.place, first.layer)));
+      });
+      if (apart || !covered_.insert(pair.second).second) continue;
+      if (--report_.read[second.entity] == 0) report_.read.erase(second.entity);
     }
   }
 
-  void take_out_hatches() {
-    for (auto i = hatches_.rbegin(); i != hatches_.rend(); ++i) {
+  // Takes outlines out by their numbers.
+  void take_out(const std::set<std::int32_t>& numbers) {
+    for (auto i = numbers.rbegin(); i != numbers.rend(); ++i) {
       outlines_.erase(outlines_.begin() + *i);
     }
+  }
+
+  void count_hatches() {
     if (hatches_.empty()) return;
     const int count = static_cast<int>(hatches_.size());
     report_.left_out[{"HATCH", "over an outline that is drawn"}] = count;
@@ -221,6 +290,7 @@ class OutlineMaker {
   std::int32_t first_face_ = INT32_MAX;  // of the outlines that are faces between lines
   std::vector<size_t> labels_;           // numbers of shapes
   std::set<std::int32_t> hatches_;       // outlines that are the hatching of another one
+  std::set<std::int32_t> covered_;       // outlines that are skipped because they cover another one
 };
 
 }  // namespace

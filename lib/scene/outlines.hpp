@@ -27,6 +27,8 @@ struct OutlineRules {
   /// A millionth of the drawing's extent if it is not given.
   std::optional<double> tolerance;
   std::set<std::string> ignored;  ///< layers that are left out
+  bool repair = false;            ///< repair outlines, see repair(); simplify by a given tolerance
+  bool skip_faults = false;       ///< leave out what is faulty, and count it
   /// Whether the bodies of a layer may have holes.
   std::function<bool(const std::string& layer)> may_have_holes;
 };
@@ -43,7 +45,9 @@ struct Outline {
 /// a face gives it its layer and name. A hatch over an outline is left out, and so is what the
 /// drawing does not show. `report` counts what is read and left out. Throws BadOutline for open
 /// lines, holes, rings that are no simple polygons, outlines that cover each other, entities that
-/// cannot be read, and drawings without any outline.
+/// cannot be read, and drawings without any outline. With `repair` rings become simple polygons, of
+/// which an outline may give several, and with `skip_faults` only a drawing without any outline is
+/// refused; `report` lists the faults.
 std::vector<Outline> outlines_of(const std::vector<DrawnShape>& shapes, const OutlineRules& rules,
                                  ImportReport& report);
 

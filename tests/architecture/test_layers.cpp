@@ -66,6 +66,7 @@ const std::map<std::string, std::set<std::string>> kGeometryMayInclude{
     {"exact", {"polygon", "skeleton", "potential", "integrals"}},
     {"meshing", {"polygon", "spatial"}},
     {"packing", {"polygon", "spatial", "skeleton", "meshing"}},
+    {"regions", {"polygon", "spatial"}},
 };
 
 // Rooms within lib/contact. Kernels see of what is above them only what a kernel is.

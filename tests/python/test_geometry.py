@@ -49,6 +49,39 @@ class Polygons(FolderCase):
         faces = [roof.nodes[face].tolist() for face in roof.faces]
         self.assertEqual(sorted(faces), sorted(edges.values()))
 
+    def test_skeleton_and_offset(self):
+        polygon = apothem.Polygon([[0, 0], [4, 0], [4, 2], [0, 2]])
+        skeleton = polygon.skeleton()
+        ends = {tuple(map(tuple, line)) for line in skeleton.lines}
+        self.assertIn(((1, 1), (3, 1)), ends | {line[::-1] for line in ends})
+        self.assertEqual((len(skeleton.lines), len(skeleton.edges)), (5, 5))
+        [inner] = polygon.offset(0.5)
+        self.assertEqual((inner.area, inner.centroid), (3, (2, 1)))
+        self.assertEqual(polygon.offset(2), [])
+        with self.assertRaises(ValueError):
+            polygon.offset(-1)
+
+    def test_points(self):
+        square_ = apothem.Polygon(square(0, 0, 2))
+        points = [[1, 0.5], [1, 0], [3, 1], [0, 0], [1.75, 1]]
+        self.assertEqual(square_.contains(points).tolist(), [True, False, False, False, True])
+        self.assertEqual(square_.potential(points).tolist(), [0.5, 0, 0, 0, 0.25])
+        self.assertEqual(square_.gradient(points)[[0, 1, 2, 4]].tolist(), [[0, 1], [0, 1], [0, 0], [-1, 0]])
+        # By differences, in a polygon that is not convex, of both fields.
+        boulder = apothem.Polygon(BOULDER)
+        random = numpy.random.default_rng(5)
+        low, high = boulder.points.min(axis=0), boulder.points.max(axis=0)
+        places = random.uniform(low, high, (200, 2))
+        places = places[boulder.contains(places)]
+        step = 1e-7
+        for field in ["roof", "distance"]:
+            gradient = boulder.gradient(places, field=field)
+            difference = numpy.stack([(boulder.potential(places + step * axis, field=field) -
+                                       boulder.potential(places - step * axis, field=field)) / (2 * step)
+                                      for axis in numpy.eye(2)], axis=1)
+            near = numpy.abs(gradient - difference).max(axis=1) < 1e-5
+            self.assertGreater(near.mean(), 0.98)  # not at the few points within a step of a ridge
+
     def test_a_closed_ring_is_the_same_polygon(self):
         ring = square(0, 0, 1)
         self.assertEqual(len(apothem.Polygon(ring + ring[:1])), 4)
@@ -101,6 +134,32 @@ class Contact(FolderCase):
         self.assertEqual(len(parts), 1)
         self.assertEqual(apothem.Polygon(parts[0]).area, 0.125)
         self.assertEqual(apothem.overlap(a, apothem.Polygon(square(2, 0, 1))), [])
+
+
+class Regions(unittest.TestCase):
+    def test_boolean(self):
+        a, b = apothem.Polygon(square(0, 0, 4)), apothem.Polygon(square(1, 1, 2))
+        [ring] = apothem.boolean(a, b, "difference")
+        self.assertEqual(ring.outer.tolist(), a.points.tolist())
+        self.assertEqual(ring.holes[0].tolist(), [[1, 1], [1, 3], [3, 3], [3, 1]])
+        self.assertEqual(apothem.boolean(b, a, "difference"), [])
+        self.assertEqual(len(apothem.boolean(a, b, "union")), 1)
+        with self.assertRaises(ValueError):
+            apothem.boolean(a, b, "sum")
+
+    def test_repair(self):
+        bow_tie = [[0, 0], [2, 2], [2, 0], [0, 2], [0, 2]]
+        repaired = apothem.repair([bow_tie])
+        self.assertEqual(len(repaired.polygons), 2)
+        self.assertEqual(repaired.faults, ["vertex 4 repeats the one before at (0, 2) m",
+                                           "edge 0 and edge 2 cross at (1, 1) m"])
+        self.assertEqual(repaired.hausdorff_distance, 0)
+        simple = apothem.repair([[[0, 0], [1, 1e-4], [2, 0], [2, 2], [0, 2]]], 1e-3)
+        self.assertEqual(len(simple.polygons[0].outer), 4)
+        self.assertAlmostEqual(simple.hausdorff_distance, 1e-4)
+        self.assertEqual(apothem.repair([[[0, 0], [1, 0], [2, 0]]]).polygons, [])
+        with self.assertRaises(ValueError):
+            apothem.repair([bow_tie], -1)
 
 
 class Voronoi(unittest.TestCase):

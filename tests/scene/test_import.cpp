@@ -519,6 +519,66 @@ TEST_CASE("outlines that are closed but for a small gap are closed", "[import]")
   CHECK(collinear.model.bodies[0].potential.size() == 5);
 }
 
+TEST_CASE("outlines are repaired by choice, with a report", "[import]") {
+  const Folder folder;
+  folder.write("a.wkt",
+               "POLYGON ((0 0, 2 2, 2 0, 0 2, 0 0))\n"
+               "POLYGON ((5 0, 6 0, 8 0, 6 0, 6 1, 5 1, 5 0))\n");
+  CHECK_THAT(error_of(folder, R"({ "file": "a.wkt", "material": "rock" })"),
+             Catch::Contains("\"repair\": true"));
+  const Scene scene =
+      imported(folder, R"({ "file": "a.wkt", "material": "rock", "repair": true })");
+  CHECK(scene.model.bodies.size() == 3);
+  double area = 0;
+  for (const auto& [name, part] : areas(scene)) area += part;
+  CHECK(area == 3);
+  const std::vector<std::string>& faults = scene.imports.at(0).faults;
+  REQUIRE(faults.size() == 3);
+  CHECK(faults[0] == "line 1: edge 0 and edge 2 cross at (1, 1) m");
+  CHECK(faults[1] == "line 2: vertex 2 is a spike at (8, 0) m");
+  CHECK_THAT(error_of(folder, R"({ "file": "a.wkt", "material": "rock", "repair": "yes" })"),
+             Catch::Contains("true or false"));
+  // Only a tolerance that is given simplifies.
+  folder.write("b.wkt", "POLYGON ((0 0, 1 0.001, 2 0, 2 2, 0 2, 0 0))");
+  const auto size = [&](const std::string& keys) {
+    const std::string text =
+        R"({ "file": "b.wkt", "material": "rock", "repair": true)" + keys + "}";
+    return imported(folder, text).model.bodies.at(0).potential.size();
+  };
+  CHECK(size("") == 5);
+  CHECK(size(R"(, "tolerance": 0.01)") == 4);
+}
+
+TEST_CASE("faulty outlines are left out and counted by choice", "[import]") {
+  const Folder folder;
+  folder.write("a.wkt",
+               "POLYGON ((0 0, 2 2, 2 0, 0 2, 0 0))\n"
+               "LINESTRING (0 9, 1 9, 1 8)\n"
+               "POLYGON ((5 0, 6 0, 6 1, 5 1, 5 0))\n"
+               "POLYGON ((5 0, 6 0, 6 0.5, 5 0.5, 5 0))\n"
+               "POLYGON ((10 0, 14 0, 14 4, 10 4, 10 0), (11 1, 12 1, 12 2, 11 2, 11 1))\n");
+  const Scene scene =
+      imported(folder, R"({ "file": "a.wkt", "material": "rock", "faults": "skip" })");
+  CHECK(scene.model.bodies.size() == 1);
+  const ImportReport& report = scene.imports.at(0);
+  CHECK(report.faults.size() == 4);
+  CHECK(report.left_out_in_words() == "1 line (faulty), 3 polygons (faulty)");
+  folder.write("a.wkt", "LINESTRING (0 9, 1 9, 1 8)\n");
+  CHECK_THAT(error_of(folder, R"({ "file": "a.wkt", "material": "rock", "faults": "skip" })"),
+             Catch::Contains("left out: 1 line (faulty)"));
+}
+
+TEST_CASE("names that cannot head a column are replaced, and it is said", "[import]") {
+  const Folder folder;
+  folder.write("a.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+    "properties": {"name": "Lechviertel, \"oestliches\"\nViertel"},
+    "geometry": {"type": "Polygon", "coordinates": [[[0,0],[1,0],[1,1],[0,1],[0,0]]]}}]})");
+  const Scene scene = imported(folder, R"({ "file": "a.geojson", "material": "rock" })");
+  CHECK(scene.model.bodies.at(0).name == "a-Lechviertel_ _oestliches__Viertel");
+  REQUIRE(scene.imports.at(0).renamed.size() == 1);
+  CHECK_THAT(scene.imports[0].renamed[0], Catch::Contains("Lechviertel, "));
+}
+
 TEST_CASE("a file of WKT holds geometries of several kinds", "[import]") {
   const Folder folder;
   folder.write("a.wkt",

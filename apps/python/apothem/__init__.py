@@ -12,10 +12,12 @@ units, angles in radians. The method: doi:10.1007/s00466-020-01913-2.
 """
 
 from apothem._apothem import (Bodies, Elements, Forces, Nodes, Polygon, Scene, Simulation, __version__,
-                              contact, load, overlap, resume, voronoi)
+                              boolean, contact, load, overlap, repair, resume, voronoi)
 from apothem._errors import SceneError, Unstable
-from apothem._results import InscribedCircle, PairContact, Roof, SingularArea, VoronoiCells
+from apothem._results import (InscribedCircle, PairContact, PolygonWithHoles, Repaired, Roof,
+                              SingularArea, Skeleton, VoronoiCells)
 
-__all__ = ["Bodies", "Elements", "Forces", "InscribedCircle", "Nodes", "PairContact", "Polygon", "Roof",
-           "Scene", "SceneError", "Simulation", "SingularArea", "Unstable", "VoronoiCells",
-           "__version__", "contact", "load", "overlap", "resume", "voronoi"]
+__all__ = ["Bodies", "Elements", "Forces", "InscribedCircle", "Nodes", "PairContact", "Polygon",
+           "PolygonWithHoles", "Repaired", "Roof", "Scene", "SceneError", "Simulation", "SingularArea",
+           "Skeleton", "Unstable", "VoronoiCells", "__version__", "boolean", "contact", "load",
+           "overlap", "repair", "resume", "voronoi"]

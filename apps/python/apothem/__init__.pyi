@@ -1,12 +1,13 @@
 from os import PathLike
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Bodies", "Elements", "Forces", "InscribedCircle", "Nodes", "PairContact", "Polygon", "Roof",
-           "Scene", "SceneError", "Simulation", "SingularArea", "Unstable", "VoronoiCells",
-           "__version__", "contact", "load", "overlap", "resume", "voronoi"]
+__all__ = ["Bodies", "Elements", "Forces", "InscribedCircle", "Nodes", "PairContact", "Polygon",
+           "PolygonWithHoles", "Repaired", "Roof", "Scene", "SceneError", "Simulation", "SingularArea",
+           "Skeleton", "Unstable", "VoronoiCells", "__version__", "boolean", "contact", "load",
+           "overlap", "repair", "resume", "voronoi"]
 
 __version__: str
 
@@ -135,6 +136,19 @@ class Roof(NamedTuple):
     arcs: _Indices
     faces: List[_Indices]
 
+class Skeleton(NamedTuple):
+    lines: List[_Floats]
+    edges: List[Tuple[int, int]]
+
+class PolygonWithHoles(NamedTuple):
+    outer: _Floats
+    holes: List[_Floats]
+
+class Repaired(NamedTuple):
+    polygons: List[PolygonWithHoles]
+    faults: List[str]
+    hausdorff_distance: float
+
 class SingularArea(NamedTuple):
     kind: str
     area: float
@@ -176,8 +190,17 @@ class Polygon:
     def inscribed_circle(self) -> InscribedCircle: ...
     def roof(self) -> Roof: ...
     def singular_area(self, r: Optional[float] = ...) -> SingularArea: ...
+    def skeleton(self) -> Skeleton: ...
+    def offset(self, d: float) -> List[Polygon]: ...
+    def contains(self, points: ArrayLike) -> NDArray[numpy.bool_]: ...
+    def potential(self, points: ArrayLike, potential: str = ..., field: str = ...,
+                  reference: Union[str, float] = ...) -> _Floats: ...
+    def gradient(self, points: ArrayLike, potential: str = ..., field: str = ...,
+                 reference: Union[str, float] = ...) -> _Floats: ...
     def __len__(self) -> int: ...
 
+def boolean(a: Polygon, b: Polygon, op: str) -> List[PolygonWithHoles]: ...
+def repair(rings: Sequence[ArrayLike], tolerance: float = ...) -> Repaired: ...
 def contact(a: Polygon, b: Polygon, method: str = ..., stiffness: float = ..., potential: str = ...,
             field: str = ..., reference: Union[str, float] = ...) -> PairContact: ...
 def overlap(a: Polygon, b: Polygon) -> List[_Floats]: ...

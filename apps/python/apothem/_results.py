@@ -30,6 +30,41 @@ class Roof(NamedTuple):
     faces: List[Any]
 
 
+class Skeleton(NamedTuple):
+    """The straight skeleton of a polygon.
+
+    lines: list of arrays (2, 2), the ends of each inner arc, m.
+    edges: list of pairs, the edges of the polygon on whose faces each arc lies: left, right.
+    """
+
+    lines: List[Any]
+    edges: List[Tuple[int, int]]
+
+
+class PolygonWithHoles(NamedTuple):
+    """A polygon with holes.
+
+    outer: array (k, 2) of the vertices of the outer ring, counter-clockwise, m.
+    holes: list of arrays (k, 2), clockwise, m.
+    """
+
+    outer: Any
+    holes: List[Any]
+
+
+class Repaired(NamedTuple):
+    """An outline after repair.
+
+    polygons: list of PolygonWithHoles.
+    faults: what was wrong with the outline, each with its place.
+    hausdorff_distance: upper bound of that between the boundaries before and after simplification, m.
+    """
+
+    polygons: List[PolygonWithHoles]
+    faults: List[str]
+    hausdorff_distance: float
+
+
 class SingularArea(NamedTuple):
     """Where the distance potential is 1 and no contact force acts.
 

@@ -36,14 +36,31 @@ TEST_CASE("a bad ring is refused and the vertex is named", "[polygon]") {
   CHECK(bad_vertex({{0, 0}, {1, 0}}) == 1);
   CHECK(bad_vertex({{0, 0}, {1, nan}, {0, 1}}) == 1);
   CHECK(bad_vertex({{0, 0}, {1, 0}, {HUGE_VAL, 1}}) == 2);
-  CHECK(bad_vertex({{0, 0}, {1, 0}, {1, 0}, {0, 1}}) == 2);          // repeated
-  CHECK(bad_vertex({{0, 0}, {1, 0}, {0, 1}, {0, 0}}) == 3);          // closed
   CHECK(bad_vertex({{0, 0}, {2, 0}, {1, 0}, {1, 1}}) == 1);          // spike
   CHECK(bad_vertex({{0, 0}, {1, 0}, {2, 0}}) >= 0);                  // no area
   CHECK(bad_vertex({{0, 0}, {1, 1}, {1, 0}, {0, 1}}) == 2);          // bow tie: edges 0 and 2
   CHECK(bad_vertex({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}) == 3);  // vertex 3 on edge 0
   CHECK(bad_vertex({{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}}) == 4);  // pinch
   CHECK(bad_vertex({{5, 5}, {5, 5}, {5, 5}}) >= 0);
+}
+
+TEST_CASE("equal neighbours are merged, and errors name vertices as they were given", "[polygon]") {
+  const Polygon closed({{0, 0}, {1, 0}, {1, 0}, {1, 0}, {0, 1}, {0, 0}, {0, 0}});
+  CHECK(closed.vertices() == std::vector<Vec2>{{0, 0}, {1, 0}, {0, 1}});
+  CHECK(closed.input_index(2) == 4);
+  CHECK(closed.input_edge(0) == 0);
+  CHECK(closed.input_edge(1) == 3);  // edges 1 and 2 have no length
+  CHECK(closed.input_edge(2) == 4);
+  const Polygon clockwise({{0, 0}, {0, 0}, {0, 1}, {1, 0}, {1, 0}});
+  CHECK(clockwise.vertices() == closed.vertices());
+  CHECK(clockwise.input_index(1) == 3);
+  CHECK(clockwise.input_edge(0) == 4);
+  CHECK(clockwise.input_edge(1) == 2);
+  CHECK(clockwise.input_edge(2) == 1);
+  CHECK(bad_vertex({{0, 0}, {0, 0}, {1, 0}, {1, 0}}) == 2);                          // two vertices
+  CHECK(bad_vertex({{0, 0}, {0, 0}, {2, 0}, {1, 0}, {1, 1}}) == 2);                  // spike
+  CHECK(bad_vertex({{0, 0}, {0, 0}, {1, 1}, {1, 0}, {0, 1}}) == 3);                  // bow tie
+  CHECK(bad_vertex({{0, 0}, {0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}}) == 5);  // pinch
 }
 
 TEST_CASE("simplicity is decided exactly", "[polygon]") {

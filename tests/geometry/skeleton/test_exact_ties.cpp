@@ -148,7 +148,7 @@ TEST_CASE("without ties: both constructions have the same bits", "[skeleton]") {
 
 TEST_CASE("tied events: the skeleton is that of a wavefront in rational numbers", "[skeleton]") {
   test::SeededRandom random(432);
-  for (int i = 0; i < test::scaled(250); ++i) {
+  for (int i = 0; i < (test::long_run() ? 500 : test::scaled(250)); ++i) {
     const Polygon polygon(test::random_rational(random, random.integer(2, i % 5 == 0 ? 30 : 12)));
     INFO("ring " << i << ": " << text(polygon));
     const Skeleton skeleton = straight_skeleton(polygon);
