@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "apps/accuracy/cases.hpp"
 #include "apps/accuracy/methods.hpp"

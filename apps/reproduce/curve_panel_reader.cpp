@@ -1,7 +1,5 @@
 #include "apps/reproduce/reader.hpp"
 
-#include <algorithm>
-
 #include "apps/reproduce/comparison.hpp"
 #include "lib/model/columns.hpp"
 #include "lib/output/history.hpp"

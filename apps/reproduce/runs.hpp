@@ -2,7 +2,6 @@
 // scene by the same program, is not done again; one that was interrupted goes on.
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <string>
 #include <vector>

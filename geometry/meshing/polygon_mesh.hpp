@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "geometry/polygon/polygon.hpp"
+#include "geometry/polygon/point.hpp"
 
 namespace apothem {
 

@@ -1,7 +1,6 @@
 #include "lib/dynamics/degrees_of_freedom.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "lib/execution/dispatch.hpp"

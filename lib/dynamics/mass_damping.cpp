@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "lib/execution/elementary.hpp"
 #include "lib/fem/mass.hpp"

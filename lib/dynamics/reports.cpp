@@ -1,6 +1,5 @@
 // What a simulation tells of its present state.
 #include <algorithm>
-#include <cmath>
 
 #include "lib/dynamics/contact_term.hpp"
 #include "lib/dynamics/elements.hpp"

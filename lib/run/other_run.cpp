@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lib/output/files.hpp"
-#include "lib/run/checkpoint.hpp"
 #include "lib/run/json_archive.hpp"
 #include "lib/run/sealed_file.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
 
 #include "lib/archive/archive.hpp"
 #include "lib/text/error.hpp"

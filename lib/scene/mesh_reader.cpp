@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "geometry/meshing/voronoi.hpp"
 #include "lib/mesh/check.hpp"
 #include "lib/mesh/disc_mesh.hpp"
